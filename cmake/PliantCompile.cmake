@@ -1,0 +1,33 @@
+# How pliant is compiled. pliant_options travels with the targets (layout and rounding must be the same in the library
+# and in its clients); pliant_warnings is for our own sources only.
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+add_library(pliant_options INTERFACE)
+target_compile_features(pliant_options INTERFACE cxx_std_17)
+target_compile_definitions(pliant_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+target_compile_options(pliant_options INTERFACE -ffp-contract=off)
+
+add_library(pliant_warnings INTERFACE)
+target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                                 -Wno-psabi -Werror)
+if(PLIANT_NATIVE)
+  target_compile_options(pliant_warnings INTERFACE -march=native)
+endif()
+if(PLIANT_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core.
+function(pliant_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
+  add_library(pliant_${name} ${arg_SOURCES})
+  add_library(pliant::${name} ALIAS pliant_${name})
+  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(pliant_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                   $<INSTALL_INTERFACE:include>)
+  target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
+                                       PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
+endfunction()

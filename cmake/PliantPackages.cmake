@@ -1,0 +1,16 @@
+# The libraries pliant builds with. Only Eigen is needed for the engine itself.
+find_package(Eigen3 3.4 QUIET NO_MODULE)
+if(NOT Eigen3_FOUND)
+  find_package(Eigen3 5 REQUIRED NO_MODULE)
+endif()
+find_package(Threads REQUIRED)
+message(STATUS "pliant: Eigen ${Eigen3_VERSION}")
+
+if(PLIANT_APPS)
+  find_package(nlohmann_json REQUIRED)
+  find_package(CLI11 REQUIRED)
+  find_package(PNG REQUIRED)
+endif()
+if(PLIANT_TESTS)
+  find_package(Catch2 REQUIRED)
+endif()

@@ -1,0 +1,88 @@
+// Pack: four doubles that move through a formula together, so that one evaluation serves four material
+// points. Arithmetic maps onto the vector units of the target; results do not depend on their width.
+#pragma once
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+// The kernels are inlined; the note about passing wide vectors by value concerns calls that never happen.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace pliant {
+
+struct Pack {
+  static constexpr int kLanes = 4;
+  using Vector [[gnu::vector_size(kLanes * sizeof(double))]] = double;
+
+  Vector lanes;
+
+  Pack() : lanes{} {}
+  Pack(double all) : lanes{all, all, all, all} {}  // NOLINT(google-explicit-constructor): scalars broadcast
+  explicit Pack(Vector v) : lanes(v) {}
+
+  double operator[](int i) const { return lanes[i]; }
+  void set(int i, double value) { lanes[i] = value; }
+
+  Pack& operator+=(const Pack& o) {
+    lanes += o.lanes;
+    return *this;
+  }
+  Pack& operator-=(const Pack& o) {
+    lanes -= o.lanes;
+    return *this;
+  }
+  Pack& operator*=(const Pack& o) {
+    lanes *= o.lanes;
+    return *this;
+  }
+  Pack& operator/=(const Pack& o) {
+    lanes /= o.lanes;
+    return *this;
+  }
+  friend Pack operator+(Pack a, const Pack& b) { return a += b; }
+  friend Pack operator-(Pack a, const Pack& b) { return a -= b; }
+  friend Pack operator*(Pack a, const Pack& b) { return a *= b; }
+  friend Pack operator/(Pack a, const Pack& b) { return a /= b; }
+  friend Pack operator-(const Pack& a) { return Pack(-a.lanes); }
+
+  /// A function of one double, lane by lane.
+  template <class F>
+  Pack map(F&& f) const {
+    Pack r;
+    for (int i = 0; i < kLanes; ++i) r.lanes[i] = f(lanes[i]);
+    return r;
+  }
+  friend Pack sin(const Pack& a) {
+    return a.map([](double x) { return std::sin(x); });
+  }
+  friend Pack cos(const Pack& a) {
+    return a.map([](double x) { return std::cos(x); });
+  }
+  friend Pack exp(const Pack& a) {
+    return a.map([](double x) { return std::exp(x); });
+  }
+  friend Pack log(const Pack& a) {
+    return a.map([](double x) { return std::log(x); });
+  }
+  friend Pack sqrt(const Pack& a) {
+    return a.map([](double x) { return std::sqrt(x); });
+  }
+  friend Pack select_positive(const Pack& c, const Pack& x, const Pack& y) {
+    return Pack(c.lanes > 0 ? x.lanes : y.lanes);
+  }
+
+  /// Sum of the lanes, in a fixed order.
+  friend double sum(const Pack& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+};
+
+}  // namespace pliant
+
+template <>
+struct Eigen::NumTraits<pliant::Pack> : Eigen::NumTraits<double> {
+  using Real = pliant::Pack;
+  using NonInteger = pliant::Pack;
+  using Nested = pliant::Pack;
+};

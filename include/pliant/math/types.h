@@ -1,0 +1,31 @@
+// Fixed-size vectors and matrices of the engine.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pliant {
+
+/// Most generalised coordinates a part may have beside its six rigid ones (n_s <= kMaxGlobal).
+inline constexpr int kMaxGlobal = 32;
+/// Most velocities of a part without local deformation: 6 + n_s.
+inline constexpr int kMaxVelocities = 6 + kMaxGlobal;
+
+template <class T, int N>
+using Vec = Eigen::Matrix<T, N, 1>;
+template <class T>
+using Vec3 = Vec<T, 3>;
+template <class T>
+using Mat3 = Eigen::Matrix<T, 3, 3>;
+
+/// Run-time size, bounded at compile time: lives on the stack, no heap.
+template <class T, int Max = kMaxVelocities>
+using VecMax = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, Max, 1>;
+template <class T, int Max = kMaxVelocities>
+using MatMax = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, Max, Max>;
+
+template <class T>
+using VecX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+template <class T>
+using MatX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+
+}  // namespace pliant
