@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+namespace pliant {
+inline constexpr double kPi = 3.14159265358979323846;
+}  // namespace pliant
+
 namespace pliant::math {
 
 // A reproducible kernel can stand in for the C library here.

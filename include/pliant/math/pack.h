@@ -19,7 +19,7 @@ struct Pack {
 
   Vector lanes;
 
-  Pack() : lanes{} {}
+  Pack() = default;
   Pack(double all) : lanes{all, all, all, all} {}  // NOLINT(google-explicit-constructor): scalars broadcast
   explicit Pack(Vector v) : lanes(v) {}
 

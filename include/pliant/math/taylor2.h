@@ -12,14 +12,14 @@ namespace pliant {
 
 template <class T = double>
 struct Taylor2 {
-  T v{}, d{}, dd{};
+  T v, d, dd;
 
   template <class C>
   using IfConstant = std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, Taylor2>, int>;
 
   Taylor2() = default;
   template <class C, IfConstant<C> = 0>
-  Taylor2(const C& value) : v(value) {}  // NOLINT(google-explicit-constructor): constants mix in
+  Taylor2(const C& value) : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants mix in
   Taylor2(const T& value, const T& first, const T& second) : v(value), d(first), dd(second) {}
 
   Taylor2& operator+=(const Taylor2& o) { return *this = *this + o; }
