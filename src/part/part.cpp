@@ -313,13 +313,26 @@ Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p, const Paramete
   return F.transpose().partialPivLu().solve(shape_->gauge_gradient(e, values.b.data()));
 }
 
+std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
+                                        const ParameterValues<double>& values) const {
+  Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(at.size()));
+  for (std::size_t i = 0; i < at.size(); ++i) e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
+  const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
+  std::vector<Vec3<double>> all;
+  all.reserve(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    // Barr 1984: n ~ det(F) F^-T n_e, by cofactors, which stay finite where the chain is singular (a tip).
+    const Mat3<double>& F = gradients[i];
+    Mat3<double> cofactors;
+    cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+    const Vec3<double> n = cofactors * shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
+    all.push_back(n.normalized());
+  }
+  return all;
+}
+
 Vec3<double> Part::normal(const Material<double>& m, const ParameterValues<double>& values) const {
-  const Vec3<double> e = shape_->e(m, values.b.data());
-  // Barr 1984: n ~ det(F) F^-T n_e, by cofactors, which stay finite where the chain is singular (a tip).
-  const Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
-  Mat3<double> cofactors;
-  cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-  return (cofactors * shape_->gauge_gradient(e, values.b.data())).normalized();
+  return normals({m}, values)[0];
 }
 
 Material<double> Part::label(const Vec3<double>& p, const ParameterValues<double>& values) const {

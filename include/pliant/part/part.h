@@ -124,6 +124,8 @@ class Part {
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Unit outward normal at a material point of the surface, body frame.
   Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
+  std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
+                                    const ParameterValues<double>& values) const;
   /// The material point at a body-frame point of the part at these values.
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
