@@ -47,7 +47,15 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   for (Eigen::Index i = 0; i < values.size(); ++i)
     if (values[i] > 1e-10) solid.push_back(i);
   MatX<double> T = scale.asDiagonal() * modes.eigenvectors() * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatX<double> basis = T(Eigen::all, solid);
+  const MatX<double> all = T(Eigen::all, solid);
+  // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would only
+  // blur the growth of the others.
+  const MatX<double> resistance = all.transpose() * (K + D) * all;
+  const Eigen::SelfAdjointEigenSolver<MatX<double>> resisted(resistance);
+  std::vector<Eigen::Index> stiff_modes;
+  for (Eigen::Index i = 0; i < resistance.rows(); ++i)
+    if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff()) stiff_modes.push_back(i);
+  const MatX<double> basis = all * resisted.eigenvectors()(Eigen::all, stiff_modes);
   const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
   const double stiff = k.norm(), damped = d.norm();
   if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();

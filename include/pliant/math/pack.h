@@ -13,6 +13,14 @@
 
 namespace pliant {
 
+// How a Pack is passed between functions depends on the target, so its name does: code compiled for different targets
+// does not link instead of failing at run time.
+#ifdef __AVX__
+inline namespace avx {
+#else
+inline namespace baseline {
+#endif
+
 struct Pack {
   static constexpr int kLanes = 4;
   using Vector [[gnu::vector_size(kLanes * sizeof(double))]] = double;
@@ -51,6 +59,7 @@ struct Pack {
   /// A function of one double, lane by lane.
   template <class F>
   Pack map(F&& f) const {
+    if (lanes[0] == lanes[1] && lanes[0] == lanes[2] && lanes[0] == lanes[3]) return Pack(f(lanes[0]));
     Pack r;
     for (int i = 0; i < kLanes; ++i) r.lanes[i] = f(lanes[i]);
     return r;
@@ -77,6 +86,8 @@ struct Pack {
   /// Sum of the lanes, in a fixed order.
   friend double sum(const Pack& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
 };
+
+}  // namespace
 
 }  // namespace pliant
 
