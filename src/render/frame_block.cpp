@@ -21,7 +21,9 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kNear = 0.01;       // of the distance between eye and target
 constexpr double kShadowReach = 12;  // of that distance: bodies farther out do not widen the shadow map
 
-Vector4f with(const Vector3f& xyz, float w) { return {xyz[0], xyz[1], xyz[2], w}; }
+Vector4f with(const Vector3f& xyz, float w) {
+  return {xyz[0], xyz[1], xyz[2], w};
+}
 
 void require(bool good, const char* what) {
   if (!good) throw std::invalid_argument(std::string("picture: ") + what);

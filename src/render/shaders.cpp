@@ -81,11 +81,11 @@ void main() {
   for (int ring = 0; ring < 6; ++ring) {
     float outer = inner * 1.85;
     float middle = sqrt(inner * outer);
-    for (int sector = 0; sector < 8; ++sector) {
-      sum += 0.125 * taken(at + turn * middle / size, inner * fade.z, outer * fade.z);
-      turn = vec2(0.70710678 * (turn.x - turn.y), 0.70710678 * (turn.x + turn.y));
+    for (int sector = 0; sector < 12; ++sector) {
+      sum += taken(at + turn * middle / size, inner * fade.z, outer * fade.z) / 12.0;
+      turn = vec2(0.8660254 * turn.x - 0.5 * turn.y, 0.5 * turn.x + 0.8660254 * turn.y);
     }
-    turn = vec2(0.85717 * turn.x - 0.51504 * turn.y, 0.51504 * turn.x + 0.85717 * turn.y);
+    turn = vec2(0.95106 * turn.x - 0.30902 * turn.y, 0.30902 * turn.x + 0.95106 * turn.y);
     inner = outer;
   }
   vec2 border = smoothstep(0.5, 0.4, abs(at - 0.5));
@@ -177,7 +177,7 @@ void main() {
   float t = clamp((radius - fade.x) / (fade.y - fade.x), 0.0, 1.0);
   float left = (1.0 - t) * (1.0 - t) * (1.0 + 2.0 * t);
   vec3 color = mix(ground.rgb, grid_color.rgb, line * left);
-  vec3 light = ground_ambient.rgb * open + (1.0 - ground_ambient.rgb) * (arrives * (0.75 + 0.25 * open));
+  vec3 light = ground_ambient.rgb * (0.2 + 0.8 * open) + (1.0 - ground_ambient.rgb) * (arrives * (0.75 + 0.25 * open));
   result = encode(mix(background(gl_FragCoord.y), color * light, left));
 }
 )";
