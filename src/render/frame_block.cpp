@@ -24,6 +24,9 @@ constexpr double kShadowReach = 12;  // of that distance: bodies farther out do 
 Vector4f with(const Vector3f& xyz, float w) {
   return {xyz[0], xyz[1], xyz[2], w};
 }
+// The filter of the shadow map reaches 4 texels to each side, its corner 5.7: lifted this far, no plane
+// shades itself.
+constexpr double kLift = 6;
 
 void require(bool good, const char* what) {
   if (!good) throw std::invalid_argument(std::string("picture: ") + what);
@@ -97,7 +100,7 @@ void fit_shadow(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, doubl
   low[2] -= margin;
   high[2] += margin;
   frame.shadow = to_unit(r, u, b, low, high);
-  frame.to_key[3] = static_cast<float>(2.5 * texel);
+  frame.to_key[3] = static_cast<float>(kLift * texel);
 }
 
 // Sets contact, fade[2], fade[3] and sky[3]: a square around the bodies, seen from below.

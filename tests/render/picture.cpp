@@ -175,18 +175,34 @@ TEST_CASE("Corners with normals of their own keep an edge sharp") {
   TriangleMesh smooth = sharp;
   smooth.normals = sharp.x.colwise().normalized();
   smooth.corners = sharp.triangles;
-  Renderer renderer(160, 120);
+  Renderer renderer(640, 480);
   const auto step = [&](const TriangleMesh& mesh) {
     Picture picture = of(mesh);
     picture.lights.to_key = {-0.6f, -1, 0.3f};  // reaches both faces
     const Image image = renderer.draw(picture);
-    const int far_left = brightness(pixel(image, 80 - 20, 60)), left = brightness(pixel(image, 80 - 2, 60));
-    const int right = brightness(pixel(image, 80 + 1, 60)), far_right = brightness(pixel(image, 80 + 19, 60));
+    const int far_left = brightness(pixel(image, 320 - 80, 240)),
+              left = brightness(pixel(image, 320 - 3, 240));
+    const int right = brightness(pixel(image, 320 + 2, 240)),
+              far_right = brightness(pixel(image, 320 + 79, 240));
     CHECK(far_left > far_right + 60);
     return left - right;
   };
-  CHECK(step(sharp) > 90);
-  CHECK(step(smooth) < 45);
+  CHECK(step(sharp) > 150);
+  CHECK(step(smooth) < 40);
+}
+
+TEST_CASE("A plane under grazing light does not shade itself") {
+  const TriangleMesh box = test::cube({0, 0, 0}, 0.7, 0.78539816339744831);
+  Renderer renderer(320, 240);
+  for (const float slant : {0.95f, 0.8f, 0.4f, 0.0f}) {
+    Picture picture = of(box);
+    picture.lights.to_key = {-slant, -1, 0.2f};
+    const Image image = renderer.draw(picture);
+    for (int x = 165; x < 225; ++x) {
+      CAPTURE(slant, x);
+      REQUIRE(std::abs(brightness(pixel(image, x, 120)) - brightness(pixel(image, x - 1, 120))) <= 3);
+    }
+  }
 }
 
 TEST_CASE("A track is seen over the ground and hidden behind a body") {
