@@ -22,10 +22,11 @@ struct Bend {
 
   template <class T>
   static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
-    const T c = math::cos(b[1]), s = math::sin(b[1]);
+    const auto [s, c] = math::sin_cos(b[1]);
     const T r = c * p[0] + s * p[1];
     const T half = b[0] * p[2] / h * 0.5;  // g / 2
-    const T sin_half = math::sin(half), cos_half = math::cos(half), sinc_half = sinc(half);
+    const auto [sin_half, cos_half] = math::sin_cos(half);
+    const T sinc_half = sinc(half, sin_half);
     // (1 - cos g)/k = z sinc(g/2) sin(g/2),  sin(g)/k = z sinc(g/2) cos(g/2),  1 - cos g = 2 sin^2(g/2)
     const T reach = p[2] * sinc_half;
     const T shift = reach * sin_half - r * sin_half * sin_half * 2.0;
@@ -33,7 +34,7 @@ struct Bend {
   }
   template <class T>
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
-    const T c = math::cos(b[1]), s = math::sin(b[1]);
+    const auto [s, c] = math::sin_cos(b[1]);
     const T k = b[0] / h;
     const T r_bent = c * p[0] + s * p[1];
     // The centre of curvature is at r = 1/k: with q = k z', d = 1 - k r', the angle g = atan2(q, d), rho = sqrt(q^2 + d^2)

@@ -15,8 +15,7 @@ struct Twist {
 
   template <class T>
   static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 1>& b) {
-    const T t = b[0] * p[2] / h;
-    const T c = math::cos(t), s = math::sin(t);
+    const auto [s, c] = math::sin_cos(T(b[0] * p[2] / h));
     return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
   }
   template <class T>

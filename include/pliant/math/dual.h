@@ -120,8 +120,12 @@ struct Dual {
     for (std::size_t i = 0; i < N; ++i) r.d[i] = slope * a.d[i];
     return r;
   }
-  friend Dual sin(const Dual& a) { return chain_rule(a, math::sin(a.v), math::cos(a.v)); }
-  friend Dual cos(const Dual& a) { return chain_rule(a, math::cos(a.v), T(-math::sin(a.v))); }
+  friend math::SinCos<Dual> sin_cos_of(const Dual& a) {
+    const math::SinCos<T> r = math::sin_cos(a.v);
+    return {chain_rule(a, r.sin, r.cos), chain_rule(a, r.cos, T(-r.sin))};
+  }
+  friend Dual sin(const Dual& a) { return sin_cos_of(a).sin; }
+  friend Dual cos(const Dual& a) { return sin_cos_of(a).cos; }
   friend Dual exp(const Dual& a) {
     const T e = math::exp(a.v);
     return chain_rule(a, e, e);

@@ -6,6 +6,7 @@
 
 #include <pliant/math/dual.h>
 #include <pliant/math/functions.h>
+#include <pliant/math/taylor2.h>
 
 namespace pliant {
 
@@ -34,6 +35,18 @@ inline Trig<double> trig(double x) {
 template <class T, class U>
 T signed_power(const Trig<U>& c, const T& eps) {
   return math::exp(T(eps * c.log_abs)) * c.sign;
+}
+
+/// d/d eps multiplies by the logarithm.
+template <int N, class T, class U>
+Dual<N, T> signed_power(const Trig<U>& c, const Dual<N, T>& eps) {
+  const T p = signed_power(c, eps.v);
+  return chain_rule(eps, p, T(p * c.log_abs));
+}
+template <class T, class U>
+Taylor2<T> signed_power(const Trig<U>& c, const Taylor2<T>& eps) {
+  const T p = signed_power(c, eps.v), slope = p * c.log_abs;
+  return chain_rule(eps, p, slope, T(slope * c.log_abs));
 }
 
 /// The same along material directions: d(sgn(x)|x|^eps) = eps |x|^(eps-1) dx, which at x = 0 is infinite for eps < 1.

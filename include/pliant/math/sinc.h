@@ -6,15 +6,19 @@
 
 namespace pliant {
 
-/// sin(x) / x.
+/// sin(x) / x, with the sine at hand.
 template <class T>
-T sinc(const T& x) {
+T sinc(const T& x, const T& sin_x) {
   const T x2 = x * x;
   T series(1);
   for (int k = 10; k >= 1; --k) series = series * x2 * (-1.0 / (2 * k * (2 * k + 1))) + 1.0;
   const T far = x2 - T(1.0);
   const T safe = math::where_positive(far, x, T(1));
-  return math::where_positive(far, T(math::sin(safe) / safe), series);
+  return math::where_positive(far, T(sin_x / safe), series);
+}
+template <class T>
+T sinc(const T& x) {
+  return sinc(x, T(math::sin(x)));
 }
 
 /// atan(x) / x.

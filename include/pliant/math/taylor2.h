@@ -78,14 +78,12 @@ struct Taylor2 {
   friend Taylor2 chain_rule(const Taylor2& a, const T& value, const T& slope, const T& curvature) {
     return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
   }
-  friend Taylor2 sin(const Taylor2& a) {
-    const T s = math::sin(a.v);
-    return chain_rule(a, s, math::cos(a.v), T(-s));
+  friend math::SinCos<Taylor2> sin_cos_of(const Taylor2& a) {
+    const math::SinCos<T> r = math::sin_cos(a.v);
+    return {chain_rule(a, r.sin, r.cos, T(-r.sin)), chain_rule(a, r.cos, T(-r.sin), T(-r.cos))};
   }
-  friend Taylor2 cos(const Taylor2& a) {
-    const T c = math::cos(a.v);
-    return chain_rule(a, c, T(-math::sin(a.v)), T(-c));
-  }
+  friend Taylor2 sin(const Taylor2& a) { return sin_cos_of(a).sin; }
+  friend Taylor2 cos(const Taylor2& a) { return sin_cos_of(a).cos; }
   friend Taylor2 exp(const Taylor2& a) {
     const T e = math::exp(a.v);
     return chain_rule(a, e, e, e);
