@@ -229,6 +229,9 @@ std::vector<Point> ring_points(const Request& r, const Levels& levels) {
         }
       }
       const std::vector<Mat3<double>> F = r.part.chain_gradient(e, r.rest);
+      // Rings of a shape of one's own need not be plane; then no three points stand for one.
+      const bool plane = e.row(2).maxCoeff() - e.row(2).minCoeff() <= 1e-12 * r.part.size();
+      const bool apart = r.follows == Follows::free || (r.follows != Follows::ring && !plane);
       PlaneMoments ring;
       for (std::size_t k = 0; k < v_nodes.size(); ++k) {
         const AngleNode& v = v_nodes[k];
@@ -239,7 +242,7 @@ std::vector<Point> ring_points(const Request& r, const Levels& levels) {
         const double mass = measure * u.weight * v.weight * w.weight;
         if (mass == 0) continue;
         const auto column = static_cast<Eigen::Index>(k);
-        if (r.follows == Follows::free) {
+        if (apart) {
           const Material<double> m{drop(u.c), drop(u.s), drop(v.c), drop(v.s), w.x};
           points.push_back({shape.from_rest_map(m, r.a), mass});
         } else if (r.follows == Follows::ring) {
@@ -248,7 +251,7 @@ std::vector<Point> ring_points(const Request& r, const Levels& levels) {
           ring.add(mass, e(0, column), e(1, column));
         }
       }
-      if (r.follows == Follows::free || ring.m == 0) continue;
+      if (apart || ring.m == 0) continue;
       for (const Eigen::Vector2d& p : ring.points()) {
         Material<double> m;
         if (r.follows == Follows::ring) {
@@ -308,9 +311,13 @@ MassPoints packed(const std::vector<Point>& points, double density, const char* 
   return out;
 }
 
+bool by_sections(const Request& r) {
+  return !r.part.shell() && r.follows <= Follows::section && r.part.shape().has_sections();
+}
+
 MassPoints lay(const Request& r, const Levels& levels) {
   const double density = r.part.density();
-  if (!r.part.shell() && r.follows <= Follows::section) {
+  if (by_sections(r)) {
     const std::vector<Point> points = section_points(r, levels.u);
     if (r.follows == Follows::affine) return packed(affine_points(r, points), density, "affine");
     return packed(points, density, "sections");
@@ -394,7 +401,7 @@ MassPoints lay_mass_points(const Part& part, int extra_level) {
   Levels levels;
   MassPoints points = lay(request, levels);
   std::vector<Inertia<double>> now = judge.measure(points);
-  const bool sections = !part.shell() && request.follows <= Follows::section;
+  const bool sections = by_sections(request);
   for (bool settled = false; !settled;) {
     settled = true;
     for (int Levels::*direction : {&Levels::u, &Levels::w, &Levels::v}) {

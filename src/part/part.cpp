@@ -284,16 +284,7 @@ std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e, const 
 }
 
 Mat3<double> Part::material_gradient(double u, double v, double w, const ParameterValues<double>& values) const {
-  const Material<double> m = material_at(u, v, w);
-  auto lift = [](const Trig<double>& t, double slope, std::size_t slot) {
-    Trig<Dual<3>> r{Dual<3>(t.x), Dual<3>(t.sign), Dual<3>(t.log_abs)};
-    r.x.d[slot] = slope;
-    r.log_abs.d[slot] = t.x != 0 ? slope / t.x : 0;
-    return r;
-  };
-  const Material<Dual<3>> moving{lift(m.cu, -m.su.x, 0), lift(m.su, m.cu.x, 0), lift(m.cv, -m.sv.x, 1),
-                                 lift(m.sv, m.cv.x, 1), Dual<3>::variable(w, 2)};
-  const Vec3<Dual<3>> e = shape_->tangents(moving, values.b.data());
+  const Vec3<Dual<3>> e = shape_->tangents(material_with_tangents(u, v, w), values.b.data());
   Mat3<double> E;
   Eigen::Matrix3Xd at(3, 1);
   for (int r = 0; r < 3; ++r) {

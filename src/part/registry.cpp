@@ -4,9 +4,8 @@
 #include <utility>
 
 #include <pliant/deform/all_deforms.h>
-#include <pliant/part/primitive.h>
-#include <pliant/part/primitive_instances.h>
-#include <pliant/shape/all_shapes.h>
+
+#include "primitive_factory.h"
 
 namespace pliant {
 
@@ -31,13 +30,12 @@ std::shared_ptr<const AnyLink> make_link(const std::string& name, std::tuple<Def
   return link;
 }
 
-template <class... Shapes>
-std::unique_ptr<Part> make_primitive(const std::string& shape, const std::string& name, double density, AnyChain chain,
-                                     std::tuple<Shapes...>*) {
+template <int... I>
+std::unique_ptr<Part> make_shape(const std::string& shape, const std::string& name, double density, AnyChain chain,
+                                 std::integer_sequence<int, I...>) {
   std::unique_ptr<Part> part;
-  ((shape == Shapes::name
-        ? void(part = std::make_unique<Primitive<Shapes, AnyChain>>(name, density, std::move(chain)))
-        : void()),
+  ((shape == std::tuple_element_t<I, AllShapes>::name ? void(part = make_primitive<I>(name, density, std::move(chain)))
+                                                      : void()),
    ...);
   return part;
 }
@@ -64,7 +62,8 @@ std::unique_ptr<Part> make_part(const std::string& name, const std::string& shap
     for (const DeformationInfo& info : all_deformations()) names += std::string(names.empty() ? "" : " ") + info.name;
     throw std::invalid_argument("part '" + name + "': no deformation '" + deformation + "'; there are: " + names);
   }
-  auto part = make_primitive(shape, name, density, AnyChain(std::move(links)), static_cast<AllShapes*>(nullptr));
+  auto part = make_shape(shape, name, density, AnyChain(std::move(links)),
+                         std::make_integer_sequence<int, std::tuple_size_v<AllShapes>>());
   if (!part) {
     std::string names;
     for (const auto& face : all_shapes()) names += std::string(names.empty() ? "" : " ") + face->name();

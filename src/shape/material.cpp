@@ -12,6 +12,18 @@ Material<double> material_at(double u, double v, double w) {
   return material_from(snap(std::cos(u)), snap(std::sin(u)), snap(std::cos(v)), snap(std::sin(v)), w);
 }
 
+Material<Dual<3>> material_with_tangents(double u, double v, double w) {
+  const Material<double> m = material_at(u, v, w);
+  auto along = [](const Trig<double>& t, double slope, std::size_t slot) {
+    Trig<Dual<3>> r{Dual<3>(t.x), Dual<3>(t.sign), Dual<3>(t.log_abs)};
+    r.x.d[slot] = slope;
+    r.log_abs.d[slot] = t.x != 0 ? slope / t.x : 0;
+    return r;
+  };
+  return {along(m.cu, -m.su.x, 0), along(m.su, m.cu.x, 0), along(m.cv, -m.sv.x, 1), along(m.sv, m.cv.x, 1),
+          Dual<3>::variable(w, 2)};
+}
+
 Material<double> material_towards(const Vec3<double>& direction, double w) {
   const double ring = std::hypot(direction[0], direction[1]);
   const double size = std::hypot(ring, direction[2]);

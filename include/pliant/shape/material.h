@@ -17,6 +17,9 @@ struct Material {
 /// From angles (rad). Cosines and sines that are zero but for rounding are taken as zero.
 Material<double> material_at(double u, double v, double w = 1);
 
+/// The same with its derivatives along u, v and w.
+Material<Dual<3>> material_with_tangents(double u, double v, double w);
+
 /// From exact cosine and sine pairs.
 inline Material<double> material_from(double cu, double su, double cv, double sv, double w = 1) {
   return {trig(cu), trig(su), trig(cv), trig(sv), w};

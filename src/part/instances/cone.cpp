@@ -1,6 +1,0 @@
-#include <pliant/part/primitive.h>
-#include <pliant/shape/cone.h>
-
-namespace pliant {
-template class Primitive<Cone, AnyChain>;
-}  // namespace pliant

@@ -1,6 +1,0 @@
-#include <pliant/part/primitive.h>
-#include <pliant/shape/ellipsoid.h>
-
-namespace pliant {
-template class Primitive<Ellipsoid, AnyChain>;
-}  // namespace pliant

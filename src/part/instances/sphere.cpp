@@ -1,6 +1,0 @@
-#include <pliant/part/primitive.h>
-#include <pliant/shape/sphere.h>
-
-namespace pliant {
-template class Primitive<Sphere, AnyChain>;
-}  // namespace pliant
