@@ -8,47 +8,15 @@
 #include <pliant/math/nearest_name.h>
 #include <pliant/part/registry.h>
 #include <pliant/scene/json_document.h>
+#include <pliant/scene/point_value.h>
+#include <pliant/scene/reader.h>
 #include <pliant/scene/scene_schema.h>
+#include <pliant/scene/time_value.h>
 #include <pliant/scene/validate.h>
-
-#include "json_write.h"
 
 namespace pliant {
 
 namespace {
-
-// Values whose type the schema has already checked.
-double number(const JsonValue& object, const char* key, double otherwise) {
-  const JsonValue* v = object.find(key);
-  return v != nullptr ? v->number() : otherwise;
-}
-bool boolean(const JsonValue& object, const char* key, bool otherwise) {
-  const JsonValue* v = object.find(key);
-  return v != nullptr ? v->boolean() : otherwise;
-}
-std::string string(const JsonValue& object, const char* key, const std::string& otherwise = "") {
-  const JsonValue* v = object.find(key);
-  return v != nullptr ? v->string() : otherwise;
-}
-Vec3<double> vector(const JsonValue& v) {
-  return {v.array()[0].number(), v.array()[1].number(), v.array()[2].number()};
-}
-Vec3<double> vector(const JsonValue& object, const char* key, const Vec3<double>& otherwise) {
-  const JsonValue* v = object.find(key);
-  return v != nullptr ? vector(*v) : otherwise;
-}
-
-TimeFunction time_function(const JsonValue& v) {
-  if (v.is_number()) return v.number();
-  if (v.is_string()) return TimeFunction::formula(v.string());
-  std::vector<double> t, x;
-  for (const JsonValue& entry : v.find("t")->array()) t.push_back(entry.number());
-  for (const JsonValue& entry : v.find("x")->array()) x.push_back(entry.number());
-  return TimeFunction::key_frames(std::move(t), std::move(x));
-}
-TimeVector time_vector(const JsonValue& v) {
-  return {time_function(v.array()[0]), time_function(v.array()[1]), time_function(v.array()[2])};
-}
 
 Color color(const JsonValue& v) {
   if (v.is_array()) return {v.array()[0].number(), v.array()[1].number(), v.array()[2].number()};
@@ -77,25 +45,20 @@ class SceneReader {
   std::unique_ptr<Scene> read() {
     auto scene = std::make_unique<Scene>();
     scene_ = scene.get();
-    const JsonValue& root = document_.root();
-    scene_->name = string(root, "name", std::filesystem::path(document_.name()).stem().string());
-    scene_->description = string(root, "description");
-    scene_->body.gravity = vector(root, "gravity", scene_->body.gravity);
+    const Reader root(document_.root(), scene_record());
+    scene_->name = root.given("name") ? root.text("name") : std::filesystem::path(document_.name()).stem().string();
+    scene_->description = root.text("description");
+    scene_->body.gravity = root.vector3("gravity");
     read_settings(root);
-    each(root, "parts", [&](const JsonValue& v) { read_part(v); });
-    each(root, "springs", [&](const JsonValue& v) { read_spring(v); });
-    each(root, "forces", [&](const JsonValue& v) { read_force(v); });
-    each(root, "torques", [&](const JsonValue& v) { read_torque(v); });
-    each(root, "tracks", [&](const JsonValue& v) { read_track(v); });
+    for (const Reader& r : root.objects("parts")) read_part(r);
+    for (const Reader& r : root.objects("springs")) read_spring(r);
+    for (const Reader& r : root.objects("forces")) read_force(r);
+    for (const Reader& r : root.objects("torques")) read_torque(r);
+    for (const Reader& r : root.objects("tracks")) read_track(r);
     return scene;
   }
 
  private:
-  template <class F>
-  static void each(const JsonValue& object, const char* key, F&& f) {
-    if (const JsonValue* list = object.find(key))
-      for (const JsonValue& v : list->array()) f(v);
-  }
   void fault(const JsonValue& at, const std::string& message) { faults_.add(document_.fault(at, message)); }
   void warn(const JsonValue& at, const std::string& message) {
     faults_.add(document_.fault(at, message, Severity::kWarning));
@@ -112,38 +75,31 @@ class SceneReader {
     return false;
   }
 
-  void read_settings(const JsonValue& root) {
-    if (const JsonValue* time = root.find("time")) {
-      scene_->end = number(*time, "end", scene_->end);
-      scene_->step = number(*time, "step", scene_->step);
-      scene_->integrator = string(*time, "integrator", scene_->integrator);
-      if (scene_->end / scene_->step > 1e12)
-        fault(*time, "end / step is more than 1e12 steps");
-    }
-    if (const JsonValue* output = root.find("output")) {
-      scene_->frame_rate = number(*output, "frame_rate", scene_->frame_rate);
-      if (const JsonValue* size = output->find("size")) {
-        scene_->width = static_cast<int>(size->array()[0].number());
-        scene_->height = static_cast<int>(size->array()[1].number());
-      }
-    }
-    if (const JsonValue* camera = root.find("camera")) {
-      if (const JsonValue* eye = camera->find("eye")) scene_->camera.eye = vector(*eye);
-      if (const JsonValue* target = camera->find("target")) scene_->camera.target = vector(*target);
-      scene_->camera.field_of_view = number(*camera, "field_of_view", scene_->camera.field_of_view);
-    }
-    if (const JsonValue* light = root.find("light")) {
-      if (const JsonValue* direction = light->find("direction")) scene_->light.direction = direction_of(*direction);
-      scene_->light.shadows = boolean(*light, "shadows", true);
-    }
-    if (const JsonValue* ground = root.find("ground")) {
-      scene_->ground.visible = boolean(*ground, "visible", true);
-      if (const JsonValue* height = ground->find("height")) scene_->ground.height = height->number();
-    }
+  void read_settings(const Reader& root) {
+    const Reader time = root.object("time"), output = root.object("output"), camera = root.object("camera"),
+                 light = root.object("light"), ground = root.object("ground");
+    scene_->end = time.number("end");
+    scene_->step = time.number("step");
+    scene_->integrator = time.text("integrator");
+    if (scene_->end / scene_->step > 1e12)
+      fault(time.json(), "end / step is more than 1e12 steps; expected a larger step or an earlier end");
+    scene_->frame_rate = output.number("frame_rate");
+    const std::vector<double> size = output.numbers("size");
+    scene_->width = static_cast<int>(size[0]);
+    scene_->height = static_cast<int>(size[1]);
+    if (camera.given("eye")) scene_->camera.eye = camera.vector3("eye");
+    if (camera.given("target")) scene_->camera.target = camera.vector3("target");
+    if (camera.given("eye") && camera.given("target") && *scene_->camera.eye == *scene_->camera.target)
+      fault(camera.json(), "eye and target are the same point; a camera looks from one to the other");
+    scene_->camera.field_of_view = camera.number("field_of_view");
+    if (light.given("direction")) scene_->light.direction = direction_of(light.at("direction"));
+    scene_->light.shadows = light.boolean("shadows");
+    scene_->ground.visible = ground.boolean("visible");
+    if (ground.given("height")) scene_->ground.height = ground.number("height");
   }
 
   Vec3<double> direction_of(const JsonValue& v) {
-    const Vec3<double> d = vector(v);
+    const Vec3<double> d = read_vector3(v);
     if (!(d.norm() > 0)) {
       fault(v, "a direction of length 0");
       return {0, 0, 1};
@@ -151,64 +107,58 @@ class SceneReader {
     return d;
   }
 
-  void read_part(const JsonValue& v) {
-    const std::string name = string(v, "name");
+  void read_part(const Reader& r) {
+    const std::string name = r.text("name");
     if (scene_->body.find(name) != nullptr) {
-      fault(*v.find("name"), "there is already a part called \"" + name + "\"; names must be unique");
+      fault(r.at("name"), "there is already a part called \"" + name + "\"; names must be unique");
       return;
     }
     std::vector<std::string> deformations;
-    each(v, "deformations", [&](const JsonValue& d) { deformations.push_back(d.string()); });
+    for (const JsonValue& d : r.at("deformations").array()) deformations.push_back(d.string());
 
-    const JsonValue* material = nullptr;
-    if (const JsonValue* reference = v.find("material")) {
-      const JsonValue* materials = document_.root().find("materials");
-      material = materials != nullptr ? materials->find(reference->string()) : nullptr;
-      if (material == nullptr) {
-        std::vector<std::string> names;
-        if (materials != nullptr)
-          for (const auto& member : materials->members()) names.push_back(member.key);
-        fault(*reference, "no material is called \"" + reference->string() + "\"" + hint(reference->string(), names));
-      }
-    }
-    auto property = [&](const char* key, double otherwise) {
-      return number(v, key, material != nullptr ? number(*material, key, otherwise) : otherwise);
+    const JsonValue* material = r.given("material") ? material_of(r.at("material")) : nullptr;
+    auto property = [&](const char* key) {
+      const JsonValue* shared = material != nullptr && !r.given(key) ? material->find(key) : nullptr;
+      return shared != nullptr ? shared->number() : r.number(key);
     };
 
     std::unique_ptr<Part> made;
-    if (!attempt(v, [&] { made = make_part(name, string(v, "shape"), deformations, property("density", 1000)); })) return;
+    if (!attempt(r.json(), [&] { made = make_part(name, r.text("shape"), deformations, property("density")); })) return;
     Part& part = scene_->body.add(std::move(made));
     Appearance look;
-    look.color = v.find("color") != nullptr ? color(*v.find("color")) : palette(scene_->appearance.size());
-    look.resolution = static_cast<int>(number(v, "resolution", look.resolution));
-    look.visible = boolean(v, "visible", true);
+    look.color = r.given("color") ? color(r.at("color")) : palette(scene_->appearance.size());
+    look.resolution = static_cast<int>(r.integer("resolution"));
+    look.visible = r.boolean("visible");
     scene_->appearance.push_back(look);
 
-    if (boolean(v, "shell", false)) part.make_shell();
-    part.damping(property("alpha", 0), property("beta", 0), property("drag", 0));
-    if (const JsonValue* mass = v.find("mass")) part.mass(mass->number());
-    bool good = true;
-    if (const JsonValue* parameters = v.find("parameters")) good = read_parameters(part, *parameters);
-    if (const JsonValue* K = v.find("stiffness_matrix")) good = read_stiffness(part, *K) && good;
-    if (const JsonValue* inertia = v.find("inertia"))
-      good = attempt(*inertia, [&] {
-               Mat3<double> moments;
-               for (int i = 0; i < 3; ++i)
-                 moments.row(i) = vector(inertia->find("moments")->array()[static_cast<std::size_t>(i)]);
-               part.inertia(number(*inertia, "mass", 1), moments, vector(*inertia, "centre", {0, 0, 0}));
-             }) && good;
-    Eigen::Quaterniond R = Eigen::Quaterniond::Identity();
-    if (const JsonValue* orientation = v.find("orientation")) R = read_orientation(*orientation);
-    part.place(vector(v, "position", {0, 0, 0}), R);
-    part.move(vector(v, "velocity", {0, 0, 0}), vector(v, "angular_velocity", {0, 0, 0}));
-    if (boolean(v, "fixed", false)) part.fix();
+    if (r.boolean("shell")) part.make_shell();
+    part.damping(property("alpha"), property("beta"), property("drag"));
+    if (r.given("mass")) part.mass(r.number("mass"));
+    bool good = read_parameters(part, r.at("parameters"));
+    if (r.given("stiffness_matrix")) good = read_stiffness(part, r.object("stiffness_matrix")) && good;
+    if (r.given("inertia")) good = read_inertia(part, r.object("inertia")) && good;
+    part.place(r.vector3("position"), read_orientation(r.object("orientation")));
+    part.move(r.vector3("velocity"), r.vector3("angular_velocity"));
+    if (r.boolean("fixed")) part.fix();
     // Folding, limits and the like show when the constants are taken.
-    if (good) attempt(v, [&] { part.prepare(); });
+    if (good) attempt(r.json(), [&] { part.prepare(); });
+  }
+
+  /// The entry of materials that a part names, or nullptr with a fault.
+  const JsonValue* material_of(const JsonValue& name) {
+    const JsonValue* materials = document_.root().find("materials");
+    const JsonValue* found = materials != nullptr ? materials->find(name.string()) : nullptr;
+    if (found != nullptr) return found;
+    std::vector<std::string> names;
+    if (materials != nullptr)
+      for (const auto& member : materials->members()) names.push_back(member.key);
+    fault(name, "no material is called \"" + name.string() + "\"" + hint(name.string(), names));
+    return nullptr;
   }
 
   static std::string hint(const std::string& word, const std::vector<std::string>& names) {
-    const std::string near = nearest_name(word, names);
-    if (!near.empty()) return "; did you mean \"" + near + "\"?";
+    const std::string near = did_you_mean(word, names);
+    if (!near.empty()) return near;
     std::string all;
     for (const std::string& n : names) all += (all.empty() ? "" : ", ") + n;
     return all.empty() ? "; there is none" : "; there are: " + all;
@@ -230,7 +180,7 @@ class SceneReader {
         good = false;
         continue;
       }
-      if (v.is_number()) {
+      if (v.is_number()) {  // frozen at this value
         good = attempt(v, [&] { part.rest({{name, v.number()}}); }) && good;
         continue;
       }
@@ -239,7 +189,7 @@ class SceneReader {
                  if (rest->is_number())
                    part.rest({{name, rest->number()}});
                  else
-                   part.rest(name, time_function(*rest));
+                   part.rest(name, read_time_function(*rest));
                }) && good;
       if (const JsonValue* k = v.find("stiffness")) part.stiffness({{name, k->number()}});
       if (const JsonValue* q = v.find("initial")) part.initial({{name, q->number()}});
@@ -253,7 +203,9 @@ class SceneReader {
       if (v.find("min") != nullptr || v.find("max") != nullptr) {
         const Parameter& p = known[known.find(name)];
         const double scale = p.spec->relative ? p.rest_value() : 1.0;
-        const Range range{number(v, "min", p.spec->dynamic.min * scale), number(v, "max", p.spec->dynamic.max * scale)};
+        const JsonValue *min = v.find("min"), *max = v.find("max");
+        const Range range{min != nullptr ? min->number() : p.spec->dynamic.min * scale,
+                          max != nullptr ? max->number() : p.spec->dynamic.max * scale};
         good = attempt(v, [&] { part.limits(name, range); }) && good;
         if (!p.dynamic) warn(v, "limits of " + name + " have no effect: it is frozen");
       }
@@ -261,35 +213,40 @@ class SceneReader {
     return good;
   }
 
-  bool read_stiffness(Part& part, const JsonValue& v) {
+  bool read_stiffness(Part& part, const Reader& r) {
     std::vector<std::string> names;
-    each(v, "parameters", [&](const JsonValue& n) { names.push_back(n.string()); });
-    const auto& rows = v.find("K")->array();
+    for (const JsonValue& n : r.at("parameters").array()) names.push_back(n.string());
+    const auto& rows = r.at("K").array();
     const auto n = static_cast<Eigen::Index>(names.size());
     MatX<double> K(n, n);
     for (const JsonValue& row : rows)
       if (static_cast<Eigen::Index>(rows.size()) != n || static_cast<Eigen::Index>(row.array().size()) != n) {
-        fault(*v.find("K"), "K must have a row and a column for each of the " + std::to_string(n) + " parameters");
+        fault(r.at("K"), "K must have a row and a column for each of the " + std::to_string(n) + " parameters");
         return false;
       }
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j)
         K(i, j) = rows[static_cast<std::size_t>(i)].array()[static_cast<std::size_t>(j)].number();
-    return attempt(v, [&] { part.stiffness(names, K); });
+    return attempt(r.json(), [&] { part.stiffness(names, K); });
   }
 
-  Eigen::Quaterniond read_orientation(const JsonValue& v) {
-    if (const JsonValue* axis = v.find("axis"))
-      return Eigen::Quaterniond(Eigen::AngleAxisd(v.find("angle")->number(), direction_of(*axis).normalized()));
-    const JsonValue& list = *v.find("quaternion");
-    const auto& q = list.array();
-    const Eigen::Quaterniond R(q[0].number(), q[1].number(), q[2].number(), q[3].number());
+  bool read_inertia(Part& part, const Reader& r) {
+    Mat3<double> moments;
+    for (int i = 0; i < 3; ++i) moments.row(i) = read_vector3(r.at("moments").array()[static_cast<std::size_t>(i)]);
+    return attempt(r.json(), [&] { part.inertia(r.number("mass"), moments, r.vector3("centre")); });
+  }
+
+  Eigen::Quaterniond read_orientation(const Reader& r) {
+    if (r.name() == "by_axis")
+      return Eigen::Quaterniond(Eigen::AngleAxisd(r.number("angle"), direction_of(r.at("axis")).normalized()));
+    const std::vector<double> q = r.numbers("quaternion");
+    const Eigen::Quaterniond R(q[0], q[1], q[2], q[3]);
     if (!(R.norm() > 0)) {
-      fault(list, "a quaternion of length 0 is no rotation");
+      fault(r.at("quaternion"), "a quaternion of length 0 is no rotation");
       return Eigen::Quaterniond::Identity();
     }
     if (std::abs(R.norm() - 1) > 1e-3)
-      warn(list, "its length is not 1; it is taken as the rotation of the same direction");
+      warn(r.at("quaternion"), "its length is not 1; it is taken as the rotation of the same direction");
     return R.normalized();
   }
 
@@ -303,69 +260,64 @@ class SceneReader {
     return nullptr;
   }
 
-  Material<double> material_point(const Part& part, const JsonValue& v) {
-    if (const JsonValue* u = v.find("u"))
-      return material_at(u->number(), v.find("v")->number(), number(v, "w", 1));
-    const bool torus = part.shape().mesh() == MeshPattern::torus;
-    if (const JsonValue* direction = v.find("direction")) {
-      if (torus) {
-        fault(*direction, "a torus has no single point in a direction; give {\"u\", \"v\", \"w\"} or {\"near\"}");
-        return {};
-      }
-      Material<double> m = part.label(direction_of(*direction).normalized() * part.size(), part.parameters().rest());
-      m.w = number(v, "w", 1);
+  /// Resolved at the rest shape.
+  Material<double> material_point(const Part& part, const MaterialPointValue& value) const {
+    using Form = MaterialPointValue::Form;
+    if (value.form == Form::kCoordinates) return material_at(value.x[0], value.x[1], value.x[2]);
+    if (value.form == Form::kDirection) {
+      if (part.shape().mesh() == MeshPattern::torus)
+        throw std::invalid_argument("a torus has no single point in a direction; give {\"u\", \"v\", \"w\"} or {\"near\"}");
+      Material<double> m = part.label(value.x.normalized() * part.size(), part.parameters().rest());
+      m.w = value.w;
       return m;
     }
-    Material<double> m = part.label(vector(*v.find("near")), part.parameters().rest());
+    Material<double> m = part.label(value.x, part.parameters().rest());
     m.w = std::min(m.w, 1.0);
     return m;
   }
 
-  /// Where a point is given as {"part", "at"}.
-  bool point_on_part(const JsonValue& v, Point& point) {
-    const Part* part = part_of(*v.find("part"));
+  /// Where a point is given by "part" and "at".
+  bool point_on_part(const Reader& r, Point& point) {
+    const Part* part = part_of(r.at("part"));
     if (part == nullptr) return false;
     point.part = part;
-    return attempt(*v.find("at"), [&] { point.material = material_point(*part, *v.find("at")); });
+    return attempt(r.at("at"), [&] { point.material = material_point(*part, read_material_point(r.at("at"))); });
   }
-  bool end_point(const JsonValue& v, Point& point) {
-    if (const JsonValue* world = v.find("world")) {
-      point.world = time_vector(*world);
-      return true;
-    }
-    return point_on_part(v, point);
+  bool end_point(const Reader& r, Point& point) {
+    if (!r.given("world")) return point_on_part(r, point);
+    point.world = r.time_vector("world");
+    return true;
   }
-  static std::string name_of(const JsonValue& v, const char* kind, std::size_t number) {
-    return string(v, "name", kind + std::to_string(number + 1));
+  static std::string name_of(const Reader& r, const char* kind, std::size_t number) {
+    return r.given("name") ? r.text("name") : kind + std::to_string(number + 1);
   }
 
-  void read_spring(const JsonValue& v) {
+  void read_spring(const Reader& r) {
     Point from, to;
-    const bool a = end_point(*v.find("from"), from), b = end_point(*v.find("to"), to);
+    const bool a = end_point(r.object("from"), from), b = end_point(r.object("to"), to);
     if (!a || !b) return;
     if (from.part == nullptr && to.part == nullptr) {
-      fault(v, "this spring ties the world to itself; one end must be on a part");
+      fault(r.json(), "this spring ties the world to itself; one end must be on a part");
       return;
     }
-    scene_->body.spring(name_of(v, "spring", scene_->body.springs().size()), from, to, number(v, "stiffness", 0),
-                        number(v, "damping", 0), number(v, "rest_length", 0));
+    scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), from, to, r.number("stiffness"),
+                        r.number("damping"), r.number("rest_length"));
   }
-  static Frame frame(const JsonValue& v) { return string(v, "frame") == "body" ? Frame::body : Frame::world; }
-  void read_force(const JsonValue& v) {
+  static Frame frame(const Reader& r) { return r.text("frame") == "body" ? Frame::body : Frame::world; }
+  void read_force(const Reader& r) {
     Point at;
-    if (point_on_part(v, at))
-      scene_->body.force(name_of(v, "force", scene_->body.forces().size()), at, time_vector(*v.find("force")), frame(v));
+    if (point_on_part(r, at))
+      scene_->body.force(name_of(r, "force", scene_->body.forces().size()), at, r.time_vector("force"), frame(r));
   }
-  void read_torque(const JsonValue& v) {
-    if (const Part* part = part_of(*v.find("part")))
-      scene_->body.torque(name_of(v, "torque", scene_->body.torques().size()), *part, time_vector(*v.find("torque")),
-                          frame(v));
+  void read_torque(const Reader& r) {
+    if (const Part* part = part_of(r.at("part")))
+      scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, r.time_vector("torque"), frame(r));
   }
-  void read_track(const JsonValue& v) {
+  void read_track(const Reader& r) {
     Track track;
-    if (!point_on_part(v, track.point)) return;
-    track.name = name_of(v, "track", scene_->tracks.size());
-    if (const JsonValue* c = v.find("color")) track.color = color(*c);
+    if (!point_on_part(r, track.point)) return;
+    track.name = name_of(r, "track", scene_->tracks.size());
+    if (r.given("color")) track.color = color(r.at("color"));
     scene_->tracks.push_back(track);
   }
 

@@ -1,45 +1,15 @@
 #include <pliant/scene/scene_schema.h>
 
 #include <pliant/integrate/integrator.h>
-#include <pliant/math/formula.h>
 #include <pliant/part/registry.h>
+#include <pliant/scene/point_value.h>
+#include <pliant/scene/time_value.h>
 
 namespace pliant {
 
 namespace {
 
 using namespace schema;
-
-Type formula() {
-  return text(1)
-      .checked([](const JsonValue& value, const ReportAt& report) {
-        try {
-          Formula checked(value.string());
-        } catch (const FormulaError& e) {
-          report(value, e.reason(), e.offset());
-        }
-      })
-      .expecting("a formula of t in quotes");
-}
-
-void check_times(const JsonValue& value, const ReportAt& report) {
-  const auto& t = value.find("t")->array();
-  const JsonValue* x = value.find("x");
-  if (x->array().size() != t.size()) report(*x, "as many values as times in t are needed", 0);
-  for (std::size_t i = 1; i < t.size(); ++i)
-    if (!(t[i].number() > t[i - 1].number())) report(t[i], "times must increase", 0);
-}
-
-/// A number, a formula of t, or key frames.
-Type time_function(const std::string& unit) {
-  const Record keys{"key_frames",
-                    "A C2 cubic spline through key frames, constant before the first and after the last.",
-                    {required("t", array(number(any(), "s"), 1), "Times, increasing.", "[0, 1]"),
-                     required("x", array(number(any(), unit), 1), "Values at those times.", "[0, 0.5]")}};
-  return one_of({number(any(), unit), formula(), record(keys).checked(check_times)})
-      .expecting("a number (" + unit + "), a formula of t in quotes, or key frames {\"t\": [...], \"x\": [...]}");
-}
-Type time_vector(const std::string& unit) { return array(time_function(unit), 3, 3); }
 
 std::vector<Choice> shape_choices() {
   std::vector<Choice> all;
@@ -68,25 +38,6 @@ Type color() {
   return one_of({hex, array(number(between(0, 1), "1"), 3, 3)})
       .expecting("a colour \"#rrggbb\" or [red, green, blue] from 0 to 1 (sRGB)")
       .defined_as("color");
-}
-
-Type material_point() {
-  const Record angles{"by_angles",
-                      "A material point by its coordinates.",
-                      {required("u", number(between(-3.1416, 3.1416), "rad"), "Latitude; pi/2 at the upper pole.", "0"),
-                       required("v", number(between(-6.2832, 6.2832), "rad"), "Longitude from the x axis.", "0"),
-                       optional("w", number(between(0, 1), "1"), "Radius: 0 the centre, 1 the surface.", "1")}};
-  const Record direction{"by_direction",
-                         "The material point in a direction of the body frame, at the rest shape.",
-                         {required("direction", vector3("1"), "Direction from the centre.", "[0, 0, 1]"),
-                          optional("w", number(between(0, 1), "1"), "Radius: 0 the centre, 1 the surface.", "1")}};
-  const Record near{"by_position",
-                    "The material point at a position of the body frame, at the rest shape; outside, the surface point "
-                    "in that direction.",
-                    {required("near", vector3("m"), "Position in the body frame.", "[0, 0, 0.1]")}};
-  return one_of({record(angles), record(direction), record(near)})
-      .expecting("a material point {\"u\", \"v\", \"w\"}, {\"direction\": [x, y, z], \"w\"} or {\"near\": [x, y, z]}")
-      .defined_as("material_point");
 }
 
 Type end_point() {
