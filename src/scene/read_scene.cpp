@@ -46,7 +46,8 @@ class SceneReader {
     auto scene = std::make_unique<Scene>();
     scene_ = scene.get();
     const Reader root(document_.root(), scene_record());
-    scene_->name = root.given("name") ? root.text("name") : std::filesystem::path(document_.name()).stem().string();
+    scene_->name =
+        root.given("name") ? root.text("name") : std::filesystem::path(document_.name()).stem().string();
     scene_->description = root.text("description");
     scene_->body.gravity = root.vector3("gravity");
     read_settings(root);
@@ -123,7 +124,9 @@ class SceneReader {
     };
 
     std::unique_ptr<Part> made;
-    if (!attempt(r.json(), [&] { made = make_part(name, r.text("shape"), deformations, property("density")); })) return;
+    if (!attempt(r.json(),
+                 [&] { made = make_part(name, r.text("shape"), deformations, property("density")); }))
+      return;
     Part& part = scene_->body.add(std::move(made));
     Appearance look;
     look.color = r.given("color") ? color(r.at("color")) : palette(scene_->appearance.size());
@@ -185,12 +188,14 @@ class SceneReader {
         continue;
       }
       if (const JsonValue* rest = v.find("rest"))
-        good = attempt(*rest, [&] {
-                 if (rest->is_number())
-                   part.rest({{name, rest->number()}});
-                 else
-                   part.rest(name, read_time_function(*rest));
-               }) && good;
+        good = attempt(*rest,
+                       [&] {
+                         if (rest->is_number())
+                           part.rest({{name, rest->number()}});
+                         else
+                           part.rest(name, read_time_function(*rest));
+                       }) &&
+               good;
       if (const JsonValue* k = v.find("stiffness")) part.stiffness({{name, k->number()}});
       if (const JsonValue* q = v.find("initial")) part.initial({{name, q->number()}});
       if (const JsonValue* rate = v.find("initial_rate")) part.initial_rate({{name, rate->number()}});
@@ -221,7 +226,8 @@ class SceneReader {
     MatX<double> K(n, n);
     for (const JsonValue& row : rows)
       if (static_cast<Eigen::Index>(rows.size()) != n || static_cast<Eigen::Index>(row.array().size()) != n) {
-        fault(r.at("K"), "K must have a row and a column for each of the " + std::to_string(n) + " parameters");
+        fault(r.at("K"),
+              "K must have a row and a column for each of the " + std::to_string(n) + " parameters");
         return false;
       }
     for (Eigen::Index i = 0; i < n; ++i)
@@ -232,13 +238,15 @@ class SceneReader {
 
   bool read_inertia(Part& part, const Reader& r) {
     Mat3<double> moments;
-    for (int i = 0; i < 3; ++i) moments.row(i) = read_vector3(r.at("moments").array()[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 3; ++i)
+      moments.row(i) = read_vector3(r.at("moments").array()[static_cast<std::size_t>(i)]);
     return attempt(r.json(), [&] { part.inertia(r.number("mass"), moments, r.vector3("centre")); });
   }
 
   Eigen::Quaterniond read_orientation(const Reader& r) {
     if (r.name() == "by_axis")
-      return Eigen::Quaterniond(Eigen::AngleAxisd(r.number("angle"), direction_of(r.at("axis")).normalized()));
+      return Eigen::Quaterniond(
+          Eigen::AngleAxisd(r.number("angle"), direction_of(r.at("axis")).normalized()));
     const std::vector<double> q = r.numbers("quaternion");
     const Eigen::Quaterniond R(q[0], q[1], q[2], q[3]);
     if (!(R.norm() > 0)) {
@@ -266,7 +274,8 @@ class SceneReader {
     if (value.form == Form::kCoordinates) return material_at(value.x[0], value.x[1], value.x[2]);
     if (value.form == Form::kDirection) {
       if (part.shape().mesh() == MeshPattern::torus)
-        throw std::invalid_argument("a torus has no single point in a direction; give {\"u\", \"v\", \"w\"} or {\"near\"}");
+        throw std::invalid_argument(
+            "a torus has no single point in a direction; give {\"u\", \"v\", \"w\"} or {\"near\"}");
       Material<double> m = part.label(value.x.normalized() * part.size(), part.parameters().rest());
       m.w = value.w;
       return m;
@@ -281,7 +290,8 @@ class SceneReader {
     const Part* part = part_of(r.at("part"));
     if (part == nullptr) return false;
     point.part = part;
-    return attempt(r.at("at"), [&] { point.material = material_point(*part, read_material_point(r.at("at"))); });
+    return attempt(r.at("at"),
+                   [&] { point.material = material_point(*part, read_material_point(r.at("at"))); });
   }
   bool end_point(const Reader& r, Point& point) {
     if (!r.given("world")) return point_on_part(r, point);
@@ -307,11 +317,13 @@ class SceneReader {
   void read_force(const Reader& r) {
     Point at;
     if (point_on_part(r, at))
-      scene_->body.force(name_of(r, "force", scene_->body.forces().size()), at, r.time_vector("force"), frame(r));
+      scene_->body.force(name_of(r, "force", scene_->body.forces().size()), at, r.time_vector("force"),
+                         frame(r));
   }
   void read_torque(const Reader& r) {
     if (const Part* part = part_of(r.at("part")))
-      scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, r.time_vector("torque"), frame(r));
+      scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, r.time_vector("torque"),
+                          frame(r));
   }
   void read_track(const Reader& r) {
     Track track;

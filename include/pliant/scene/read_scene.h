@@ -10,8 +10,8 @@
 
 namespace pliant {
 
-/// Reads a scene file ("-" is standard input). overrides: "/json/pointer=value", applied before anything is checked.
-/// Warnings are left in diagnostics. Throws SceneError with all faults at once, FileError.
+/// Reads a scene file ("-" is standard input). overrides: "/json/pointer=value", applied before anything is
+/// checked. Warnings are left in diagnostics. Throws SceneError with all faults at once, FileError.
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
                                   Diagnostics& diagnostics);
 
