@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+namespace pliant {
+inline constexpr double kPi = 3.14159265358979323846;
+}  // namespace pliant
+
 namespace pliant::math {
 
 // A reproducible kernel can stand in for the C library here.
@@ -19,6 +23,18 @@ PLIANT_MATH_FUNCTION(exp)
 PLIANT_MATH_FUNCTION(log)
 PLIANT_MATH_FUNCTION(sqrt)
 #undef PLIANT_MATH_FUNCTION
+
+/// Sine and cosine of the same angle, at little more than the price of one.
+template <class T>
+struct SinCos {
+  T sin, cos;
+};
+inline SinCos<double> sin_cos_of(double x) { return {std::sin(x), std::cos(x)}; }
+inline SinCos<long double> sin_cos_of(long double x) { return {std::sin(x), std::cos(x)}; }
+template <class T>
+inline SinCos<T> sin_cos(const T& x) {
+  return sin_cos_of(x);
+}
 
 /// x where c > 0, else y; for a pack lane by lane, for a derivative number along the branch taken.
 inline double select_positive(double c, double x, double y) { return c > 0 ? x : y; }

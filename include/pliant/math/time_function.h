@@ -1,5 +1,6 @@
-// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. Each gives value, rate and
-// second derivative, so that moving anchors, prescribed paths and actuation enter the equations of motion exactly.
+// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. Each gives value,
+// rate and second derivative, so that moving anchors, prescribed paths and actuation enter the equations of
+// motion exactly.
 #pragma once
 
 #include <array>
@@ -18,10 +19,14 @@ class TimeFunction {
  public:
   TimeFunction(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor)
 
-  /// The C2 cubic spline through (t_i, y_i): natural ends when the first and last rates are not given; before the
-  /// first and after the last key the function is constant at its end value.
-  /// Throws std::invalid_argument unless the times are finite and strictly increasing and there is a key.
+  /// The cubic spline through (t_i, y_i), twice continuously differentiable from the first key to the last;
+  /// before and after them it is constant, so that its rate jumps there unless the end rates are zero. Ends
+  /// are natural (second derivative zero). One key is a constant. Throws std::invalid_argument unless all is
+  /// finite, the times strictly increase, and there is a key and as many values as times.
   static TimeFunction key_frames(std::vector<double> t, std::vector<double> y);
+  /// The same with the rates at the first and the last key given (clamped ends); one key is still a constant.
+  static TimeFunction key_frames(std::vector<double> t, std::vector<double> y, double first_rate,
+                                 double last_rate);
   /// A formula in t (see Formula in math/formula.h). Throws FormulaError with the offset of the fault.
   static TimeFunction formula(const std::string& text);
 
@@ -51,7 +56,9 @@ struct TimeVector {
   TimeVector(TimeFunction x, TimeFunction y, TimeFunction z)
       : component{std::move(x), std::move(y), std::move(z)} {}
 
-  Vec3<Taylor2<double>> at(double t) const { return {component[0].at(t), component[1].at(t), component[2].at(t)}; }
+  Vec3<Taylor2<double>> at(double t) const {
+    return {component[0].at(t), component[1].at(t), component[2].at(t)};
+  }
   Vec3<double> value(double t) const {
     return {component[0].value(t), component[1].value(t), component[2].value(t)};
   }

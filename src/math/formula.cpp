@@ -1,0 +1,454 @@
+#include <pliant/math/formula.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include <pliant/math/nearest_name.h>
+
+namespace pliant {
+
+namespace {
+
+using Code = Formula::Code;
+using Instruction = Formula::Instruction;
+using Taylor = Taylor2<double>;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr int kSmallStack = 16;
+/// A level of nesting holds at most a sum, a product, a base and two arguments that wait for the level below.
+constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
+
+/// The sign of x just after t: of the first of its value, rate and second derivative that is not zero.
+double sign_ahead(const Taylor& x) {
+  for (const double a : {x.v, x.d, x.dd}) {
+    if (a != 0) return a > 0 ? 1 : -1;
+  }
+  return 0;
+}
+
+Taylor chain(const Taylor& a, double value, double slope, double curvature) {
+  return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
+}
+
+Taylor tan(const Taylor& a) {
+  const double y = math::sin(a.v) / math::cos(a.v);
+  const double slope = 1 + y * y;
+  return chain(a, y, slope, 2 * y * slope);
+}
+
+/// a^n. A factor n or n - 1 that is zero ends the derivatives, whatever a is.
+Taylor power(const Taylor& a, double n) {
+  const double slope = n == 0 ? 0 : n * std::pow(a.v, n - 1);
+  const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.v, n - 2);
+  return chain(a, std::pow(a.v, n), slope, curvature);
+}
+
+Taylor power(const Taylor& a, const Taylor& b) {
+  const Taylor exponent = b * log(a);
+  const double value = std::pow(a.v, b.v);
+  return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
+}
+
+/// The larger argument for `sign` 1, the smaller one for -1; not a number where either is none.
+Taylor choose(const Taylor& x, const Taylor& y, double sign) {
+  const Taylor difference = x - y;
+  if (std::isnan(difference.v)) return difference;
+  return sign * sign_ahead(difference) >= 0 ? x : y;
+}
+
+Taylor step(const Taylor& x, double edge) {
+  if (x.v < edge) return 0.0;
+  return x.v >= edge ? Taylor(1.0) : x;
+}
+
+/// 0 up to a, 1 from b on, between them the quintic whose first and second derivatives vanish at both ends.
+Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
+  if (a.v == b.v) return step(x, a.v);
+  const Taylor s = (x - a) / (b - a);
+  if (s.v <= 0) return 0.0;
+  if (s.v >= 1) return 1.0;
+  return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
+}
+
+int arguments(Code code) {
+  switch (code) {
+    case Code::kNumber:
+    case Code::kTime:
+      return 0;
+    case Code::kAdd:
+    case Code::kSubtract:
+    case Code::kMultiply:
+    case Code::kDivide:
+    case Code::kPower:
+    case Code::kMin:
+    case Code::kMax:
+      return 2;
+    case Code::kSmoothstep:
+      return 3;
+    default:
+      return 1;
+  }
+}
+
+/// The result of one instruction on its arguments, x[0] the first.
+Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x) {
+  switch (instruction.code) {
+    case Code::kNumber:
+      return instruction.number;
+    case Code::kTime:
+      return time;
+    case Code::kAdd:
+      return x[0] + x[1];
+    case Code::kSubtract:
+      return x[0] - x[1];
+    case Code::kMultiply:
+      return x[0] * x[1];
+    case Code::kDivide:
+      return x[0] / x[1];
+    case Code::kNegate:
+      return -x[0];
+    case Code::kPower:
+      return power(x[0], x[1]);
+    case Code::kConstantPower:
+      return power(x[0], instruction.number);
+    case Code::kSin:
+      return sin(x[0]);
+    case Code::kCos:
+      return cos(x[0]);
+    case Code::kTan:
+      return tan(x[0]);
+    case Code::kExp:
+      return exp(x[0]);
+    case Code::kLog:
+      return log(x[0]);
+    case Code::kSqrt:
+      return sqrt(x[0]);
+    case Code::kAbs:
+      return sign_ahead(x[0]) < 0 ? -x[0] : x[0];
+    case Code::kMin:
+      return choose(x[0], x[1], -1);
+    case Code::kMax:
+      return choose(x[0], x[1], 1);
+    case Code::kStep:
+      return step(x[0], 0);
+    case Code::kSmoothstep:
+      return smoothstep(x[0], x[1], x[2]);
+  }
+  return 0.0;
+}
+
+template <int Size>
+Taylor run(const std::vector<Instruction>& program, double t) {
+  const Taylor time(t, 1.0, 0.0);
+  std::array<Taylor, Size> stack;
+  Taylor* top = stack.data();
+  for (const Instruction& instruction : program) {
+    top -= arguments(instruction.code);
+    *top = apply(instruction, time, top);
+    ++top;
+  }
+  return stack[0];
+}
+
+struct Entry {
+  const char* name;
+  Code code;
+  const char* meaning;
+};
+constexpr Entry kFunctions[] = {
+    {"sin", Code::kSin, "sine of an angle in radians"},
+    {"cos", Code::kCos, "cosine of an angle in radians"},
+    {"tan", Code::kTan, "tangent of an angle in radians"},
+    {"exp", Code::kExp, "exponential"},
+    {"log", Code::kLog, "natural logarithm"},
+    {"sqrt", Code::kSqrt, "square root"},
+    {"abs", Code::kAbs, "size without sign"},
+    {"min", Code::kMin, "the smaller of two"},
+    {"max", Code::kMax, "the larger of two"},
+    {"step", Code::kStep, "step(x): 0 for x < 0, else 1"},
+    {"smoothstep", Code::kSmoothstep,
+     "smoothstep(a, b, x): 0 up to a, 1 from b on, between them a quintic with continuous second derivative"},
+};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+/// Recursive descent; each function reads its rule of the grammar and appends the program of it.
+class Parser {
+ public:
+  explicit Parser(std::string_view text) : text_(text) {}
+
+  std::vector<Instruction> parse() {
+    if (text_.size() > Formula::kMaxLength) {
+      throw FormulaError(Formula::kMaxLength,
+                         "the formula is longer than " + std::to_string(Formula::kMaxLength) + " characters");
+    }
+    sum();
+    if (at_ < text_.size()) fault_after_operand();
+    return std::move(program_);
+  }
+
+ private:
+  /// Counts nesting while one rule calls itself.
+  struct Level {
+    explicit Level(Parser* parser) : p(parser) {
+      if (++p->depth_ > Formula::kMaxDepth + 1) {
+        throw FormulaError(p->at_, "nested deeper than " + std::to_string(Formula::kMaxDepth) + " levels");
+      }
+    }
+    ~Level() { --p->depth_; }
+    Level(const Level&) = delete;
+    Level& operator=(const Level&) = delete;
+    Parser* p;
+  };
+
+  void sum() {
+    product();
+    for (;;) {
+      const std::size_t place = at_;
+      if (take('+')) {
+        product();
+        emit({Code::kAdd, 0}, place);
+      } else if (take('-')) {
+        product();
+        emit({Code::kSubtract, 0}, place);
+      } else {
+        return;
+      }
+    }
+  }
+
+  void product() {
+    unary();
+    for (;;) {
+      const std::size_t place = at_;
+      if (next() == '*' && at_ + 1 < text_.size() && text_[at_ + 1] == '*') {
+        throw FormulaError(at_, "unexpected \"**\"; a power is written ^");
+      }
+      if (take('*')) {
+        unary();
+        emit({Code::kMultiply, 0}, place);
+      } else if (take('/')) {
+        unary();
+        emit({Code::kDivide, 0}, place);
+      } else {
+        return;
+      }
+    }
+  }
+
+  void unary() {
+    const Level level(this);
+    skip_spaces();
+    const std::size_t place = at_;
+    if (take('-')) {
+      unary();
+      emit({Code::kNegate, 0}, place);
+    } else if (take('+')) {
+      unary();
+    } else {
+      primary();
+      const std::size_t operation = at_;
+      if (take('^')) {
+        unary();
+        emit_power(operation);
+      }
+    }
+    skip_spaces();
+  }
+
+  void primary() {
+    const char c = next();
+    if (is_digit(c) || c == '.') {
+      number();
+    } else if (is_letter(c)) {
+      name();
+    } else if (take('(')) {
+      const std::size_t opening = at_ - 1;
+      sum();
+      close(opening);
+    } else {
+      fault_expected("a number, t, pi, a function or \"(\"");
+    }
+    skip_spaces();
+  }
+
+  void number() {
+    const char* first = text_.data() + at_;
+    double value = 0;
+    const auto [last, error] = std::from_chars(first, text_.data() + text_.size(), value);
+    if (error == std::errc::invalid_argument) fault_expected("a number");
+    if (error == std::errc::result_out_of_range) {
+      throw FormulaError(at_, "the number " + std::string(first, last) + " is outside the range of a double");
+    }
+    emit({Code::kNumber, value}, at_);
+    at_ += static_cast<std::size_t>(last - first);
+  }
+
+  void name() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    const std::string word(text_.substr(begin, at_ - begin));
+    const bool call = next() == '(';
+    if (word == "t" || word == "pi") {
+      if (call) throw FormulaError(begin, "\"" + word + "\" is not a function; write " + word + "*(...)");
+      emit(word == "t" ? Instruction{Code::kTime, 0} : Instruction{Code::kNumber, kPi}, begin);
+      return;
+    }
+    for (const Entry& entry : kFunctions) {
+      if (word == entry.name) {
+        if (!call) throw FormulaError(at_, "expected \"(\" after \"" + word + "\"" + but_found());
+        return arguments_of(entry, begin);
+      }
+    }
+    std::vector<std::string> names;
+    if (!call) names = {"t", "pi"};
+    for (const Entry& entry : kFunctions) names.emplace_back(entry.name);
+    const std::string hint = did_you_mean(word, names);
+    std::string known;
+    for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+    throw FormulaError(begin, std::string(call ? "unknown function \"" : "unknown name \"") + word + "\"" +
+                                  (hint.empty() ? "; expected one of " + known : hint));
+  }
+
+  void arguments_of(const Entry& entry, std::size_t place) {
+    const std::size_t opening = at_;
+    take('(');
+    const int wanted = arguments(entry.code);
+    for (int i = 0; i < wanted; ++i) {
+      if (i > 0 && !take(',')) {
+        if (next() == ')') throw FormulaError(at_, expects(entry) + ", found " + std::to_string(i));
+        fault_expected("\",\" before the next argument of \"" + std::string(entry.name) + "\"");
+      }
+      sum();
+    }
+    if (next() == ',') throw FormulaError(at_, expects(entry) + ", found more");
+    close(opening);
+    emit({entry.code, 0}, place);
+  }
+
+  static std::string expects(const Entry& entry) {
+    const int n = arguments(entry.code);
+    return "\"" + std::string(entry.name) + "\" takes " + std::to_string(n) +
+           (n == 1 ? " argument" : " arguments");
+  }
+
+  void close(std::size_t opening) {
+    if (take(')')) return;
+    if (at_ >= text_.size()) {
+      throw FormulaError(at_, "expected \")\" for the \"(\" at character " + std::to_string(opening + 1));
+    }
+    fault_after_operand();
+  }
+
+  /// Appends an instruction; one whose arguments are all numbers is replaced by its result.
+  void emit(const Instruction& instruction, std::size_t place) {
+    const std::size_t n = static_cast<std::size_t>(arguments(instruction.code));
+    bool constant = n > 0;
+    for (std::size_t i = 0; i < n; ++i) constant = constant && from_top(i).code == Code::kNumber;
+    if (!constant) {
+      program_.push_back(instruction);
+      return;
+    }
+    std::array<Taylor, 3> x;
+    for (std::size_t i = 0; i < n; ++i) x[n - 1 - i] = from_top(i).number;
+    const double value = apply(instruction, Taylor(), x.data()).v;
+    if (!std::isfinite(value)) throw FormulaError(place, "the value here is not a finite number");
+    program_.resize(program_.size() - n);
+    program_.push_back({Code::kNumber, value});
+  }
+
+  void emit_power(std::size_t place) {
+    const Instruction exponent = from_top(0);
+    if (exponent.code != Code::kNumber) return emit({Code::kPower, 0}, place);
+    program_.pop_back();
+    emit({Code::kConstantPower, exponent.number}, place);
+  }
+
+  const Instruction& from_top(std::size_t i) const { return program_[program_.size() - 1 - i]; }
+
+  void skip_spaces() {
+    while (at_ < text_.size() &&
+           (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r')) {
+      ++at_;
+    }
+  }
+  /// The next character that is not a space; 0 at the end.
+  char next() {
+    skip_spaces();
+    return at_ < text_.size() ? text_[at_] : '\0';
+  }
+  bool take(char c) {
+    if (next() != c || at_ >= text_.size()) return false;
+    ++at_;
+    return true;
+  }
+
+  std::string but_found() {
+    next();
+    if (at_ >= text_.size()) return ", but the formula ends here";
+    std::size_t length = 1;  // a character of UTF-8 is shown whole
+    while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80)
+      ++length;
+    return ", found \"" + std::string(text_.substr(at_, length)) + "\"";
+  }
+  [[noreturn]] void fault_expected(const std::string& what) {
+    const std::string found = but_found();
+    throw FormulaError(at_, "expected " + what + found);
+  }
+  [[noreturn]] void fault_after_operand() {
+    const char c = next();
+    const bool product = is_letter(c) || is_digit(c) || c == '(';
+    const std::string found = but_found();
+    if (c == ')' && depth_ == 0) throw FormulaError(at_, "\")\" without its \"(\"");
+    throw FormulaError(at_, std::string("expected an operator ") + (depth_ > 0 ? "or \")\"" : "or the end") +
+                                found + (product ? "; a product is written with *" : ""));
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  std::vector<Instruction> program_;
+};
+
+}  // namespace
+
+FormulaError::FormulaError(std::size_t offset, const std::string& reason)
+    : std::runtime_error("at character " + std::to_string(offset + 1) + ": " + reason),
+      offset_(offset),
+      reason_(reason) {}
+
+const std::vector<Formula::Function>& Formula::functions() {
+  static const std::vector<Function> list = [] {
+    std::vector<Function> all;
+    for (const Entry& entry : kFunctions) all.push_back({entry.name, arguments(entry.code), entry.meaning});
+    return all;
+  }();
+  return list;
+}
+
+Formula::Formula(const std::string& text) : program_(Parser(text).parse()) {
+  int height = 0;
+  for (const Instruction& instruction : program_) {
+    height += 1 - arguments(instruction.code);
+    stack_ = std::max(stack_, height);
+  }
+  if (stack_ > kLargeStack) throw std::logic_error("a formula needs a larger stack than its depth allows");
+}
+
+Taylor2<double> Formula::at(double t) const {
+  return stack_ <= kSmallStack ? run<kSmallStack>(program_, t) : run<kLargeStack>(program_, t);
+}
+
+bool Formula::is_constant() const {
+  return program_.size() == 1 && program_[0].code == Code::kNumber;
+}
+
+}  // namespace pliant

@@ -1,0 +1,116 @@
+// Key frames: the cubic between keys i and i+1, at a = (t_{i+1} - t)/h and b = (t - t_i)/h, is
+//   y = a y_i + b y_{i+1} + ((a^3 - a) m_i + (b^3 - b) m_{i+1}) h^2/6,  m the second derivatives at the keys.
+// Equal slopes from both sides of each key give a tridiagonal system for m; an end is either natural, m = 0,
+// or has its rate given.
+#include <pliant/math/time_function.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+
+#include <pliant/math/formula.h>
+
+namespace pliant {
+
+namespace {
+
+struct EndRates {
+  double first, last;
+};
+
+class Spline final : public TimeFunction::Impl {
+ public:
+  Spline(std::vector<double> t, std::vector<double> y, const std::optional<EndRates>& rates)
+      : t_(std::move(t)), y_(std::move(y)), m_(second_derivatives(rates)) {}
+
+  Taylor2<double> at(double t) const override {
+    if (t < t_.front()) return y_.front();
+    if (t > t_.back()) return y_.back();
+    const auto above = std::upper_bound(t_.begin() + 1, t_.end() - 1, t);
+    const std::size_t i = static_cast<std::size_t>(above - t_.begin()) - 1;
+    const double h = t_[i + 1] - t_[i];
+    const double a = (t_[i + 1] - t) / h, b = (t - t_[i]) / h;
+    const double m0 = m_[i], m1 = m_[i + 1];
+    return {a * y_[i] + b * y_[i + 1] + (a * (a * a - 1) * m0 + b * (b * b - 1) * m1) * (h * h / 6),
+            (y_[i + 1] - y_[i]) / h + ((3 * b * b - 1) * m1 - (3 * a * a - 1) * m0) * (h / 6),
+            a * m0 + b * m1};
+  }
+
+ private:
+  std::vector<double> second_derivatives(const std::optional<EndRates>& rates) const {
+    const std::size_t n = t_.size();
+    std::vector<double> diagonal(n, 1.0), above(n, 0.0), m(n, 0.0);
+    const auto h = [&](std::size_t i) { return t_[i + 1] - t_[i]; };
+    const auto slope = [&](std::size_t i) { return (y_[i + 1] - y_[i]) / h(i); };
+    if (rates) {
+      diagonal[0] = 2 * h(0);
+      above[0] = h(0);
+      m[0] = 6 * (slope(0) - rates->first);
+    }
+    for (std::size_t i = 1; i < n; ++i) {
+      const bool last = i + 1 == n;
+      if (last && !rates) break;
+      const double below = h(i - 1);
+      const double factor = below / diagonal[i - 1];
+      diagonal[i] = (last ? 2 * below : 2 * (below + h(i))) - factor * above[i - 1];
+      above[i] = last ? 0 : h(i);
+      m[i] = 6 * ((last ? rates->last : slope(i)) - slope(i - 1)) - factor * m[i - 1];
+    }
+    m[n - 1] = rates ? m[n - 1] / diagonal[n - 1] : 0;
+    for (std::size_t i = n - 1; i-- > 0;) m[i] = (m[i] - above[i] * m[i + 1]) / diagonal[i];
+    return m;
+  }
+
+  std::vector<double> t_, y_, m_;
+};
+
+class FormulaFunction final : public TimeFunction::Impl {
+ public:
+  explicit FormulaFunction(Formula formula) : formula_(std::move(formula)) {}
+  Taylor2<double> at(double t) const override { return formula_.at(t); }
+
+ private:
+  Formula formula_;
+};
+
+TimeFunction spline(std::vector<double> t, std::vector<double> y, const std::optional<EndRates>& rates) {
+  if (t.size() != y.size()) {
+    throw std::invalid_argument("key frames: " + std::to_string(t.size()) + " times, but " +
+                                std::to_string(y.size()) + " values");
+  }
+  if (t.empty()) throw std::invalid_argument("key frames: there is no key");
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const std::string key = "key frames: key " + std::to_string(i);
+    if (!std::isfinite(t[i])) throw std::invalid_argument(key + " has a time that is not finite");
+    if (!std::isfinite(y[i])) throw std::invalid_argument(key + " has a value that is not finite");
+    if (i > 0 && !(t[i] > t[i - 1])) {
+      throw std::invalid_argument(key + " is not later than the key before it; times must increase");
+    }
+  }
+  if (rates && !(std::isfinite(rates->first) && std::isfinite(rates->last))) {
+    throw std::invalid_argument("key frames: an end rate is not finite");
+  }
+  if (t.size() == 1) return y[0];
+  return TimeFunction(std::make_shared<Spline>(std::move(t), std::move(y), rates));
+}
+
+}  // namespace
+
+TimeFunction TimeFunction::key_frames(std::vector<double> t, std::vector<double> y) {
+  return spline(std::move(t), std::move(y), std::nullopt);
+}
+
+TimeFunction TimeFunction::key_frames(std::vector<double> t, std::vector<double> y, double first_rate,
+                                      double last_rate) {
+  return spline(std::move(t), std::move(y), EndRates{first_rate, last_rate});
+}
+
+TimeFunction TimeFunction::formula(const std::string& text) {
+  Formula formula(text);
+  if (formula.is_constant()) return formula.at(0).v;
+  return TimeFunction(std::make_shared<FormulaFunction>(std::move(formula)));
+}
+
+}  // namespace pliant

@@ -1,0 +1,155 @@
+// Functions of time: splines through key frames and formulas.
+#include <pliant/math/time_function.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include <pliant/math/formula.h>
+
+#include "catch.h"
+
+using pliant::TimeFunction;
+using pliant::TimeVector;
+
+namespace {
+
+std::vector<double> random_times(int n, std::mt19937* generator) {
+  std::uniform_real_distribution<double> gap(0.05, 1.0);
+  std::vector<double> t{-1.0};
+  while (static_cast<int>(t.size()) < n) t.push_back(t.back() + gap(*generator));
+  return t;
+}
+
+std::string fault(const std::vector<double>& t, const std::vector<double>& y) {
+  try {
+    TimeFunction::key_frames(t, y);
+  } catch (const std::invalid_argument& e) {
+    return e.what();
+  }
+  return "no fault";
+}
+
+}  // namespace
+
+TEST_CASE("clamped key frames reproduce cubic polynomials") {
+  std::mt19937 generator(1);
+  const auto f = [](double t) { return 2 - t + 0.5 * t * t - 0.25 * t * t * t; };
+  const auto df = [](double t) { return -1 + t - 0.75 * t * t; };
+  const auto ddf = [](double t) { return 1 - 1.5 * t; };
+  for (int n = 2; n < 20; ++n) {
+    const std::vector<double> t = random_times(n, &generator);
+    std::vector<double> y;
+    for (const double x : t) y.push_back(f(x));
+    const TimeFunction spline = TimeFunction::key_frames(t, y, df(t.front()), df(t.back()));
+    for (int i = 0; i <= 100; ++i) {
+      const double x = std::min(t.front() + (t.back() - t.front()) * i / 100, t.back());
+      const auto at = spline.at(x);
+      const double scale = 1 + std::abs(f(t.back()));
+      CHECK(std::abs(at.v - f(x)) < 2e-14 * scale);
+      CHECK(std::abs(at.d - df(x)) < 5e-13 * scale);
+      CHECK(std::abs(at.dd - ddf(x)) < 2e-11 * scale);
+    }
+  }
+}
+
+TEST_CASE("key frames are met and are twice continuously differentiable inside") {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> height(-1, 1);
+  const std::vector<double> t = random_times(12, &generator);
+  std::vector<double> y;
+  for (std::size_t i = 0; i < t.size(); ++i) y.push_back(height(generator));
+  for (const TimeFunction& spline :
+       {TimeFunction::key_frames(t, y), TimeFunction::key_frames(t, y, 0.3, -0.7)}) {
+    CHECK_FALSE(spline.is_constant());
+    for (std::size_t i = 0; i < t.size(); ++i)
+      CHECK(spline.value(t[i]) == Approx(y[i]).epsilon(1e-15).margin(1e-15));
+    for (std::size_t i = 1; i + 1 < t.size(); ++i) {
+      const double below = std::nextafter(t[i], -10.0);
+      const auto left = spline.at(below), right = spline.at(t[i]);
+      CHECK(left.v == Approx(right.v).margin(1e-13));
+      CHECK(left.d == Approx(right.d).margin(1e-11));
+      CHECK(left.dd == Approx(right.dd).margin(1e-9));
+    }
+    for (double x = t.front() + 0.01; x < t.back() - 0.01; x += 0.017) {
+      const double h = 1e-6;
+      const auto at = spline.at(x);
+      CHECK(at.d == Approx((spline.value(x + h) - spline.value(x - h)) / (2 * h)).margin(1e-7).epsilon(1e-7));
+      CHECK(at.dd == Approx((spline.at(x + h).d - spline.at(x - h).d) / (2 * h)).margin(1e-3).epsilon(1e-4));
+    }
+  }
+  const TimeFunction natural = TimeFunction::key_frames(t, y);
+  CHECK(natural.at(t.front()).dd == 0);
+  CHECK(natural.at(t.back()).dd == Approx(0).margin(1e-12));
+  const TimeFunction clamped = TimeFunction::key_frames(t, y, 0.3, -0.7);
+  CHECK(clamped.at(t.front()).d == Approx(0.3).epsilon(1e-13));
+  CHECK(clamped.at(t.back()).d == Approx(-0.7).epsilon(1e-13));
+}
+
+TEST_CASE("key frames of a sine converge at fourth order") {
+  const auto worst = [](int n) {
+    std::vector<double> t, y;
+    for (int i = 0; i <= n; ++i) {
+      t.push_back(2.0 * i / n);
+      y.push_back(std::sin(t.back()));
+    }
+    const TimeFunction spline = TimeFunction::key_frames(t, y, 1.0, std::cos(2.0));
+    double error = 0;
+    for (int i = 0; i <= 1000; ++i) {
+      const double x = 2.0 * i / 1000;
+      error = std::max(error, std::abs(spline.value(x) - std::sin(x)));
+    }
+    return error;
+  };
+  CHECK(std::log2(worst(20) / worst(40)) > 3.9);
+}
+
+TEST_CASE("key frames hold their end values outside") {
+  const TimeFunction spline = TimeFunction::key_frames({0, 1, 3}, {2, 5, 4});
+  for (const double t : {-1e300, -1.0, -1e-9}) {
+    CHECK(spline.at(t).v == 2);
+    CHECK(spline.at(t).d == 0);
+    CHECK(spline.at(t).dd == 0);
+  }
+  for (const double t : {3.0 + 1e-9, 4.0, 1e300}) {
+    CHECK(spline.at(t).v == 4);
+    CHECK(spline.at(t).d == 0);
+  }
+  CHECK(TimeFunction::key_frames({5}, {7}).is_constant());
+  CHECK(TimeFunction::key_frames({5}, {7}, 1, 1).value(0) == 7);
+  const TimeFunction line = TimeFunction::key_frames({1, 3}, {2, 6});
+  CHECK(line.at(2).v == Approx(4));
+  CHECK(line.at(2).d == Approx(2));
+  CHECK(line.at(2).dd == 0);
+}
+
+TEST_CASE("bad key frames are refused") {
+  const double inf = std::numeric_limits<double>::infinity();
+  CHECK(fault({}, {}) == "key frames: there is no key");
+  CHECK(fault({0, 1}, {1}) == "key frames: 2 times, but 1 values");
+  CHECK(fault({0, 1, 1}, {0, 0, 0}) ==
+        "key frames: key 2 is not later than the key before it; times must increase");
+  CHECK(fault({0, inf}, {0, 0}) == "key frames: key 1 has a time that is not finite");
+  CHECK(fault({0, std::nan("")}, {0, 0}) == "key frames: key 1 has a time that is not finite");
+  CHECK(fault({0, 1}, {0, std::nan("")}) == "key frames: key 1 has a value that is not finite");
+  CHECK_THROWS_AS(TimeFunction::key_frames({0, 1}, {0, 1}, inf, 0), std::invalid_argument);
+}
+
+TEST_CASE("formulas are functions of time") {
+  const TimeFunction f = TimeFunction::formula("2*t^2");
+  CHECK_FALSE(f.is_constant());
+  CHECK(f.at(3).v == 18);
+  CHECK(f.at(3).d == 12);
+  CHECK(f.at(3).dd == 4);
+  CHECK(TimeFunction::formula("3*2").is_constant());
+  CHECK(TimeFunction::formula("3*2").value(1) == 6);
+  CHECK_THROWS_AS(TimeFunction::formula("3*"), pliant::FormulaError);
+  const TimeVector path(TimeFunction::formula("cos(t)"), TimeFunction::formula("sin(t)"), 1.5);
+  CHECK_FALSE(path.is_constant());
+  const auto at = path.at(0.5);
+  CHECK(at[1].d == Approx(std::cos(0.5)));
+  CHECK(at[2].v == 1.5);
+  CHECK(TimeVector(pliant::Vec3<double>(1, 2, 3)).is_constant());
+}
