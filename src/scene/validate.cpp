@@ -281,21 +281,6 @@ class Validator {
     fault(member.key_place, pointer_join(pointer_, member.key), "unknown key" + hint);
   }
 
-  /// How well the keys of an object fit a type: the keys it knows.
-  static int fit(const JsonValue& value, const Type& type) {
-    if (type.kind == TypeKind::kOneOf) {
-      int best = 0;
-      for (const Type& inner : type.inner) best = std::max(best, fit(value, inner));
-      return best;
-    }
-    if (type.kind == TypeKind::kTagged) return value.find(type.tag) != nullptr ? 1 : 0;
-    if (type.kind != TypeKind::kRecord) return 0;
-    int known = 0;
-    for (const JsonValue::Member& member : value.members())
-      known += type.records[0]->find(member.key) != nullptr;
-    return known;
-  }
-
   void check_one_of(const JsonValue& value, const Type& type) {
     std::vector<const Type*> candidates;
     for (const Type& inner : type.inner) {
@@ -303,11 +288,8 @@ class Validator {
     }
     if (candidates.size() == 1) return check(value, *candidates[0]);
     if (value.is_object()) {
-      const auto best =
-          std::max_element(candidates.begin(), candidates.end(),
-                           [&](const Type* a, const Type* b) { return fit(value, *a) < fit(value, *b); });
-      if (fit(value, **best) == 0) return expected(value, type.words());
-      return check(value, **best);
+      const Type* chosen = schema::chosen_alternative(type, value);
+      return chosen == nullptr ? expected(value, type.words()) : check(value, *chosen);
     }
     std::size_t least = 0;
     const Type* nearest = nullptr;
