@@ -40,8 +40,16 @@ void collect(const Type& type, const std::string& at, Places* places) {
       collect(*record, at, " with " + type.tag + " \"" + record->name + "\"", places);
     }
   }
+  const auto is_record = [](const Type& t) { return t.kind == TypeKind::kRecord; };
+  const bool several = std::count_if(type.inner.begin(), type.inner.end(), is_record) > 1;
   const bool many = type.kind == TypeKind::kArray || type.kind == TypeKind::kMap;
-  for (const Type& inner : type.inner) collect(inner, many ? at + "/*" : at, places);
+  for (const Type& inner : type.inner) {
+    if (several && is_record(inner)) {
+      collect(*inner.records[0], at, " for " + inner.words(), places);
+    } else {
+      collect(inner, many ? at + "/*" : at, places);
+    }
+  }
 }
 
 bool accepts(const Type& type, ValueKind kind) {

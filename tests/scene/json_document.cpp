@@ -369,6 +369,7 @@ TEST_CASE("--set replaces and adds") {
   d.set("/parts/-", "{}", diagnostics);
   d.set("/flag", "true", diagnostics);
   d.set("/drive", "sin(2*t)", diagnostics);
+  d.set("/push", "-2*t", diagnostics);
   CHECK(diagnostics.text().empty());
   CHECK(d.at("/parts/0/n/1")->number() == 2.5);
   CHECK(d.at("/parts/0/name")->string() == "arm");
@@ -376,6 +377,7 @@ TEST_CASE("--set replaces and adds") {
   CHECK(d.at("/parts/1/name")->string() == "b");
   CHECK(d.at("/parts/2")->is_object());
   CHECK(d.at("/flag")->boolean());
+  CHECK(d.at("/push")->string() == "-2*t");
   CHECK(d.at("/drive")->string() == "sin(2*t)");
   CHECK(d.shown(*d.at("/parts/0/n/1")) == "2.5");
   CHECK(to_string(d.fault(*d.at("/parts/0/n/1"), "2.5; expected 3")) ==
@@ -410,6 +412,8 @@ TEST_CASE("--set faults are told and change nothing") {
   CHECK(set_faults(text, "/parts={\"a\": 1, \"a\": 2}") ==
         "--set /parts: error: /parts/a: key given twice; the first is at character 2\n");
   CHECK(set_faults(text, "/parts=1e400").find("too large") != std::string::npos);
+  CHECK(set_faults(text, "/parts=-inf").find("write a finite number") != std::string::npos);
+  CHECK(set_faults(text, "/parts=1.2.3").find("expected a number") != std::string::npos);
   CHECK(set_faults(text, "/parts/0/x=" + std::string(62, '[') + std::string(62, ']')).find("nested deeper") !=
         std::string::npos);
 }
