@@ -276,8 +276,8 @@ class Validator {
     if (elsewhere != places_.end()) {
       hint = "; known at ";
       const std::size_t shown = std::min<std::size_t>(elsewhere->second.size(), 3);
-      for (std::size_t i = 0; i < shown; ++i) hint += (i == 0 ? "" : ", ") + elsewhere->second[i];
-      if (elsewhere->second.size() > shown) hint += ", ...";
+      for (std::size_t i = 0; i < shown; ++i) hint += (i == 0 ? "" : " or ") + elsewhere->second[i];
+      if (elsewhere->second.size() > shown) hint += " and elsewhere";
       hint += "; not here";
     }
     hint += did_you_mean(member.key, keys);

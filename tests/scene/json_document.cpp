@@ -359,7 +359,7 @@ TEST_CASE("I01 files that cannot be read") {
   CHECK(read_fault((folder.path / "a\x1B[2J").string(), 3).find('\x1B') == std::string::npos);
 }
 
-TEST_CASE("--set replaces and adds") {
+TEST_CASE("the option --set replaces and adds") {
   JsonDocument d = sound(R"({"parts": [{"name": "a", "n": 1}], "//": 0})");
   Diagnostics diagnostics;
   d.set("/parts/0/n=[1, 2.5]", diagnostics);
@@ -386,7 +386,7 @@ TEST_CASE("--set replaces and adds") {
         "--set /parts/0/rest: error: /parts/0/rest: unknown key");
 }
 
-TEST_CASE("--set faults are told and change nothing") {
+TEST_CASE("the option --set faults are told and change nothing") {
   const std::string text = R"({"parts": [{"shape": {"eps1": 1}}, {}]})";
   CHECK(set_faults(text, "/parts/0/shap/eps1=2") ==
         "--set /parts/0/shap/eps1: error: /parts/0/shap/eps1: /parts/0 has no key \"shap\"; did you mean "

@@ -292,9 +292,9 @@ TEST_CASE("alternatives: the type of the value chooses, and only its faults are 
         "s.json:2:38: error: /springs/0/at/direction: an array of 3 values; expected a direction that is not "
         "zero\n");
   CHECK(spring_faults("\"to\": [0, 0, 0], \"at\": {\"near\": [0, 0, 0], \"w\": 1}") ==
-        "s.json:2:43: error: /springs/0/at/w: unknown key; known at /springs/*/at/ for an object with \"u\", "
-        "\"v\", "
-        "/springs/*/at/ for an object with \"direction\"; not here\n");
+        "s.json:2:44: error: /springs/0/at/w: unknown key; known at /springs/*/at/ for an object with \"u\", "
+        "\"v\" "
+        "or /springs/*/at/ for an object with \"direction\"; not here\n");
   CHECK(solver_faults("\"step\": \"fast\"") ==
         "s.json:2:9: error: /solver/step: \"fast\"; expected \"auto\"\n");
   CHECK(solver_faults("\"step\": -1") == "s.json:2:9: error: /solver/step: -1; expected a number > 0 (s)\n");
