@@ -5,22 +5,32 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND PROJECT_IS_TOP_LEV
 endif()
 
 add_library(pliant_options INTERFACE)
+add_library(pliant::options ALIAS pliant_options)
+set_target_properties(pliant_options PROPERTIES EXPORT_NAME options)
 target_compile_features(pliant_options INTERFACE cxx_std_17)
 target_compile_definitions(pliant_options INTERFACE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 target_compile_options(pliant_options INTERFACE -ffp-contract=off)
 
 add_library(pliant_warnings INTERFACE)
 target_compile_options(pliant_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                                 -Wno-psabi -Werror)
+                                                 -Wno-psabi)
+if(PLIANT_WERROR)
+  target_compile_options(pliant_warnings INTERFACE -Werror)
+endif()
 if(PLIANT_NATIVE)
-  target_compile_options(pliant_warnings INTERFACE -march=native)
+  # With the targets too: how vectors are passed depends on it, and a client that differed would not link.
+  target_compile_options(pliant_options INTERFACE -march=native)
+  # GCC 12 takes its own AVX-512 intrinsics for uninitialised reads.
+  target_compile_options(pliant_warnings INTERFACE -Wno-maybe-uninitialized)
 endif()
 if(PLIANT_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core.
+# A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core, and
+# the component core of the installed package. A header-only private library goes in as $<BUILD_INTERFACE:...>: then
+# clients need not have it.
 function(pliant_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(pliant_${name} ${arg_SOURCES})
@@ -30,4 +40,5 @@ function(pliant_library name)
                                                    $<INSTALL_INTERFACE:include>)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
+  pliant_install_library(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()

@@ -1,16 +1,64 @@
-# The libraries pliant builds with. Only Eigen is needed for the engine itself.
-find_package(Eigen3 3.4 QUIET NO_MODULE)
+# The packages pliant builds with; only Eigen (and the system's threads) is needed for the engine itself. Each is looked
+# for only when the option that needs it is on, and a missing one is an error that names the Debian package.
+
+# Notes a package that was found: pliant_package(Eigen VERSION v TARGETS t... [CLIENT "arguments of find_dependency"]).
+# TARGETS tell, in the table printed at the end, who uses it; CLIENT is how a client of the installed library finds it.
+function(pliant_package name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "VERSION;CLIENT" "TARGETS")
+  set_property(GLOBAL APPEND PROPERTY PLIANT_PACKAGES ${name})
+  set_property(GLOBAL PROPERTY PLIANT_VERSION_${name} "${arg_VERSION}")
+  foreach(target IN LISTS arg_TARGETS)
+    set_property(GLOBAL PROPERTY PLIANT_PACKAGE_OF_${target} ${name})
+  endforeach()
+  set_property(GLOBAL PROPERTY PLIANT_CLIENT_${name} "${arg_CLIENT}")
+endfunction()
+
+# Stops when a package is missing: pliant_require(PNG_FOUND libpng-dev PLIANT_APPS).
+function(pliant_require found debian_package option)
+  if(NOT ${found})
+    string(REPLACE "_FOUND" "" name ${found})
+    if(option)
+      set(way_out ", or configure with -D${option}=OFF")
+    endif()
+    message(FATAL_ERROR "pliant: ${name} was not found. Install the Debian package ${debian_package}${way_out}.")
+  endif()
+endfunction()
+
+# Eigen 5 refuses a request for version 3.4: ask for each.
+find_package(Eigen3 3.4 QUIET CONFIG)
 if(NOT Eigen3_FOUND)
-  find_package(Eigen3 5 REQUIRED NO_MODULE)
+  find_package(Eigen3 5 QUIET CONFIG)
 endif()
+pliant_require(Eigen3_FOUND libeigen3-dev "")
+# A client must compile with the Eigen the library was compiled with: same major version, not older.
+pliant_package(Eigen VERSION ${Eigen3_VERSION} TARGETS Eigen3::Eigen CLIENT "Eigen3 ${Eigen3_VERSION} CONFIG")
+
 find_package(Threads REQUIRED)
-message(STATUS "pliant: Eigen ${Eigen3_VERSION}")
+pliant_package(Threads VERSION system TARGETS Threads::Threads CLIENT "Threads")
+
+if(PLIANT_SUITESPARSE)
+  find_package(CHOLMOD QUIET MODULE)
+  pliant_require(CHOLMOD_FOUND libsuitesparse-dev PLIANT_SUITESPARSE)
+  pliant_package(CHOLMOD VERSION "${CHOLMOD_VERSION} (SuiteSparse ${CHOLMOD_SUITESPARSE_VERSION})"
+                 TARGETS SuiteSparse::CHOLMOD CLIENT "CHOLMOD MODULE")
+endif()
 
 if(PLIANT_APPS)
-  find_package(nlohmann_json REQUIRED)
-  find_package(CLI11 REQUIRED)
-  find_package(PNG REQUIRED)
+  find_package(nlohmann_json 3.11 QUIET CONFIG)
+  pliant_require(nlohmann_json_FOUND nlohmann-json3-dev PLIANT_APPS)
+  pliant_package(nlohmann_json VERSION ${nlohmann_json_VERSION} TARGETS nlohmann_json::nlohmann_json)
+
+  find_package(CLI11 2.1 QUIET CONFIG)
+  pliant_require(CLI11_FOUND libcli11-dev PLIANT_APPS)
+  pliant_package(CLI11 VERSION ${CLI11_VERSION} TARGETS CLI11::CLI11)
+
+  find_package(PNG QUIET)
+  pliant_require(PNG_FOUND libpng-dev PLIANT_APPS)
+  pliant_package(PNG VERSION ${PNG_VERSION_STRING} TARGETS PNG::PNG CLIENT "PNG")
 endif()
+
 if(PLIANT_TESTS)
-  find_package(Catch2 REQUIRED)
+  find_package(Catch2 QUIET CONFIG)
+  pliant_require(Catch2_FOUND catch2 PLIANT_TESTS)
+  pliant_package(Catch2 VERSION ${Catch2_VERSION} TARGETS Catch2::Catch2 Catch2::Catch2WithMain)
 endif()

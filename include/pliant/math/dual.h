@@ -12,8 +12,8 @@ namespace pliant {
 
 template <int N, class T = double>
 struct Dual {
-  T v{};
-  std::array<T, N> d{};
+  T v;
+  std::array<T, N> d;
 
   /// What enters a formula as a constant: anything that converts to T.
   template <class C>
@@ -21,7 +21,13 @@ struct Dual {
 
   Dual() = default;
   template <class C, IfConstant<C> = 0>
-  Dual(const C& value) : v(value) {}  // NOLINT(google-explicit-constructor): constants mix in
+  Dual(const C& value) : v(value), d{} {}  // NOLINT(google-explicit-constructor): constants mix in
+
+  /// From the same number of partials over a narrower scalar (double to Pack).
+  template <class C, std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, T>, int> = 0>
+  explicit Dual(const Dual<N, C>& o) : v(o.v) {
+    for (std::size_t i = 0; i < N; ++i) d[i] = T(o.d[i]);
+  }
 
   /// The variable number i, at a value.
   static Dual variable(const T& value, int i) {
@@ -51,13 +57,15 @@ struct Dual {
     return a;
   }
   friend Dual operator*(const Dual& a, const Dual& b) {
-    Dual r(a.v * b.v);
+    Dual r;
+    r.v = a.v * b.v;
     for (std::size_t i = 0; i < N; ++i) r.d[i] = a.d[i] * b.v + a.v * b.d[i];
     return r;
   }
   friend Dual operator/(const Dual& a, const Dual& b) {
     const T inverse = T(1) / b.v;
-    Dual r(a.v / b.v);
+    Dual r;
+    r.v = a.v / b.v;
     for (std::size_t i = 0; i < N; ++i) r.d[i] = (a.d[i] - r.v * b.d[i]) * inverse;
     return r;
   }
@@ -107,12 +115,17 @@ struct Dual {
 
   /// f(a) from the value and the slope of f at a.v.
   friend Dual chain_rule(const Dual& a, const T& value, const T& slope) {
-    Dual r(value);
+    Dual r;
+    r.v = value;
     for (std::size_t i = 0; i < N; ++i) r.d[i] = slope * a.d[i];
     return r;
   }
-  friend Dual sin(const Dual& a) { return chain_rule(a, math::sin(a.v), math::cos(a.v)); }
-  friend Dual cos(const Dual& a) { return chain_rule(a, math::cos(a.v), T(-math::sin(a.v))); }
+  friend math::SinCos<Dual> sin_cos_of(const Dual& a) {
+    const math::SinCos<T> r = math::sin_cos(a.v);
+    return {chain_rule(a, r.sin, r.cos), chain_rule(a, r.cos, T(-r.sin))};
+  }
+  friend Dual sin(const Dual& a) { return sin_cos_of(a).sin; }
+  friend Dual cos(const Dual& a) { return sin_cos_of(a).cos; }
   friend Dual exp(const Dual& a) {
     const T e = math::exp(a.v);
     return chain_rule(a, e, e);
@@ -123,7 +136,8 @@ struct Dual {
     return chain_rule(a, r, T(T(0.5) / r));
   }
   friend Dual select_positive(const Dual& c, const Dual& x, const Dual& y) {
-    Dual r(math::where_positive(c.v, x.v, y.v));
+    Dual r;
+    r.v = math::where_positive(c.v, x.v, y.v);
     for (std::size_t i = 0; i < N; ++i) r.d[i] = math::where_positive(c.v, x.d[i], y.d[i]);
     return r;
   }

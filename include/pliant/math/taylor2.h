@@ -1,6 +1,6 @@
-// Truncated second-order Taylor numbers along one direction: value v, first derivative d, second derivative dd
-// with respect to that direction's parameter. A formula evaluated on q + t qdot gives, at t = 0, its value, its
-// rate and the quadratic velocity term (Jdot qdot), exactly.
+// Truncated second-order Taylor numbers along one direction: value v, first derivative d, second derivative
+// dd with respect to that direction's parameter. A formula evaluated on q + t qdot gives, at t = 0, its
+// value, its rate and the quadratic velocity term (Jdot qdot), exactly.
 #pragma once
 
 #include <type_traits>
@@ -12,14 +12,15 @@ namespace pliant {
 
 template <class T = double>
 struct Taylor2 {
-  T v{}, d{}, dd{};
+  T v, d, dd;
 
   template <class C>
   using IfConstant = std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, Taylor2>, int>;
 
   Taylor2() = default;
   template <class C, IfConstant<C> = 0>
-  Taylor2(const C& value) : v(value) {}  // NOLINT(google-explicit-constructor): constants mix in
+  Taylor2(const C& value)
+      : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants mix in
   Taylor2(const T& value, const T& first, const T& second) : v(value), d(first), dd(second) {}
 
   Taylor2& operator+=(const Taylor2& o) { return *this = *this + o; }
@@ -78,14 +79,12 @@ struct Taylor2 {
   friend Taylor2 chain_rule(const Taylor2& a, const T& value, const T& slope, const T& curvature) {
     return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
   }
-  friend Taylor2 sin(const Taylor2& a) {
-    const T s = math::sin(a.v);
-    return chain_rule(a, s, math::cos(a.v), T(-s));
+  friend math::SinCos<Taylor2> sin_cos_of(const Taylor2& a) {
+    const math::SinCos<T> r = math::sin_cos(a.v);
+    return {chain_rule(a, r.sin, r.cos, T(-r.sin)), chain_rule(a, r.cos, T(-r.sin), T(-r.cos))};
   }
-  friend Taylor2 cos(const Taylor2& a) {
-    const T c = math::cos(a.v);
-    return chain_rule(a, c, T(-math::sin(a.v)), T(-c));
-  }
+  friend Taylor2 sin(const Taylor2& a) { return sin_cos_of(a).sin; }
+  friend Taylor2 cos(const Taylor2& a) { return sin_cos_of(a).cos; }
   friend Taylor2 exp(const Taylor2& a) {
     const T e = math::exp(a.v);
     return chain_rule(a, e, e, e);

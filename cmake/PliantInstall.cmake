@@ -1,0 +1,78 @@
+# Installation: headers, libraries, the CMake package pliant with one component a library, and pliant.pc for core. Each
+# component is an export set of its own, so that a client of core is asked for nothing that only render needs.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+set(PLIANT_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/pliant)
+
+# Makes the library pliant_${name} the component ${name}. The libraries it links follow: pliant:: ones become components
+# that it needs, the others the packages that a client has to find.
+function(pliant_install_library name)
+  if(NOT PLIANT_INSTALL)
+    return()
+  endif()
+  set(needs "")
+  set(finds "")
+  foreach(library IN LISTS ARGN)
+    get_property(package GLOBAL PROPERTY "PLIANT_PACKAGE_OF_${library}")
+    if(library MATCHES "^pliant::(.+)$")
+      list(APPEND needs ${CMAKE_MATCH_1})
+    elseif(package)
+      get_property(client GLOBAL PROPERTY PLIANT_CLIENT_${package})
+      if(NOT client)
+        message(FATAL_ERROR "pliant_${name} links ${library}, but no CLIENT tells how a client finds ${package}")
+      endif()
+      string(APPEND finds "find_dependency(${client})\n")
+    endif()
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY PLIANT_COMPONENTS ${name})
+  set(PLIANT_COMPONENT ${name})
+  set(PLIANT_COMPONENT_NEEDS ${needs})
+  set(PLIANT_COMPONENT_FINDS "${finds}")
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/pliant-component.cmake.in
+                 ${PROJECT_BINARY_DIR}/package/pliant-${name}.cmake @ONLY)
+
+  set(targets pliant_${name})
+  if(name STREQUAL core)
+    list(APPEND targets pliant_options)
+  endif()
+  install(TARGETS ${targets} EXPORT pliant-${name})
+  install(EXPORT pliant-${name} NAMESPACE pliant:: FILE pliant-${name}-targets.cmake DESTINATION ${PLIANT_PACKAGE_DIR})
+  install(FILES ${PROJECT_BINARY_DIR}/package/pliant-${name}.cmake DESTINATION ${PLIANT_PACKAGE_DIR})
+endfunction()
+
+# pliant.pc says what the target core says: its definitions and options are read from there.
+function(_pliant_write_pkg_config file)
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_LIBDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} OUTPUT_VARIABLE libdir)
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_FULL_INCLUDEDIR BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX}
+             OUTPUT_VARIABLE includedir)
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+             OUTPUT_VARIABLE prefix)
+  get_target_property(definitions pliant_options INTERFACE_COMPILE_DEFINITIONS)
+  get_target_property(flags pliant_options INTERFACE_COMPILE_OPTIONS)
+  list(TRANSFORM definitions PREPEND -D)
+  list(JOIN definitions " " definitions)
+  list(JOIN flags " " flags)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/pliant.pc.in ${file} @ONLY)
+endfunction()
+
+# What is installed once: headers of the libraries that are built, the package's config and version, pliant.pc.
+function(pliant_install_package)
+  set(not_built "")
+  foreach(folder scene io render)
+    if(NOT TARGET pliant_${folder})
+      list(APPEND not_built PATTERN pliant/${folder} EXCLUDE)
+    endif()
+  endforeach()
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${not_built})
+
+  set(build ${PROJECT_BINARY_DIR}/package)
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pliant-config.cmake.in ${build}/pliant-config.cmake
+                                INSTALL_DESTINATION ${PLIANT_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
+  write_basic_package_version_file(${build}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${build}/pliant-config.cmake ${build}/pliant-config-version.cmake
+                ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+          DESTINATION ${PLIANT_PACKAGE_DIR})
+
+  _pliant_write_pkg_config(${build}/pliant.pc)
+  install(FILES ${build}/pliant.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endfunction()

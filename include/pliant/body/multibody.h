@@ -1,0 +1,86 @@
+// MultiBody: parts and what acts on them. This is what a library user or a scene fills in; Model makes it
+// ready to run.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/points.h>
+#include <pliant/part/primitive.h>
+
+namespace pliant {
+
+/// A linear spring and damper between two points. With rest length 0 it pulls with -k d - c d_dot along the
+/// difference d of the points; else with -(k (|d| - length) + c d|d|/dt) along d, and with nothing while |d|
+/// = 0.
+struct Spring {
+  std::string name;
+  Point a, b;
+  double stiffness = 0;    ///< N/m
+  double damping = 0;      ///< N s/m
+  double rest_length = 0;  ///< m
+};
+
+enum class Frame { world, body };
+
+/// A force at a material point.
+struct PointForce {
+  std::string name;
+  Point at;
+  TimeVector force;  ///< N
+  Frame frame = Frame::world;
+  /// Library users: a force of their own instead (t, position and velocity in the world -> N in the world).
+  /// Directional derivatives (jvp) take it as constant.
+  std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
+};
+
+/// A torque on the rotation of a part's frame.
+struct Torque {
+  std::string name;
+  const Part* part = nullptr;
+  TimeVector torque;  ///< N m
+  Frame frame = Frame::world;
+};
+
+class MultiBody {
+ public:
+  Vec3<double> gravity{0, 0, -9.81};  ///< m/s^2
+
+  /// Adds a part; the reference stays valid. Throws std::invalid_argument when the name is taken or empty.
+  template <class P, class... Args>
+  P& add(std::string name, Args&&... args) {
+    auto part = std::make_unique<P>(std::move(name), std::forward<Args>(args)...);
+    P& reference = *part;
+    add(std::move(part));
+    return reference;
+  }
+  Part& add(std::unique_ptr<Part> part);
+
+  /// A spring (N/m), damper (N s/m) and rest length (m) between two points.
+  Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
+                 double rest_length = 0);
+  PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
+  PointForce& force(std::string name, Point at,
+                    std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
+  Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
+
+  const std::vector<std::unique_ptr<Part>>& parts() const { return parts_; }
+  const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }
+  const std::vector<std::unique_ptr<PointForce>>& forces() const { return forces_; }
+  const std::vector<std::unique_ptr<Torque>>& torques() const { return torques_; }
+  /// The part called name; nullptr if there is none.
+  Part* find(const std::string& name) const;
+  /// Number of a part of this body.
+  int index(const Part& part) const;
+
+ private:
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<Spring>> springs_;
+  std::vector<std::unique_ptr<PointForce>> forces_;
+  std::vector<std::unique_ptr<Torque>> torques_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,77 @@
+// AnyChain: a chain of global deformations put together at run time, as scenes need it. The links run the
+// same kernels as a typed Chain, so the results are the same to the last bit.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/deform/chain.h>
+
+namespace pliant {
+
+/// One link behind a virtual call for all points of a batch.
+class AnyLink {
+ public:
+  virtual ~AnyLink() = default;
+  virtual LinkInfo info() const = 0;
+  virtual void apply(const HalfHeight<double>&, const LinkParameters<double>&, JetBatch<Pack>&) const = 0;
+  virtual void apply(const HalfHeight<Dual<1>>&, const LinkParameters<Dual<1>>&,
+                     JetBatch<Dual<1, Pack>>&) const = 0;
+  virtual Vec3<double> inverse(const Vec3<double>& p, double h, const double* b) const = 0;
+};
+
+template <class Deform>
+class AnyLinkOf final : public AnyLink {
+ public:
+  LinkInfo info() const override { return link_info<Deform>(); }
+  void apply(const HalfHeight<double>& half, const LinkParameters<double>& parameters,
+             JetBatch<Pack>& batch) const override {
+    apply_link<Deform>(half, parameters, batch);
+  }
+  void apply(const HalfHeight<Dual<1>>& half, const LinkParameters<Dual<1>>& parameters,
+             JetBatch<Dual<1, Pack>>& batch) const override {
+    apply_link<Deform>(half, parameters, batch);
+  }
+  Vec3<double> inverse(const Vec3<double>& p, double h, const double* b) const override {
+    return link_inverse<Deform>(p, h, b);
+  }
+};
+
+class AnyChain {
+ public:
+  AnyChain() = default;
+  explicit AnyChain(std::vector<std::shared_ptr<const AnyLink>> links) : links_(std::move(links)) {}
+
+  std::vector<LinkInfo> links() const {
+    std::vector<LinkInfo> all;
+    for (const auto& link : links_) all.push_back(link->info());
+    return all;
+  }
+
+  template <class P, class S>
+  void apply(const HalfHeight<P>& half, LinkParameters<P> all, JetBatch<S>& batch) const {
+    for (const auto& link : links_) {
+      link->apply(half, all, batch);
+      const int n = link->info().n_parameters;
+      all.b += n;
+      all.b_dot += n;
+      all.dynamic += n;
+    }
+  }
+
+  Vec3<double> inverse(Vec3<double> p, double h, const double* b) const {
+    for (const auto& link : links_) b += link->info().n_parameters;
+    for (auto link = links_.rbegin(); link != links_.rend(); ++link) {
+      b -= (*link)->info().n_parameters;
+      p = (*link)->inverse(p, h, b);
+    }
+    return p;
+  }
+
+ private:
+  std::vector<std::shared_ptr<const AnyLink>> links_;
+};
+
+}  // namespace pliant

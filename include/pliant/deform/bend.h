@@ -1,0 +1,66 @@
+// Circular bend (Barr 1984, physics 2.2): the z axis becomes an arc of curvature k = angle / h in the plane
+// that contains z and (cos direction, sin direction, 0). With r the coordinate along that direction, g = k z:
+//   r' = r cos g + (1 - cos g) / k,   z' = (sin g) / k - r sin g
+// written with sinc, so that k = 0 is an ordinary value. Volume changes by 1 - k r.
+#pragma once
+
+#include <pliant/deform/deform.h>
+#include <pliant/math/sinc.h>
+
+namespace pliant {
+
+struct Bend {
+  static constexpr const char* name = "bend";
+  static constexpr const char* formula =
+      "r -> r cos g + (1 - cos g)/k, z -> sin(g)/k - r sin g; g = k z, k = angle/h, r along direction";
+  static constexpr std::array<ParameterSpec, 2> parameters{{
+      {"angle",
+       0,
+       {-3.15, 3.15},
+       {-3.1, 3.1},
+       false,
+       "rad",
+       "turn of the axis between zeta = 0 and zeta = 1",
+       Follows::section},
+      {"direction",
+       0,
+       {-6.3, 6.3},
+       {-6.3, 6.3},
+       false,
+       "rad",
+       "azimuth towards which it bends",
+       Follows::section},
+  }};
+  static constexpr Sections sections = Sections::tilt;
+
+  template <class T>
+  static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
+    const auto [s, c] = math::sin_cos(b[1]);
+    const T r = c * p[0] + s * p[1];
+    const T half = b[0] * p[2] / h * 0.5;  // g / 2
+    const auto [sin_half, cos_half] = math::sin_cos(half);
+    const T sinc_half = sinc(half, sin_half);
+    // (1 - cos g)/k = z sinc(g/2) sin(g/2),  sin(g)/k = z sinc(g/2) cos(g/2),  1 - cos g = 2 sin^2(g/2)
+    const T reach = p[2] * sinc_half;
+    const T shift = reach * sin_half - r * sin_half * sin_half * 2.0;
+    return {p[0] + c * shift, p[1] + s * shift, reach * cos_half - r * sin_half * cos_half * 2.0};
+  }
+  template <class T>
+  static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
+    const auto [s, c] = math::sin_cos(b[1]);
+    const T k = b[0] / h;
+    const T r_bent = c * p[0] + s * p[1];
+    // The centre of curvature is at r = 1/k: with q = k z', d = 1 - k r', the angle g = atan2(q, d), rho =
+    // sqrt(q^2 + d^2) is 1 - k r.
+    const T q = k * p[2], d = -(k * r_bent) + 1.0;
+    const T rho = math::sqrt(T(q * q + d * d));
+    const T half_tan = q / (rho + d);                                  // tan(g/2)
+    const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
+    const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
+    const T z = p[2] * atan_over(half_tan) * 2.0 / (rho + d);          // g / k
+    const T shift = r - r_bent;
+    return {p[0] + c * shift, p[1] + s * shift, z};
+  }
+};
+
+}  // namespace pliant

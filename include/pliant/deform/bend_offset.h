@@ -1,0 +1,36 @@
+// The bend of the paper's family (Metaxas & Terzopoulos 1993, physics 2.1): a lateral offset along x,
+//   (x + b1 cos(pi b3 (zeta + b2)), y, z). Right for small bends only: it does not keep the length of the
+//   axis.
+#pragma once
+
+#include <pliant/deform/deform.h>
+
+namespace pliant {
+
+struct BendOffset {
+  static constexpr const char* name = "bend_offset";
+  static constexpr const char* formula = "(x + b1 cos(pi b3 (zeta + b2)), y, z)";
+  static constexpr std::array<ParameterSpec, 3> parameters{{
+      {"b1", 0, {-1e12, 1e12}, {-1e12, 1e12}, false, "m", "size of the offset", Follows::section},
+      {"b2", 0, {-1, 1}, {-1, 1}, false, "1", "where along z the offset is largest", Follows::section},
+      {"b3", 1, {1e-3, 1}, {1e-3, 1}, false, "1", "how much of the axis it spans", Follows::section},
+  }};
+  static constexpr Sections sections = Sections::stay_plane;
+
+  template <class T>
+  static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 3>& b) {
+    return {p[0] + offset(p[2], h, b), p[1], p[2]};
+  }
+  template <class T>
+  static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 3>& b) {
+    return {p[0] - offset(p[2], h, b), p[1], p[2]};
+  }
+
+ private:
+  template <class T>
+  static T offset(const T& z, const T& h, const Vec<T, 3>& b) {
+    return b[0] * math::cos(T((z / h + b[1]) * b[2] * kPi));
+  }
+};
+
+}  // namespace pliant

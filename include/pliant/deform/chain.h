@@ -1,0 +1,68 @@
+// Chain<Taper, Bend>: a chain of global deformations whose order is part of its type, for library users.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/deform/link.h>
+
+namespace pliant {
+
+/// What is known of a link without its type.
+struct LinkInfo {
+  const char* type;
+  const ParameterSpec* parameters;
+  int n_parameters;
+  Sections sections;
+};
+
+template <class Deform>
+LinkInfo link_info() {
+  return {Deform::name, Deform::parameters.data(), deform_size<Deform>, Deform::sections};
+}
+
+/// The point that one link takes to p.
+template <class Deform>
+Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
+  const Eigen::Map<const Vec<double, deform_size<Deform>>> parameters(b);
+  return Deform::template inverse<double>(p, h, parameters);
+}
+
+template <class... Links>
+class Chain {
+ public:
+  std::vector<LinkInfo> links() const { return {link_info<Links>()...}; }
+
+  /// All links in order. all: the parameters of all links, one after the other.
+  template <class P, class S>
+  void apply(const HalfHeight<P>& half, LinkParameters<P> all, JetBatch<S>& batch) const {
+    (apply_one<Links>(half, all, batch), ...);
+  }
+
+  /// The point e that the chain takes to p.
+  Vec3<double> inverse(Vec3<double> p, double h, const double* b) const {
+    const double* end = b + (0 + ... + deform_size<Links>);
+    invert<Links...>(p, h, end);
+    return p;
+  }
+
+ private:
+  template <class Link, class P, class S>
+  static void apply_one(const HalfHeight<P>& half, LinkParameters<P>& next, JetBatch<S>& batch) {
+    apply_link<Link>(half, next, batch);
+    next.b += deform_size<Link>;
+    next.b_dot += deform_size<Link>;
+    next.dynamic += deform_size<Link>;
+  }
+  template <class... None>
+  static std::enable_if_t<sizeof...(None) == 0> invert(Vec3<double>&, double, const double*&) {}
+  template <class First, class... Rest>
+  static void invert(Vec3<double>& p, double h, const double*& end) {
+    invert<Rest...>(p, h, end);
+    end -= deform_size<First>;
+    p = link_inverse<First>(p, h, end);
+  }
+};
+
+}  // namespace pliant

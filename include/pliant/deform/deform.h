@@ -1,0 +1,29 @@
+// What a global deformation is (design 1.1): one struct with its names, its parameters and its formula T(p,
+// h; b), Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape, zeta
+// = p_z / h.
+//
+//   name, formula      for people and scene files
+//   parameters         std::array<ParameterSpec, n>
+//   sections           what becomes of the planes z = const, which decides the quadrature of the mass
+//   apply(p, h, b)     T(p, h; b); the identity when all parameters are at their defaults
+//   inverse(p, h, b)   the point that apply takes to p
+#pragma once
+
+#include <array>
+
+#include <pliant/math/functions.h>
+#include <pliant/math/parameter_spec.h>
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+enum class Sections {
+  stay_affine,  ///< the map is affine in (x, y, z): a quadratic in the rest position stays one
+  stay_plane,   ///< planes z = const stay where they are and move affinely within themselves
+  tilt,         ///< planes z = const move affinely, out of their plane: nothing after it may read z
+};
+
+template <class Deform>
+inline constexpr int deform_size = static_cast<int>(Deform::parameters.size());
+
+}  // namespace pliant

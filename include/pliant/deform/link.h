@@ -1,0 +1,93 @@
+// One link of a chain, T(p, h; b), applied to a batch of jets. Its derivatives come from dual numbers of its
+// own few variables and are multiplied into the chain (design 1.2): J <- [F J + T_h dh/da, G_T], F = dT/dp,
+// G_T = dT/db.
+#pragma once
+
+#include <pliant/deform/deform.h>
+#include <pliant/deform/jet.h>
+#include <pliant/math/dual.h>
+#include <pliant/math/taylor2.h>
+
+namespace pliant {
+
+/// The half height of the shape as every link sees it. P is the scalar of the parameters.
+template <class P>
+struct HalfHeight {
+  Taylor2<P> h;                 ///< value and derivatives along the motion
+  VecMax<P, kMaxGlobal> slope;  ///< dh/dq_s of the columns of the shape
+};
+
+/// The parameters of one link: values and rates, and which of them are dynamic.
+template <class P>
+struct LinkParameters {
+  const P* b;
+  const P* b_dot;
+  const bool* dynamic;
+};
+
+template <class Deform, class P, class S>
+void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
+  constexpr int K = deform_size<Deform>;
+  const S h(half.h.v);
+  Vec<S, K> b;
+  bool moves = false;
+  for (int k = 0; k < K; ++k) {
+    b[k] = S(parameters.b[k]);
+    moves = moves || parameters.dynamic[k];
+  }
+  if (batch.level == Level::position || (batch.n_columns == 0 && !moves)) {
+    for (int i = 0; i < batch.count; ++i) {
+      Vec3<S>& s = batch.jet[i].s;
+      s = Deform::template apply<S>(Vec3<S>(s), h, b);
+    }
+    return;
+  }
+
+  if (batch.level == Level::rates) {
+    using T = Taylor2<S>;
+    const T h_t(S(half.h.v), S(half.h.d), S(half.h.dd));
+    Vec<T, K> b_t;
+    for (int k = 0; k < K; ++k)
+      b_t[k] = parameters.dynamic[k] ? T(b[k], S(parameters.b_dot[k]), S(0.0)) : T(b[k]);
+    for (int i = 0; i < batch.count; ++i) {
+      Jet<S>& jet = batch.jet[i];
+      Vec3<T> p;
+      for (int r = 0; r < 3; ++r) p[r] = T(jet.s[r], jet.s1[r], jet.s2[r]);
+      const Vec3<T> moved = Deform::template apply<T>(p, h_t, b_t);
+      for (int r = 0; r < 3; ++r) {
+        jet.s1[r] = moved[r].d;
+        jet.s2[r] = moved[r].dd;
+      }
+    }
+  }
+
+  using D = Dual<4 + K, S>;
+  const D h_d = D::variable(h, 3);
+  Vec<D, K> b_d;
+  for (int k = 0; k < K; ++k) b_d[k] = D::variable(b[k], 4 + k);
+  const int n_shape = static_cast<int>(half.slope.size());
+  for (int i = 0; i < batch.count; ++i) {
+    Jet<S>& jet = batch.jet[i];
+    const Vec3<D> p{D::variable(jet.s[0], 0), D::variable(jet.s[1], 1), D::variable(jet.s[2], 2)};
+    const Vec3<D> moved = Deform::template apply<D>(p, h_d, b_d);
+    for (int c = 0; c < batch.n_columns; ++c) {
+      const Vec3<S> column = jet.J[static_cast<std::size_t>(c)];
+      for (int r = 0; r < 3; ++r) {
+        S sum = moved[r].d[0] * column[0] + moved[r].d[1] * column[1] + moved[r].d[2] * column[2];
+        if (c < n_shape) sum += moved[r].d[3] * S(half.slope[c]);
+        jet.J[static_cast<std::size_t>(c)][r] = sum;
+      }
+    }
+    int next = batch.n_columns;
+    for (int k = 0; k < K; ++k) {
+      if (!parameters.dynamic[k]) continue;
+      for (int r = 0; r < 3; ++r)
+        jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(4 + k)];
+      ++next;
+    }
+    for (int r = 0; r < 3; ++r) jet.s[r] = moved[r].v;
+  }
+  for (int k = 0; k < K; ++k) batch.n_columns += parameters.dynamic[k] ? 1 : 0;
+}
+
+}  // namespace pliant

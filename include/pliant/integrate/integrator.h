@@ -1,0 +1,44 @@
+// One interface for all methods of time integration, one file a method.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+/// Counts what a method did.
+struct StepCounters {
+  long steps = 0;
+  long evaluations = 0;  ///< of the accelerations
+  long limit_impulses = 0;
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual const char* name() const = 0;
+  virtual int order() const = 0;
+  /// Advances q, v and work by state.h (> 0, s); the caller counts the step.
+  virtual void step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                    StepCounters& counters) = 0;
+  /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
+  /// step is stable while it is at most 1.
+  virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
+};
+
+struct IntegratorInfo {
+  const char* name;
+  int order;
+  const char* description;
+  std::unique_ptr<Integrator> (*make)();
+};
+
+/// All methods. A new one is its file and an entry here.
+const std::vector<IntegratorInfo>& all_integrators();
+/// Throws std::invalid_argument listing the names.
+std::unique_ptr<Integrator> make_integrator(const std::string& name);
+
+}  // namespace pliant

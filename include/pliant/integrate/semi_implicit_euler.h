@@ -1,0 +1,17 @@
+// Semi-implicit Euler, the paper's method (section 4), first order:
+//   v <- v + h vdot(q, v),   q <- q (+) h v
+#pragma once
+
+#include <pliant/integrate/integrator.h>
+
+namespace pliant {
+
+class SemiImplicitEuler final : public Integrator {
+ public:
+  const char* name() const override { return "semi_implicit_euler"; }
+  int order() const override { return 1; }
+  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
+};
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+// Simulation: a model, its state, and a method that steps it.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <pliant/integrate/integrator.h>
+
+namespace pliant {
+
+/// A step gave a number that is not finite. The simulation still holds the last good state.
+class NumericalFailure : public std::runtime_error {
+ public:
+  NumericalFailure(const std::string& what, double at) : std::runtime_error(what), time(at) {}
+  double time;  ///< of the last good state, s
+};
+
+class Simulation {
+ public:
+  /// Prepares the body (which must outlive the simulation) and starts at time 0.
+  explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler",
+                      int threads = 1);
+
+  /// One step of h seconds (> 0 and finite). Throws NumericalFailure, std::invalid_argument.
+  void step(double h);
+
+  const Model& model() const { return model_; }
+  const Dynamics& dynamics() const { return dynamics_; }
+  const Integrator& integrator() const { return *integrator_; }
+  const State& state() const { return state_; }
+  /// Goes on from another state of the same model.
+  void set_state(State state);
+  double time() const { return state_.time(); }
+
+  /// Energies, works, momenta and the balance since the simulation's first state.
+  Ledger ledger();
+  /// The energy that the balance refers to: at the first state. Set on resuming a recorded run.
+  double start_energy() const { return start_energy_; }
+  void set_start_energy(double energy) { start_energy_ = energy; }
+
+  const StepCounters& step_counters() const { return step_counters_; }
+  /// Work of the kernels, summed over parts.
+  Counters counters() const;
+  /// Parameters that once had no inertia and were held: "part.parameter".
+  const std::set<std::string>& held() const { return held_; }
+
+ private:
+  void check(const State& before);
+  void note_held();
+
+  Model model_;
+  std::unique_ptr<ThreadPool> pool_;
+  Dynamics dynamics_;
+  std::unique_ptr<Integrator> integrator_;
+  State state_, last_good_;
+  Workspace<double> work_, output_work_;
+  StepCounters step_counters_;
+  std::set<std::string> held_;
+  double start_energy_ = 0;
+};
+
+/// The largest step (s) for which the method keeps the motion about a state bounded, by the linearised
+/// elasticity and damping of global parameters and springs; infinite when nothing is stiff. Parts tied by
+/// springs are taken together.
+double largest_stable_step(const Simulation& simulation);
+
+}  // namespace pliant

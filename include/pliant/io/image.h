@@ -1,0 +1,17 @@
+// A picture in memory: what the renderer draws and the PNG writer takes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pliant {
+
+/// Rows from top to bottom, pixels from left to right, three bytes (red, green, blue; sRGB) a pixel, no
+/// padding.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;  ///< width * height * 3 bytes
+};
+
+}  // namespace pliant

@@ -1,0 +1,172 @@
+// A part: a solid primitive with its global deformations, its mass and its elasticity. This class holds
+// everything that does not depend on the type of the shape; Primitive<Shape, GlobalDeform> adds the kernels.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <pliant/part/inertia.h>
+#include <pliant/part/mass_points.h>
+#include <pliant/part/parameters.h>
+#include <pliant/part/triangle_mesh.h>
+
+namespace pliant {
+
+/// How often the kernels of a part ran; tests and run.json show by them what a scene did not need.
+struct Counters {
+  long jacobian_points = 0;  ///< mass points whose J was evaluated
+  long rate_points = 0;      ///< mass points whose Jdot qs_dot was evaluated
+  long mass_matrices = 0;    ///< mass matrices summed
+  long inertial_forces = 0;  ///< inertial forces g_q evaluated
+  long point_jets = 0;       ///< material points evaluated for forces
+  long surfaces = 0;         ///< surfaces evaluated for output
+  Counters& operator+=(const Counters& o);
+};
+
+class Part {
+ public:
+  using Named = std::vector<std::pair<std::string, double>>;
+
+  virtual ~Part() = default;
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+
+  // Building. Each throws std::invalid_argument naming part, parameter, value and what is allowed.
+
+  /// Position of the frame (m, world) and orientation (body to world; normalised).
+  Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
+  /// Initial velocity of the frame (m/s, world) and angular velocity (rad/s, body frame).
+  Part& move(const Vec3<double>& c_dot, const Vec3<double>& omega);
+  /// Rest values: of frozen parameters their values.
+  Part& rest(const Named& values);
+  Part& rest(const std::string& parameter, TimeFunction of_time);
+  /// Values and rates at time 0; the parameters become dynamic.
+  Part& initial(const Named& values);
+  Part& initial_rate(const Named& values);
+  /// Diagonal of K_s (energy 1/2 K (q - rest)^2); the parameters become dynamic.
+  Part& stiffness(const Named& values);
+  /// Full symmetric K_s over the named parameters; they become dynamic.
+  Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
+  /// One-sided limits of dynamic parameters.
+  Part& limits(const std::string& parameter, Range range);
+  Part& make_dynamic(const std::vector<std::string>& parameters);
+  Part& freeze(const std::vector<std::string>& parameters);
+  /// D = alpha M_ss + beta K_s on the global parameters; drag nu M on all motion (1/s, s, 1/s).
+  Part& damping(double alpha, double beta, double nu = 0);
+  /// Mass on the surface only; the density is then per area (kg/m^2).
+  Part& make_shell();
+  /// Total mass (kg) instead of the density.
+  Part& mass(double total);
+  /// Inertia tensor about the frame's origin (kg m^2, body frame) and mass of a rigid part, instead of the
+  /// density.
+  Part& inertia(double mass, const Mat3<double>& about_origin,
+                const Vec3<double>& centre = Vec3<double>::Zero());
+  /// The part does not move and has no coordinates.
+  Part& fix();
+
+  const std::string& name() const { return name_; }
+  const Parameters& parameters() const { return parameters_; }
+  const ShapeFace& shape() const { return *shape_; }
+  bool fixed() const { return fixed_; }
+  bool shell() const { return shell_; }
+  double density() const { return density_; }
+  double alpha() const { return alpha_; }
+  double beta() const { return beta_; }
+  double drag() const { return drag_; }
+  const Vec3<double>& c0() const { return c0_; }
+  const Eigen::Quaterniond& R0() const { return R0_; }
+  const Vec3<double>& c0_dot() const { return c0_dot_; }
+  const Vec3<double>& omega0() const { return omega0_; }
+  int n_s() const { return fixed_ ? 0 : parameters_.n_dynamic(); }
+  int n_v() const { return fixed_ ? 0 : 6 + n_s(); }
+  int n_q() const { return fixed_ ? 0 : 7 + n_s(); }
+  bool rigid() const { return parameters_.n_dynamic() == 0; }
+
+  // Prepared constants; valid after prepare().
+
+  /// Lays the mass points and takes the constants of a rigid part. Throws std::invalid_argument on a bad
+  /// model.
+  void prepare();
+  const MassPoints& mass_points() const { return mass_points_; }
+  /// Stiffness K_s over the dynamic parameters.
+  const MatMax<double, kMaxGlobal>& K_s() const { return K_s_; }
+  double total_mass() const { return rest_inertia_.mass; }
+  /// Inertia at rest; of a rigid part for ever.
+  const Inertia<double>& rest_inertia() const { return rest_inertia_; }
+  /// A length of the body at rest: its largest half extent, m.
+  double size() const { return size_; }
+
+  // Evaluation. q_s, q_s_dot: the dynamic parameters and their rates; omega: body frame.
+
+  /// Mass matrix and inertial forces, by the mass points.
+  void inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
+               Inertia<double>& out, Counters& counters) const;
+  void inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
+               Inertia<Dual<1>>& out, Counters& counters) const;
+  /// Material points: position, J, rates, in the body frame.
+  void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
+              const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
+  void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
+              const VecMax<Dual<1>>& q_s_dot, std::vector<PointJet<Dual<1>>>& out, Counters& counters) const;
+
+  /// Reference shape of material points, body frame: 3 x n.
+  Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
+  /// dF: derivative of the chain of deformations at undeformed points e (3 x n), one 3x3 each.
+  std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
+                                           const ParameterValues<double>& values) const;
+  /// ds/d(u, v, w) at a material point, 3x3; infinite entries where the trigonometric map has them (eps < 1).
+  Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
+  /// Inside-outside function at a body-frame point: w - 1 of the point, zero on the surface, negative inside;
+  /// through the inverse deformations. And its gradient, 1/m.
+  double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  /// Unit outward normal at a material point of the surface, body frame.
+  Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
+  std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
+                                    const ParameterValues<double>& values) const;
+  /// The material point at a body-frame point of the part at these values.
+  Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
+
+  /// Jets of material points: position, J, rates, by level.
+  virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
+                    JetBatch<Pack>& batch) const = 0;
+  virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+                    JetBatch<Dual<1, Pack>>& batch) const = 0;
+
+ protected:
+  Part(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+       const std::vector<LinkInfo>& links);
+
+  /// The chain alone: takes seeded jets through all links with every parameter held.
+  virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
+  virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
+
+ private:
+  int require(const std::string& parameter) const;
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  std::string name_;
+  std::unique_ptr<ShapeFace> shape_;
+  Parameters parameters_;
+  double density_;
+  std::optional<double> total_mass_;
+  std::optional<Inertia<double>> given_inertia_;
+  MatX<double> stiffness_;  // over all parameters
+  double alpha_ = 0, beta_ = 0, drag_ = 0;
+  bool fixed_ = false, shell_ = false;
+  Vec3<double> c0_ = Vec3<double>::Zero(), c0_dot_ = Vec3<double>::Zero(), omega0_ = Vec3<double>::Zero();
+  Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
+
+  MassPoints mass_points_;
+  MatMax<double, kMaxGlobal> K_s_;
+  Inertia<double> rest_inertia_;
+  double size_ = 0;
+};
+
+}  // namespace pliant

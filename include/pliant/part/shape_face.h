@@ -1,0 +1,178 @@
+// ShapeFace: a shape behind virtual calls, for everything done once, at load or for output. The kernels of a
+// step are templates (shape_jets.h).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <pliant/shape/shape.h>
+
+namespace pliant {
+
+/// Parameters a of a shape, as a plain array.
+using ShapeParameters = const double*;
+
+class ShapeFace {
+ public:
+  virtual ~ShapeFace() = default;
+  virtual const char* name() const = 0;
+  virtual const char* formula() const = 0;
+  virtual const ParameterSpec* parameters() const = 0;
+  virtual int n_parameters() const = 0;
+  virtual MeshPattern mesh() const = 0;
+
+  virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
+  virtual double half_height(ShapeParameters a) const = 0;
+  virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
+  /// Gradient of the gauge, 1/m: along the outward normal.
+  virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
+  virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
+  virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
+  /// e and its derivatives along three material directions carried by the dual parts of m.
+  virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
+
+  // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same
+  // solid).
+  virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
+  /// The material point of the shape where the rest map puts m.
+  virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
+  virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
+  virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
+  /// The exponent of (X, Y) = (C_v^eps, S_v^eps) in which the rings of the rest map are superellipses; 1 for
+  /// round ones.
+  virtual double ring_exponent(ShapeParameters a) const = 0;
+  /// Whether the shape knows its plane sections in closed form.
+  virtual bool has_sections() const = 0;
+  virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
+  virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
+};
+
+/// For shapes that bring no label of their own: Newton's method on e(u, v, w) = x from the direction of x.
+/// Throws std::runtime_error when it finds none (the shape is then not star-shaped and needs its own).
+Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
+/// The gradient of w by the same map; at the poles the limit along a meridian.
+Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
+
+namespace detail {
+
+// Which of the optional members a shape has.
+template <class Shape, class = void>
+struct RestMapOf {
+  using Map = Shape;
+};
+template <class Shape>
+struct RestMapOf<Shape, std::void_t<typename Shape::RestMap>> {
+  using Map = typename Shape::RestMap;
+};
+#define PLIANT_HAS_MEMBER(member)             \
+  template <class Shape, class = void>        \
+  inline constexpr bool has_##member = false; \
+  template <class Shape>                      \
+  inline constexpr bool has_##member<Shape, std::void_t<decltype(&Shape::member)>> = true;
+PLIANT_HAS_MEMBER(label)
+PLIANT_HAS_MEMBER(mesh_label)
+PLIANT_HAS_MEMBER(profile)
+PLIANT_HAS_MEMBER(ring)
+PLIANT_HAS_MEMBER(ring_exponent)
+PLIANT_HAS_MEMBER(section)
+#undef PLIANT_HAS_MEMBER
+
+}  // namespace detail
+
+template <class Shape>
+class ShapeFaceOf final : public ShapeFace {
+  static constexpr int K = shape_size<Shape>;
+  using RestMap = typename detail::RestMapOf<Shape>::Map;
+  static Vec<double, K> vec(ShapeParameters a) { return Eigen::Map<const Vec<double, K>>(a); }
+  template <class T>
+  static Vec<T, K> lift(ShapeParameters a) {
+    return vec(a).template cast<T>();
+  }
+
+ public:
+  const char* name() const override { return Shape::name; }
+  const char* formula() const override { return Shape::formula; }
+  const ParameterSpec* parameters() const override { return Shape::parameters.data(); }
+  int n_parameters() const override { return K; }
+  MeshPattern mesh() const override { return Shape::mesh; }
+
+  Vec3<double> e(const Material<double>& m, ShapeParameters a) const override {
+    return Shape::template e<double>(m, vec(a));
+  }
+  double half_height(ShapeParameters a) const override { return Shape::template half_height<double>(vec(a)); }
+  double gauge(const Vec3<double>& x, ShapeParameters a) const override {
+    if constexpr (detail::has_label<Shape>)
+      return Shape::template gauge<double>(x, vec(a));
+    else
+      return label(x, a).w;
+  }
+  Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const override {
+    if constexpr (detail::has_label<Shape>) {
+      using D = Dual<3>;
+      const Vec3<D> at{D::variable(x[0], 0), D::variable(x[1], 1), D::variable(x[2], 2)};
+      const D g = Shape::template gauge<D>(at, lift<D>(a));
+      return {g.d[0], g.d[1], g.d[2]};
+    } else {
+      return generic_gauge_gradient(*this, x, a);
+    }
+  }
+  Material<double> label(const Vec3<double>& x, ShapeParameters a) const override {
+    if constexpr (detail::has_label<Shape>)
+      return Shape::label(x, vec(a));
+    else
+      return generic_label(*this, x, a);
+  }
+  Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const override {
+    if constexpr (detail::has_mesh_label<Shape>)
+      return Shape::mesh_label(g, vec(a));
+    else
+      return material_towards(g);
+  }
+  Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
+    return Shape::template e<Dual<3>>(m, lift<Dual<3>>(a));
+  }
+  Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
+    return RestMap::template e<Dual<3>>(m, lift<Dual<3>>(a));
+  }
+  Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const override {
+    if constexpr (std::is_same_v<RestMap, Shape>)
+      return m;
+    else
+      return Shape::label(RestMap::template e<double>(m, vec(a)), vec(a));
+  }
+  std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const override {
+    if constexpr (detail::has_profile<RestMap>)
+      return RestMap::profile(vec(a), dynamic_exponents);
+    else
+      return {{Panel::Kind::smooth, -kPi / 2, kPi / 2}};
+  }
+  std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const override {
+    if constexpr (detail::has_ring<RestMap>)
+      return RestMap::ring(vec(a), dynamic_exponents);
+    else
+      return {{Panel::Kind::periodic, 0, 2 * kPi}};
+  }
+  double ring_exponent(ShapeParameters a) const override {
+    if constexpr (detail::has_ring_exponent<Shape>)
+      return Shape::ring_exponent(vec(a));
+    else
+      return 1;
+  }
+  bool has_sections() const override { return detail::has_section<Shape>; }
+  Section section(double zeta, double gap, ShapeParameters a) const override {
+    if constexpr (detail::has_section<Shape>)
+      return Shape::section(zeta, gap, vec(a));
+    else
+      return {};
+  }
+  std::vector<SectionPanel> section_panels(ShapeParameters a) const override {
+    if constexpr (detail::has_section<Shape>)
+      return Shape::section_panels(vec(a));
+    else
+      return {};
+  }
+};
+
+}  // namespace pliant

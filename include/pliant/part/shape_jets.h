@@ -1,0 +1,85 @@
+// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its Jacobian columns de/da of
+// the dynamic parameters and its rates along a + t a_dot.
+#pragma once
+
+#include <pliant/deform/jet.h>
+#include <pliant/deform/link.h>
+#include <pliant/shape/shape.h>
+
+namespace pliant {
+
+/// P: scalar of the parameters; S: scalar of the points; U: scalar of the material points.
+template <class Shape, class P, class S, class U>
+void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material, JetBatch<S>& batch) {
+  constexpr int K = shape_size<Shape>;
+  Vec<S, K> a;
+  int n_dynamic = 0;
+  for (int k = 0; k < K; ++k) {
+    a[k] = S(parameters.b[k]);
+    n_dynamic += parameters.dynamic[k] ? 1 : 0;
+  }
+  if (batch.level == Level::position || n_dynamic == 0) {
+    for (int i = 0; i < batch.count; ++i) {
+      Jet<S>& jet = batch.jet[i];
+      jet.s = Shape::template e<S>(material[i], a);
+      jet.s1.setConstant(S(0.0));
+      jet.s2.setConstant(S(0.0));
+    }
+    batch.n_columns = 0;
+    return;
+  }
+  if (batch.level == Level::rates) {
+    using T = Taylor2<S>;
+    Vec<T, K> a_t;
+    for (int k = 0; k < K; ++k)
+      a_t[k] = parameters.dynamic[k] ? T(a[k], S(parameters.b_dot[k]), S(0.0)) : T(a[k]);
+    for (int i = 0; i < batch.count; ++i) {
+      const Vec3<T> e = Shape::template e<T>(material[i], a_t);
+      for (int r = 0; r < 3; ++r) {
+        batch.jet[i].s1[r] = e[r].d;
+        batch.jet[i].s2[r] = e[r].dd;
+      }
+    }
+  }
+  using D = Dual<K, S>;
+  Vec<D, K> a_d;
+  for (int k = 0; k < K; ++k) a_d[k] = D::variable(a[k], k);
+  for (int i = 0; i < batch.count; ++i) {
+    Jet<S>& jet = batch.jet[i];
+    const Vec3<D> e = Shape::template e<D>(material[i], a_d);
+    std::size_t column = 0;
+    for (int k = 0; k < K; ++k) {
+      if (!parameters.dynamic[k]) continue;
+      for (int r = 0; r < 3; ++r) jet.J[column][r] = e[r].d[static_cast<std::size_t>(k)];
+      ++column;
+    }
+    for (int r = 0; r < 3; ++r) jet.s[r] = e[r].v;
+  }
+  batch.n_columns = n_dynamic;
+}
+
+/// h(a) with its derivatives along the motion and its slopes by the dynamic parameters.
+template <class Shape, class P>
+HalfHeight<P> half_height_jet(const LinkParameters<P>& parameters) {
+  constexpr int K = shape_size<Shape>;
+  Vec<Taylor2<P>, K> a_t;
+  using D = Dual<K, P>;
+  Vec<D, K> a_d;
+  int n_dynamic = 0;
+  for (int k = 0; k < K; ++k) {
+    const P& a = parameters.b[k];
+    a_t[k] = parameters.dynamic[k] ? Taylor2<P>(a, parameters.b_dot[k], P(0.0)) : Taylor2<P>(a);
+    a_d[k] = D::variable(a, k);
+    n_dynamic += parameters.dynamic[k] ? 1 : 0;
+  }
+  HalfHeight<P> half;
+  half.h = Shape::template half_height<Taylor2<P>>(a_t);
+  const D h = Shape::template half_height<D>(a_d);
+  half.slope.resize(n_dynamic);
+  int column = 0;
+  for (int k = 0; k < K; ++k)
+    if (parameters.dynamic[k]) half.slope[column++] = h.d[static_cast<std::size_t>(k)];
+  return half;
+}
+
+}  // namespace pliant

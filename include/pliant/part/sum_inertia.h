@@ -1,0 +1,13 @@
+// The sum of Eq. (11) over given mass points, for choosing and judging them.
+#pragma once
+
+#include <pliant/part/part.h>
+
+namespace pliant {
+
+/// Mass matrix and inertial forces of a part over the given points instead of its own.
+void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
+                 const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
+                 Counters& counters);
+
+}  // namespace pliant

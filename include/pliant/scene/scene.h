@@ -1,0 +1,67 @@
+// A scene: a MultiBody with how long and how to run it, and how to show it. read_scene() makes one from a
+// JSON document.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <pliant/body/multibody.h>
+
+namespace pliant {
+
+/// Red, green, blue in [0, 1], sRGB.
+using Color = std::array<double, 3>;
+
+/// How a part looks; one for each part of the body, in its order.
+struct Appearance {
+  Color color{0.8, 0.5, 0.2};
+  int resolution = 8;  ///< of its Surface
+  bool visible = true;
+};
+
+/// A material point whose path is drawn and recorded (the paper's Fig. 6b).
+struct Track {
+  std::string name;
+  Point point;
+  Color color{0.9, 0.2, 0.1};
+};
+
+struct CameraSetting {
+  std::optional<Vec3<double>> eye, target;  ///< m; chosen automatically when not given
+  double field_of_view = 35;                ///< vertical, degrees
+};
+
+struct LightSetting {
+  std::optional<Vec3<double>> direction;  ///< towards the light; a default when not given
+  bool shadows = true;
+};
+
+struct GroundSetting {
+  bool visible = true;
+  std::optional<double> height;  ///< z of the ground, m; just below the lowest point when not given
+};
+
+struct Scene {
+  std::string name;         ///< file name without its ending, or given
+  std::string description;  ///< what the scene must show
+  MultiBody body;
+  std::vector<Appearance> appearance;
+  std::vector<Track> tracks;
+
+  double end = 1;      ///< s
+  double step = 1e-3;  ///< s
+  std::string integrator = "semi_implicit_euler";
+  double frame_rate = 25;         ///< recorded states and pictures per second
+  int width = 640, height = 480;  ///< of pictures
+  CameraSetting camera;
+  LightSetting light;
+  GroundSetting ground;
+
+  std::uint64_t hash = 0;  ///< of the resolved document (overrides included), for resuming
+};
+
+}  // namespace pliant

@@ -1,0 +1,46 @@
+// Box of half sizes a1, a2, a3, a cylinder whose section is the unit square (X, Y) = (C_v, S_v) / max(|C_v|,
+// |S_v|):
+//   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
+#pragma once
+
+#include <pliant/shape/shape.h>
+
+namespace pliant {
+
+struct Box {
+  static constexpr const char* name = "box";
+  static constexpr const char* formula =
+      "w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|), (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|)";
+  static constexpr std::array<ParameterSpec, 3> parameters{{
+      length("a1", 1, "half size along x"),
+      length("a2", 1, "half size along y"),
+      length("a3", 1, "half size along z"),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::ball;
+
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 3>& a) {
+    const U reach = m.w / math::max(U(math::abs(m.cu.x)), U(math::abs(m.su.x)));
+    const U rim = m.cu.x * reach / math::max(U(math::abs(m.cv.x)), U(math::abs(m.sv.x)));
+    return {a[0] * U(rim * m.cv.x), a[1] * U(rim * m.sv.x), a[2] * U(reach * m.su.x)};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 3>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
+    return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])),
+                     T(math::abs(x[2]) / a[2]));
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
+  static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
+  static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
+  static Section section(double zeta, double gap, const Vec<double, 3>& a);
+  static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
+};
+
+}  // namespace pliant

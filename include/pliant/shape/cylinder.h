@@ -1,0 +1,54 @@
+// Elliptic cylinder: e = w diag(a1, a2, a3) k, k the point of the unit cylinder |(k_x, k_y)| <= 1, |k_z| <= 1
+// in the direction n = (C_u C_v, C_u S_v, S_u); the rim is at |u| = pi/4.
+#pragma once
+
+#include <pliant/shape/shape.h>
+
+namespace pliant {
+
+struct Cylinder {
+  static constexpr const char* name = "cylinder";
+  static constexpr const char* formula =
+      "w diag(a1, a2, a3) n / max(|C_u|, |S_u|), n = (C_u C_v, C_u S_v, S_u)";
+  static constexpr std::array<ParameterSpec, 3> parameters{{
+      length("a1", 1, "semi-axis along x"),
+      length("a2", 1, "semi-axis along y"),
+      length("a3", 1, "half height along z"),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::ball;
+
+  /// The point of the unit cylinder in the direction of m.
+  template <class U>
+  static Vec3<U> unit_point(const Material<U>& m) {
+    const U reach = U(1) / math::max(math::abs(m.cu.x), math::abs(m.su.x));
+    const U rim = m.cu.x * reach;
+    return {rim * m.cv.x, rim * m.sv.x, m.su.x * reach};
+  }
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 3>& a) {
+    const Vec3<U> k = unit_point(m);
+    return {a[0] * U(m.w * k[0]), a[1] * U(m.w * k[1]), a[2] * U(m.w * k[2])};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 3>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
+    const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
+    const T on_axis = ring2 - T(1e-300);
+    const T ring =
+        math::where_positive(on_axis, T(math::sqrt(math::where_positive(on_axis, ring2, T(1)))), T(0));
+    return math::max(ring, T(math::abs(x[2]) / a[2]));
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
+  static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
+  static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
+  static Section section(double zeta, double gap, const Vec<double, 3>& a);
+  static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
+};
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// Ellipsoid: e = w (a1 C_u C_v, a2 C_u S_v, a3 S_u), -pi/2 <= u <= pi/2.
+#pragma once
+
+#include <pliant/shape/shape.h>
+
+namespace pliant {
+
+struct Ellipsoid {
+  static constexpr const char* name = "ellipsoid";
+  static constexpr const char* formula = "w (a1 C_u C_v, a2 C_u S_v, a3 S_u)";
+  static constexpr std::array<ParameterSpec, 3> parameters{{
+      length("a1", 1, "semi-axis along x"),
+      length("a2", 1, "semi-axis along y"),
+      length("a3", 1, "semi-axis along z"),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::ball;
+
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 3>& a) {
+    return {a[0] * U(m.w * m.cu.x * m.cv.x), a[1] * U(m.w * m.cu.x * m.sv.x), a[2] * U(m.w * m.su.x)};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 3>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
+    return math::sqrt(
+        T(math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1])) + math::square(T(x[2] / a[2]))));
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
+  static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
+  static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
+  static Section section(double zeta, double gap, const Vec<double, 3>& a);
+  static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
+};
+
+}  // namespace pliant

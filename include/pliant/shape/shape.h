@@ -1,0 +1,45 @@
+// What a shape is (design 1.1): one struct with its names, its parameters and its formula, e(u; a), Eq. (3).
+//
+//   name, formula          for people and scene files
+//   parameters             std::array<ParameterSpec, n>
+//   e(m, a)                the point of the solid at material point m, with parameters a; templated on its
+//   scalars half_height(a)         h: half the extent along z, by which deformations measure zeta = z / h
+//   mesh                   which grid covers its surface
+// That is all a shape needs. Those with closed forms for more say so, which is faster, and exact at the
+// poles:
+//   gauge(x, a), label(x, a)   w of the point x (0 at the centre, 1 on the surface, above 1 outside; never
+//   overflows),
+//                              and the whole material point: the inverse of e
+//   mesh_label(g, a)           the surface point in the direction g of the mesh pattern
+//   profile(a), ring(a)        panels along u and v between which e is smooth, for quadrature
+//   section(zeta, gap, a)      area and mean squares of the section at zeta = z / h, for solids, and
+//   section_panels(a)          panels along zeta between which it is smooth
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <pliant/math/dual.h>
+#include <pliant/math/parameter_spec.h>
+#include <pliant/shape/material.h>
+#include <pliant/shape/panel.h>
+
+namespace pliant {
+
+/// A plane section of a shape, symmetric about both axes.
+struct Section {
+  double area;    ///< m^2
+  double xx, yy;  ///< mean of x^2 and y^2, m^2
+};
+
+/// How a closed surface is covered by a grid.
+enum class MeshPattern { ball, torus };
+
+template <class Shape>
+inline constexpr int shape_size = static_cast<int>(Shape::parameters.size());
+
+/// All parameters of a shape at one scalar.
+template <class Shape, class T>
+using ShapeVec = Vec<T, shape_size<Shape>>;
+
+}  // namespace pliant

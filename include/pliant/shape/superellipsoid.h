@@ -1,0 +1,48 @@
+// Superellipsoid (Barr 1981), the paper's shape, with the trigonometric material map, -pi/2 <= u <= pi/2:
+//   e = w (a1 C_u^eps1 C_v^eps2, a2 C_u^eps1 S_v^eps2, a3 S_u^eps1)
+//   gauge = ((|x/a1|^(2/eps2) + |y/a2|^(2/eps2))^(eps2/eps1) + |z/a3|^(2/eps1))^(eps1/2)
+#pragma once
+
+#include <pliant/shape/shape.h>
+#include <pliant/shape/superellipse.h>
+
+namespace pliant {
+
+struct Superellipsoid {
+  static constexpr const char* name = "superellipsoid";
+  static constexpr const char* formula = "w (a1 C_u^eps1 C_v^eps2, a2 C_u^eps1 S_v^eps2, a3 S_u^eps1)";
+  static constexpr std::array<ParameterSpec, 5> parameters{{
+      length("a1", 1, "semi-axis along x"),
+      length("a2", 1, "semi-axis along y"),
+      length("a3", 1, "semi-axis along z"),
+      exponent("eps1", "squareness along z: 1 round, 0.1 square, 2 pointed", Follows::ring),
+      exponent("eps2", "squareness in the x-y plane: 1 round, 0.1 square, 2 pointed", Follows::free),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::ball;
+
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 5>& a) {
+    const T ring = signed_power(m.cu, a[3]) * m.w;
+    return {a[0] * ring * signed_power(m.cv, a[4]), a[1] * ring * signed_power(m.sv, a[4]),
+            a[2] * signed_power(m.su, a[3]) * m.w};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 5>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 5>& a) {
+    const T ring = power_norm(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1]), T(T(2) / a[4]));
+    return power_norm(ring, T(math::abs(x[2]) / a[2]), T(T(2) / a[3]));
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
+  static std::vector<Panel> profile(const Vec<double, 5>& a, bool dynamic_exponents);
+  /// The exponent with which a ring runs round.
+  static double ring_exponent(const Vec<double, 5>& a) { return a[4]; }
+  static std::vector<Panel> ring(const Vec<double, 5>& a, bool dynamic_exponents);
+  static Section section(double zeta, double gap, const Vec<double, 5>& a);
+  static std::vector<SectionPanel> section_panels(const Vec<double, 5>& a);
+};
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+// Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u),
+// and
+//   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1 the gauge of unit axes.
+// A changing exponent strains it by bounded amounts (physics 1.5); same surface as Superellipsoid, other
+// material map.
+#pragma once
+
+#include <pliant/shape/superellipsoid.h>
+
+namespace pliant {
+
+struct SuperellipsoidRadial {
+  static constexpr const char* name = "superellipsoid_radial";
+  static constexpr const char* formula =
+      "diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2), n = (C_u C_v, C_u S_v, S_u)";
+  static constexpr std::array<ParameterSpec, 5> parameters{{
+      length("a1", 1, "semi-axis along x"),
+      length("a2", 1, "semi-axis along y"),
+      length("a3", 1, "semi-axis along z"),
+      exponent("eps1", "squareness along z: 1 round, 0.1 square, 2 pointed", Follows::free),
+      exponent("eps2", "squareness in the x-y plane: 1 round, 0.1 square, 2 pointed", Follows::free),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::ball;
+
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 5>& a) {
+    const Vec3<U> n{m.cu.x * m.cv.x, m.cu.x * m.sv.x, m.su.x};
+    const Vec3<T> unit{T(math::abs(n[0])), T(math::abs(n[1])), T(math::abs(n[2]))};
+    const T ring = power_norm(unit[0], unit[1], T(T(2) / a[4]));
+    const T rho = T(T(1) / power_norm(ring, unit[2], T(T(2) / a[3]))) * m.w;
+    return {a[0] * rho * n[0], a[1] * rho * n[1], a[2] * rho * n[2]};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 5>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 5>& a) {
+    return Superellipsoid::gauge(x, a);
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
+  /// Quadrature points are laid with the trigonometric map, whose sharp edges lie on coordinate lines.
+  using RestMap = Superellipsoid;
+  static Section section(double zeta, double gap, const Vec<double, 5>& a) {
+    return Superellipsoid::section(zeta, gap, a);
+  }
+  static std::vector<SectionPanel> section_panels(const Vec<double, 5>& a) {
+    return Superellipsoid::section_panels(a);
+  }
+};
+
+}  // namespace pliant

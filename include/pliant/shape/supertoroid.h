@@ -1,0 +1,50 @@
+// Supertoroid (Barr 1981): a superellipse carried round a superellipse; -pi <= u, v < pi, w = 0 on the core
+// ring:
+//   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
+#pragma once
+
+#include <pliant/shape/shape.h>
+#include <pliant/shape/superellipse.h>
+
+namespace pliant {
+
+struct Supertoroid {
+  static constexpr const char* name = "supertoroid";
+  static constexpr const char* formula =
+      "(a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)";
+  static constexpr std::array<ParameterSpec, 6> parameters{{
+      length("a1", 0.25, "semi-axis of the tube along x"),
+      length("a2", 0.25, "semi-axis of the tube along y"),
+      length("a3", 0.25, "semi-axis of the tube along z"),
+      {"a4", 3, {1, 1e6}, {1, 1e6}, false, "1", "radius of the core ring in units of a1, a2", Follows::ring},
+      exponent("eps1", "squareness of the tube", Follows::ring),
+      exponent("eps2", "squareness of the ring", Follows::free),
+  }};
+  static constexpr MeshPattern mesh = MeshPattern::torus;
+
+  template <class T, class U>
+  static Vec3<T> e(const Material<U>& m, const Vec<T, 6>& a) {
+    const T ring = signed_power(m.cu, a[4]) * m.w + a[3];
+    return {a[0] * ring * signed_power(m.cv, a[5]), a[1] * ring * signed_power(m.sv, a[5]),
+            a[2] * signed_power(m.su, a[4]) * m.w};
+  }
+  template <class T>
+  static T half_height(const Vec<T, 6>& a) {
+    return a[2];
+  }
+  template <class T>
+  static T gauge(const Vec3<T>& x, const Vec<T, 6>& a) {
+    const T ring = power_norm(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1]), T(T(2) / a[5]));
+    return power_norm(T(math::abs(T(ring - a[3]))), T(math::abs(x[2]) / a[2]), T(T(2) / a[4]));
+  }
+  static Material<double> label(const Vec3<double>& x, const Vec<double, 6>& a);
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 6>& a);
+  static std::vector<Panel> profile(const Vec<double, 6>& a, bool dynamic_exponents);
+  /// The exponent with which a ring runs round.
+  static double ring_exponent(const Vec<double, 6>& a) { return a[5]; }
+  static std::vector<Panel> ring(const Vec<double, 6>& a, bool dynamic_exponents);
+  static Section section(double zeta, double gap, const Vec<double, 6>& a);
+  static std::vector<SectionPanel> section_panels(const Vec<double, 6>& a);
+};
+
+}  // namespace pliant

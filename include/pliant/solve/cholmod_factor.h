@@ -1,0 +1,20 @@
+// The sparse Cholesky factorisation of SuiteSparse (CHOLMOD), in the library pliant::suitesparse: for large
+// systems. Its supernodal part is under the GNU General Public License; nothing of it is linked by core.
+#pragma once
+
+#include <memory>
+
+#include <pliant/solve/sparse_factor.h>
+
+namespace pliant {
+
+struct CholmodOptions {
+  /// Unknowns from which the supernodal method (dense blocks, BLAS) is used instead of the simplicial one.
+  Eigen::Index supernodal_from = 4000;
+};
+
+/// Making one sets an OpenBLAS that has threads to one thread, for the whole process: more never help at
+/// these sizes, and results would depend on their number.
+std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options = {});
+
+}  // namespace pliant

@@ -1,0 +1,58 @@
+#include <pliant/body/multibody.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace pliant {
+
+Part& MultiBody::add(std::unique_ptr<Part> part) {
+  if (part->name().empty()) throw std::invalid_argument("a part needs a name");
+  if (find(part->name()) != nullptr)
+    throw std::invalid_argument("there are two parts called '" + part->name() + "'");
+  parts_.push_back(std::move(part));
+  return *parts_.back();
+}
+
+Spring& MultiBody::spring(std::string name, Point a, Point b, double stiffness, double damping,
+                          double rest_length) {
+  if (!(stiffness >= 0) || !(damping >= 0) || !(rest_length >= 0) ||
+      !std::isfinite(stiffness + damping + rest_length))
+    throw std::invalid_argument("spring '" + name +
+                                "': stiffness, damping and rest length must be numbers >= 0");
+  springs_.push_back(std::make_unique<Spring>(
+      Spring{std::move(name), std::move(a), std::move(b), stiffness, damping, rest_length}));
+  return *springs_.back();
+}
+
+PointForce& MultiBody::force(std::string name, Point at, TimeVector force, Frame frame) {
+  forces_.push_back(std::make_unique<PointForce>(
+      PointForce{std::move(name), std::move(at), std::move(force), frame, nullptr}));
+  return *forces_.back();
+}
+
+PointForce& MultiBody::force(
+    std::string name, Point at,
+    std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom) {
+  forces_.push_back(std::make_unique<PointForce>(
+      PointForce{std::move(name), std::move(at), {}, Frame::world, std::move(custom)}));
+  return *forces_.back();
+}
+
+Torque& MultiBody::torque(std::string name, const Part& part, TimeVector torque, Frame frame) {
+  torques_.push_back(std::make_unique<Torque>(Torque{std::move(name), &part, std::move(torque), frame}));
+  return *torques_.back();
+}
+
+Part* MultiBody::find(const std::string& name) const {
+  for (const auto& part : parts_)
+    if (part->name() == name) return part.get();
+  return nullptr;
+}
+
+int MultiBody::index(const Part& part) const {
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i].get() == &part) return static_cast<int>(i);
+  throw std::invalid_argument("part '" + part.name() + "' does not belong to this body");
+}
+
+}  // namespace pliant

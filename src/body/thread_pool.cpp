@@ -1,0 +1,93 @@
+#include <pliant/body/thread_pool.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pliant {
+
+struct ThreadPool::Impl {
+  std::vector<std::thread> threads;
+  std::mutex mutex;
+  std::condition_variable wake, done;
+  const std::function<void(int)>* task = nullptr;
+  int n = 0;
+  std::atomic<int> next{0};
+  int busy = 0;
+  long round = 0;
+  bool stop = false;
+  int failed = -1;
+  std::exception_ptr failure;
+
+  void work() {
+    for (int i = next.fetch_add(1); i < n; i = next.fetch_add(1)) {
+      try {
+        (*task)(i);
+      } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (failed < 0 || i < failed) {
+          failed = i;
+          failure = std::current_exception();
+        }
+      }
+    }
+  }
+  void serve() {
+    long seen = 0;
+    std::unique_lock<std::mutex> lock(mutex);
+    for (;;) {
+      wake.wait(lock, [&] { return stop || round != seen; });
+      if (stop) return;
+      seen = round;
+      lock.unlock();
+      work();
+      lock.lock();
+      if (--busy == 0) done.notify_one();
+    }
+  }
+};
+
+ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>()) {
+  for (int i = 1; i < threads; ++i) impl_->threads.emplace_back([this] { impl_->serve(); });
+}
+
+ThreadPool::~ThreadPool() {
+  {
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->stop = true;
+  }
+  impl_->wake.notify_all();
+  for (std::thread& thread : impl_->threads) thread.join();
+}
+
+int ThreadPool::threads() const {
+  return static_cast<int>(impl_->threads.size()) + 1;
+}
+
+void ThreadPool::run(int n, const std::function<void(int)>& task) {
+  Impl& pool = *impl_;
+  if (pool.threads.empty() || n <= 1) {
+    for (int i = 0; i < n; ++i) task(i);
+    return;
+  }
+  {
+    const std::lock_guard<std::mutex> lock(pool.mutex);
+    pool.task = &task;
+    pool.n = n;
+    pool.next = 0;
+    pool.busy = static_cast<int>(pool.threads.size());
+    pool.failed = -1;
+    pool.failure = nullptr;
+    ++pool.round;
+  }
+  pool.wake.notify_all();
+  pool.work();
+  std::unique_lock<std::mutex> lock(pool.mutex);
+  pool.done.wait(lock, [&] { return pool.busy == 0; });
+  if (pool.failure) std::rethrow_exception(pool.failure);
+}
+
+}  // namespace pliant

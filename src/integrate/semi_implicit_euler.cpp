@@ -1,0 +1,30 @@
+#include <pliant/integrate/semi_implicit_euler.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <pliant/integrate/advance.h>
+
+namespace pliant {
+
+void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                             StepCounters& counters) {
+  const double h = state.h;
+  dynamics.accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  ++counters.evaluations;
+  state.v += h * work.v_dot;
+  state.work += h * work.power;
+  hold_inertialess(dynamics.model(), work, state.v);
+  stop_at_limits_ahead(dynamics.model(), work, state, h, counters);
+  advance_coordinates(dynamics.model(), state.q, state.v, h);
+}
+
+double SemiImplicitEuler::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
+  // (x, v) -> (x + h v', v'),  v' = v - h (K x + D v)
+  const Eigen::Index n = K.rows();
+  const MatX<double> I = MatX<double>::Identity(n, n);
+  MatX<double> A(2 * n, 2 * n);
+  A << I - h * h * K, h * (I - h * D), -h * K, I - h * D;
+  return A.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+}  // namespace pliant

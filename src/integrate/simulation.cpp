@@ -1,0 +1,97 @@
+#include <pliant/integrate/simulation.h>
+
+#include <cmath>
+#include <sstream>
+
+#include <pliant/integrate/advance.h>
+
+namespace pliant {
+
+Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads)
+    : model_(body),
+      pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
+      dynamics_(model_, pool_.get()),
+      integrator_(make_integrator(integrator)),
+      state_(model_.initial_state()) {
+  start_energy_ = dynamics_.ledger(state_, output_work_).energy();
+  for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
+}
+
+void Simulation::step(double h) {
+  if (!(h > 0) || !std::isfinite(h)) {
+    std::ostringstream message;
+    message << "a step of " << h << " s is not a positive time";
+    throw std::invalid_argument(message.str());
+  }
+  if (h != state_.h) {  // a change of step starts a new count, so that time stays count * step
+    state_.start = state_.time();
+    state_.step = 0;
+    state_.h = h;
+  }
+  last_good_ = state_;
+  integrator_->step(dynamics_, state_, work_, step_counters_);
+  ++state_.step;
+  ++step_counters_.steps;
+  check(last_good_);
+  note_held();
+}
+
+void Simulation::check(const State& before) {
+  if (state_.q.allFinite() && state_.v.allFinite() && state_.work.allFinite()) return;
+  std::string where;
+  for (Eigen::Index i = 0; i < state_.v.size() && where.empty(); ++i)
+    if (!std::isfinite(state_.v[i])) where = model_.velocity_name(static_cast<int>(i));
+  for (Eigen::Index i = 0; i < state_.q.size() && where.empty(); ++i)
+    if (!std::isfinite(state_.q[i])) where = model_.coordinate_name(static_cast<int>(i));
+  if (where.empty()) where = "the work of the ledger";
+  Workspace<double> scratch;
+  std::string term = dynamics_.diagnose(before.time(), before.q, before.v, scratch);
+  if (term.empty()) term = dynamics_.diagnose(before.time() + before.h, before.q, before.v, scratch);
+  std::ostringstream message;
+  message << "not a finite number in " << where << " after the step from t = " << before.time() << " s";
+  if (!term.empty())
+    message << "; the term at fault is " << term;
+  else
+    message << "; the motion has grown beyond all bounds, which a smaller step than " << before.h
+            << " s may cure";
+  const double stable = [&] {
+    state_ = before;
+    return largest_stable_step(*this);
+  }();
+  if (std::isfinite(stable)) message << "; the largest stable step here is about " << stable << " s";
+  throw NumericalFailure(message.str(), before.time());
+}
+
+void Simulation::note_held() {
+  for (std::size_t i = 0; i < work_.parts.size(); ++i) {
+    const PartModel& m = model_.parts()[i];
+    if (m.q0 < 0 || !work_.parts[i].factor.any_held()) continue;
+    for (int k = 0; k < 6 + m.n_s; ++k)
+      if (work_.parts[i].factor.held(k)) {
+        std::string name = model_.velocity_name(m.v0 + k);
+        if (k >= 6) name.resize(name.size() - 4);  // without _dot
+        held_.insert(name);
+      }
+  }
+}
+
+void Simulation::set_state(State state) {
+  if (state.q.size() != model_.n_q() || state.v.size() != model_.n_v() ||
+      static_cast<int>(state.at_limit.size()) != model_.n_limits())
+    throw std::invalid_argument("this state belongs to another model");
+  state_ = std::move(state);
+}
+
+Ledger Simulation::ledger() {
+  Ledger ledger = dynamics_.ledger(state_, output_work_);
+  ledger.balance = ledger.energy() - start_energy_ - ledger.work.sum();
+  return ledger;
+}
+
+Counters Simulation::counters() const {
+  Counters sum;
+  for (const PartWorkspace<double>& w : work_.parts) sum += w.counters;
+  return sum;
+}
+
+}  // namespace pliant

@@ -1,0 +1,155 @@
+// The largest stable step: M, K and D of each group of parts tied by springs, in mass-normalised coordinates,
+// and the step at which the method's growth passes 1.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include <pliant/integrate/simulation.h>
+
+namespace pliant {
+
+namespace {
+
+/// Above this many velocities in a group the parts are bounded one by one.
+constexpr int kLargestGroup = 120;
+
+/// L of a port on v_r of its part: 3 x n_v, world.
+MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
+  const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
+  MatX<double> L(3, 6 + m.n_s);
+  L.leftCols<3>().setIdentity();
+  const Vec3<double>& p = jet.p;
+  L.middleCols<3>(3) << 0, p[2], -p[1], -p[2], 0, p[0], p[1], -p[0], 0;
+  L.rightCols(m.n_s) = jet.J;
+  return w.R * L;
+}
+
+struct Linear {
+  MatX<double> M, K, D;
+};
+
+double stable_step_of(const Integrator& method, const Linear& system) {
+  // Coordinates without inertia are held: drop them.
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < system.M.rows(); ++i)
+    if (system.M(i, i) > 0) kept.push_back(i);
+  const MatX<double> M = system.M(kept, kept), K = system.K(kept, kept), D = system.D(kept, kept);
+  const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
+  const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(scaled);
+  const VecX<double> values = modes.eigenvalues();
+  std::vector<Eigen::Index> solid;
+  for (Eigen::Index i = 0; i < values.size(); ++i)
+    if (values[i] > 1e-10) solid.push_back(i);
+  MatX<double> T = scale.asDiagonal() * modes.eigenvectors() *
+                   values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
+  const MatX<double> all = T(Eigen::all, solid);
+  // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would
+  // only blur the growth of the others.
+  const MatX<double> resistance = all.transpose() * (K + D) * all;
+  const Eigen::SelfAdjointEigenSolver<MatX<double>> resisted(resistance);
+  std::vector<Eigen::Index> stiff_modes;
+  for (Eigen::Index i = 0; i < resistance.rows(); ++i)
+    if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff())
+      stiff_modes.push_back(i);
+  const MatX<double> basis = all * resisted.eigenvectors()(Eigen::all, stiff_modes);
+  const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
+  const double stiff = k.norm(), damped = d.norm();
+  if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();
+  if (!std::isfinite(stiff + damped)) return 0;
+  // Bisection between a step that is surely stable and one that is surely not.
+  double low = 0.05 / std::max(std::sqrt(stiff), damped), high = low;
+  const double slack = 1 + 1e-9;
+  while (method.growth(k, d, high) <= slack && high < 1e12) high *= 2;
+  while (method.growth(k, d, low) > slack && low > 1e-30) low /= 2;
+  for (int i = 0; i < 40 && high - low > 1e-6 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (method.growth(k, d, middle) <= slack ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+double largest_stable_step(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  Workspace<double> work;
+  simulation.dynamics().accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  const std::size_t n = model.parts().size();
+
+  // Groups of parts tied by springs.
+  std::vector<std::size_t> group(n);
+  std::iota(group.begin(), group.end(), std::size_t{0});
+  auto root = [&](std::size_t i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+  };
+  auto moves = [&](int part) { return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0; };
+  for (const SpringModel& s : model.springs())
+    if (moves(s.a.part) && moves(s.b.part))
+      group[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
+
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t g = 0; g < n; ++g) {
+    if (root(g) != g || model.parts()[g].q0 < 0) continue;
+    std::vector<std::size_t> members;
+    std::vector<int> first(n, -1);
+    int size = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (root(i) != g || model.parts()[i].q0 < 0) continue;
+      first[i] = size;
+      members.push_back(i);
+      size += 6 + model.parts()[i].n_s;
+    }
+    const bool together = size <= kLargestGroup;
+    Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
+                  MatX<double>::Zero(size, size)};
+    for (const std::size_t i : members) {
+      const PartModel& m = model.parts()[i];
+      const Part& part = *m.part;
+      const int at = first[i], n_v = 6 + m.n_s;
+      const MatMax<double>& M = work.parts[i].inertia.M;
+      system.M.block(at, at, n_v, n_v) = M;
+      system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
+      system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
+          part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+      system.D.block(at, at, n_v, n_v) += part.drag() * M;
+    }
+    for (const SpringModel& s : model.springs()) {
+      // d = x_b - x_a; an axial spring is bounded by the isotropic one of its stiffness.
+      MatX<double> L = MatX<double>::Zero(3, size);
+      bool ours = false;
+      for (const auto& [ref, sign] : {std::pair{s.a, -1.0}, std::pair{s.b, 1.0}}) {
+        if (!moves(ref.part) || first[static_cast<std::size_t>(ref.part)] < 0) continue;
+        const auto i = static_cast<std::size_t>(ref.part);
+        // Bounded one by one, an end sees the spring at up to twice its stiffness.
+        const double weight = together || !moves(s.a.part) || !moves(s.b.part) ? 1.0 : std::sqrt(2.0);
+        L.middleCols(first[i], 6 + model.parts()[i].n_s) +=
+            sign * weight * port_jacobian(model.parts()[i], work.parts[i], ref.port);
+        ours = true;
+      }
+      if (!ours) continue;
+      system.K += s.spring->stiffness * L.transpose() * L;
+      system.D += s.spring->damping * L.transpose() * L;
+    }
+    if (together) {
+      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system));
+      continue;
+    }
+    for (const std::size_t i : members) {
+      const int at = first[i], n_v = 6 + model.parts()[i].n_s;
+      const Linear one{system.M.block(at, at, n_v, n_v), system.K.block(at, at, n_v, n_v),
+                       system.D.block(at, at, n_v, n_v)};
+      smallest = std::min(smallest, stable_step_of(simulation.integrator(), one));
+    }
+  }
+  return smallest;
+}
+
+}  // namespace pliant

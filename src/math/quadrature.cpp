@@ -1,0 +1,54 @@
+#include <pliant/math/quadrature.h>
+
+#include <cmath>
+#include <cstddef>
+
+#include <pliant/math/functions.h>
+
+namespace pliant {
+
+std::vector<QuadratureNode> gauss_rule(int n) {
+  std::vector<QuadratureNode> rule(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    // Newton on the Legendre polynomial P_n from the Chebyshev-like first guess.
+    double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), slope = 1;
+    for (int iteration = 0; iteration < 20; ++iteration) {
+      double before = 1, p = x;
+      for (int k = 2; k <= n; ++k) {
+        const double next = ((2 * k - 1) * x * p - (k - 1) * before) / k;
+        before = p;
+        p = next;
+      }
+      slope = n * (x * p - before) / (x * x - 1);
+      const double dx = p / slope;
+      x -= dx;
+      if (std::abs(dx) < 1e-16) break;
+    }
+    // Ascending in [0, 1].
+    rule[static_cast<std::size_t>(i)] = {(1 - x) / 2, (1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
+  }
+  return rule;
+}
+
+std::vector<QuadratureNode> one_end_rule(int n) {
+  constexpr double q = 4;
+  std::vector<QuadratureNode> rule = gauss_rule(n);
+  for (QuadratureNode& node : rule) {
+    const double y = node.x;
+    node.x = std::pow(y, q);
+    node.gap = -std::expm1(q * std::log1p(-node.gap));
+    node.weight *= q * node.x / y;
+  }
+  return rule;
+}
+
+std::vector<QuadratureNode> both_ends_rule(int n) {
+  std::vector<QuadratureNode> rule;
+  const std::vector<QuadratureNode> half = one_end_rule(n);
+  for (const QuadratureNode& node : half) rule.push_back({node.x / 2, 1 - node.x / 2, node.weight / 2});
+  for (auto node = half.rbegin(); node != half.rend(); ++node)
+    rule.push_back({1 - node->x / 2, node->x / 2, node->weight / 2});
+  return rule;
+}
+
+}  // namespace pliant

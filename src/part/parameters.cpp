@@ -1,0 +1,79 @@
+#include <pliant/part/parameters.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+namespace pliant {
+
+namespace {
+Parameter make_parameter(std::string name, const ParameterSpec& spec) {
+  Parameter p;
+  p.name = std::move(name);
+  p.spec = &spec;
+  p.rest = TimeFunction(spec.standard);
+  p.initial = spec.standard;
+  p.limits = spec.dynamic;
+  return p;
+}
+}  // namespace
+
+Parameters::Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& links)
+    : links_(links), n_shape_(shape.n_parameters()) {
+  for (int i = 0; i < n_shape_; ++i)
+    all_.push_back(make_parameter(shape.parameters()[i].name, shape.parameters()[i]));
+  std::map<std::string, int> seen;
+  for (const LinkInfo& link : links) {
+    std::string type = link.type;
+    const int times = ++seen[type];
+    if (times > 1) type += std::to_string(times);
+    for (int i = 0; i < link.n_parameters; ++i)
+      all_.push_back(make_parameter(type + "." + link.parameters[i].name, link.parameters[i]));
+  }
+  if (size() > kMaxParameters)
+    throw std::invalid_argument("a part may have at most " + std::to_string(kMaxParameters) +
+                                " parameters; this chain of deformations needs " + std::to_string(size()));
+  update();
+}
+
+int Parameters::find(const std::string& name) const {
+  for (int i = 0; i < size(); ++i)
+    if ((*this)[i].name == name) return i;
+  return -1;
+}
+
+std::string Parameters::names() const {
+  std::string all;
+  for (const Parameter& p : all_) all += (all.empty() ? "" : " ") + p.name;
+  return all;
+}
+
+void Parameters::update() {
+  dynamic_.clear();
+  for (int i = 0; i < size(); ++i) {
+    Parameter& p = (*this)[i];
+    const auto at = static_cast<std::size_t>(i);
+    flags_[at] = p.dynamic;
+    frozen_[at] = p.rest_value();
+    if (p.dynamic) dynamic_.push_back(i);
+    if (!p.initial_given) p.initial = p.rest_value();
+    if (!p.limits_given) {
+      const double scale = p.spec->relative ? p.rest_value() : 1.0;
+      p.limits = {p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
+    }
+  }
+  if (n_dynamic() > kMaxGlobal)
+    throw std::invalid_argument("a part may have at most " + std::to_string(kMaxGlobal) +
+                                " dynamic parameters; this one has " + std::to_string(n_dynamic()));
+}
+
+ParameterValues<double> Parameters::rest() const {
+  ParameterValues<double> values;
+  for (int i = 0; i < size(); ++i) {
+    values.b[static_cast<std::size_t>(i)] = (*this)[i].rest_value();
+    values.b_dot[static_cast<std::size_t>(i)] = 0;
+  }
+  return values;
+}
+
+}  // namespace pliant

@@ -1,0 +1,356 @@
+#include <pliant/part/part.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <pliant/part/sum_inertia.h>
+
+namespace pliant {
+
+namespace {
+std::string text(double x) {
+  std::ostringstream out;
+  out.precision(17);
+  out << x;
+  std::ostringstream brief;
+  brief << x;
+  return std::stod(brief.str()) == x ? brief.str() : out.str();
+}
+std::string text(const Range& r) {
+  return "[" + text(r.min) + ", " + text(r.max) + "]";
+}
+}  // namespace
+
+Part::Part(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+           const std::vector<LinkInfo>& links)
+    : name_(std::move(name)), shape_(std::move(shape)), parameters_(*shape_, links), density_(density) {
+  if (!(density > 0) || !std::isfinite(density))
+    refuse("density " + text(density) + " is not a positive number");
+  stiffness_ = MatX<double>::Zero(parameters_.size(), parameters_.size());
+}
+
+void Part::refuse(const std::string& what) const {
+  throw std::invalid_argument("part '" + name_ + "': " + what);
+}
+
+int Part::require(const std::string& parameter) const {
+  const int i = parameters_.find(parameter);
+  if (i < 0) refuse("no parameter '" + parameter + "'; it has: " + parameters_.names());
+  return i;
+}
+
+Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
+  if (!c.allFinite()) refuse("its position is not finite");
+  if (!(R.norm() > 0) || !std::isfinite(R.norm()))
+    refuse("its orientation is not a rotation (quaternion of length 0)");
+  c0_ = c;
+  R0_ = R.normalized();
+  return *this;
+}
+
+Part& Part::move(const Vec3<double>& c_dot, const Vec3<double>& omega) {
+  if (!c_dot.allFinite() || !omega.allFinite()) refuse("its initial velocity is not finite");
+  c0_dot_ = c_dot;
+  omega0_ = omega;
+  return *this;
+}
+
+Part& Part::rest(const Named& values) {
+  for (const auto& [parameter, value] : values) {
+    Parameter& p = parameters_[require(parameter)];
+    if (!p.spec->frozen.contains(value))
+      refuse(parameter + " = " + text(value) + " is out of range; allowed: " + text(p.spec->frozen));
+    p.rest = TimeFunction(value);
+  }
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
+  const int i = require(parameter);
+  if (!parameters_[i].spec->frozen.contains(of_time.value(0)))
+    refuse(parameter + " = " + text(of_time.value(0)) +
+           " at time 0 is out of range; allowed: " + text(parameters_[i].spec->frozen));
+  parameters_[i].rest = std::move(of_time);
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::initial(const Named& values) {
+  for (const auto& [parameter, value] : values) {
+    Parameter& p = parameters_[require(parameter)];
+    if (!std::isfinite(value)) refuse("initial " + parameter + " is not finite");
+    p.dynamic = true;
+    p.initial = value;
+    p.initial_given = true;
+  }
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::initial_rate(const Named& values) {
+  for (const auto& [parameter, value] : values) {
+    Parameter& p = parameters_[require(parameter)];
+    if (!std::isfinite(value)) refuse("initial rate of " + parameter + " is not finite");
+    p.dynamic = true;
+    p.initial_rate = value;
+  }
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::stiffness(const Named& values) {
+  for (const auto& [parameter, value] : values) {
+    const int i = require(parameter);
+    if (!(value >= 0) || !std::isfinite(value))
+      refuse("stiffness " + text(value) + " of " + parameter + " is not a number >= 0");
+    parameters_[i].dynamic = true;
+    stiffness_(i, i) = value;
+  }
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<double>& K) {
+  const auto n = static_cast<Eigen::Index>(parameters.size());
+  if (K.rows() != n || K.cols() != n)
+    refuse("the stiffness matrix must be " + std::to_string(n) + " x " + std::to_string(n));
+  if (!K.allFinite() || !K.isApprox(K.transpose(), 1e-12))
+    refuse("the stiffness matrix must be finite and symmetric");
+  const double lowest = Eigen::SelfAdjointEigenSolver<MatX<double>>(K).eigenvalues().minCoeff();
+  if (lowest < -1e-12 * K.cwiseAbs().maxCoeff())
+    refuse("the stiffness matrix has the negative eigenvalue " + text(lowest));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const int row = require(parameters[static_cast<std::size_t>(i)]);
+    parameters_[row].dynamic = true;
+    for (Eigen::Index j = 0; j < n; ++j)
+      stiffness_(row, require(parameters[static_cast<std::size_t>(j)])) = K(i, j);
+  }
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::limits(const std::string& parameter, Range range) {
+  Parameter& p = parameters_[require(parameter)];
+  const double scale = p.spec->relative ? p.rest_value() : 1.0;
+  const Range allowed{p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
+  if (!(range.min < range.max) || range.min < allowed.min || range.max > allowed.max)
+    refuse("limits " + text(range) + " of " + parameter + " must be increasing and within " + text(allowed));
+  p.limits = range;
+  p.limits_given = true;
+  return *this;
+}
+
+Part& Part::make_dynamic(const std::vector<std::string>& parameters) {
+  for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = true;
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::freeze(const std::vector<std::string>& parameters) {
+  for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = false;
+  parameters_.update();
+  return *this;
+}
+
+Part& Part::damping(double alpha, double beta, double nu) {
+  if (!(alpha >= 0) || !(beta >= 0) || !(nu >= 0) || !std::isfinite(alpha + beta + nu))
+    refuse("damping alpha, beta and drag must be numbers >= 0");
+  alpha_ = alpha;
+  beta_ = beta;
+  drag_ = nu;
+  return *this;
+}
+
+Part& Part::make_shell() {
+  shell_ = true;
+  return *this;
+}
+
+Part& Part::mass(double total) {
+  if (!(total > 0) || !std::isfinite(total)) refuse("mass " + text(total) + " is not a positive number");
+  total_mass_ = total;
+  return *this;
+}
+
+Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<double>& centre) {
+  if (!(mass > 0) || !std::isfinite(mass)) refuse("mass " + text(mass) + " is not a positive number");
+  const Mat3<double> about_centre =
+      about_origin - mass * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
+  const Vec3<double> I = Eigen::SelfAdjointEigenSolver<Mat3<double>>(about_centre).eigenvalues();
+  if (!about_origin.isApprox(about_origin.transpose(), 1e-12) || !(I[0] > 0) ||
+      I[0] + I[1] < I[2] * (1 - 1e-12))
+    refuse("no body has this inertia: its principal moments about the centre of mass are " + text(I[0]) +
+           ", " + text(I[1]) + ", " + text(I[2]) +
+           "; each must be positive and at most the sum of the others");
+  Inertia<double> given;
+  given.mass = mass;
+  given.moment = mass * centre;
+  given.M = MatMax<double>::Zero(6, 6);
+  given.M.topLeftCorner<3, 3>() = mass * Mat3<double>::Identity();
+  Mat3<double> cross;
+  const Vec3<double>& s = given.moment;
+  cross << 0, s[2], -s[1], -s[2], 0, s[0], s[1], -s[0], 0;
+  given.M.topRightCorner<3, 3>() = cross;
+  given.M.bottomLeftCorner<3, 3>() = cross.transpose();
+  given.M.bottomRightCorner<3, 3>() = about_origin;
+  given.g_q = VecMax<double>::Zero(6);
+  given_inertia_ = given;
+  return *this;
+}
+
+Part& Part::fix() {
+  fixed_ = true;
+  return *this;
+}
+
+void Part::prepare() {
+  parameters_.update();
+  const int n = parameters_.n_dynamic();
+  for (int k = 0; k < parameters_.size(); ++k) {
+    const Parameter& p = parameters_[k];
+    if (!p.dynamic) {
+      if (!p.rest.is_constant())
+        refuse("the rest value of " + p.name + " moves in time, so " + p.name + " must be dynamic");
+      continue;
+    }
+    if (!p.limits.contains(p.rest_value()))
+      refuse("the rest value " + text(p.rest_value()) + " of " + p.name + " is outside its limits " +
+             text(p.limits));
+    if (!p.limits.contains(p.initial))
+      refuse("the initial value " + text(p.initial) + " of " + p.name + " is outside its limits " +
+             text(p.limits));
+  }
+  if (fixed_ && n > 0)
+    refuse("a fixed part has no dynamic parameters; freeze " + parameters_[parameters_.dynamic()[0]].name);
+  if (given_inertia_ && n > 0) refuse("an inertia can be given to a rigid part only; freeze its parameters");
+  K_s_.resize(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      K_s_(i, j) = stiffness_(parameters_.dynamic()[static_cast<std::size_t>(i)],
+                              parameters_.dynamic()[static_cast<std::size_t>(j)]);
+
+  const ParameterValues<double> rest = parameters_.rest();
+  std::vector<Material<double>> surface;
+  for (int i = 0; i < 16; ++i)
+    for (int j = -4; j <= 4; ++j) surface.push_back(material_at(j * kPi / 8, i * kPi / 8));
+  size_ = s(surface, rest).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
+
+  if (given_inertia_) {
+    rest_inertia_ = *given_inertia_;
+    return;
+  }
+  mass_points_ = lay_mass_points(*this);
+  VecMax<double> q_s(n);
+  for (int k = 0; k < n; ++k)
+    q_s[k] = parameters_[parameters_.dynamic()[static_cast<std::size_t>(k)]].rest_value();
+  Counters unused;
+  auto take = [&] {
+    Inertia<double> sum;
+    sum_inertia(*this, mass_points_, q_s, VecMax<double>::Zero(n), Vec3<double>::Zero(), sum, unused);
+    return sum;
+  };
+  rest_inertia_ = take();
+  if (total_mass_) {
+    const double factor = *total_mass_ / rest_inertia_.mass;
+    for (Pack& m : mass_points_.mass) m *= Pack(factor);
+    rest_inertia_ = take();
+  }
+}
+
+Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,
+                         const ParameterValues<double>& values) const {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(at.size()));
+  Jet<Pack> jet;
+  for (std::size_t first = 0; first < at.size(); first += Pack::kLanes) {
+    std::array<Material<double>, Pack::kLanes> four;
+    for (std::size_t i = 0; i < Pack::kLanes; ++i) four[i] = at[std::min(first + i, at.size() - 1)];
+    const Material<Pack> material = gather(four.data());
+    JetBatch<Pack> batch{&jet, 1, 0, Level::position};
+    jets(values, &material, batch);
+    for (std::size_t i = first; i < std::min(first + Pack::kLanes, at.size()); ++i)
+      for (int r = 0; r < 3; ++r)
+        out(r, static_cast<Eigen::Index>(i)) = jet.s[r][static_cast<int>(i - first)];
+  }
+  return out;
+}
+
+std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e,
+                                               const ParameterValues<double>& values) const {
+  std::vector<Mat3<double>> F(static_cast<std::size_t>(e.cols()));
+  Jet<Pack> jet;
+  for (Eigen::Index first = 0; first < e.cols(); first += Pack::kLanes) {
+    for (int r = 0; r < 3; ++r) {
+      for (int i = 0; i < Pack::kLanes; ++i)
+        jet.s[r].set(i, e(r, std::min<Eigen::Index>(first + i, e.cols() - 1)));
+      for (std::size_t c = 0; c < 3; ++c) jet.J[c][r] = Pack(static_cast<std::size_t>(r) == c ? 1.0 : 0.0);
+    }
+    JetBatch<Pack> batch{&jet, 1, 3, Level::jacobian};
+    deform(values, batch);
+    for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + Pack::kLanes, e.cols()); ++i)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          F[static_cast<std::size_t>(i)](r, c) =
+              jet.J[static_cast<std::size_t>(c)][r][static_cast<int>(i - first)];
+  }
+  return F;
+}
+
+Mat3<double> Part::material_gradient(double u, double v, double w,
+                                     const ParameterValues<double>& values) const {
+  const Vec3<Dual<3>> e = shape_->tangents(material_with_tangents(u, v, w), values.b.data());
+  Mat3<double> E;
+  Eigen::Matrix3Xd at(3, 1);
+  for (int r = 0; r < 3; ++r) {
+    at(r, 0) = e[r].v;
+    for (int c = 0; c < 3; ++c) E(r, c) = e[r].d[static_cast<std::size_t>(c)];
+  }
+  return chain_gradient(at, values)[0] * E;
+}
+
+double Part::inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  return shape_->gauge(undeform(p, values), values.b.data()) - 1;
+}
+
+Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p,
+                                           const ParameterValues<double>& values) const {
+  const Vec3<double> e = undeform(p, values);
+  const Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  return F.transpose().partialPivLu().solve(shape_->gauge_gradient(e, values.b.data()));
+}
+
+std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
+                                        const ParameterValues<double>& values) const {
+  Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(at.size()));
+  for (std::size_t i = 0; i < at.size(); ++i)
+    e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
+  const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
+  std::vector<Vec3<double>> all;
+  all.reserve(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    // Barr 1984: n ~ det(F) F^-T n_e, by cofactors, which stay finite where the chain is singular (a tip).
+    const Mat3<double>& F = gradients[i];
+    Mat3<double> cofactors;
+    cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+    const Vec3<double> n =
+        cofactors * shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
+    all.push_back(n.normalized());
+  }
+  return all;
+}
+
+Vec3<double> Part::normal(const Material<double>& m, const ParameterValues<double>& values) const {
+  return normals({m}, values)[0];
+}
+
+Material<double> Part::label(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  return shape_->label(undeform(p, values), values.b.data());
+}
+
+}  // namespace pliant

@@ -1,0 +1,47 @@
+// Frames a box: the camera backs away along a fixed direction until the last corner is inside the picture.
+#include <pliant/render/camera.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace pliant {
+
+Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect) {
+  constexpr double kDegree = 3.14159265358979323846 / 180;
+  constexpr double kAzimuth = -58 * kDegree, kElevation = 20 * kDegree, kFill = 0.84;
+  if (!(aspect > 0) || !std::isfinite(aspect))
+    throw std::invalid_argument("a camera's aspect must be positive");
+
+  Eigen::AlignedBox3d box = bounds;
+  if (box.isEmpty()) box = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -0.5, 0), Eigen::Vector3d(0.5, 0.5, 1));
+  if (!box.min().allFinite() || !box.max().allFinite())
+    throw std::invalid_argument("a camera cannot frame a box that is not finite");
+
+  Camera camera;
+  camera.target = box.center();
+  const Eigen::Vector3d back(std::cos(kElevation) * std::cos(kAzimuth),
+                             std::cos(kElevation) * std::sin(kAzimuth), std::sin(kElevation));
+  const Eigen::Vector3d right = camera.up.cross(back).normalized(), up = back.cross(right);
+  const double tan_y = kFill * std::tan(camera.field_of_view * kDegree / 2), tan_x = tan_y * aspect;
+  // A corner at (x, y, z) in the axes right, up, back is inside when |x - cx| <= tan_x (d - z), and likewise
+  // for y: four bounds that are linear in the distance d and the shift (cx, cy) of the target.
+  double right_bound = 0, left_bound = 0, top_bound = 0, bottom_bound = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p =
+        box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - camera.target;
+    const double x = right.dot(p), y = up.dot(p), z = back.dot(p);
+    right_bound = std::max(right_bound, tan_x * z + x);
+    left_bound = std::max(left_bound, tan_x * z - x);
+    top_bound = std::max(top_bound, tan_y * z + y);
+    bottom_bound = std::max(bottom_bound, tan_y * z - y);
+  }
+  const double distance =
+      std::max((right_bound + left_bound) / (2 * tan_x), (top_bound + bottom_bound) / (2 * tan_y));
+  camera.target += (right_bound - left_bound) / 2 * right + (top_bound - bottom_bound) / 2 * up;
+  const double smallest = std::max(1e-6, 1e-9 * camera.target.norm());
+  camera.eye = camera.target + std::max(distance, smallest) * back;
+  return camera;
+}
+
+}  // namespace pliant

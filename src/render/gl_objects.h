@@ -1,0 +1,46 @@
+// Owners of GL objects. Made and destroyed while their context is current.
+#pragma once
+
+#include "gl_functions.h"
+
+namespace pliant::gl {
+
+/// Owns one object of the kind that Gen makes and Delete unmakes.
+template <void (*Functions::*Gen)(Size, Uint*), void (*Functions::*Delete)(Size, const Uint*)>
+class Object {
+ public:
+  explicit Object(const Functions& gl) : gl_(gl) { (gl_.*Gen)(1, &name_); }
+  ~Object() { (gl_.*Delete)(1, &name_); }
+  Object(const Object&) = delete;
+  Object& operator=(const Object&) = delete;
+  Uint name() const { return name_; }
+
+ private:
+  const Functions& gl_;
+  Uint name_ = 0;
+};
+
+using Buffer = Object<&Functions::gen_buffers, &Functions::delete_buffers>;
+using VertexArray = Object<&Functions::gen_vertex_arrays, &Functions::delete_vertex_arrays>;
+using Texture = Object<&Functions::gen_textures, &Functions::delete_textures>;
+using Framebuffer = Object<&Functions::gen_framebuffers, &Functions::delete_framebuffers>;
+using Renderbuffer = Object<&Functions::gen_renderbuffers, &Functions::delete_renderbuffers>;
+
+/// A linked program. GLSL 330; the text of shaders.h that all stages share is put in front.
+class Program {
+ public:
+  /// Throws std::runtime_error with the compiler's words.
+  Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text);
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  void use() const { gl_.use_program(name_); }
+  Int uniform(const char* name) const { return gl_.get_uniform_location(name_, name); }
+
+ private:
+  const Functions& gl_;
+  Uint name_ = 0;
+};
+
+}  // namespace pliant::gl

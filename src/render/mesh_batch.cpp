@@ -1,0 +1,140 @@
+// Pairs of position and normal are found once a topology; each frame only gathers them.
+#include "mesh_batch.h"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace pliant {
+namespace {
+
+constexpr double kFarthest = 1e15;  // metres
+constexpr int kFloatsPerVertex = 6;
+
+[[noreturn]] void fail(std::size_t body, const std::string& what) {
+  throw std::invalid_argument("picture: body " + std::to_string(body) + " " + what);
+}
+
+bool same(const Eigen::Matrix3Xi& a, const Eigen::Matrix3Xi& b) {
+  return a.cols() == b.cols() &&
+         std::memcmp(a.data(), b.data(), sizeof(int) * static_cast<std::size_t>(a.size())) == 0;
+}
+
+void check_range(const Eigen::Matrix3Xi& indices, Eigen::Index columns, std::size_t body, const char* what) {
+  if (indices.size() > 0 && (indices.minCoeff() < 0 || indices.maxCoeff() >= columns))
+    fail(body, std::string("has triangles with ") + what + " that do not exist");
+}
+
+}  // namespace
+
+MeshBatch::MeshBatch(const gl::Functions& gl) : gl_(gl), array_(gl), vertices_(gl), indices_(gl) {
+  gl_.bind_vertex_array(array_.name());
+  gl_.bind_buffer(gl::kElementArrayBuffer, indices_.name());
+  gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
+  constexpr int kStride = kFloatsPerVertex * sizeof(float);
+  gl_.vertex_attrib_pointer(0, 3, gl::kFloat, 0, kStride, nullptr);
+  gl_.vertex_attrib_pointer(1, 3, gl::kFloat, 0, kStride, reinterpret_cast<const void*>(3 * sizeof(float)));
+  gl_.enable_vertex_attrib_array(0);
+  gl_.enable_vertex_attrib_array(1);
+  gl_.bind_vertex_array(0);
+}
+
+MeshBatch::Topology MeshBatch::make_topology(const TriangleMesh& mesh, std::size_t body) {
+  if (mesh.triangles.cols() != mesh.corners.cols()) fail(body, "has not one triple of normals a triangle");
+  check_range(mesh.triangles, mesh.x.cols(), body, "vertices");
+  check_range(mesh.corners, mesh.normals.cols(), body, "normals");
+
+  Topology topology{mesh.triangles, mesh.corners, {}, {}, {}};
+  topology.indices.reserve(static_cast<std::size_t>(mesh.triangles.size()));
+  // The pairs of one position form a list: first[position], then next[pair].
+  std::vector<int> first(static_cast<std::size_t>(mesh.x.cols()), -1), next;
+  for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
+    const int position = mesh.triangles.data()[k], normal = mesh.corners.data()[k];
+    int pair = first[position];
+    while (pair >= 0 && topology.normal[pair] != normal) pair = next[pair];
+    if (pair < 0) {
+      pair = static_cast<int>(next.size());
+      next.push_back(first[position]);
+      first[position] = pair;
+      topology.position.push_back(position);
+      topology.normal.push_back(normal);
+    }
+    topology.indices.push_back(static_cast<std::uint32_t>(pair));
+  }
+  return topology;
+}
+
+void MeshBatch::upload_indices() {
+  std::vector<std::uint32_t> all;
+  std::uint32_t offset = 0;
+  ranges_.clear();
+  for (const Topology& topology : topologies_) {
+    ranges_.push_back({static_cast<int>(all.size()), static_cast<int>(topology.indices.size())});
+    for (const std::uint32_t index : topology.indices) all.push_back(offset + index);
+    offset += static_cast<std::uint32_t>(topology.position.size());
+  }
+  if (all.size() > static_cast<std::size_t>(std::numeric_limits<int>::max() / kFloatsPerVertex))
+    throw std::invalid_argument("picture: too many triangles");
+  index_count_ = static_cast<int>(all.size());
+  bind();
+  gl_.buffer_data(gl::kElementArrayBuffer, static_cast<std::ptrdiff_t>(all.size() * sizeof all[0]),
+                  all.data(), gl::kStaticDraw);
+}
+
+void MeshBatch::update(const std::vector<Picture::Body>& bodies, const Eigen::Vector3d& origin) {
+  bool changed = topologies_.size() != bodies.size();
+  topologies_.resize(bodies.size());
+  std::size_t pairs = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (!bodies[i].mesh) fail(i, "has no mesh");
+    const TriangleMesh& mesh = *bodies[i].mesh;
+    Topology& topology = topologies_[i];
+    if (!same(topology.triangles, mesh.triangles) || !same(topology.corners, mesh.corners)) {
+      topology = {};  // should the next line throw, no frame after it may trust what was here
+      topology = make_topology(mesh, i);
+      changed = true;
+    } else if (!topology.position.empty()) {
+      check_range(mesh.triangles, mesh.x.cols(), i, "vertices");
+      check_range(mesh.corners, mesh.normals.cols(), i, "normals");
+    }
+    pairs += topology.position.size();
+  }
+  if (changed) {
+    ranges_.clear();
+    upload_indices();
+  }
+
+  boxes_.clear();
+  scratch_.resize(pairs * kFloatsPerVertex);
+  float* out = scratch_.data();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const TriangleMesh& mesh = *bodies[i].mesh;
+    const Topology& topology = topologies_[i];
+    if (topology.position.empty()) continue;
+    Eigen::AlignedBox3f box;
+    bool good = true;
+    for (std::size_t k = 0; k < topology.position.size(); ++k, out += kFloatsPerVertex) {
+      const Eigen::Vector3d p = mesh.x.col(topology.position[k]) - origin,
+                            n = mesh.normals.col(topology.normal[k]);
+      // Negated, so that a number that is not finite fails.
+      good = good && !(!(p.cwiseAbs().maxCoeff() <= kFarthest) || !(n.cwiseAbs().maxCoeff() <= 2) ||
+                       p.hasNaN() || n.hasNaN());
+      if (!good) break;
+      const Eigen::Vector3f single = p.cast<float>();
+      Eigen::Map<Eigen::Vector3f>(out, 3) = single;
+      Eigen::Map<Eigen::Vector3f>(out + 3, 3) = n.cast<float>();
+      box.extend(single);
+    }
+    if (!good)
+      fail(i,
+           "is not finite, has normals that are not unit vectors or is farther than 1e15 m from the target");
+    boxes_.push_back(box);
+  }
+  gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
+  gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(scratch_.size() * sizeof(float)),
+                  scratch_.data(), gl::kStreamDraw);
+}
+
+}  // namespace pliant

@@ -1,0 +1,217 @@
+// Opaque things first and from front to back in kind (bodies, ground, background), so that each sample is
+// shaded about once.
+#include "pipeline.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "resolve.h"
+#include "shaders.h"
+
+namespace pliant {
+namespace {
+
+constexpr int kShadowSide = 2048, kContactSide = 128;
+constexpr gl::Int kShadowUnit = 0, kContactUnit = 1;
+
+Eigen::Vector3f linear(const Eigen::Vector3f& srgb) {
+  return srgb.unaryExpr(&linear_light);
+}
+
+template <class Things>
+void check_colors(const Things& things, const char* kind) {
+  for (std::size_t i = 0; i < things.size(); ++i)
+    if (!((things[i].color.array() >= 0).all() && (things[i].color.array() <= 1).all()))
+      throw std::invalid_argument(std::string("picture: the color of ") + kind + " " + std::to_string(i) +
+                                  " must have channels in [0, 1]");
+}
+
+}  // namespace
+
+MapTarget::MapTarget(const gl::Functions& gl, gl::Enum format, int side) : texture(gl), framebuffer(gl) {
+  const bool depth = format != gl::kR8;
+  gl.bind_texture(gl::kTexture2d, texture.name());
+  gl.tex_image_2d(gl::kTexture2d, 0, static_cast<gl::Int>(format), side, side, 0,
+                  depth ? gl::kDepthComponent : gl::kRed, depth ? gl::kFloat : gl::kUnsignedByte, nullptr);
+  gl.tex_parameter(gl::kTexture2d, gl::kMinFilter, depth ? gl::kNearest : gl::kLinear);
+  gl.tex_parameter(gl::kTexture2d, gl::kMagFilter, depth ? gl::kNearest : gl::kLinear);
+  gl.tex_parameter(gl::kTexture2d, gl::kWrapS, gl::kClampToBorder);
+  gl.tex_parameter(gl::kTexture2d, gl::kWrapT, gl::kClampToBorder);
+  const float border[4] = {1, 1, 1, 1};
+  gl.tex_parameter_vector(gl::kTexture2d, gl::kBorderColor, border);
+  gl.bind_framebuffer(gl::kFramebuffer, framebuffer.name());
+  gl.framebuffer_texture_2d(gl::kFramebuffer, depth ? gl::kDepthAttachment : gl::kColorAttachment0,
+                            gl::kTexture2d, texture.name(), 0);
+  if (depth) {
+    gl.draw_buffer(0);
+    gl.read_buffer(0);
+  }
+}
+
+Pipeline::Pipeline(const GlContext& context, int width, int height)
+    : gl_(context),
+      width_(width),
+      height_(height),
+      shadow_program_(gl_, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
+      height_program_(gl_, "height", shaders::kHeightVertex, shaders::kDepthFragment),
+      contact_program_(gl_, "contact", shaders::kContactVertex, shaders::kContactFragment),
+      body_program_(gl_, "body", shaders::kBodyVertex, shaders::kBodyFragment),
+      ground_program_(gl_, "ground", shaders::kGroundVertex, shaders::kGroundFragment),
+      background_program_(gl_, "background", shaders::kBackgroundVertex, shaders::kBackgroundFragment),
+      track_program_(gl_, "track", shaders::kTrackVertex, shaders::kTrackFragment),
+      shadow_(gl_, gl::kDepthComponent24, kShadowSide),
+      heights_(gl_, gl::kDepthComponent16, kContactSide),
+      contact_(gl_, gl::kR8, kContactSide),
+      target_(gl_),
+      color_(gl_),
+      depth_(gl_),
+      frame_buffer_(gl_),
+      empty_(gl_),
+      meshes_(gl_),
+      tracks_(gl_) {
+  // Comparisons of the shadow map are filtered over the four nearest texels.
+  gl_.bind_texture(gl::kTexture2d, shadow_.texture.name());
+  gl_.tex_parameter(gl::kTexture2d, gl::kCompareMode, gl::kCompareToReference);
+  gl_.tex_parameter(gl::kTexture2d, gl::kCompareFunction, gl::kLessEqual);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMinFilter, gl::kLinear);
+  gl_.tex_parameter(gl::kTexture2d, gl::kMagFilter, gl::kLinear);
+
+  check_target();
+  for (const gl::Program* program : {&body_program_, &ground_program_}) {
+    program->use();
+    gl_.uniform_1i(program->uniform("shadow_map"), kShadowUnit);
+  }
+  gl_.uniform_1i(ground_program_.uniform("contact_map"), kContactUnit);
+  contact_program_.use();
+  gl_.uniform_1i(contact_program_.uniform("heights"), kContactUnit);
+  gl_.enable(gl::kCullFace);
+  gl_.depth_func(gl::kLessEqual);
+  gl_.blend_func(gl::kSourceAlpha, gl::kOneMinusSourceAlpha);
+  samples_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 16);
+}
+
+void Pipeline::check_target() {
+  gl::Int largest = 0;
+  gl_.get_integer(gl::kMaxTextureSize, &largest);
+  const int wide = 2 * width_, high = 2 * height_;
+  const std::string size = std::to_string(width_) + " x " + std::to_string(height_);
+  if (wide > largest || high > largest)
+    throw std::runtime_error("a picture of " + size + " pixels is too large for this OpenGL: at most " +
+                             std::to_string(largest / 2) + " a side");
+  gl_.bind_renderbuffer(gl::kRenderbuffer, color_.name());
+  gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kRgba8, wide, high);
+  gl_.bind_renderbuffer(gl::kRenderbuffer, depth_.name());
+  gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kDepthComponent24, wide, high);
+  gl_.bind_framebuffer(gl::kFramebuffer, target_.name());
+  gl_.framebuffer_renderbuffer(gl::kFramebuffer, gl::kColorAttachment0, gl::kRenderbuffer, color_.name());
+  gl_.framebuffer_renderbuffer(gl::kFramebuffer, gl::kDepthAttachment, gl::kRenderbuffer, depth_.name());
+  for (const gl::Uint framebuffer : {target_.name(), shadow_.framebuffer.name(), heights_.framebuffer.name(),
+                                     contact_.framebuffer.name()}) {
+    gl_.bind_framebuffer(gl::kFramebuffer, framebuffer);
+    if (gl_.get_error() != 0 || gl_.check_framebuffer_status(gl::kFramebuffer) != gl::kFramebufferComplete)
+      throw std::runtime_error("OpenGL cannot hold a picture of " + size + " pixels");
+  }
+}
+
+void Pipeline::draw_depth(const MapTarget& map, int side, const gl::Program& program, bool bodies) {
+  gl_.bind_framebuffer(gl::kFramebuffer, map.framebuffer.name());
+  gl_.viewport(0, 0, side, side);
+  gl_.clear(gl::kDepthBufferBit);
+  if (!bodies || meshes_.index_count() == 0) return;
+  program.use();
+  meshes_.bind();
+  gl_.draw_elements(gl::kTriangles, meshes_.index_count(), gl::kUnsignedInt, nullptr);
+}
+
+void Pipeline::draw_triangle() {
+  gl_.bind_vertex_array(empty_.name());
+  gl_.draw_arrays(gl::kTriangles, 0, 3);
+}
+
+void Pipeline::draw_contact(bool bodies) {
+  gl_.active_texture(gl::kTexture0 + kContactUnit);
+  gl_.enable(gl::kDepthClamp);
+  draw_depth(heights_, kContactSide, height_program_, bodies);
+  gl_.disable(gl::kDepthClamp);
+  gl_.disable(gl::kDepthTest);
+  gl_.bind_framebuffer(gl::kFramebuffer, contact_.framebuffer.name());
+  gl_.bind_texture(gl::kTexture2d, heights_.texture.name());
+  contact_program_.use();
+  draw_triangle();
+  gl_.bind_texture(gl::kTexture2d, contact_.texture.name());
+  gl_.enable(gl::kDepthTest);
+}
+
+void Pipeline::draw_bodies(const Picture& picture) {
+  if (meshes_.index_count() == 0) return;
+  body_program_.use();
+  meshes_.bind();
+  const gl::Int albedo = body_program_.uniform("albedo");
+  for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
+    const MeshBatch::Range& range = meshes_.ranges()[i];
+    const Eigen::Vector3f color = linear(picture.bodies[i].color);
+    gl_.uniform_3f(albedo, color[0], color[1], color[2]);
+    gl_.draw_elements(
+        gl::kTriangles, range.count, gl::kUnsignedInt,
+        reinterpret_cast<const void*>(static_cast<std::size_t>(range.first) * sizeof(std::uint32_t)));
+  }
+}
+
+void Pipeline::draw_tracks(const Picture& picture) {
+  if (picture.tracks.empty()) return;
+  track_program_.use();
+  gl_.enable(gl::kBlend);
+  gl_.depth_mask(0);
+  for (std::size_t i = 0; i < picture.tracks.size(); ++i) {
+    const TrackBatch::Range& range = tracks_.ranges()[i];
+    const Eigen::Vector3f color = linear(picture.tracks[i].color);
+    if (range.segments == 0) continue;
+    gl_.uniform_3f(track_program_.uniform("color"), color[0], color[1], color[2]);
+    gl_.uniform_1f(track_program_.uniform("half_width"), picture.tracks[i].width);
+    tracks_.bind(range);
+    gl_.draw_arrays_instanced(gl::kTriangleStrip, 0, 4, range.segments);
+  }
+  gl_.depth_mask(1);
+  gl_.disable(gl::kBlend);
+}
+
+Image Pipeline::draw(const Picture& picture) {
+  check_colors(picture.bodies, "body");
+  check_colors(picture.tracks, "track");
+  meshes_.update(picture.bodies, picture.camera.target);
+  const FrameBlock frame =
+      frame_block(picture, meshes_.boxes(), 2 * width_, 2 * height_, kShadowSide, kContactSide);
+  tracks_.update(picture, frame);
+  gl_.bind_buffer(gl::kUniformBuffer, frame_buffer_.name());
+  gl_.buffer_data(gl::kUniformBuffer, sizeof frame, &frame, gl::kStreamDraw);
+  gl_.bind_buffer_base(gl::kUniformBuffer, shaders::kFrameBinding, frame_buffer_.name());
+
+  gl_.enable(gl::kDepthTest);
+  gl_.enable(gl::kDepthClamp);
+  draw_depth(shadow_, kShadowSide, shadow_program_, picture.lights.shadows);
+  gl_.disable(gl::kDepthClamp);
+  if (picture.ground.shown) draw_contact(picture.lights.shadows);
+
+  gl_.active_texture(gl::kTexture0 + kShadowUnit);
+  gl_.bind_texture(gl::kTexture2d, shadow_.texture.name());
+  gl_.bind_framebuffer(gl::kFramebuffer, target_.name());
+  gl_.viewport(0, 0, 2 * width_, 2 * height_);
+  gl_.clear(gl::kDepthBufferBit);
+  draw_bodies(picture);
+  gl_.bind_vertex_array(empty_.name());
+  if (picture.ground.shown) {
+    ground_program_.use();
+    gl_.draw_arrays(gl::kTriangleStrip, 0, 4);
+  }
+  background_program_.use();
+  draw_triangle();
+  draw_tracks(picture);
+
+  gl_.pixel_store(gl::kPackAlignment, 4);
+  gl_.read_pixels(0, 0, 2 * width_, 2 * height_, gl::kRgba, gl::kUnsignedByte, samples_.data());
+  if (const gl::Enum error = gl_.get_error())
+    throw std::runtime_error("OpenGL failed to draw a picture (error " + std::to_string(error) + ")");
+  return resolve(samples_, width_, height_);
+}
+
+}  // namespace pliant

@@ -1,0 +1,53 @@
+// The passes of one picture: shadow map, contact map, then bodies, ground, background and tracks at 2x2
+// samples a pixel.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <pliant/io/image.h>
+#include <pliant/render/picture.h>
+
+#include "frame_block.h"
+#include "gl_objects.h"
+#include "mesh_batch.h"
+#include "tracks.h"
+
+namespace pliant {
+
+/// A texture that bodies' depths or shares of light are drawn to.
+struct MapTarget {
+  MapTarget(const gl::Functions& gl, gl::Enum format, int side);
+  gl::Texture texture;
+  gl::Framebuffer framebuffer;
+};
+
+/// All its calls need the context to be current.
+class Pipeline {
+ public:
+  Pipeline(const GlContext& context, int width, int height);
+  Image draw(const Picture& picture);
+
+ private:
+  void draw_depth(const MapTarget& map, int side, const gl::Program& program, bool bodies);
+  void draw_contact(bool bodies);
+  void draw_bodies(const Picture& picture);
+  void draw_tracks(const Picture& picture);
+  void draw_triangle();
+  void check_target();
+
+  gl::Functions gl_;
+  int width_, height_;
+  gl::Program shadow_program_, height_program_, contact_program_, body_program_, ground_program_,
+      background_program_, track_program_;
+  MapTarget shadow_, heights_, contact_;
+  gl::Framebuffer target_;
+  gl::Renderbuffer color_, depth_;
+  gl::Buffer frame_buffer_;
+  gl::VertexArray empty_;
+  MeshBatch meshes_;
+  TrackBatch tracks_;
+  std::vector<std::uint8_t> samples_;
+};
+
+}  // namespace pliant

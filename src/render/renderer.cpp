@@ -1,0 +1,66 @@
+// Ties the context to the passes: every call makes the context current for its duration.
+#include <pliant/render/renderer.h>
+
+#include <stdexcept>
+
+#include "pipeline.h"
+
+namespace pliant {
+namespace {
+
+int checked_side(int side, const char* name) {
+  if (side < 1 || side > Renderer::kMaxSide)
+    throw std::invalid_argument(std::string("picture: the ") + name + " of " + std::to_string(side) +
+                                " pixels is not in [1, " + std::to_string(Renderer::kMaxSide) + "]");
+  return side;
+}
+
+}  // namespace
+
+class Renderer::Impl {
+ public:
+  Impl(int w, int h, GlBackend backend)
+      : width(checked_side(w, "width")), height(checked_side(h, "height")), context(backend) {
+    const GlContext::Current current(context);
+    pipeline = std::make_unique<Pipeline>(context, width, height);
+  }
+  ~Impl() {
+    try {
+      const GlContext::Current current(context);
+      pipeline.reset();
+    } catch (const std::runtime_error&) {
+      pipeline
+          .release();  // the context takes its objects with it; their names cannot be given back without it
+    }
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  int width, height;
+  GlContext context;
+  std::unique_ptr<Pipeline> pipeline;
+};
+
+Renderer::Renderer(int width, int height, GlBackend backend)
+    : impl_(std::make_unique<Impl>(width, height, backend)) {}
+Renderer::~Renderer() = default;
+
+Image Renderer::draw(const Picture& picture) {
+  const GlContext::Current current(impl_->context);
+  return impl_->pipeline->draw(picture);
+}
+
+int Renderer::width() const {
+  return impl_->width;
+}
+int Renderer::height() const {
+  return impl_->height;
+}
+const std::string& Renderer::backend() const {
+  return impl_->context.backend();
+}
+const std::string& Renderer::device() const {
+  return impl_->context.renderer();
+}
+
+}  // namespace pliant

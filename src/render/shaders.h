@@ -1,0 +1,24 @@
+// GLSL 330 text of every program; kShared goes in front of each stage.
+#pragma once
+
+namespace pliant::shaders {
+
+inline constexpr unsigned kFrameBinding = 0;
+
+extern const char* const kShared;
+
+extern const char* const kShadowVertex;  ///< depth of the bodies from the key light
+extern const char* const kHeightVertex;  ///< depth of the bodies from below the ground
+extern const char* const kDepthFragment;
+extern const char* const kContactVertex;  ///< how much of the sky each place of the ground sees
+extern const char* const kContactFragment;
+extern const char* const kBodyVertex;
+extern const char* const kBodyFragment;
+extern const char* const kGroundVertex;
+extern const char* const kGroundFragment;
+extern const char* const kBackgroundVertex;
+extern const char* const kBackgroundFragment;
+extern const char* const kTrackVertex;
+extern const char* const kTrackFragment;
+
+}  // namespace pliant::shaders

@@ -1,0 +1,23 @@
+// Draws one picture with the backend that the argument names (osmesa or egl) and prints a hash of its bytes:
+// for tests that need an environment of their own.
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "scenes.h"
+
+#include <pliant/render/renderer.h>
+
+int main(int argc, char** argv) try {
+  const bool egl = argc > 1 && std::string(argv[1]) == "egl";
+  const pliant::test::Scene scene;
+  pliant::Renderer renderer(333, 251, egl ? pliant::GlBackend::egl : pliant::GlBackend::osmesa);
+  const pliant::Image image = renderer.draw(scene.picture);
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  for (const std::uint8_t byte : image.rgb) hash = (hash ^ byte) * 1099511628211u;
+  std::printf("%016llx\n", static_cast<unsigned long long>(hash));
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,36 @@
+// OpenGL is loaded when the first renderer is made, not before. One test case, so that the process is fresh.
+#include <fstream>
+#include <string>
+
+#include "catch.h"
+#include "scenes.h"
+
+#include <pliant/io/png.h>
+#include <pliant/render/renderer.h>
+
+using namespace pliant;
+
+namespace {
+
+// The first mapped library whose name looks like OpenGL or what implements it, empty when there is none.
+std::string mapped_gl_library() {
+  std::ifstream maps("/proc/self/maps");
+  REQUIRE(maps);
+  for (std::string line; std::getline(maps, line);)
+    for (const char* name : {"libOSMesa", "libEGL", "libGL", "libgallium", "libLLVM", "swrast"})
+      if (line.find(name) != std::string::npos) return line;
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("No OpenGL library is in the process until a renderer is made") {
+  const test::Scene scene;
+  CHECK(!bounds(scene.picture).isEmpty());
+  CHECK(mapped_gl_library() == "");
+  CHECK_THROWS_AS(Renderer(0, 480), std::invalid_argument);
+  CHECK_THROWS_AS(Renderer(1 << 30, 480), std::invalid_argument);
+  CHECK(mapped_gl_library() == "");
+  Renderer renderer(16, 16);
+  CHECK(mapped_gl_library() != "");
+}
