@@ -1,11 +1,11 @@
-// Laying mass points: section rules in closed form, ring rules by the panels of the shape, then the choice of the smallest
-// rule that is exact to rounding (see the header).
+// Laying mass points: section rules in closed form, ring rules by the panels of the shape, then the choice of
+// the smallest rule that is exact to rounding (see the header).
 #include <pliant/part/mass_points.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
@@ -29,7 +29,9 @@ struct Levels {
 };
 constexpr std::array<int, 12> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
-int size_at(int level) { return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))]; }
+int size_at(int level) {
+  return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))];
+}
 
 struct Request {
   const Part& part;
@@ -61,9 +63,10 @@ bool has_dynamic_exponent(const Part& part) {
 }
 
 [[noreturn]] void folds(const Part& part) {
-  throw std::invalid_argument("part '" + part.name() +
-                              "': its rest shape folds over (the deformation turns some of the solid inside out); "
-                              "reduce the bend or the taper, or make the body slimmer");
+  throw std::invalid_argument(
+      "part '" + part.name() +
+      "': its rest shape folds over (the deformation turns some of the solid inside out); "
+      "reduce the bend or the taper, or make the body slimmer");
 }
 
 /// Centre and spread of masses in a plane, as three points of equal mass.
@@ -102,7 +105,8 @@ std::vector<Point> section_points(const Request& r, int level) {
   std::vector<Slice> slices;
   for (const SectionPanel& panel : shape.section_panels(r.a)) {
     const double extent = panel.to - panel.from;
-    for (const QuadratureNode& node : panel.singular ? both_ends_rule(size_at(level)) : gauss_rule(size_at(level))) {
+    for (const QuadratureNode& node :
+         panel.singular ? both_ends_rule(size_at(level)) : gauss_rule(size_at(level))) {
       const double zeta = panel.from + extent * node.x;
       const double gap = zeta < 0 ? (panel.from + 1) + extent * node.x : (1 - panel.to) + extent * node.gap;
       const Section section = shape.section(zeta, gap, r.a);
@@ -191,7 +195,8 @@ std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int level) 
         const double sign_far = panel.along_sin ? panel.sign_cos : panel.sign_sin;
         const Trig<Dual<1>> a = with_slope(log_near, sign_near, sign_near * near_slope);
         const Trig<Dual<1>> b = with_slope(0.5 * std::log(far2), sign_far, sign_far * far_slope);
-        nodes.push_back(panel.along_sin ? AngleNode{b, a, top * node.weight} : AngleNode{a, b, top * node.weight});
+        nodes.push_back(panel.along_sin ? AngleNode{b, a, top * node.weight}
+                                        : AngleNode{a, b, top * node.weight});
       }
     }
   }
@@ -204,7 +209,9 @@ Trig<Dual<3>> lift(const Trig<Dual<1>>& t, std::size_t slot) {
   r.log_abs.d[slot] = t.log_abs.d[0];
   return r;
 }
-Trig<double> drop(const Trig<Dual<1>>& t) { return {t.x.v, t.sign.v, t.log_abs.v}; }
+Trig<double> drop(const Trig<Dual<1>>& t) {
+  return {t.x.v, t.sign.v, t.log_abs.v};
+}
 
 std::vector<Point> ring_points(const Request& r, const Levels& levels) {
   const ShapeFace& shape = r.part.shape();
@@ -221,7 +228,8 @@ std::vector<Point> ring_points(const Request& r, const Levels& levels) {
     for (const QuadratureNode& w : w_nodes) {
       for (std::size_t k = 0; k < v_nodes.size(); ++k) {
         const AngleNode& v = v_nodes[k];
-        const Material<Dual<3>> m{lift(u.c, 0), lift(u.s, 0), lift(v.c, 1), lift(v.s, 1), Dual<3>::variable(w.x, 2)};
+        const Material<Dual<3>> m{lift(u.c, 0), lift(u.s, 0), lift(v.c, 1), lift(v.s, 1),
+                                  Dual<3>::variable(w.x, 2)};
         const Vec3<Dual<3>> at = shape.rest_tangents(m, r.a);
         for (int i = 0; i < 3; ++i) {
           e(i, static_cast<Eigen::Index>(k)) = at[i].v;

@@ -34,7 +34,8 @@ bool solve_tight(const MatX<double>& W, const VecX<double>& b, const std::vector
 ComplementarityResult solve_complementarity(const MatX<double>& W, const VecX<double>& b) {
   const Eigen::Index n = b.size();
   ComplementarityResult result;
-  std::vector<bool> is_tight(static_cast<std::size_t>(n), false), left_out(static_cast<std::size_t>(n), false);
+  std::vector<bool> is_tight(static_cast<std::size_t>(n), false),
+      left_out(static_cast<std::size_t>(n), false);
   const double scale = std::max(b.cwiseAbs().maxCoeff(), 1e-300);
   const int most = 50 * static_cast<int>(n) + 50;
   for (; result.pivots < most; ++result.pivots) {
