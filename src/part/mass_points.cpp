@@ -69,6 +69,21 @@ bool has_dynamic_exponent(const Part& part) {
       "reduce the bend or the taper, or make the body slimmer");
 }
 
+/// Refuses a rest shape of which some of the surface is turned inside out: sections and rings do not see
+/// their own rims.
+void refuse_folds(const Request& r) {
+  if (r.part.parameters().links().empty()) return;
+  constexpr int round = 32;
+  const int tall = r.part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
+  Eigen::Matrix3Xd e(3, (2 * tall + 1) * round);
+  Eigen::Index column = 0;
+  for (int i = -tall; i <= tall; ++i)
+    for (int j = 0; j < round; ++j)
+      e.col(column++) = r.part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), r.a);
+  for (const Mat3<double>& F : r.part.chain_gradient(e, r.rest))
+    if (F.determinant() < -1e-12) folds(r.part);
+}
+
 /// Centre and spread of masses in a plane, as three points of equal mass.
 struct PlaneMoments {
   double m = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
@@ -355,9 +370,12 @@ std::vector<Probe> probes(const Part& part) {
     for (int i = 0; i < n; ++i) {
       const Parameter& p = all[all.dynamic()[static_cast<std::size_t>(i)]];
       const double rest = p.rest_value();
-      const double scale = p.spec->relative ? rest : (std::isfinite(p.limits.max) ? 1.0 : part.size());
-      const double low = std::max(p.limits.min, p.spec->relative ? 0.5 * rest : -1e3 * scale);
-      const double high = std::min(p.limits.max, p.spec->relative ? 2 * rest : 1e3 * scale);
+      // Lengths scale the body: from half to twice their rest value tells all; offsets up to twice its size.
+      const bool offset = !p.spec->relative && p.spec->unit[0] == 'm';
+      const double scale = p.spec->relative ? rest : (offset ? part.size() : 1.0);
+      const double reach = offset ? 2 * scale : kInfinity;
+      const double low = std::max({p.limits.min, p.spec->relative ? 0.5 * rest : -kInfinity, -reach});
+      const double high = std::min({p.limits.max, p.spec->relative ? 2 * rest : kInfinity, reach});
       const double mix = k == 0 ? 0 : (k == 1 ? 1.0 : (k == 2 ? 0.0 : uniform()));
       probe.q_s[i] = k == 0 ? rest : low + mix * (high - low);
       probe.q_s_dot[i] = scale * (0.5 + uniform());
@@ -405,6 +423,7 @@ MassPoints lay_mass_points(const Part& part, int extra_level) {
   const Request request{part, rest, rest.b.data(), follows(part), has_dynamic_exponent(part)};
   const Judge judge{part, probes(part)};
   constexpr double tolerance = 1e-13;
+  refuse_folds(request);
 
   Levels levels;
   MassPoints points = lay(request, levels);

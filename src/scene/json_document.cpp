@@ -69,11 +69,18 @@ std::string counted(std::size_t n, const char* what) {
   return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
 }
 
-/// Text that the shell left without quotes, --set /name=arm: a string when it begins like a word.
-bool is_bare_word(std::string_view text) {
-  const char c = text.empty() ? '\0' : text[0];
+/// Text that the shell left without quotes, --set /name=arm or --set /force=2*t: what cannot be meant as
+/// JSON.
+bool is_bare_text(std::string_view text) {
+  if (text.empty() || text == "true" || text == "false" || text == "null") return false;
+  if (std::string_view("{[\"").find(text[0]) != std::string_view::npos) return false;
+  const std::string_view size = text[0] == '-' || text[0] == '+' ? text.substr(1) : text;
+  for (const std::string_view word : {"nan", "NaN", "inf", "Inf", "infinity", "Infinity"}) {
+    if (size == word) return false;
+  }
+  const char c = text[0];
   const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return letter && text != "true" && text != "false" && text != "null";
+  return letter || text.find_first_not_of("0123456789+-.eE \t\r\n") != std::string_view::npos;
 }
 
 /// Why `key` leads nowhere from `parent`, which stands at `pointer`.
@@ -196,7 +203,7 @@ void JsonDocument::set(const std::string& pointer, const std::string& text, Diag
   std::string written = text;
   JsonValue value;
   try {
-    if (is_bare_word(text)) written = json_string(text);
+    if (is_bare_text(text)) written = json_string(text);
     value = json::parse(written, options);
   } catch (const json::Fault& f) {
     return refuse(text + "; at character " + std::to_string(f.offset + 1) + ": " + f.message);

@@ -32,15 +32,15 @@ class Builder final : public nlohmann::json_sax<json> {
 
   JsonValue take_root() { return std::move(root_); }
 
-  bool null() override { return add(token(word_end), std::monostate()); }
-  bool boolean(bool value) override { return add(token(word_end), value); }
+  bool null() override { return add(word_token(), std::monostate()); }
+  bool boolean(bool value) override { return add(word_token(), value); }
   bool number_integer(number_integer_t) override { return number(true); }
   bool number_unsigned(number_unsigned_t) override { return number(true); }
   bool number_float(number_float_t, const string_t& text) override {
     return number(text.find_first_of(".eE") == std::string::npos);
   }
   bool string(string_t& value) override {
-    const std::size_t begin = token(string_end);
+    const std::size_t begin = string_token();
     refuse_nul(begin, value);
     return add(begin, std::move(value));
   }
@@ -48,7 +48,7 @@ class Builder final : public nlohmann::json_sax<json> {
 
   bool start_object(std::size_t) override { return open(true); }
   bool key(string_t& value) override {
-    const std::size_t begin = token(string_end);
+    const std::size_t begin = string_token();
     refuse_nul(begin, value);
     open_.back().key = std::move(value);
     open_.back().key_place = place(begin);
@@ -68,13 +68,14 @@ class Builder final : public nlohmann::json_sax<json> {
     return add(closed.opening, std::move(closed.elements));
   }
 
-  bool parse_error(std::size_t, const std::string&, const json::exception&) override {
-    const bool inside = !open_.empty();
-    Fault fault = explain({text_, at_, after_, inside ? open_.back().opening : 0, inside, options_.place});
-    throw fault;
-  }
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { stop(); }
 
  private:
+  [[noreturn]] void stop() const {
+    const bool inside = !open_.empty();
+    throw explain({text_, at_, after_, inside ? open_.back().opening : 0, inside, options_.place});
+  }
+
   struct Container {
     bool object;
     std::size_t opening;
@@ -92,10 +93,19 @@ class Builder final : public nlohmann::json_sax<json> {
     if (at < text_.size() && (text_[at] == ',' || text_[at] == ':')) at = skip_space(text_, at + 1);
     return at;
   }
-  /// Moves the cursor behind the next token; returns its beginning.
-  std::size_t token(std::size_t (*end)(std::string_view, std::size_t)) {
+  /// Moves the cursor behind the next token, a string; returns its beginning.
+  std::size_t string_token() {
     const std::size_t begin = next();
-    at_ = end(text_, begin);
+    at_ = string_end(text_, begin);
+    return begin;
+  }
+  /// The same for a number or a literal. The event parser reads "truex" and "1.5m" as a value that something
+  /// follows; here they are what is wrong.
+  std::size_t word_token() {
+    const std::size_t begin = next();
+    const std::size_t end = word_end(text_, begin);
+    if (scalar_end(text_, begin) != end) stop();
+    at_ = end;
     return begin;
   }
 
@@ -109,7 +119,7 @@ class Builder final : public nlohmann::json_sax<json> {
   }
 
   bool number(bool integer) {
-    const std::size_t begin = token(word_end);
+    const std::size_t begin = word_token();
     double value = 0;
     const auto error = std::from_chars(text_.data() + begin, text_.data() + at_, value).ec;
     if (error == std::errc::result_out_of_range) {

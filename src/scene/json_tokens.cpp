@@ -29,6 +29,32 @@ std::size_t word_end(std::string_view text, std::size_t at) {
       std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), ends) - text.begin());
 }
 
+std::size_t scalar_end(std::string_view text, std::size_t at) {
+  for (const std::string_view word : {"true", "false", "null"}) {
+    if (text.substr(at, word.size()) == word) return at + word.size();
+  }
+  const auto look = [&] { return at < text.size() ? text[at] : '\0'; };
+  const auto digits = [&] {
+    while (look() >= '0' && look() <= '9') ++at;
+  };
+  if (look() == '-') ++at;
+  if (look() == '0') {
+    ++at;
+  } else {
+    digits();
+  }
+  if (look() == '.') {
+    ++at;
+    digits();
+  }
+  if (look() == 'e' || look() == 'E') {
+    ++at;
+    if (look() == '+' || look() == '-') ++at;
+    digits();
+  }
+  return at;
+}
+
 int hex4(std::string_view text, std::size_t at) {
   if (at + 4 > text.size()) return -1;
   unsigned value = 0;

@@ -13,7 +13,10 @@ std::size_t skip_space(std::string_view text, std::size_t at);
 /// has none.
 std::size_t string_end(std::string_view text, std::size_t at);
 
-/// Just behind the number or word that begins at `at`.
+/// Just behind the number, true, false or null that begins at `at`, by the grammar of JSON.
+std::size_t scalar_end(std::string_view text, std::size_t at);
+
+/// Just behind all that stands at `at` without white space or punctuation: what a user takes for one word.
 std::size_t word_end(std::string_view text, std::size_t at);
 
 /// The byte of the text that holds byte number `byte` of the decoded string whose opening quote is at `at`.

@@ -13,13 +13,6 @@ const JsonValue& empty_object() {
   return object;
 }
 
-/// Keys of an object that a record knows.
-int known_keys(const JsonValue& object, const schema::Record& record) {
-  int known = 0;
-  for (const JsonValue::Member& member : object.members()) known += record.find(member.key) != nullptr;
-  return known;
-}
-
 }  // namespace
 
 const schema::Record* chosen_record(const schema::Type& type, const JsonValue& object) {
@@ -32,14 +25,8 @@ const schema::Record* chosen_record(const schema::Type& type, const JsonValue& o
     }
     return nullptr;
   }
-  const schema::Record* best = nullptr;
-  if (type.kind != Kind::kOneOf) return best;
-  for (const schema::Type& inner : type.inner) {
-    const schema::Record* record = chosen_record(inner, object);
-    if (record == nullptr) continue;
-    if (best == nullptr || known_keys(object, *record) > known_keys(object, *best)) best = record;
-  }
-  return best;
+  const schema::Type* chosen = type.kind == Kind::kOneOf ? schema::chosen_alternative(type, object) : nullptr;
+  return chosen == nullptr ? nullptr : chosen_record(*chosen, object);
 }
 
 const schema::Field& Reader::field(const std::string& key) const {

@@ -54,9 +54,8 @@ std::string array_words(const Type& type) {
     return "an array of " + std::to_string(type.min_count) + " to " + std::to_string(type.max_count) + " " +
            elements;
   }
-  return (type.min_count > 0 ? "an array of at least " + std::to_string(type.min_count) + " "
-                             : "an array of ") +
-         elements;
+  if (type.min_count <= 1) return (type.min_count == 1 ? "a non-empty array of " : "an array of ") + elements;
+  return "an array of at least " + std::to_string(type.min_count) + " " + elements;
 }
 
 std::string record_words(const Record& record) {
@@ -74,18 +73,21 @@ bool takes_objects(const Type& type) {
   return type.kind == Kind::kMap || type.kind == Kind::kRecord || type.kind == Kind::kTagged;
 }
 
-/// Keys of an object that a type knows.
-int known_keys(const Type& type, const JsonValue& object) {
-  if (type.kind == Type::Kind::kTagged) return object.find(type.tag) != nullptr ? 1 : 0;
+/// How much the keys of an object speak for a type: a required key weighs more than any number of optional
+/// ones.
+int weight(const Type& type, const JsonValue& object) {
+  if (type.kind == Type::Kind::kTagged) return object.find(type.tag) != nullptr ? 1000 : 0;
   if (type.kind == Type::Kind::kRecord) {
-    int known = 0;
-    for (const JsonValue::Member& member : object.members())
-      known += type.records[0]->find(member.key) != nullptr;
-    return known;
+    int sum = 0;
+    for (const JsonValue::Member& member : object.members()) {
+      const Field* field = type.records[0]->find(member.key);
+      if (field != nullptr) sum += field->required ? 1000 : 1;
+    }
+    return sum;
   }
   int best = 0;
   if (type.kind != Type::Kind::kOneOf) return best;
-  for (const Type& inner : type.inner) best = std::max(best, known_keys(inner, object));
+  for (const Type& inner : type.inner) best = std::max(best, weight(inner, object));
   return best;
 }
 
@@ -272,10 +274,10 @@ const Type* chosen_alternative(const Type& one_of, const JsonValue& object) {
     if (!takes_objects(inner)) continue;
     only = &inner;
     ++candidates;
-    const int known = known_keys(inner, object);
-    if (known > most) {
+    const int heavy = weight(inner, object);
+    if (heavy > most) {
       best = &inner;
-      most = known;
+      most = heavy;
     }
   }
   return candidates == 1 ? only : best;

@@ -35,7 +35,7 @@ Check key_rule(const char* values) {
 }
 
 Type times() {
-  return array(number(any(), "s"), 1).expecting("an array of at least 1 number (s), increasing");
+  return array(number(any(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
 }
 
 Type formula() {

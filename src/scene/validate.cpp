@@ -40,8 +40,16 @@ void collect(const Type& type, const std::string& at, Places* places) {
       collect(*record, at, " with " + type.tag + " \"" + record->name + "\"", places);
     }
   }
+  const auto is_record = [](const Type& t) { return t.kind == TypeKind::kRecord; };
+  const bool several = std::count_if(type.inner.begin(), type.inner.end(), is_record) > 1;
   const bool many = type.kind == TypeKind::kArray || type.kind == TypeKind::kMap;
-  for (const Type& inner : type.inner) collect(inner, many ? at + "/*" : at, places);
+  for (const Type& inner : type.inner) {
+    if (several && is_record(inner)) {
+      collect(*inner.records[0], at, " for " + inner.words(), places);
+    } else {
+      collect(inner, many ? at + "/*" : at, places);
+    }
+  }
 }
 
 bool accepts(const Type& type, ValueKind kind) {
@@ -268,8 +276,8 @@ class Validator {
     if (elsewhere != places_.end()) {
       hint = "; known at ";
       const std::size_t shown = std::min<std::size_t>(elsewhere->second.size(), 3);
-      for (std::size_t i = 0; i < shown; ++i) hint += (i == 0 ? "" : ", ") + elsewhere->second[i];
-      if (elsewhere->second.size() > shown) hint += ", ...";
+      for (std::size_t i = 0; i < shown; ++i) hint += (i == 0 ? "" : " or ") + elsewhere->second[i];
+      if (elsewhere->second.size() > shown) hint += " and elsewhere";
       hint += "; not here";
     }
     hint += did_you_mean(member.key, keys);
@@ -281,21 +289,6 @@ class Validator {
     fault(member.key_place, pointer_join(pointer_, member.key), "unknown key" + hint);
   }
 
-  /// How well the keys of an object fit a type: the keys it knows.
-  static int fit(const JsonValue& value, const Type& type) {
-    if (type.kind == TypeKind::kOneOf) {
-      int best = 0;
-      for (const Type& inner : type.inner) best = std::max(best, fit(value, inner));
-      return best;
-    }
-    if (type.kind == TypeKind::kTagged) return value.find(type.tag) != nullptr ? 1 : 0;
-    if (type.kind != TypeKind::kRecord) return 0;
-    int known = 0;
-    for (const JsonValue::Member& member : value.members())
-      known += type.records[0]->find(member.key) != nullptr;
-    return known;
-  }
-
   void check_one_of(const JsonValue& value, const Type& type) {
     std::vector<const Type*> candidates;
     for (const Type& inner : type.inner) {
@@ -303,11 +296,8 @@ class Validator {
     }
     if (candidates.size() == 1) return check(value, *candidates[0]);
     if (value.is_object()) {
-      const auto best =
-          std::max_element(candidates.begin(), candidates.end(),
-                           [&](const Type* a, const Type* b) { return fit(value, *a) < fit(value, *b); });
-      if (fit(value, **best) == 0) return expected(value, type.words());
-      return check(value, **best);
+      const Type* chosen = schema::chosen_alternative(type, value);
+      return chosen == nullptr ? expected(value, type.words()) : check(value, *chosen);
     }
     std::size_t least = 0;
     const Type* nearest = nullptr;

@@ -36,7 +36,8 @@ class Chain {
 
   /// All links in order. all: the parameters of all links, one after the other.
   template <class P, class S>
-  void apply(const HalfHeight<P>& half, LinkParameters<P> all, JetBatch<S>& batch) const {
+  void apply([[maybe_unused]] const HalfHeight<P>& half, [[maybe_unused]] LinkParameters<P> all,
+             [[maybe_unused]] JetBatch<S>& batch) const {
     (apply_one<Links>(half, all, batch), ...);
   }
 

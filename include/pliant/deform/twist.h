@@ -12,7 +12,7 @@ struct Twist {
       {"angle",
        0,
        {-700, 700},
-       {-12.6, 12.6},
+       {-6.3, 6.3},
        false,
        "rad",
        "turn of the section at zeta = 1",

@@ -37,7 +37,7 @@ class JsonDocument {
   const std::string& text() const { return sources_[0].text; }
 
   /// Replaces the value at a JSON pointer by the value written in `text`, or adds a key to an object or an
-  /// element to an array ("/-" or the index after the last). A text that begins with a letter and is no JSON
+  /// element to an array ("/-" or the index after the last). Text that cannot be meant as JSON, arm or 2*t,
   /// is taken as a string. Faults (no such parent, bad value) are added; the document then stays as it was.
   /// References to values become invalid.
   void set(const std::string& pointer, const std::string& text, Diagnostics& faults);

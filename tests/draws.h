@@ -1,0 +1,57 @@
+// Random numbers for the law tests, the same on every machine: parameters within their ranges, material
+// points with the poles and seams among them.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include <pliant/math/functions.h>
+#include <pliant/math/parameter_spec.h>
+#include <pliant/shape/shape.h>
+
+namespace pliant::test {
+
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 0x1234567u) {}
+
+  double uniform(double from, double to) {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return from + (to - from) * (static_cast<double>(state_ >> 11) * 0x1.0p-53);
+  }
+  Vec3<double> vector(double size) {
+    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  }
+
+  /// A value where the parameter may move: lengths about their default, everything else in its range, at most
+  /// a few.
+  double parameter(const ParameterSpec& spec) {
+    if (spec.relative) return spec.standard * uniform(0.6, 1.7);
+    return uniform(std::max(spec.dynamic.min, spec.standard - 3),
+                   std::min(spec.dynamic.max, spec.standard + 3));
+  }
+
+  Material<double> material(MeshPattern pattern) {
+    const double tall = pattern == MeshPattern::torus ? kPi : kPi / 2;
+    return material_at(uniform(-tall, tall), uniform(-kPi, kPi), uniform(0, 1));
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Every combination of the angles where cosines, sines or panels vanish, at the centre, half way and on the
+/// surface.
+inline std::vector<Material<double>> special_points(MeshPattern pattern) {
+  std::vector<Material<double>> all;
+  const int tall = pattern == MeshPattern::torus ? 4 : 2;
+  for (int i = -tall; i <= tall; ++i)
+    for (int j = -4; j < 4; ++j)
+      for (double w : {0.0, 0.5, 1.0}) all.push_back(material_at(i * kPi / 4, j * kPi / 4, w));
+  return all;
+}
+
+}  // namespace pliant::test

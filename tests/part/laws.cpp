@@ -1,0 +1,282 @@
+// Kinematics of parts, Eqs. (3) and (4): every shape with several chains of deformations, against a second
+// evaluation in long double.
+#include "catch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include <pliant/part/sum_inertia.h>
+
+#include "random_state.h"
+#include "reference.h"
+#include "worst.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (const auto& face : all_shapes()) names.push_back(face->name());
+  return names;
+}
+
+template <class F>
+void for_every_part(F&& body) {
+  for (const std::string& shape : shape_names())
+    for (const std::vector<std::string>& chain : test::usual_chains()) {
+      const std::unique_ptr<Part> part = make_part("part", shape, chain, 1000);
+      if (part->shape().mesh() == MeshPattern::torus)
+        part->rest({{"a3", 1}});  // tall enough to bend without a fold
+      test::free_all(*part);
+      INFO(test::describe(shape, chain));
+      body(*part);
+    }
+}
+
+std::vector<Material<double>> points_of(Draws& draws, const Part& part, int n) {
+  std::vector<Material<double>> points = test::special_points(part.shape().mesh());
+  for (int i = 0; i < n; ++i) points.push_back(draws.material(part.shape().mesh()));
+  return points;
+}
+
+void check_kinematics(const Part& part, Draws& draws, const std::vector<Material<double>>& at) {
+  const test::RandomState state = test::draw_state(draws, part);
+  const test::Reference reference(part, state.q_s, state.q_s_dot);
+  std::vector<PointJet<double>> jets;
+  Counters counters;
+  part.points(at, state.q_s, state.q_s_dot, jets, counters);
+  const Eigen::Matrix3Xd s = part.s(at, test::values_of(part, state));
+  const double size = s.colwise().norm().maxCoeff();
+  test::Worst value, slope, rate, curvature;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const test::ReferencePoint r = reference.at(at[i]);
+    REQUIRE(jets[i].p == s.col(static_cast<Eigen::Index>(i)));
+    value.note((jets[i].p - r.s).norm() / size);
+    slope.note((jets[i].J - r.J).cwiseAbs().maxCoeff() / std::max(1.0, r.J.cwiseAbs().maxCoeff()));
+    rate.note((jets[i].p1 - r.s1).norm() / std::max(1.0, r.s1.norm()));
+    rate.note((jets[i].p1 - jets[i].J * state.q_s_dot).norm() / std::max(1.0, r.s1.norm()));
+    curvature.note((jets[i].p2 - r.s2).norm() / std::max(1.0, r.s2.norm()));
+  }
+  CHECK(value < 1e-14);
+  CHECK(slope < 1e-12);
+  CHECK(rate < 1e-12);
+  CHECK(curvature < 1e-12);
+}
+
+}  // namespace
+
+TEST_CASE("s, J and Jdot qdot of every shape and several chains agree with long double", "[part]") {
+  Draws draws(1);
+  for_every_part([&](const Part& part) { check_kinematics(part, draws, points_of(draws, part, 20)); });
+}
+
+TEST_CASE("N13: all orders of taper, bend, twist and shear", "[part]") {
+  Draws draws(2);
+  std::vector<std::string> chain{"bend", "shear", "taper", "twist"};
+  do {
+    const std::unique_ptr<Part> part = make_part("part", "superellipsoid", chain, 1000);
+    test::free_all(*part);
+    INFO(test::describe("superellipsoid", chain));
+    std::vector<Material<double>> at;
+    for (int i = 0; i < 12; ++i) at.push_back(draws.material(MeshPattern::ball));
+    check_kinematics(*part, draws, at);
+
+    // The mass matrix and the inertial forces of some mass points, summed again from the second evaluation.
+    MassPoints points;
+    for (int k = 0; k < 3; ++k) {
+      std::array<Material<double>, Pack::kLanes> four;
+      Pack mass(0.0);
+      for (int lane = 0; lane < Pack::kLanes; ++lane) {
+        four[static_cast<std::size_t>(lane)] = draws.material(MeshPattern::ball);
+        mass.set(lane, draws.uniform(0.1, 1));
+      }
+      points.at.push_back(gather(four.data()));
+      points.mass.push_back(mass);
+      points.n_points += Pack::kLanes;
+    }
+    const test::RandomState state = test::draw_state(draws, *part);
+    const test::Reference reference(*part, state.q_s, state.q_s_dot);
+    Inertia<double> inertia;
+    Counters counters;
+    sum_inertia(*part, points, state.q_s, state.q_s_dot, state.omega, inertia, counters);
+    const int n = 6 + static_cast<int>(state.q_s.size());
+    MatX<double> M = MatX<double>::Zero(n, n);
+    VecX<double> g = VecX<double>::Zero(n);
+    for (std::size_t k = 0; k < points.at.size(); ++k)
+      for (int lane = 0; lane < Pack::kLanes; ++lane) {
+        const double m = points.mass[k][lane];
+        auto take = [lane](const Trig<Pack>& t) {
+          return Trig<double>{t.x[lane], t.sign[lane], t.log_abs[lane]};
+        };
+        const Material<Pack>& four = points.at[k];
+        const test::ReferencePoint r =
+            reference.at({take(four.cu), take(four.su), take(four.cv), take(four.sv), four.w[lane]});
+        Eigen::Matrix3Xd G(3, n);
+        G.leftCols<3>().setIdentity();
+        G.middleCols<3>(3) << 0, r.s[2], -r.s[1], -r.s[2], 0, r.s[0], r.s[1], -r.s[0], 0;
+        G.rightCols(n - 6) = r.J;
+        const Vec3<double>& w = state.omega;
+        const Vec3<double> b = w.cross(w.cross(r.s)) + 2 * w.cross(r.s1) + r.s2;
+        M += m * G.transpose() * G;
+        g -= m * G.transpose() * b;
+      }
+    const VecX<double> scale = M.diagonal().cwiseSqrt();
+    for (int i = 0; i < n; ++i) {
+      CHECK(std::abs(inertia.g_q[i] - g[i]) <=
+            1e-12 * scale[i] * (g.array() / scale.array()).abs().maxCoeff());
+      for (int j = 0; j < n; ++j) CHECK(std::abs(inertia.M(i, j) - M(i, j)) <= 1e-12 * scale[i] * scale[j]);
+    }
+  } while (std::next_permutation(chain.begin(), chain.end()));
+}
+
+TEST_CASE("material gradients agree with differences", "[part]") {
+  Draws draws(3);
+  for_every_part([&](const Part& part) {
+    const test::RandomState state = test::draw_state(draws, part);
+    const ParameterValues<double> values = test::values_of(part, state);
+    std::vector<test::Long> all;
+    for (int i = 0; i < part.parameters().size(); ++i) all.push_back(values.b[static_cast<std::size_t>(i)]);
+    for (int trial = 0; trial < 10; ++trial) {
+      const double tall = part.shape().mesh() == MeshPattern::torus ? kPi : kPi / 2;
+      const double u = draws.uniform(-tall, tall), v = draws.uniform(-kPi, kPi), w = draws.uniform(0.2, 1);
+      const Mat3<double> E = part.material_gradient(u, v, w, values);
+      auto point = [&](test::Long du, test::Long dv, test::Long dw) {
+        auto wide = [](test::Long x) {
+          return Trig<test::Long>{x, x > 0 ? 1.0L : -1.0L, std::log(std::abs(x))};
+        };
+        const Material<test::Long> m{wide(std::cos(u + du)), wide(std::sin(u + du)), wide(std::cos(v + dv)),
+                                     wide(std::sin(v + dv)), w + dw};
+        return test::reference_point(part, m, all);
+      };
+      Mat3<test::Long> coarse, fine;
+      for (int step = 0; step < 2; ++step) {
+        const test::Long h = step == 0 ? 2e-4L : 1e-4L;
+        Mat3<test::Long>& D = step == 0 ? coarse : fine;
+        D.col(0) = test::first_derivative([&](test::Long t) { return point(t, 0, 0); }, h);
+        D.col(1) = test::first_derivative([&](test::Long t) { return point(0, t, 0); }, h);
+        D.col(2) = test::first_derivative([&](test::Long t) { return point(0, 0, t); }, h);
+      }
+      if ((coarse - fine).norm() > 1e-11L * fine.norm()) continue;  // across a rim, or next to a pole
+      CHECK((E - fine.cast<double>()).norm() <= 1e-8 * E.norm());
+    }
+  });
+}
+
+TEST_CASE("the inside-outside function, its gradient, the normal and the label follow the deformed surface",
+          "[part]") {
+  Draws draws(4);
+  for_every_part([&](const Part& part) {
+    const ParameterValues<double> values = test::values_of(part, test::draw_state(draws, part));
+    std::vector<Material<double>> at;
+    for (int i = 0; i < 25; ++i) {
+      at.push_back(draws.material(part.shape().mesh()));
+      at.back().w = i % 5 == 0 ? draws.uniform(0.3, 1.0) : 1.0;
+    }
+    const Eigen::Matrix3Xd s = part.s(at, values);
+    const std::vector<Vec3<double>> normals = part.normals(at, values);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const Vec3<double> p = s.col(static_cast<Eigen::Index>(i));
+      CHECK(std::abs(part.inside_outside(p, values) - (at[i].w - 1)) <= 1e-10);
+      const Material<double> found = part.label(p, values);
+      CHECK((part.s({found}, values).col(0) - p).norm() <= 1e-10);
+
+      const Vec3<double> slope = part.inside_outside_gradient(p, values);
+      Vec3<double> by_differences, coarse;
+      for (int r = 0; r < 3; ++r) {
+        auto along = [&](long double t) {
+          Vec3<double> moved = p;
+          moved[r] += static_cast<double>(t);
+          return static_cast<long double>(part.inside_outside(moved, values));
+        };
+        by_differences[r] = static_cast<double>(test::first_derivative(along, 1e-3L));
+        coarse[r] = static_cast<double>(test::first_derivative(along, 2e-3L));
+      }
+      const bool smooth = (by_differences - coarse).norm() <= 1e-9 * slope.norm();  // no rim or edge near
+      if (smooth) CHECK((slope - by_differences).norm() <= 1e-8 * slope.norm());
+      CHECK(normals[i].norm() == Approx(1).epsilon(1e-14));
+      if (at[i].w == 1) CHECK((normals[i] - slope.normalized()).norm() <= 1e-9);
+      CHECK(normals[i] == part.normal(at[i], values));
+    }
+    // Along the normal the function grows.
+    const Vec3<double> p = s.col(1);
+    CHECK(part.inside_outside(p + 1e-3 * normals[1], values) > 0);
+    CHECK(part.inside_outside(p - 1e-3 * normals[1], values) < 0);
+  });
+}
+
+TEST_CASE("the normal stands on the surface's tangents", "[part]") {
+  Draws draws(5);
+  for_every_part([&](const Part& part) {
+    const ParameterValues<double> values = test::values_of(part, test::draw_state(draws, part));
+    for (int trial = 0; trial < 10; ++trial) {
+      const double tall = part.shape().mesh() == MeshPattern::torus ? kPi : kPi / 2;
+      const double u = draws.uniform(-tall, tall), v = draws.uniform(-kPi, kPi);
+      const Mat3<double> E = part.material_gradient(u, v, 1, values);
+      const Vec3<double> n = part.normal(material_at(u, v), values);
+      CHECK(std::abs(n.dot(E.col(0).normalized())) <= 1e-10);
+      CHECK(std::abs(n.dot(E.col(1).normalized())) <= 1e-10);
+      CHECK(n.dot(E.col(2)) > 0);
+    }
+  });
+}
+
+TEST_CASE("parameters are called by link and name, repeated links by number", "[part]") {
+  const std::unique_ptr<Part> part =
+      make_part("p", "ellipsoid", {"taper", "twist", "taper", "bend", "taper"}, 1000);
+  CHECK(part->parameters().names() ==
+        "a1 a2 a3 taper.tx taper.ty twist.angle taper2.tx taper2.ty bend.angle bend.direction taper3.tx "
+        "taper3.ty");
+  CHECK(part->parameters().find("taper2.ty") == 7);
+  CHECK(part->parameters().find("taper4.tx") == -1);
+}
+
+TEST_CASE("a repeated link is two links", "[part]") {
+  const std::unique_ptr<Part> part = make_part("p", "box", {"taper", "taper"}, 1000);
+  part->rest({{"taper.tx", 0.5}, {"taper2.tx", -0.2}});
+  const Vec3<double> s =
+      part->s({material_from(std::sqrt(0.5), std::sqrt(0.5), 1, 0)}, part->parameters().rest()).col(0);
+  CHECK(s[0] == Approx(1.5 * 0.8).epsilon(1e-15));
+}
+
+TEST_CASE("faults of a part name it, the parameter, the value and what is allowed", "[part]") {
+  using test::has_text;
+  CHECK_THROWS_WITH(make_part("p", "egg", {}, 1),
+                    has_text("part 'p': no shape 'egg'") && has_text("supertoroid"));
+  CHECK_THROWS_WITH(make_part("p", "box", {"squash"}, 1),
+                    has_text("no deformation 'squash'") && has_text("bend_offset"));
+  CHECK_THROWS_WITH(make_part("p", "box", {}, 0), has_text("density 0"));
+  CHECK_THROWS_WITH(make_part("p", "box", {}, -1), has_text("density -1"));
+  const std::unique_ptr<Part> part = make_part("p", "box", {"taper"}, 1000);
+  CHECK_THROWS_WITH(part->rest({{"taper.tz", 0.1}}),
+                    has_text("no parameter 'taper.tz'") && has_text("a1 a2 a3 taper.tx"));
+  CHECK_THROWS_WITH(part->rest({{"taper.tx", 1.01}}),
+                    has_text("taper.tx = 1.01 is out of range; allowed: [-1, 1]"));
+  CHECK_THROWS_WITH(part->rest({{"a1", 0}}), has_text("a1 = 0 is out of range"));
+  CHECK_THROWS_WITH(part->rest({{"a1", -1}}), has_text("a1 = -1"));
+  CHECK_THROWS_WITH(part->rest({{"a1", std::nan("")}}), has_text("out of range"));
+  CHECK_THROWS_WITH(part->stiffness({{"a1", -5}}), has_text("stiffness -5 of a1"));
+  CHECK_THROWS_WITH(part->damping(-1, 0), has_text("damping"));
+  CHECK_THROWS_WITH(part->mass(0), has_text("mass 0"));
+  CHECK_THROWS_WITH(part->inertia(1, Vec3<double>(1, 1, 3).asDiagonal()),
+                    has_text("no body has this inertia"));
+  CHECK_THROWS_WITH(part->place({0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0)), has_text("orientation"));
+  CHECK_THROWS_WITH(part->limits("a1", {2, 1}), has_text("limits [2, 1] of a1"));
+  CHECK_THROWS_WITH(part->limits("a1", {0, 1e9}), has_text("[0.001, 1000]"));
+  const MatX<double> indefinite = (MatX<double>(2, 2) << 1, 2, 2, 1).finished();
+  CHECK_THROWS_WITH(part->stiffness({"a1", "a2"}, indefinite), has_text("negative eigenvalue"));
+  const MatX<double> skew = (MatX<double>(2, 2) << 1, 2, 0, 1).finished();
+  CHECK_THROWS_WITH(part->stiffness({"a1", "a2"}, skew), has_text("symmetric"));
+}
+
+TEST_CASE("N11: a rest shape that folds over is refused, a slim one may bend by half a turn", "[part]") {
+  const std::unique_ptr<Part> fat = make_part("fat", "cylinder", {"bend"}, 1000);
+  fat->rest({{"bend.angle", 1.5}});
+  CHECK_THROWS_WITH(fat->prepare(), test::has_text("part 'fat': its rest shape folds over"));
+  const std::unique_ptr<Part> slim = make_part("slim", "cylinder", {"bend"}, 1000);
+  slim->rest({{"a1", 0.1}, {"a2", 0.1}, {"bend.angle", kPi}});
+  CHECK_NOTHROW(slim->prepare());
+}
