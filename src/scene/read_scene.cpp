@@ -361,6 +361,8 @@ std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std
   std::string resolved = document.text();
   for (const std::string& assignment : overrides) resolved += "\n" + assignment;
   scene->hash = hash_of(resolved);
+  scene->document = document.text();
+  scene->overrides = overrides;
   return scene;
 }
 

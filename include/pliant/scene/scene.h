@@ -61,7 +61,9 @@ struct Scene {
   LightSetting light;
   GroundSetting ground;
 
-  std::uint64_t hash = 0;  ///< of the resolved document (overrides included), for resuming
+  std::string document;                ///< the file as it was read; a run keeps it beside its recording
+  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to it
+  std::uint64_t hash = 0;              ///< of the resolved document (overrides included), for resuming
 };
 
 }  // namespace pliant
