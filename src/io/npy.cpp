@@ -1,5 +1,5 @@
-// Format version 1.0: magic, version, header length, a Python dictionary padded with blanks to a multiple of 64 bytes.
-// Our header always takes kHeader bytes, so that the count can be rewritten in place.
+// Format version 1.0: magic, version, header length, a Python dictionary padded with blanks to a multiple of
+// 64 bytes. Our header always takes kHeader bytes, so that the count can be rewritten in place.
 #include <pliant/io/npy.h>
 
 #include <algorithm>
@@ -128,7 +128,8 @@ NpyWriter NpyWriter::resume(const std::filesystem::path& path, int columns, std:
 void NpyWriter::write_header() {
   std::string header = "\x93NUMPY";
   header += {'\x01', '\x00', static_cast<char>(kHeader - 10), '\x00'};
-  header += std::string("{'descr': '") + kType + "', 'fortran_order': False, 'shape': (" + std::to_string(rows_) + ",";
+  header += std::string("{'descr': '") + kType + "', 'fortran_order': False, 'shape': (" +
+            std::to_string(rows_) + ",";
   if (columns_ != kNpyVector) header += " " + std::to_string(columns_);
   header += "), }";
   header.resize(kHeader - 1, ' ');
@@ -144,7 +145,8 @@ void NpyWriter::append(const double* row) {
 
 void NpyWriter::flush() {
   if (rows_ == rows_in_file_) return;
-  const auto offset = static_cast<std::int64_t>(kHeader + row_bytes(columns_) * static_cast<std::size_t>(rows_in_file_));
+  const auto offset =
+      static_cast<std::int64_t>(kHeader + row_bytes(columns_) * static_cast<std::size_t>(rows_in_file_));
   write_at(descriptor_, pending_.data(), pending_bytes(), offset, path_);
   write_header();
   pending_.clear();
@@ -162,18 +164,21 @@ NpyReader::NpyReader(std::filesystem::path path) : path_(std::move(path)) {
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) throw_file_fault(errno, "read", path_);
     char start[10];
-    if (read_at(descriptor_, start, sizeof start, 0, path_) != sizeof start || std::memcmp(start, "\x93NUMPY", 6) != 0)
+    if (read_at(descriptor_, start, sizeof start, 0, path_) != sizeof start ||
+        std::memcmp(start, "\x93NUMPY", 6) != 0)
       refuse(path_, "it does not begin like a NumPy file");
     if (start[6] != 1) refuse(path_, "it is of another version of NumPy's format");
     const std::size_t length =
         static_cast<unsigned char>(start[8]) + std::size_t{256} * static_cast<unsigned char>(start[9]);
     std::string header(length, '\0');
-    if (read_at(descriptor_, header.data(), length, sizeof start, path_) != length) refuse(path_, "its header is cut");
+    if (read_at(descriptor_, header.data(), length, sizeof start, path_) != length)
+      refuse(path_, "its header is cut");
     if (header.find(std::string("'descr': '") + kType + "'") == std::string::npos)
       refuse(path_, "it does not hold doubles of this machine");
     if (header.find("'fortran_order': False") == std::string::npos) refuse(path_, "it is not in rows");
     const std::vector<std::int64_t> shape = parse_shape(header, path_);
-    if (shape.empty() || shape.size() > 2) refuse(path_, "it has " + std::to_string(shape.size()) + " dimensions");
+    if (shape.empty() || shape.size() > 2)
+      refuse(path_, "it has " + std::to_string(shape.size()) + " dimensions");
     if (shape.size() == 2 && shape[1] > 1 << 28) refuse(path_, "its header has no sensible shape");
     columns_ = shape.size() == 1 ? kNpyVector : static_cast<int>(shape[1]);
     data_ = static_cast<std::int64_t>(sizeof start + length);
@@ -198,8 +203,7 @@ NpyReader::~NpyReader() {
 }
 
 void NpyReader::read(std::int64_t row, double* numbers) const {
-  if (row < 0 || row >= rows_)
-    throw std::out_of_range(path_.string() + " has no row " + std::to_string(row));
+  if (row < 0 || row >= rows_) throw std::out_of_range(path_.string() + " has no row " + std::to_string(row));
   const std::size_t bytes = row_bytes(columns_);
   if (read_at(descriptor_, numbers, bytes, data_ + row * static_cast<std::int64_t>(bytes), path_) != bytes)
     refuse(path_, "row " + std::to_string(row) + " is cut");

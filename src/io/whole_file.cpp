@@ -46,7 +46,8 @@ void WholeFile::become_target(Durable durable) {
   renamed_ = true;
 }
 
-void write_whole_file(const std::filesystem::path& path, const void* bytes, std::size_t size, Durable durable) {
+void write_whole_file(const std::filesystem::path& path, const void* bytes, std::size_t size,
+                      Durable durable) {
   WholeFile file(path);
   file.write(bytes, size);
   file.become_target(durable);

@@ -1,5 +1,6 @@
 #include <pliant/scene/point_value.h>
 
+#include <pliant/math/functions.h>
 #include <pliant/scene/reader.h>
 
 namespace pliant {
@@ -7,8 +8,6 @@ namespace pliant {
 namespace schema {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 Field radial() {
   return optional("w", number(between(0, 1), "1"), "Radial coordinate: 0 at the centre, 1 on the surface.",

@@ -1,5 +1,6 @@
-// Tables of doubles in NumPy's format, appended row by row. The header tells how many whole rows there are; it is
-// rewritten in place after the rows have been, so that a process killed at any moment leaves a readable file.
+// Tables of doubles in NumPy's format, appended row by row. The header tells how many whole rows there are;
+// it is rewritten in place after the rows have been, so that a process killed at any moment leaves a readable
+// file.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ class NpyWriter {
  public:
   /// A new file; refuses one that exists. columns >= 0 (shape (n, columns)) or kNpyVector.
   static NpyWriter create(const std::filesystem::path& path, int columns);
-  /// Goes on with a file after its first `rows` rows; what comes behind them is cut off. Throws std::runtime_error when
-  /// the file is not such a table or has fewer rows.
+  /// Goes on with a file after its first `rows` rows; what comes behind them is cut off. Throws
+  /// std::runtime_error when the file is not such a table or has fewer rows.
   static NpyWriter resume(const std::filesystem::path& path, int columns, std::int64_t rows);
   ~NpyWriter();
   NpyWriter(NpyWriter&& other) noexcept;
@@ -48,7 +49,8 @@ class NpyWriter {
 /// Reads a table; the number of rows is fixed when it is opened.
 class NpyReader {
  public:
-  /// Throws std::system_error when the file cannot be read, std::runtime_error when it is not a table of doubles in rows.
+  /// Throws std::system_error when the file cannot be read, std::runtime_error when it is not a table of
+  /// doubles in rows.
   explicit NpyReader(std::filesystem::path path);
   ~NpyReader();
   NpyReader(NpyReader&& other) noexcept;

@@ -1,5 +1,6 @@
-// Files that are whole or absent: written under a temporary name beside the target, closed with a check, then renamed. A
-// reader sees the old file or the new one, never a part; a symbolic link of the target's name is replaced, not followed.
+// Files that are whole or absent: written under a temporary name beside the target, closed with a check, then
+// renamed. A reader sees the old file or the new one, never a part; a symbolic link of the target's name is
+// replaced, not followed.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +9,13 @@
 
 namespace pliant {
 
-/// Whether a file must reach the disk before it takes its name: yes survives a power cut, no is faster and survives the
-/// end of the process.
+/// Whether a file must reach the disk before it takes its name: yes survives a power cut, no is faster and
+/// survives the end of the process.
 enum class Durable { no, yes };
 
-/// A file that is being written piece by piece. Every member throws std::system_error with path and reason (of a full disk
-/// also the bytes needed and free); the target is then as it was, and the temporary file goes away.
+/// A file that is being written piece by piece. Every member throws std::system_error with path and reason
+/// (of a full disk also the bytes needed and free); the target is then as it was, and the temporary file goes
+/// away.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path target);

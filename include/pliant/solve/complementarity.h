@@ -13,9 +13,10 @@ struct ComplementarityResult {
   int pivots = 0;
 };
 
-/// Solves it by principal pivoting with least-index choice, which ends for every W with positive principal
-/// minors; rows that add nothing to the rows already tight (rank-deficient W) are left out. The residual is
-/// always reported.
+/// Solves it as the convex problem it is, min 1/2 lambda W lambda + b lambda over lambda >= 0: rows become
+/// tight one by one, the one most open first, and others come loose on the way; the value falls with every
+/// change, so it ends. Rows that depend on the tight ones (rank-deficient W) need no impulse of their own;
+/// rows that contradict them are left open, which the residual shows.
 ComplementarityResult solve_complementarity(const MatX<double>& W, const VecX<double>& b);
 
 }  // namespace pliant

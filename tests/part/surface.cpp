@@ -1,0 +1,188 @@
+// Surface meshes of parts: closed, without duplicates or needles, of the right volume, with the right
+// normals.
+#include "catch.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <pliant/part/surface.h>
+
+#include "random_state.h"
+#include "worst.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+struct Topology {
+  int vertices, edges, triangles;
+  bool closed;  ///< every edge runs once each way
+};
+Topology topology(const Eigen::Matrix3Xi& triangles, int vertices) {
+  std::map<std::pair<int, int>, int> edges;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) ++edges[{triangles(k, t), triangles((k + 1) % 3, t)}];
+  bool closed = true;
+  for (const auto& [edge, count] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    closed = closed && count == 1 && back != edges.end() && back->second == 1;
+  }
+  return {vertices, static_cast<int>(edges.size()) / 2, static_cast<int>(triangles.cols()), closed};
+}
+int count_different(const Eigen::Matrix3Xd& x) {
+  std::set<std::array<double, 3>> all;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});
+  return static_cast<int>(all.size());
+}
+double least_area(const TriangleMesh& mesh) {
+  double least = kInfinity;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
+                       c = mesh.x.col(mesh.triangles(2, t));
+    least = std::min(least, (b - a).cross(c - a).norm());
+  }
+  return least;
+}
+std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vector<std::string>& chain) {
+  std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
+  if (part->shape().mesh() == MeshPattern::torus) part->rest({{"a3", 1}});
+  if (shape == "cone") part->rest({{"t", -0.6}});
+  Draws draws(7);
+  Part::Named values;
+  for (int i = part->parameters().n_shape(); i < part->parameters().size(); ++i)
+    values.emplace_back(part->parameters()[i].name, test::draw_value(draws, part->parameters()[i]));
+  part->rest(values);
+  return part;
+}
+
+}  // namespace
+
+TEST_CASE("surfaces are closed, of the right topology, without duplicates or needles", "[surface]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : test::usual_chains())
+      for (int resolution : {1, 2, 3, 8}) {
+        const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
+        const Surface surface(*part, resolution);
+        const TriangleMesh mesh = surface.body_mesh(*part, part->parameters().rest());
+        INFO(test::describe(face->name(), chain) << " " << resolution);
+        const Topology t = topology(mesh.triangles, static_cast<int>(mesh.x.cols()));
+        const bool torus = face->mesh() == MeshPattern::torus;
+        const int r2 = resolution * resolution;
+        CHECK(t.vertices == (torus ? 32 * r2 : 24 * r2 + 2));
+        CHECK(t.triangles == (torus ? 64 * r2 : 48 * r2));
+        CHECK(t.closed);
+        CHECK(t.vertices - t.edges + t.triangles == (torus ? 0 : 2));
+        CHECK(count_different(mesh.x) == t.vertices);
+        const double size = mesh.x.colwise().norm().maxCoeff();
+        CHECK(least_area(mesh) > 1e-3 * size * size / (r2 * 48));
+        CHECK(mesh.normals.allFinite());
+        for (Eigen::Index i = 0; i < mesh.normals.cols(); ++i)
+          REQUIRE(mesh.normals.col(i).norm() == Approx(1).epsilon(1e-12));
+        CHECK(mesh.corners.minCoeff() >= 0);
+        CHECK(mesh.corners.maxCoeff() < mesh.normals.cols());
+      }
+}
+
+TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an area", "[surface]") {
+  for (const char* shape : {"superellipsoid", "superellipsoid_radial", "supertoroid"})
+    for (double eps : {0.02, 0.1, 0.3, 1.9, 3.0, 5.0}) {
+      const std::unique_ptr<Part> part = make_part("part", shape, {}, 1);
+      part->rest({{"eps1", eps}, {"eps2", eps}});
+      const Surface surface(*part, 8);
+      const TriangleMesh mesh = surface.body_mesh(*part, part->parameters().rest());
+      INFO(shape << " " << eps);
+      CHECK(topology(mesh.triangles, static_cast<int>(mesh.x.cols())).closed);
+      CHECK(count_different(mesh.x) == mesh.x.cols());
+      CHECK(least_area(mesh) > 0);
+      CHECK(mesh.normals.allFinite());
+      part->prepare();
+      CHECK(enclosed_volume(mesh) == Approx(part->total_mass()).epsilon(eps > 2 ? 0.6 : 0.05));
+    }
+}
+
+TEST_CASE("the enclosed volume is positive and converges at second order", "[surface]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : test::usual_chains()) {
+      const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
+      part->prepare();
+      const double exact = part->total_mass();
+      auto error = [&](int resolution) {
+        return enclosed_volume(Surface(*part, resolution).body_mesh(*part, part->parameters().rest())) /
+                   exact -
+               1;
+      };
+      const double coarse = error(16), fine = error(32);
+      INFO(test::describe(face->name(), chain) << " " << coarse << " " << fine);
+      CHECK(std::abs(coarse) < 0.02);
+      if (std::abs(coarse) > 1e-13) CHECK(std::abs(fine / coarse) == Approx(0.25).margin(0.03));
+    }
+}
+
+TEST_CASE("vertex normals are those of the part, and agree with the triangles around", "[surface]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : test::usual_chains()) {
+      const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
+      const ParameterValues<double> rest = part->parameters().rest();
+      const Surface surface(*part, 16);
+      const TriangleMesh mesh = surface.body_mesh(*part, rest);
+      INFO(test::describe(face->name(), chain));
+      test::Worst off;
+      for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+        const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
+                           c = mesh.x.col(mesh.triangles(2, t));
+        const Vec3<double> n = (b - a).cross(c - a).normalized();
+        for (int k = 0; k < 3; ++k) off.note(1 - n.dot(mesh.normals.col(mesh.corners(k, t))));
+      }
+      // A corner whose vertex lies on a rim or an edge takes the normal of its face.
+      CHECK(off < 0.5);
+      for (std::size_t i = 0; i < surface.material().size(); i += 7) {
+        const Vec3<double> n = part->normal(surface.material()[i], rest);
+        CHECK((mesh.normals.col(static_cast<Eigen::Index>(i)) - n).norm() <= 1e-14);
+        const Vec3<double> x = mesh.x.col(static_cast<Eigen::Index>(i));
+        CHECK(std::abs(part->inside_outside(x, rest)) <= 1e-10);
+      }
+    }
+}
+
+TEST_CASE("every corner of a box has the normal of its face", "[surface]") {
+  const std::unique_ptr<Part> part = make_part("part", "box", {}, 1);
+  part->rest({{"a1", 2}, {"a3", 0.5}});
+  for (int resolution : {1, 2, 5}) {
+    const TriangleMesh mesh = Surface(*part, resolution).body_mesh(*part, part->parameters().rest());
+    CHECK(enclosed_volume(mesh) == Approx(8).epsilon(1e-14));
+    test::Worst off;
+    for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+      const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
+                         c = mesh.x.col(mesh.triangles(2, t));
+      const Vec3<double> n = (b - a).cross(c - a).normalized();
+      for (int k = 0; k < 3; ++k) off.note((n - mesh.normals.col(mesh.corners(k, t))).norm());
+    }
+    CHECK(off <= 1e-12);
+  }
+}
+
+TEST_CASE("the mesh follows the parameters and the frame", "[surface]") {
+  const std::unique_ptr<Part> part = make_part("part", "ellipsoid", {"twist"}, 1);
+  part->make_dynamic({"a1", "twist.angle"});
+  const Surface surface(*part, 4);
+  ParameterValues<double> values = part->parameters().rest();
+  values.b[0] = 2;
+  values.b[3] = 0.5;
+  const TriangleMesh body = surface.body_mesh(*part, values);
+  CHECK(body.x.cwiseAbs().maxCoeff() == Approx(2).epsilon(0.01));
+  const Eigen::Quaterniond R(Eigen::AngleAxisd(0.7, Vec3<double>(1, 2, 3).normalized()));
+  const TriangleMesh world = surface.world_mesh(*part, values, {1, 2, 3}, R);
+  CHECK((world.x.col(5) - (Vec3<double>(1, 2, 3) + R * body.x.col(5))).norm() <= 1e-14);
+  CHECK((world.normals.col(5) - R * body.normals.col(5)).norm() <= 1e-14);
+  CHECK(enclosed_volume(world) == Approx(enclosed_volume(body)).epsilon(1e-13));
+  CHECK(world.triangles == body.triangles);
+}
+
+TEST_CASE("resolutions that make no sense are refused", "[surface]") {
+  const std::unique_ptr<Part> part = make_part("part", "box", {}, 1);
+  CHECK_THROWS_WITH(Surface(*part, 0), test::has_text("from 1 to 512"));
+  CHECK_THROWS_WITH(Surface(*part, 513), test::has_text("513"));
+  CHECK(Surface::resolution_for(*part, 1000) == 5);
+}

@@ -1,0 +1,101 @@
+// The complementarity core against enumeration of all sets of tight rows.
+#include "catch.h"
+
+#include <cmath>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include <pliant/solve/complementarity.h>
+
+#include "draws.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+/// Impulses of the tight sets tried one after the other; empty when none fits.
+VecX<double> by_enumeration(const MatX<double>& W, const VecX<double>& b) {
+  const Eigen::Index n = b.size();
+  const double scale = b.cwiseAbs().maxCoeff();
+  for (int set = 0; set < 1 << n; ++set) {
+    std::vector<Eigen::Index> tight;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if ((set >> i & 1) != 0) tight.push_back(i);
+    VecX<double> lambda = VecX<double>::Zero(n);
+    if (!tight.empty()) {
+      const MatX<double> block = W(tight, tight);
+      const VecX<double> x = block.completeOrthogonalDecomposition().solve(-b(tight));
+      if ((block * x + b(tight)).norm() > 1e-10 * scale) continue;
+      lambda(tight) = x;
+    }
+    const VecX<double> slack = W * lambda + b;
+    if ((lambda.array() * W.diagonal().array()).minCoeff() >= -1e-10 * scale &&
+        slack.minCoeff() >= -1e-10 * scale)
+      return lambda;
+  }
+  return {};
+}
+
+MatX<double> random_matrix(Draws& draws, int rows, int columns) {
+  MatX<double> A(rows, columns);
+  for (Eigen::Index i = 0; i < A.size(); ++i) A.data()[i] = draws.uniform(-1, 1);
+  return A;
+}
+VecX<double> random_vector(Draws& draws, int n) {
+  return random_matrix(draws, n, 1);
+}
+
+}  // namespace
+
+TEST_CASE("random positive definite problems are solved as enumeration solves them", "[solve]") {
+  Draws draws(1);
+  for (int trial = 0; trial < 400; ++trial) {
+    const int n = 1 + trial % 8;
+    const MatX<double> C = random_matrix(draws, n, n + 2);
+    const MatX<double> W = C * C.transpose();
+    const VecX<double> b = random_vector(draws, n);
+    const ComplementarityResult result = solve_complementarity(W, b);
+    const VecX<double> expected = by_enumeration(W, b);
+    REQUIRE(expected.size() == n);
+    CHECK((result.lambda - expected).norm() <= 1e-8 * (1 + expected.norm()));
+    CHECK(result.residual <= 1e-12 * (1 + W.cwiseAbs().maxCoeff() * expected.norm()));
+  }
+}
+
+TEST_CASE("rank-deficient problems: the same velocities as enumeration, impulses that push only", "[solve]") {
+  Draws draws(2);
+  for (int trial = 0; trial < 600; ++trial) {
+    const int n = 2 + trial % 6, rank = 1 + trial % (n - 1);
+    MatX<double> C = random_matrix(draws, n, rank);
+    if (trial % 3 == 0) C.row(n - 1) = C.row(0);  // the same row twice
+    const MatX<double> W = C * C.transpose();
+    const VecX<double> b = C * random_vector(draws, rank);  // rows that can be met
+    const ComplementarityResult result = solve_complementarity(W, b);
+    INFO("n " << n << " rank " << rank << " pivots " << result.pivots << "\nW\n"
+              << W << "\nb " << b.transpose());
+    CHECK(result.lambda.minCoeff() >= -1e-12);
+    CHECK(result.residual <= 1e-10);
+    const VecX<double> expected = by_enumeration(W, b);
+    if (expected.size() == n) CHECK((W * (result.lambda - expected)).norm() <= 1e-8);
+  }
+}
+
+TEST_CASE("scale does not matter", "[solve]") {
+  Draws draws(3);
+  for (double scale : {0x1p-200, 0x1p-20, 0x1p20, 0x1p200}) {
+    const MatX<double> C = random_matrix(draws, 5, 7);
+    const MatX<double> W = C * C.transpose();
+    const VecX<double> b = random_vector(draws, 5);
+    const VecX<double> lambda = solve_complementarity(W, b).lambda;
+    CHECK(solve_complementarity(W, scale * b).lambda == scale * lambda);
+    CHECK(solve_complementarity(scale * W, b).lambda == lambda / scale);
+  }
+}
+
+TEST_CASE("nothing to do and nothing at all", "[solve]") {
+  CHECK(solve_complementarity(MatX<double>::Identity(3, 3), VecX<double>::Ones(3)).lambda.norm() == 0);
+  CHECK(solve_complementarity(MatX<double>::Identity(3, 3), VecX<double>::Zero(3)).lambda.norm() == 0);
+  CHECK(solve_complementarity(MatX<double>(0, 0), VecX<double>(0)).lambda.size() == 0);
+}
