@@ -1,5 +1,7 @@
 #include <pliant/io/build_info.h>
 
+#include <gnu/libc-version.h>
+
 #include <Eigen/Core>
 
 namespace pliant {
@@ -11,7 +13,8 @@ BuildInfo build_info() {
   const std::string compiler = "gcc " __VERSION__;
 #endif
 #if defined(__x86_64__)
-  const std::string processor = "x86-64";
+  // The system's sin, cos, pow and log take another path, with other last bits, where the processor has FMA.
+  const std::string processor = __builtin_cpu_supports("fma") ? "x86-64 with FMA" : "x86-64";
 #elif defined(__aarch64__)
   const std::string processor = "arm64";
 #else
@@ -23,6 +26,7 @@ BuildInfo build_info() {
           {"processor", processor},
           {"native", PLIANT_NATIVE_BUILD ? "yes" : "no"},
           {"vector_instructions", Eigen::SimdInstructionSetsInUse()},
+          {"libc", gnu_get_libc_version()},
           {"eigen", PLIANT_EIGEN_VERSION}};
 }
 

@@ -235,6 +235,9 @@ void Run::write(const std::string& stage, const std::vector<std::string>& files,
   const Clock::time_point start = Clock::now();
   try {
     task();
+  } catch (const Interrupted& interruption) {
+    finish(RunRecord::Status::stopped, stage + ": " + interruption.what());
+    throw;
   } catch (const std::exception& failure) {
     fail(stage + ": " + failure.what());
     throw;

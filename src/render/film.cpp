@@ -1,7 +1,6 @@
 #include <pliant/render/film.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <pliant/io/png.h>
 #include <pliant/io/run_files.h>
@@ -11,15 +10,6 @@ namespace {
 
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
-}
-
-// The automatic camera with another field of view: as much of the picture stays filled.
-Camera automatic_view(const Eigen::AlignedBox3d& bounds, double aspect, double field_of_view) {
-  Camera camera = automatic_camera(bounds, aspect);
-  const auto half_width = [](double degrees) { return std::tan(degrees * kPi / 360); };
-  camera.eye = camera.target + (camera.eye - camera.target) * half_width(camera.field_of_view) / half_width(field_of_view);
-  camera.field_of_view = field_of_view;
-  return camera;
 }
 
 }  // namespace
@@ -60,7 +50,7 @@ void Film::choose_view() {
   const CameraSetting& asked = scene_->camera;
   const double aspect = static_cast<double>(scene_->width) / scene_->height;
   Camera& camera = picture_.camera;
-  camera = automatic_view(all, aspect, asked.field_of_view);
+  camera = automatic_camera(all, aspect, asked.field_of_view);
   if (asked.target) {
     camera.eye += *asked.target - camera.target;
     camera.target = *asked.target;

@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Name and value: version, compiler, build type, native, Eigen, processor family.
+/// Name and value: what may change the last bits of a result, from the version to the processor.
 using BuildInfo = std::vector<std::pair<std::string, std::string>>;
 BuildInfo build_info();
 

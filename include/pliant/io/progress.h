@@ -1,9 +1,15 @@
 // How a long task tells how far it is; what is shown of it is up to the program.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
 namespace pliant {
+
+/// Thrown by Progress::advance() to end a task early; what is finished stays.
+class Interrupted : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class Progress {
  public:
