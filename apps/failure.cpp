@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <pliant/integrate/simulation.h>
+#include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run_folder.h>
 #include <pliant/math/nearest_name.h>
