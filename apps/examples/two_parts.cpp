@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   const double top = kPi / 2, bottom = -kPi / 2;  // latitude u of the poles
   body.spring("hook", world(0, 0, 0), point(upper, top, 0), 1e5, 100);
   body.spring("link", point(upper, bottom, 0), point(lower, top, 0), 1e5, 100);
-  body.force("push", point(lower, 0, 0), TimeVector(TimeFunction::formula("50 * sin(2 * pi * t)"), 0, 0));
+  body.force("push", point(lower, 0, 0), {TimeFunction::formula("50 * sin(2 * pi * t)"), 0, 0});
 
   Simulation simulation(body, "rk4");
   const Surface surface(upper, 8);
