@@ -32,6 +32,10 @@ int run_command(int argc, char** argv) {
   pliant_cli::add_export(app, action);
   pliant_cli::add_schema(app, action);
   pliant_cli::add_doctor(app, action);
+  if (argc <= 1) {
+    std::cerr << app.help();
+    return pliant_cli::kCommandLine;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

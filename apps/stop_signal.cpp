@@ -2,6 +2,7 @@
 
 #include <initializer_list>
 #include <csignal>
+#include <initializer_list>
 
 namespace pliant_cli {
 namespace {
