@@ -6,7 +6,11 @@ cd "$(dirname "$0")/.."
 . apps/setup.sh
 
 pliant_install
-pliant_configure release
+if [ -f build/release/CMakeCache.txt ]; then
+  pliant_configure release
+else
+  pliant_configure release -DPLIANT_TESTS=OFF -DPLIANT_BENCH=OFF
+fi
 pliant_build release --target pliant
 build/release/apps/pliant run scenes/pull.json --obj --png --force -o out/pull
 pliant_say "meshes and pictures are in $(pwd)/out/pull"

@@ -1,9 +1,12 @@
 # What apps/quickstart.sh, tests/run.sh and .ci/run share: the Debian packages, their installation, and the build with a
 # preset. Source it from POSIX sh with the project's folder as the current one.
+# shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
-# Words of this list are packages; a|b,c means a, or where the distribution has no a, both b and c.
-pliant_packages="g++ cmake ninja-build pkg-config libeigen3-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
-nlohmann-json3-dev libcli11-dev libpng-dev catch2 libvalijson-dev libosmesa6|libegl1,libgl1-mesa-dri"
+# Words of these lists are packages; a|b,c means a, or where the distribution has no a, both b and c.
+pliant_packages="g++ cmake ninja-build libeigen3-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
+nlohmann-json3-dev libcli11-dev libpng-dev libosmesa6|libegl1,libgl1-mesa-dri"
+# Tests need these too: both ways to draw without a screen, and an independent judge of the scenes' schema.
+pliant_test_packages="catch2 pkgconf libegl1 libgl1-mesa-dri libvalijson-dev"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 
@@ -24,33 +27,29 @@ pliant_available() {
   done
 }
 
-# Prints the packages that are missing, of those words of a list given as arguments.
+# Prints the packages that are missing, of the words of a list given as arguments.
 pliant_missing() {
   for word; do
-    chosen=
+    wanted=
     for choice in $(printf '%s' "$word" | tr '|' ' '); do
       names=$(printf '%s' "$choice" | tr ',' ' ')
-      # shellcheck disable=SC2086
-      if pliant_installed $names; then
-        chosen=
-        break
-      fi
-      if [ -z "$chosen" ] && { [ "$choice" = "$word" ] || pliant_available $names; }; then chosen=$names; fi
+      if pliant_installed $names; then continue 2; fi
+      if [ -z "$wanted" ] && pliant_available $names; then wanted=$names; fi
     done
-    for name in $chosen; do
+    # Before the first look at the distribution's lists nothing is available: name the first choice.
+    for name in ${wanted:-$(printf '%s' "${word%%|*}" | tr ',' ' ')}; do
       pliant_installed "$name" || printf '%s ' "$name"
     done
   done
 }
 
-# Installs what is missing of the packages every build needs and of those named: as root, or through sudo. Otherwise it
-# prints them and ends with status 4.
+# Installs what is missing of the packages every build needs and of the words given: as root, or through sudo. Otherwise
+# it prints them and ends with status 4.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    pliant_say "not a Debian system: should configuring fail, install the counterparts of" $pliant_packages
+    pliant_say "not a Debian system: should configuring fail, install the counterparts of" $pliant_packages "$@"
     return 0
   fi
-  # shellcheck disable=SC2086
   missing=$(pliant_missing $pliant_packages "$@")
   [ -n "$missing" ] || return 0
   as_root=
@@ -63,10 +62,8 @@ pliant_install() {
   fi
   apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600"
   $apt update || pliant_say "the package lists could not be renewed; trying with the old ones"
-  # shellcheck disable=SC2086
   missing=$(pliant_missing $pliant_packages "$@")  # again: now it is known what the distribution has
   pliant_say "installing $missing"
-  # shellcheck disable=SC2086
   if ! $apt install -y --no-install-recommends $missing; then
     pliant_say "these packages could not be installed: $missing" >&2
     exit 4

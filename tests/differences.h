@@ -1,5 +1,5 @@
-// Derivatives by central differences of sixth order, for functions evaluated in long double: with a step of 1e-3 of the
-// scale on which a function varies they carry some 15 digits.
+// Derivatives by central differences of sixth order, for functions evaluated in long double: with a step of
+// 1e-3 of the scale on which a function varies they carry some 15 digits.
 #pragma once
 
 namespace pliant::test {

@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/.."
 . apps/setup.sh
 
-pliant_install
-pliant_configure release
+pliant_install $pliant_test_packages
+pliant_configure release -DPLIANT_TESTS=ON -DPLIANT_BENCH=ON
 pliant_build release
 ctest --test-dir build/release -j2 --output-on-failure "$@"

@@ -1,5 +1,5 @@
-// Everything a user of the engine needs: shapes, deformations, parts, bodies, simulations. Meshes of surfaces included;
-// scenes, files and pictures are libraries of their own (pliant/scene, pliant/io, pliant/render).
+// Everything a user of the engine needs: shapes, deformations, parts, bodies, simulations. Meshes of surfaces
+// included; scenes, files and pictures are libraries of their own (pliant/scene, pliant/io, pliant/render).
 #pragma once
 
 #include <pliant/deform/all_deforms.h>

@@ -226,8 +226,9 @@ struct WorldPoint {
 }  // namespace
 
 template <class S>
-void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const std::vector<std::int8_t>* at_limit,
-                        const Workspace<double>* fixed_limits, Workspace<S>& work) const {
+void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
+                        const std::vector<std::int8_t>* at_limit, const Workspace<double>* fixed_limits,
+                        Workspace<S>& work) const {
   const Model& model = *model_;
   const auto& parts = model.parts();
   work.parts.resize(parts.size());
@@ -267,7 +268,8 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const std:
   };
   auto push = [&](const PortRef& ref, const Vec3<S>& force, double sign) {
     if (ref.part < 0) return;
-    Vec3<S>& sum = work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)];
+    Vec3<S>& sum =
+        work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)];
     for (int r = 0; r < 3; ++r) sum[r] += force[r] * sign;
   };
   for (const SpringModel& s : model.springs()) {
@@ -406,8 +408,9 @@ Ledger Dynamics::ledger(const State& state, Workspace<double>& work) const {
     ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + moment);
     VecMax<double> stretch(m.n_s);
     for (int k = 0; k < m.n_s; ++k)
-      stretch[k] = w.q_s[k] -
-                   m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].rest.value(t);
+      stretch[k] =
+          w.q_s[k] -
+          m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].rest.value(t);
     ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
     const Vec3<double> P = w.R * momentum.head<3>();
     ledger.momentum += P;
@@ -415,8 +418,9 @@ Ledger Dynamics::ledger(const State& state, Workspace<double>& work) const {
   }
   for (const SpringModel& s : model_->springs()) {
     auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
-      return ref.part >= 0 ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
-                           : point.world.value(t);
+      return ref.part >= 0
+                 ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
+                 : point.world.value(t);
     };
     const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
     ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
@@ -424,9 +428,12 @@ Ledger Dynamics::ledger(const State& state, Workspace<double>& work) const {
   return ledger;
 }
 
-void Dynamics::apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse) { part.factor.solve(impulse); }
+void Dynamics::apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse) {
+  part.factor.solve(impulse);
+}
 
-std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v, Workspace<double>& work) const {
+std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v,
+                               Workspace<double>& work) const {
   for (Eigen::Index i = 0; i < q.size(); ++i)
     if (!std::isfinite(q[i])) return "the coordinate " + model_->coordinate_name(static_cast<int>(i));
   for (Eigen::Index i = 0; i < v.size(); ++i)
@@ -440,14 +447,18 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
   }
   for (const SpringModel& s : model_->springs())
     for (const Point* end : {&s.spring->a, &s.spring->b})
-      if (end->part == nullptr && !end->world.value(t).allFinite()) return "the anchor of spring '" + s.spring->name + "'";
+      if (end->part == nullptr && !end->world.value(t).allFinite())
+        return "the anchor of spring '" + s.spring->name + "'";
   for (const SpringModel& s : model_->springs())
     for (const PortRef& ref : {s.a, s.b})
-      if (ref.part >= 0 &&
-          !work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)].allFinite())
+      if (ref.part >= 0 && !work.parts[static_cast<std::size_t>(ref.part)]
+                                .port_force[static_cast<std::size_t>(ref.port)]
+                                .allFinite())
         return "the force of spring '" + s.spring->name + "'";
   for (const ForceModel& f : model_->forces())
-    if (!work.parts[static_cast<std::size_t>(f.at.part)].port_force[static_cast<std::size_t>(f.at.port)].allFinite())
+    if (!work.parts[static_cast<std::size_t>(f.at.part)]
+             .port_force[static_cast<std::size_t>(f.at.port)]
+             .allFinite())
       return "the force '" + f.force->name + "'";
   for (const TorqueModel& m : model_->torques())
     if (!m.torque->torque.value(t).allFinite()) return "the torque '" + m.torque->name + "'";

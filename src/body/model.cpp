@@ -109,7 +109,8 @@ Vec3<double> Model::world_point(const State& state, int part, const Material<dou
 }
 
 std::string Model::velocity_name(int i) const {
-  static constexpr std::array<const char*, 6> rigid{"c_dot.x", "c_dot.y", "c_dot.z", "omega.x", "omega.y", "omega.z"};
+  static constexpr std::array<const char*, 6> rigid{"c_dot.x", "c_dot.y", "c_dot.z",
+                                                    "omega.x", "omega.y", "omega.z"};
   for (const PartModel& m : parts_) {
     if (m.v0 < 0 || i < m.v0 || i >= m.v0 + 6 + m.n_s) continue;
     const int k = i - m.v0;
@@ -121,7 +122,8 @@ std::string Model::velocity_name(int i) const {
 }
 
 std::string Model::coordinate_name(int i) const {
-  static constexpr std::array<const char*, 7> rigid{"c.x", "c.y", "c.z", "quat.w", "quat.x", "quat.y", "quat.z"};
+  static constexpr std::array<const char*, 7> rigid{"c.x",    "c.y",    "c.z",   "quat.w",
+                                                    "quat.x", "quat.y", "quat.z"};
   for (const PartModel& m : parts_) {
     if (m.q0 < 0 || i < m.q0 || i >= m.q0 + 7 + m.n_s) continue;
     const int k = i - m.q0;

@@ -7,29 +7,34 @@ namespace pliant {
 
 Part& MultiBody::add(std::unique_ptr<Part> part) {
   if (part->name().empty()) throw std::invalid_argument("a part needs a name");
-  if (find(part->name()) != nullptr) throw std::invalid_argument("there are two parts called '" + part->name() + "'");
+  if (find(part->name()) != nullptr)
+    throw std::invalid_argument("there are two parts called '" + part->name() + "'");
   parts_.push_back(std::move(part));
   return *parts_.back();
 }
 
-Spring& MultiBody::spring(std::string name, Point a, Point b, double stiffness, double damping, double rest_length) {
-  if (!(stiffness >= 0) || !(damping >= 0) || !(rest_length >= 0) || !std::isfinite(stiffness + damping + rest_length))
-    throw std::invalid_argument("spring '" + name + "': stiffness, damping and rest length must be numbers >= 0");
+Spring& MultiBody::spring(std::string name, Point a, Point b, double stiffness, double damping,
+                          double rest_length) {
+  if (!(stiffness >= 0) || !(damping >= 0) || !(rest_length >= 0) ||
+      !std::isfinite(stiffness + damping + rest_length))
+    throw std::invalid_argument("spring '" + name +
+                                "': stiffness, damping and rest length must be numbers >= 0");
   springs_.push_back(std::make_unique<Spring>(
       Spring{std::move(name), std::move(a), std::move(b), stiffness, damping, rest_length}));
   return *springs_.back();
 }
 
 PointForce& MultiBody::force(std::string name, Point at, TimeVector force, Frame frame) {
-  forces_.push_back(
-      std::make_unique<PointForce>(PointForce{std::move(name), std::move(at), std::move(force), frame, nullptr}));
+  forces_.push_back(std::make_unique<PointForce>(
+      PointForce{std::move(name), std::move(at), std::move(force), frame, nullptr}));
   return *forces_.back();
 }
 
-PointForce& MultiBody::force(std::string name, Point at,
-                             std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom) {
-  forces_.push_back(
-      std::make_unique<PointForce>(PointForce{std::move(name), std::move(at), {}, Frame::world, std::move(custom)}));
+PointForce& MultiBody::force(
+    std::string name, Point at,
+    std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom) {
+  forces_.push_back(std::make_unique<PointForce>(
+      PointForce{std::move(name), std::move(at), {}, Frame::world, std::move(custom)}));
   return *forces_.back();
 }
 

@@ -63,7 +63,9 @@ ThreadPool::~ThreadPool() {
   for (std::thread& thread : impl_->threads) thread.join();
 }
 
-int ThreadPool::threads() const { return static_cast<int>(impl_->threads.size()) + 1; }
+int ThreadPool::threads() const {
+  return static_cast<int>(impl_->threads.size()) + 1;
+}
 
 void ThreadPool::run(int n, const std::function<void(int)>& task) {
   Impl& pool = *impl_;

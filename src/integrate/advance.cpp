@@ -52,9 +52,10 @@ Range limits_of(const PartModel& m, int k) {
   return m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].limits;
 }
 
-/// Solves the rows and adds the impulses to the velocities of the part (body-frame v_r); returns the work done.
-double resolve(const PartModel& m, const PartWorkspace<double>& w, const std::vector<Row>& rows, VecMax<double>& v_r,
-               StepCounters& counters) {
+/// Solves the rows and adds the impulses to the velocities of the part (body-frame v_r); returns the work
+/// done.
+double resolve(const PartModel& m, const PartWorkspace<double>& w, const std::vector<Row>& rows,
+               VecMax<double>& v_r, StepCounters& counters) {
   const auto n = static_cast<Eigen::Index>(rows.size());
   MatX<double> W(n, n);
   VecX<double> b(n);
@@ -85,7 +86,8 @@ double resolve(const PartModel& m, const PartWorkspace<double>& w, const std::ve
   return work;
 }
 
-void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecMax<double>& v_r, VecX<double>& v) {
+void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecMax<double>& v_r,
+                   VecX<double>& v) {
   v.segment<3>(m.v0) = w.R * v_r.head<3>();
   v.segment(m.v0 + 3, 3 + m.n_s) = v_r.tail(3 + m.n_s);
 }

@@ -16,7 +16,8 @@ std::unique_ptr<Integrator> make() {
 
 const std::vector<IntegratorInfo>& all_integrators() {
   static const std::vector<IntegratorInfo> all{
-      {"semi_implicit_euler", 1, "the paper's: one evaluation a step; robust, first order", &make<SemiImplicitEuler>},
+      {"semi_implicit_euler", 1, "the paper's: one evaluation a step; robust, first order",
+       &make<SemiImplicitEuler>},
       {"rk4", 4, "classical Runge-Kutta: four evaluations a step; accurate for smooth motion", &make<Rk4>},
   };
   return all;

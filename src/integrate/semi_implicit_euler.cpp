@@ -6,7 +6,8 @@
 
 namespace pliant {
 
-void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) {
+void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                             StepCounters& counters) {
   const double h = state.h;
   dynamics.accelerations(state.time(), state.q, state.v, state.at_limit, work);
   ++counters.evaluations;

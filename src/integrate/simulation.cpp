@@ -52,7 +52,8 @@ void Simulation::check(const State& before) {
   if (!term.empty())
     message << "; the term at fault is " << term;
   else
-    message << "; the motion has grown beyond all bounds, which a smaller step than " << before.h << " s may cure";
+    message << "; the motion has grown beyond all bounds, which a smaller step than " << before.h
+            << " s may cure";
   const double stable = [&] {
     state_ = before;
     return largest_stable_step(*this);

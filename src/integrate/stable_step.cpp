@@ -1,5 +1,5 @@
-// The largest stable step: M, K and D of each group of parts tied by springs, in mass-normalised coordinates, and the
-// step at which the method's growth passes 1.
+// The largest stable step: M, K and D of each group of parts tied by springs, in mass-normalised coordinates,
+// and the step at which the method's growth passes 1.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,15 +46,17 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   std::vector<Eigen::Index> solid;
   for (Eigen::Index i = 0; i < values.size(); ++i)
     if (values[i] > 1e-10) solid.push_back(i);
-  MatX<double> T = scale.asDiagonal() * modes.eigenvectors() * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
+  MatX<double> T = scale.asDiagonal() * modes.eigenvectors() *
+                   values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX<double> all = T(Eigen::all, solid);
-  // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would only
-  // blur the growth of the others.
+  // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would
+  // only blur the growth of the others.
   const MatX<double> resistance = all.transpose() * (K + D) * all;
   const Eigen::SelfAdjointEigenSolver<MatX<double>> resisted(resistance);
   std::vector<Eigen::Index> stiff_modes;
   for (Eigen::Index i = 0; i < resistance.rows(); ++i)
-    if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff()) stiff_modes.push_back(i);
+    if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff())
+      stiff_modes.push_back(i);
   const MatX<double> basis = all * resisted.eigenvectors()(Eigen::all, stiff_modes);
   const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
   const double stiff = k.norm(), damped = d.norm();
@@ -106,7 +108,8 @@ double largest_stable_step(const Simulation& simulation) {
       size += 6 + model.parts()[i].n_s;
     }
     const bool together = size <= kLargestGroup;
-    Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size), MatX<double>::Zero(size, size)};
+    Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
+                  MatX<double>::Zero(size, size)};
     for (const std::size_t i : members) {
       const PartModel& m = model.parts()[i];
       const Part& part = *m.part;

@@ -16,7 +16,6 @@ using Code = Formula::Code;
 using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kSmallStack = 16;
 /// A level of nesting holds at most a sum, a product, a base and two arguments that wait for the level below.
 constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);

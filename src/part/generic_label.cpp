@@ -10,7 +10,8 @@ namespace pliant {
 namespace {
 
 /// e and [e_u e_v e_w] at the angles (u, v) and radius w.
-Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeParameters a, Vec3<double>& e) {
+Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeParameters a,
+                         Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);
   Mat3<double> E;
   for (int r = 0; r < 3; ++r) {

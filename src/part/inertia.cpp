@@ -119,13 +119,14 @@ struct Sums {
       b[r] += force[r];
       pxb[r] += torque[r];
     }
-    for (int c = 0; c < n; ++c) Jb[static_cast<std::size_t>(c)] += dot(jet.J[static_cast<std::size_t>(c)], force);
+    for (int c = 0; c < n; ++c)
+      Jb[static_cast<std::size_t>(c)] += dot(jet.J[static_cast<std::size_t>(c)], force);
   }
 };
 
 template <class P>
-void fill_rigid_blocks(Inertia<P>& out, int n, double mass, const P& xx, const P& yy, const P& zz, const P& xy,
-                       const P& yz, const P& zx) {
+void fill_rigid_blocks(Inertia<P>& out, int n, double mass, const P& xx, const P& yy, const P& zz,
+                       const P& xy, const P& yz, const P& zx) {
   out.mass = mass;
   out.M.resize(6 + n, 6 + n);
   for (int i = 0; i < 3; ++i)
@@ -269,8 +270,9 @@ Counters& Counters::operator+=(const Counters& o) {
   return *this;
 }
 
-void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
-                 const Vec3<double>& omega, Inertia<double>& out, Counters& counters) {
+void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
+                 const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
+                 Counters& counters) {
   sum_over<double>(part, points, q_s, q_s_dot, omega, out, counters);
 }
 
@@ -289,12 +291,14 @@ void Part::inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, c
     sum_over<Dual<1>>(*this, mass_points_, q_s, q_s_dot, omega, out, counters);
 }
 
-void Part::points(const std::vector<Material<double>>& at, const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
-                  std::vector<PointJet<double>>& out, Counters& counters) const {
+void Part::points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
+                  const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out,
+                  Counters& counters) const {
   point_jets<double>(*this, at, q_s, q_s_dot, out, counters);
 }
-void Part::points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
-                  std::vector<PointJet<Dual<1>>>& out, Counters& counters) const {
+void Part::points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
+                  const VecMax<Dual<1>>& q_s_dot, std::vector<PointJet<Dual<1>>>& out,
+                  Counters& counters) const {
   point_jets<Dual<1>>(*this, at, q_s, q_s_dot, out, counters);
 }
 

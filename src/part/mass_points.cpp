@@ -370,9 +370,12 @@ std::vector<Probe> probes(const Part& part) {
     for (int i = 0; i < n; ++i) {
       const Parameter& p = all[all.dynamic()[static_cast<std::size_t>(i)]];
       const double rest = p.rest_value();
-      const double scale = p.spec->relative ? rest : (std::isfinite(p.limits.max) ? 1.0 : part.size());
-      const double low = std::max(p.limits.min, p.spec->relative ? 0.5 * rest : -1e3 * scale);
-      const double high = std::min(p.limits.max, p.spec->relative ? 2 * rest : 1e3 * scale);
+      // Lengths scale the body: from half to twice their rest value tells all; offsets up to twice its size.
+      const bool offset = !p.spec->relative && p.spec->unit[0] == 'm';
+      const double scale = p.spec->relative ? rest : (offset ? part.size() : 1.0);
+      const double reach = offset ? 2 * scale : kInfinity;
+      const double low = std::max({p.limits.min, p.spec->relative ? 0.5 * rest : -kInfinity, -reach});
+      const double high = std::min({p.limits.max, p.spec->relative ? 2 * rest : kInfinity, reach});
       const double mix = k == 0 ? 0 : (k == 1 ? 1.0 : (k == 2 ? 0.0 : uniform()));
       probe.q_s[i] = k == 0 ? rest : low + mix * (high - low);
       probe.q_s_dot[i] = scale * (0.5 + uniform());

@@ -1,6 +1,5 @@
 #include <pliant/part/part.h>
 
-
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -23,16 +22,22 @@ std::string text(double x) {
   brief << x;
   return std::stod(brief.str()) == x ? brief.str() : out.str();
 }
-std::string text(const Range& r) { return "[" + text(r.min) + ", " + text(r.max) + "]"; }
+std::string text(const Range& r) {
+  return "[" + text(r.min) + ", " + text(r.max) + "]";
+}
 }  // namespace
 
-Part::Part(std::string name, double density, std::unique_ptr<ShapeFace> shape, const std::vector<LinkInfo>& links)
+Part::Part(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+           const std::vector<LinkInfo>& links)
     : name_(std::move(name)), shape_(std::move(shape)), parameters_(*shape_, links), density_(density) {
-  if (!(density > 0) || !std::isfinite(density)) refuse("density " + text(density) + " is not a positive number");
+  if (!(density > 0) || !std::isfinite(density))
+    refuse("density " + text(density) + " is not a positive number");
   stiffness_ = MatX<double>::Zero(parameters_.size(), parameters_.size());
 }
 
-void Part::refuse(const std::string& what) const { throw std::invalid_argument("part '" + name_ + "': " + what); }
+void Part::refuse(const std::string& what) const {
+  throw std::invalid_argument("part '" + name_ + "': " + what);
+}
 
 int Part::require(const std::string& parameter) const {
   const int i = parameters_.find(parameter);
@@ -42,7 +47,8 @@ int Part::require(const std::string& parameter) const {
 
 Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
   if (!c.allFinite()) refuse("its position is not finite");
-  if (!(R.norm() > 0) || !std::isfinite(R.norm())) refuse("its orientation is not a rotation (quaternion of length 0)");
+  if (!(R.norm() > 0) || !std::isfinite(R.norm()))
+    refuse("its orientation is not a rotation (quaternion of length 0)");
   c0_ = c;
   R0_ = R.normalized();
   return *this;
@@ -69,8 +75,8 @@ Part& Part::rest(const Named& values) {
 Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
   const int i = require(parameter);
   if (!parameters_[i].spec->frozen.contains(of_time.value(0)))
-    refuse(parameter + " = " + text(of_time.value(0)) + " at time 0 is out of range; allowed: " +
-           text(parameters_[i].spec->frozen));
+    refuse(parameter + " = " + text(of_time.value(0)) +
+           " at time 0 is out of range; allowed: " + text(parameters_[i].spec->frozen));
   parameters_[i].rest = std::move(of_time);
   parameters_.update();
   return *this;
@@ -115,14 +121,16 @@ Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<dou
   const auto n = static_cast<Eigen::Index>(parameters.size());
   if (K.rows() != n || K.cols() != n)
     refuse("the stiffness matrix must be " + std::to_string(n) + " x " + std::to_string(n));
-  if (!K.allFinite() || !K.isApprox(K.transpose(), 1e-12)) refuse("the stiffness matrix must be finite and symmetric");
+  if (!K.allFinite() || !K.isApprox(K.transpose(), 1e-12))
+    refuse("the stiffness matrix must be finite and symmetric");
   const double lowest = Eigen::SelfAdjointEigenSolver<MatX<double>>(K).eigenvalues().minCoeff();
   if (lowest < -1e-12 * K.cwiseAbs().maxCoeff())
     refuse("the stiffness matrix has the negative eigenvalue " + text(lowest));
   for (Eigen::Index i = 0; i < n; ++i) {
     const int row = require(parameters[static_cast<std::size_t>(i)]);
     parameters_[row].dynamic = true;
-    for (Eigen::Index j = 0; j < n; ++j) stiffness_(row, require(parameters[static_cast<std::size_t>(j)])) = K(i, j);
+    for (Eigen::Index j = 0; j < n; ++j)
+      stiffness_(row, require(parameters[static_cast<std::size_t>(j)])) = K(i, j);
   }
   parameters_.update();
   return *this;
@@ -176,9 +184,11 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
   const Mat3<double> about_centre =
       about_origin - mass * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
   const Vec3<double> I = Eigen::SelfAdjointEigenSolver<Mat3<double>>(about_centre).eigenvalues();
-  if (!about_origin.isApprox(about_origin.transpose(), 1e-12) || !(I[0] > 0) || I[0] + I[1] < I[2] * (1 - 1e-12))
-    refuse("no body has this inertia: its principal moments about the centre of mass are " + text(I[0]) + ", " +
-           text(I[1]) + ", " + text(I[2]) + "; each must be positive and at most the sum of the others");
+  if (!about_origin.isApprox(about_origin.transpose(), 1e-12) || !(I[0] > 0) ||
+      I[0] + I[1] < I[2] * (1 - 1e-12))
+    refuse("no body has this inertia: its principal moments about the centre of mass are " + text(I[0]) +
+           ", " + text(I[1]) + ", " + text(I[2]) +
+           "; each must be positive and at most the sum of the others");
   Inertia<double> given;
   given.mass = mass;
   given.moment = mass * centre;
@@ -211,11 +221,14 @@ void Part::prepare() {
       continue;
     }
     if (!p.limits.contains(p.rest_value()))
-      refuse("the rest value " + text(p.rest_value()) + " of " + p.name + " is outside its limits " + text(p.limits));
+      refuse("the rest value " + text(p.rest_value()) + " of " + p.name + " is outside its limits " +
+             text(p.limits));
     if (!p.limits.contains(p.initial))
-      refuse("the initial value " + text(p.initial) + " of " + p.name + " is outside its limits " + text(p.limits));
+      refuse("the initial value " + text(p.initial) + " of " + p.name + " is outside its limits " +
+             text(p.limits));
   }
-  if (fixed_ && n > 0) refuse("a fixed part has no dynamic parameters; freeze " + parameters_[parameters_.dynamic()[0]].name);
+  if (fixed_ && n > 0)
+    refuse("a fixed part has no dynamic parameters; freeze " + parameters_[parameters_.dynamic()[0]].name);
   if (given_inertia_ && n > 0) refuse("an inertia can be given to a rigid part only; freeze its parameters");
   K_s_.resize(n, n);
   for (int i = 0; i < n; ++i)
@@ -235,7 +248,8 @@ void Part::prepare() {
   }
   mass_points_ = lay_mass_points(*this);
   VecMax<double> q_s(n);
-  for (int k = 0; k < n; ++k) q_s[k] = parameters_[parameters_.dynamic()[static_cast<std::size_t>(k)]].rest_value();
+  for (int k = 0; k < n; ++k)
+    q_s[k] = parameters_[parameters_.dynamic()[static_cast<std::size_t>(k)]].rest_value();
   Counters unused;
   auto take = [&] {
     Inertia<double> sum;
@@ -250,7 +264,8 @@ void Part::prepare() {
   }
 }
 
-Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const {
+Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,
+                         const ParameterValues<double>& values) const {
   Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(at.size()));
   Jet<Pack> jet;
   for (std::size_t first = 0; first < at.size(); first += Pack::kLanes) {
@@ -260,17 +275,20 @@ Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at, const Paramete
     JetBatch<Pack> batch{&jet, 1, 0, Level::position};
     jets(values, &material, batch);
     for (std::size_t i = first; i < std::min(first + Pack::kLanes, at.size()); ++i)
-      for (int r = 0; r < 3; ++r) out(r, static_cast<Eigen::Index>(i)) = jet.s[r][static_cast<int>(i - first)];
+      for (int r = 0; r < 3; ++r)
+        out(r, static_cast<Eigen::Index>(i)) = jet.s[r][static_cast<int>(i - first)];
   }
   return out;
 }
 
-std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e, const ParameterValues<double>& values) const {
+std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e,
+                                               const ParameterValues<double>& values) const {
   std::vector<Mat3<double>> F(static_cast<std::size_t>(e.cols()));
   Jet<Pack> jet;
   for (Eigen::Index first = 0; first < e.cols(); first += Pack::kLanes) {
     for (int r = 0; r < 3; ++r) {
-      for (int i = 0; i < Pack::kLanes; ++i) jet.s[r].set(i, e(r, std::min<Eigen::Index>(first + i, e.cols() - 1)));
+      for (int i = 0; i < Pack::kLanes; ++i)
+        jet.s[r].set(i, e(r, std::min<Eigen::Index>(first + i, e.cols() - 1)));
       for (std::size_t c = 0; c < 3; ++c) jet.J[c][r] = Pack(static_cast<std::size_t>(r) == c ? 1.0 : 0.0);
     }
     JetBatch<Pack> batch{&jet, 1, 3, Level::jacobian};
@@ -278,12 +296,14 @@ std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e, const 
     for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + Pack::kLanes, e.cols()); ++i)
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c)
-          F[static_cast<std::size_t>(i)](r, c) = jet.J[static_cast<std::size_t>(c)][r][static_cast<int>(i - first)];
+          F[static_cast<std::size_t>(i)](r, c) =
+              jet.J[static_cast<std::size_t>(c)][r][static_cast<int>(i - first)];
   }
   return F;
 }
 
-Mat3<double> Part::material_gradient(double u, double v, double w, const ParameterValues<double>& values) const {
+Mat3<double> Part::material_gradient(double u, double v, double w,
+                                     const ParameterValues<double>& values) const {
   const Vec3<Dual<3>> e = shape_->tangents(material_with_tangents(u, v, w), values.b.data());
   Mat3<double> E;
   Eigen::Matrix3Xd at(3, 1);
@@ -298,7 +318,8 @@ double Part::inside_outside(const Vec3<double>& p, const ParameterValues<double>
   return shape_->gauge(undeform(p, values), values.b.data()) - 1;
 }
 
-Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const {
+Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p,
+                                           const ParameterValues<double>& values) const {
   const Vec3<double> e = undeform(p, values);
   const Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
   return F.transpose().partialPivLu().solve(shape_->gauge_gradient(e, values.b.data()));
@@ -307,7 +328,8 @@ Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p, const Paramete
 std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
                                         const ParameterValues<double>& values) const {
   Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(at.size()));
-  for (std::size_t i = 0; i < at.size(); ++i) e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
+  for (std::size_t i = 0; i < at.size(); ++i)
+    e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
   const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
   std::vector<Vec3<double>> all;
   all.reserve(at.size());
@@ -316,7 +338,8 @@ std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
     const Mat3<double>& F = gradients[i];
     Mat3<double> cofactors;
     cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-    const Vec3<double> n = cofactors * shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
+    const Vec3<double> n =
+        cofactors * shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
     all.push_back(n.normalized());
   }
   return all;

@@ -1,4 +1,5 @@
-// Makes a part of the shape number I of AllShapes. Each is defined in a file of its own (primitive_instance.cpp.in).
+// Makes a part of the shape number I of AllShapes. Each is defined in a file of its own
+// (primitive_instance.cpp.in).
 #pragma once
 
 #include <memory>

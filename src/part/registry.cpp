@@ -31,11 +31,12 @@ std::shared_ptr<const AnyLink> make_link(const std::string& name, std::tuple<Def
 }
 
 template <int... I>
-std::unique_ptr<Part> make_shape(const std::string& shape, const std::string& name, double density, AnyChain chain,
-                                 std::integer_sequence<int, I...>) {
+std::unique_ptr<Part> make_shape(const std::string& shape, const std::string& name, double density,
+                                 AnyChain chain, std::integer_sequence<int, I...>) {
   std::unique_ptr<Part> part;
-  ((shape == std::tuple_element_t<I, AllShapes>::name ? void(part = make_primitive<I>(name, density, std::move(chain)))
-                                                      : void()),
+  ((shape == std::tuple_element_t<I, AllShapes>::name
+        ? void(part = make_primitive<I>(name, density, std::move(chain)))
+        : void()),
    ...);
   return part;
 }
@@ -59,8 +60,10 @@ std::unique_ptr<Part> make_part(const std::string& name, const std::string& shap
     links.push_back(make_link(deformation, static_cast<AllDeforms*>(nullptr)));
     if (links.back()) continue;
     std::string names;
-    for (const DeformationInfo& info : all_deformations()) names += std::string(names.empty() ? "" : " ") + info.name;
-    throw std::invalid_argument("part '" + name + "': no deformation '" + deformation + "'; there are: " + names);
+    for (const DeformationInfo& info : all_deformations())
+      names += std::string(names.empty() ? "" : " ") + info.name;
+    throw std::invalid_argument("part '" + name + "': no deformation '" + deformation +
+                                "'; there are: " + names);
   }
   auto part = make_shape(shape, name, density, AnyChain(std::move(links)),
                          std::make_integer_sequence<int, std::tuple_size_v<AllShapes>>());

@@ -12,7 +12,8 @@ namespace {
 /// Corners whose face turns away from the vertex normal by more than this get the normal of their face.
 constexpr double kCreaseCosine = 0.5;
 
-/// The ball pattern: rings of the upper cap, rings of the side, rings of the lower cap, on a grid of 2m x 2m cells a face.
+/// The ball pattern: rings of the upper cap, rings of the side, rings of the lower cap, on a grid of 2m x 2m
+/// cells a face.
 struct BallGrid {
   int m;
   std::map<std::array<int, 3>, int> index;  // cube lattice point -> vertex
@@ -63,7 +64,8 @@ void quad(std::vector<std::array<int, 3>>& triangles, int a, int b, int c, int d
 
 Surface::Surface(const Part& part, int resolution) {
   if (resolution < 1 || resolution > 512)
-    throw std::invalid_argument("surface resolution " + std::to_string(resolution) + " must be from 1 to 512");
+    throw std::invalid_argument("surface resolution " + std::to_string(resolution) +
+                                " must be from 1 to 512");
   const ParameterValues<double> rest = part.parameters().rest();
   const ShapeFace& shape = part.shape();
   std::vector<std::array<int, 3>> triangles;
@@ -95,15 +97,15 @@ Surface::Surface(const Part& part, int resolution) {
     const int round = 8 * resolution, tube = 4 * resolution;
     for (int j = 0; j < round; ++j)
       for (int i = 0; i < tube; ++i)
-        material_.push_back(
-            shape.mesh_label({2 * kPi * i / tube, 2 * kPi * j / round, 0}, rest.b.data()));
+        material_.push_back(shape.mesh_label({2 * kPi * i / tube, 2 * kPi * j / round, 0}, rest.b.data()));
     auto at = [&](int i, int j) { return (j % round) * tube + i % tube; };
     for (int j = 0; j < round; ++j)
       for (int i = 0; i < tube; ++i) quad(triangles, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
   }
   triangles_.resize(3, static_cast<Eigen::Index>(triangles.size()));
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) triangles_(k, static_cast<Eigen::Index>(t)) = triangles[t][static_cast<std::size_t>(k)];
+    for (int k = 0; k < 3; ++k)
+      triangles_(k, static_cast<Eigen::Index>(t)) = triangles[t][static_cast<std::size_t>(k)];
 }
 
 int Surface::resolution_for(const Part& part, int triangles) {
@@ -118,7 +120,8 @@ TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>&
   mesh.corners = triangles_;
   std::vector<Vec3<double>> normals = part.normals(material_, values);
   for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
-    const Vec3<double> a = mesh.x.col(triangles_(0, t)), b = mesh.x.col(triangles_(1, t)), c = mesh.x.col(triangles_(2, t));
+    const Vec3<double> a = mesh.x.col(triangles_(0, t)), b = mesh.x.col(triangles_(1, t)),
+                       c = mesh.x.col(triangles_(2, t));
     const Vec3<double> face = (b - a).cross(c - a);
     const double area = face.norm();
     if (area == 0) continue;
@@ -134,12 +137,13 @@ TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>&
     }
   }
   mesh.normals.resize(3, static_cast<Eigen::Index>(normals.size()));
-  for (std::size_t i = 0; i < normals.size(); ++i) mesh.normals.col(static_cast<Eigen::Index>(i)) = normals[i];
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    mesh.normals.col(static_cast<Eigen::Index>(i)) = normals[i];
   return mesh;
 }
 
-TriangleMesh Surface::world_mesh(const Part& part, const ParameterValues<double>& values, const Vec3<double>& c,
-                                 const Eigen::Quaterniond& R) const {
+TriangleMesh Surface::world_mesh(const Part& part, const ParameterValues<double>& values,
+                                 const Vec3<double>& c, const Eigen::Quaterniond& R) const {
   TriangleMesh mesh = body_mesh(part, values);
   const Mat3<double> turn = R.toRotationMatrix();
   mesh.x = (turn * mesh.x).colwise() + c;

@@ -7,11 +7,13 @@
 
 namespace pliant {
 
-Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect) {
+Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect, double field_of_view) {
   constexpr double kDegree = 3.14159265358979323846 / 180;
   constexpr double kAzimuth = -58 * kDegree, kElevation = 20 * kDegree, kFill = 0.84;
   if (!(aspect > 0) || !std::isfinite(aspect))
     throw std::invalid_argument("a camera's aspect must be positive");
+  if (!(field_of_view > 0 && field_of_view < 180))
+    throw std::invalid_argument("a camera's field of view must be between 0 and 180 degrees");
 
   Eigen::AlignedBox3d box = bounds;
   if (box.isEmpty()) box = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -0.5, 0), Eigen::Vector3d(0.5, 0.5, 1));
@@ -19,6 +21,7 @@ Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect) {
     throw std::invalid_argument("a camera cannot frame a box that is not finite");
 
   Camera camera;
+  camera.field_of_view = field_of_view;
   camera.target = box.center();
   const Eigen::Vector3d back(std::cos(kElevation) * std::cos(kAzimuth),
                              std::cos(kElevation) * std::sin(kAzimuth), std::sin(kElevation));

@@ -5,7 +5,9 @@
 namespace pliant {
 
 namespace {
-double snap(double x) { return std::abs(x) < 4e-16 ? 0.0 : (std::abs(x) > 1 - 1e-16 ? std::copysign(1.0, x) : x); }
+double snap(double x) {
+  return std::abs(x) < 4e-16 ? 0.0 : (std::abs(x) > 1 - 1e-16 ? std::copysign(1.0, x) : x);
+}
 }  // namespace
 
 Material<double> material_at(double u, double v, double w) {

@@ -14,7 +14,9 @@ std::vector<Panel> rimmed_profile() {
   using K = Panel::Kind;
   return {{K::smooth, -kHalf, -kQuarter}, {K::smooth, -kQuarter, kQuarter}, {K::smooth, kQuarter, kHalf}};
 }
-std::vector<Panel> round_ring() { return {{Panel::Kind::periodic, 0, 2 * kPi}}; }
+std::vector<Panel> round_ring() {
+  return {{Panel::Kind::periodic, 0, 2 * kPi}};
+}
 
 }  // namespace
 
@@ -72,24 +74,34 @@ Material<double> Ellipsoid::label(const Vec3<double>& x, const Vec<double, 3>& a
 std::vector<Panel> Ellipsoid::profile(const Vec<double, 3>&, bool) {
   return {{Panel::Kind::smooth, -kHalf, kHalf}};
 }
-std::vector<Panel> Ellipsoid::ring(const Vec<double, 3>&, bool) { return round_ring(); }
+std::vector<Panel> Ellipsoid::ring(const Vec<double, 3>&, bool) {
+  return round_ring();
+}
 Section Ellipsoid::section(double zeta, double gap, const Vec<double, 3>& a) {
   const double width2 = gap * (1 + std::abs(zeta));
   return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
 }
-std::vector<SectionPanel> Ellipsoid::section_panels(const Vec<double, 3>&) { return {{-1, 1, false}}; }
+std::vector<SectionPanel> Ellipsoid::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 // Cylinder
 
 Material<double> Cylinder::label(const Vec3<double>& x, const Vec<double, 3>& a) {
   return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
 }
-std::vector<Panel> Cylinder::profile(const Vec<double, 3>&, bool) { return rimmed_profile(); }
-std::vector<Panel> Cylinder::ring(const Vec<double, 3>&, bool) { return round_ring(); }
+std::vector<Panel> Cylinder::profile(const Vec<double, 3>&, bool) {
+  return rimmed_profile();
+}
+std::vector<Panel> Cylinder::ring(const Vec<double, 3>&, bool) {
+  return round_ring();
+}
 Section Cylinder::section(double, double, const Vec<double, 3>& a) {
   return {kPi * a[0] * a[1], a[0] * a[0] / 4, a[1] * a[1] / 4};
 }
-std::vector<SectionPanel> Cylinder::section_panels(const Vec<double, 3>&) { return {{-1, 1, false}}; }
+std::vector<SectionPanel> Cylinder::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 // Cone
 
@@ -100,15 +112,21 @@ Material<double> Cone::label(const Vec3<double>& x, const Vec<double, 4>& a) {
   const double narrow = width > 1e-14 ? 1 / (width * w) : 0.0;
   return material_towards({x[0] / a[0] * narrow, x[1] / a[1] * narrow, z}, w);
 }
-std::vector<Panel> Cone::profile(const Vec<double, 4>&, bool) { return rimmed_profile(); }
-std::vector<Panel> Cone::ring(const Vec<double, 4>&, bool) { return round_ring(); }
+std::vector<Panel> Cone::profile(const Vec<double, 4>&, bool) {
+  return rimmed_profile();
+}
+std::vector<Panel> Cone::ring(const Vec<double, 4>&, bool) {
+  return round_ring();
+}
 Section Cone::section(double zeta, double gap, const Vec<double, 4>& a) {
   // 1 + t zeta without cancellation at the tip.
   const double end = zeta < 0 ? -1.0 : 1.0;
   const double width = (1 + a[3] * end) - a[3] * end * gap, width2 = width * width;
   return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
 }
-std::vector<SectionPanel> Cone::section_panels(const Vec<double, 4>&) { return {{-1, 1, false}}; }
+std::vector<SectionPanel> Cone::section_panels(const Vec<double, 4>&) {
+  return {{-1, 1, false}};
+}
 
 // Capsule
 
@@ -125,8 +143,12 @@ Material<double> Capsule::label(const Vec3<double>& x, const Vec<double, 2>& a) 
   const double polar = std::atan2(ring / w, std::abs(z) - half) / 2;
   return material_from(std::sin(polar), std::copysign(std::cos(polar), z), cv, sv, w);
 }
-std::vector<Panel> Capsule::profile(const Vec<double, 2>&, bool) { return rimmed_profile(); }
-std::vector<Panel> Capsule::ring(const Vec<double, 2>&, bool) { return round_ring(); }
+std::vector<Panel> Capsule::profile(const Vec<double, 2>&, bool) {
+  return rimmed_profile();
+}
+std::vector<Panel> Capsule::ring(const Vec<double, 2>&, bool) {
+  return round_ring();
+}
 Section Capsule::section(double zeta, double gap, const Vec<double, 2>& a) {
   const double h = a[0] + a[1] / 2, from_end = gap * h;  // distance from the pole
   const double beyond = std::abs(zeta) * h - a[1] / 2;
@@ -148,7 +170,9 @@ Material<double> Box::label(const Vec3<double>& x, const Vec<double, 3>& a) {
   const double cv = round > 0 ? k[0] / round : 1.0, sv = round > 0 ? k[1] / round : 0.0;
   return material_from(ring / size, k[2] / size, cv, sv, gauge<double>(x, a));
 }
-std::vector<Panel> Box::profile(const Vec<double, 3>&, bool) { return rimmed_profile(); }
+std::vector<Panel> Box::profile(const Vec<double, 3>&, bool) {
+  return rimmed_profile();
+}
 std::vector<Panel> Box::ring(const Vec<double, 3>&, bool) {
   std::vector<Panel> sides;
   for (int i = 0; i < 4; ++i)
@@ -158,7 +182,9 @@ std::vector<Panel> Box::ring(const Vec<double, 3>&, bool) {
 Section Box::section(double, double, const Vec<double, 3>& a) {
   return {4 * a[0] * a[1], a[0] * a[0] / 3, a[1] * a[1] / 3};
 }
-std::vector<SectionPanel> Box::section_panels(const Vec<double, 3>&) { return {{-1, 1, false}}; }
+std::vector<SectionPanel> Box::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 // Supertoroid
 
@@ -182,10 +208,13 @@ std::vector<Panel> Supertoroid::ring(const Vec<double, 6>& a, bool dynamic_expon
 Section Supertoroid::section(double zeta, double gap, const Vec<double, 6>& a) {
   const double q = superellipse_width(zeta, gap, a[4]), inner = a[3] - q, outer = a[3] + q;
   const Section unit = superellipse_section(a[5]);
-  // Between two similar superellipses: area outer^2 - inner^2 = 4 a4 q, mean square (outer^2 + inner^2) of the unit one.
+  // Between two similar superellipses: area outer^2 - inner^2 = 4 a4 q, mean square (outer^2 + inner^2) of
+  // the unit one.
   const double area = 4 * a[3] * q, spread = inner * inner + outer * outer;
   return {unit.area * a[0] * a[1] * area, unit.xx * a[0] * a[0] * spread, unit.yy * a[1] * a[1] * spread};
 }
-std::vector<SectionPanel> Supertoroid::section_panels(const Vec<double, 6>&) { return {{-1, 0, true}, {0, 1, true}}; }
+std::vector<SectionPanel> Supertoroid::section_panels(const Vec<double, 6>&) {
+  return {{-1, 0, true}, {0, 1, true}};
+}
 
 }  // namespace pliant

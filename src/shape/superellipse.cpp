@@ -6,7 +6,9 @@
 namespace pliant {
 
 namespace {
-double beta(double x, double y) { return std::tgamma(x) * std::tgamma(y) / std::tgamma(x + y); }
+double beta(double x, double y) {
+  return std::tgamma(x) * std::tgamma(y) / std::tgamma(x + y);
+}
 }  // namespace
 
 Section superellipse_section(double eps) {
@@ -19,7 +21,8 @@ std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, dou
   const double ax = std::abs(x), ay = std::abs(y), big = std::max(ax, ay);
   if (big == 0) return {trig(1.0), trig(0.0)};
   // In logarithms, so that nothing underflows for small exponents.
-  const double lx = ax > 0 ? std::log(ax / big) / eps : kLogZero, ly = ay > 0 ? std::log(ay / big) / eps : kLogZero;
+  const double lx = ax > 0 ? std::log(ax / big) / eps : kLogZero,
+               ly = ay > 0 ? std::log(ay / big) / eps : kLogZero;
   const double log_size = 0.5 * std::log(std::exp(2 * lx) + std::exp(2 * ly));
   auto side = [&](double value, double log_value) {
     return value == 0 ? trig(0.0) : trig_from_log(log_value - log_size, value > 0 ? 1.0 : -1.0);

@@ -1,5 +1,5 @@
-// The dynamics of all parts, read like sections 3 and 4 of the paper: positions -> mass -> forces -> limits -> accelerations.
-// S is double, or Dual<1> for directional derivatives.
+// The dynamics of all parts, read like sections 3 and 4 of the paper: positions -> mass -> forces -> limits
+// -> accelerations. S is double, or Dual<1> for directional derivatives.
 #pragma once
 
 #include <string>
@@ -16,27 +16,27 @@ struct PartWorkspace {
   // positions
   Vec3<S> c;
   Mat3<S> R;
-  VecMax<S> q_s, q_s_dot, v_r;               ///< v_r = (R^T c_dot, omega, q_s_dot)
-  std::vector<PointJet<S>> ports;            ///< body frame
-  std::vector<Vec3<S>> port_x, port_x_dot;   ///< world
+  VecMax<S> q_s, q_s_dot, v_r;              ///< v_r = (R^T c_dot, omega, q_s_dot)
+  std::vector<PointJet<S>> ports;           ///< body frame
+  std::vector<Vec3<S>> port_x, port_x_dot;  ///< world
   // mass
-  Inertia<S> inertia;                        ///< Eq. (11)
+  Inertia<S> inertia;  ///< Eq. (11)
   // forces, body frame, on v_r
   VecMax<S> f;
   Vec<S, kWorks> power;
-  std::vector<Vec3<S>> port_force;           ///< world
+  std::vector<Vec3<S>> port_force;  ///< world
   // limits and accelerations
   SymmetricFactor<S> factor;
-  VecMax<S> a_r;                             ///< (R^T c_ddot, omega_dot, q_s_ddot)
-  std::vector<int> pressed;                  ///< dynamic parameters that their limit holds back
+  VecMax<S> a_r;             ///< (R^T c_ddot, omega_dot, q_s_ddot)
+  std::vector<int> pressed;  ///< dynamic parameters that their limit holds back
   Counters counters;
 };
 
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
-  VecX<S> v_dot;             ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
-  Vec<S, kWorks> power;      ///< rates of the works of the ledger, W
+  VecX<S> v_dot;         ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
+  Vec<S, kWorks> power;  ///< rates of the works of the ledger, W
 };
 
 class Dynamics {
@@ -45,10 +45,10 @@ class Dynamics {
   const Model& model() const { return *model_; }
 
   /// Accelerations and powers at (t, q, v); parameters at a limit may only move away from it.
-  void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<std::int8_t>& at_limit,
-                     Workspace<double>& work) const;
-  /// Directional derivative of the accelerations along (dq, dv), the pressed limits staying as they are. dq holds, for
-  /// each quaternion, its derivative. work: as the evaluation at the state left it.
+  void accelerations(double t, const VecX<double>& q, const VecX<double>& v,
+                     const std::vector<std::int8_t>& at_limit, Workspace<double>& work) const;
+  /// Directional derivative of the accelerations along (dq, dv), the pressed limits staying as they are. dq
+  /// holds, for each quaternion, its derivative. work: as the evaluation at the state left it.
   VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const VecX<double>& dq,
                    const VecX<double>& dv, const Workspace<double>& work) const;
   /// q_dot of (q, v): quaternion rate theta_dot = 1/2 theta o (0, omega).

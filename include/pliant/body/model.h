@@ -1,4 +1,5 @@
-// Model: a MultiBody made ready to run: constants only, in flat arrays. Every function of the dynamics takes it const.
+// Model: a MultiBody made ready to run: constants only, in flat arrays. Every function of the dynamics takes
+// it const.
 #pragma once
 
 #include <vector>
@@ -13,14 +14,14 @@ namespace pliant {
 /// A part's place in the flat vectors, its attachment points, its constants.
 struct PartModel {
   const Part* part;
-  int q0, v0;    ///< first entries in q and v; -1 for a fixed part
+  int q0, v0;  ///< first entries in q and v; -1 for a fixed part
   int n_s;
-  int limit0;    ///< first entry in State::at_limit
-  std::vector<Material<double>> ports;          ///< material points that forces act on
-  std::vector<PointJet<double>> rigid_ports;    ///< their constants, of a rigid part
-  VecMax<double> inertia_floor;                 ///< see SymmetricFactor
-  SymmetricFactor<double> rigid_factor;         ///< of a rigid part
-  Eigen::Matrix3d R0;                           ///< of a fixed part
+  int limit0;                                 ///< first entry in State::at_limit
+  std::vector<Material<double>> ports;        ///< material points that forces act on
+  std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
+  VecMax<double> inertia_floor;               ///< see SymmetricFactor
+  SymmetricFactor<double> rigid_factor;       ///< of a rigid part
+  Eigen::Matrix3d R0;                         ///< of a fixed part
 };
 
 /// Where an attachment is: a port of a part, or the world.

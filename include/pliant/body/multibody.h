@@ -1,4 +1,5 @@
-// MultiBody: parts and what acts on them. This is what a library user or a scene fills in; Model makes it ready to run.
+// MultiBody: parts and what acts on them. This is what a library user or a scene fills in; Model makes it
+// ready to run.
 #pragma once
 
 #include <functional>
@@ -12,13 +13,14 @@
 
 namespace pliant {
 
-/// A linear spring and damper between two points. With rest length 0 it pulls with -k d - c d_dot along the difference d of
-/// the points; else with -(k (|d| - length) + c d|d|/dt) along d, and with nothing while |d| = 0.
+/// A linear spring and damper between two points. With rest length 0 it pulls with -k d - c d_dot along the
+/// difference d of the points; else with -(k (|d| - length) + c d|d|/dt) along d, and with nothing while |d|
+/// = 0.
 struct Spring {
   std::string name;
   Point a, b;
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N s/m
+  double stiffness = 0;    ///< N/m
+  double damping = 0;      ///< N s/m
   double rest_length = 0;  ///< m
 };
 
@@ -30,8 +32,8 @@ struct PointForce {
   Point at;
   TimeVector force;  ///< N
   Frame frame = Frame::world;
-  /// Library users: a force of their own instead (t, position and velocity in the world -> N in the world). Directional
-  /// derivatives (jvp) take it as constant.
+  /// Library users: a force of their own instead (t, position and velocity in the world -> N in the world).
+  /// Directional derivatives (jvp) take it as constant.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
@@ -58,7 +60,8 @@ class MultiBody {
   Part& add(std::unique_ptr<Part> part);
 
   /// A spring (N/m), damper (N s/m) and rest length (m) between two points.
-  Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0, double rest_length = 0);
+  Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
+                 double rest_length = 0);
   PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
   PointForce& force(std::string name, Point at,
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);

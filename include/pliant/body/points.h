@@ -10,16 +10,22 @@ namespace pliant {
 struct Point {
   const Part* part = nullptr;  ///< nullptr: the world
   Material<double> material;
-  TimeVector world;            ///< m; used when part is nullptr
+  TimeVector world;  ///< m; used when part is nullptr
 };
 
 /// A material point by its angles (rad) and radius; w = 1 is the surface.
 inline Point point(const Part& part, double u, double v, double w = 1) {
   return {&part, material_at(u, v, w), {}};
 }
-inline Point point(const Part& part, const Material<double>& material) { return {&part, material, {}}; }
+inline Point point(const Part& part, const Material<double>& material) {
+  return {&part, material, {}};
+}
 /// A fixed or moving point of the world.
-inline Point world(double x, double y, double z) { return {nullptr, {}, TimeVector(Vec3<double>(x, y, z))}; }
-inline Point world(TimeVector moving) { return {nullptr, {}, std::move(moving)}; }
+inline Point world(double x, double y, double z) {
+  return {nullptr, {}, TimeVector(Vec3<double>(x, y, z))};
+}
+inline Point world(TimeVector moving) {
+  return {nullptr, {}, std::move(moving)};
+}
 
 }  // namespace pliant

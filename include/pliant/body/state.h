@@ -1,5 +1,5 @@
-// State: everything that is integrated, and every discrete mode. A step is a function of Model and State only, so a state
-// can be copied, stored and resumed to the last bit.
+// State: everything that is integrated, and every discrete mode. A step is a function of Model and State
+// only, so a state can be copied, stored and resumed to the last bit.
 #pragma once
 
 #include <array>
@@ -13,17 +13,18 @@ namespace pliant {
 /// Kinds of work in the energy ledger, J.
 enum class Work { damping, drag, spring_damping, anchors, actuation, forces, limits };
 inline constexpr int kWorks = 7;
-inline constexpr std::array<const char*, kWorks> kWorkNames{"damping", "drag",   "spring_damping", "anchors",
-                                                            "actuation", "forces", "limits"};
+inline constexpr std::array<const char*, kWorks> kWorkNames{
+    "damping", "drag", "spring_damping", "anchors", "actuation", "forces", "limits"};
 
 struct State {
-  double start = 0;      ///< time of step 0, s
-  double h = 0;          ///< step, s
-  std::int64_t step = 0; ///< steps done since start; time is start + step * h
-  VecX<double> q;        ///< per part: c (3), quaternion w x y z (4), q_s
-  VecX<double> v;        ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
+  double start = 0;       ///< time of step 0, s
+  double h = 0;           ///< step, s
+  std::int64_t step = 0;  ///< steps done since start; time is start + step * h
+  VecX<double> q;         ///< per part: c (3), quaternion w x y z (4), q_s
+  VecX<double> v;         ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
   Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< done so far
-  std::vector<std::int8_t> at_limit;  ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
+  std::vector<std::int8_t>
+      at_limit;  ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
 
   double time() const { return start + static_cast<double>(step) * h; }
 };

@@ -1,4 +1,5 @@
-// A pool of threads for loops over parts. Which thread runs a part never changes a result: parts do not share sums.
+// A pool of threads for loops over parts. Which thread runs a part never changes a result: parts do not share
+// sums.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,8 @@ class ThreadPool {
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   int threads() const;
-  /// task(i) for 0 <= i < n, in any order; returns when all are done. The first exception of the lowest i is rethrown.
+  /// task(i) for 0 <= i < n, in any order; returns when all are done. The first exception of the lowest i is
+  /// rethrown.
   void run(int n, const std::function<void(int)>& task);
 
  private:

@@ -1,5 +1,5 @@
-// The list of global deformations. A new one is its file and an entry here; registry, schema, `pliant list` and the law
-// tests follow.
+// The list of global deformations. A new one is its file and an entry here; registry, schema, `pliant list`
+// and the law tests follow.
 #pragma once
 
 #include <tuple>

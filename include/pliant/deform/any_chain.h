@@ -1,5 +1,5 @@
-// AnyChain: a chain of global deformations put together at run time, as scenes need it. The links run the same kernels
-// as a typed Chain, so the results are the same to the last bit.
+// AnyChain: a chain of global deformations put together at run time, as scenes need it. The links run the
+// same kernels as a typed Chain, so the results are the same to the last bit.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Circular bend (Barr 1984, physics 2.2): the z axis becomes an arc of curvature k = angle / h in the plane that
-// contains z and (cos direction, sin direction, 0). With r the coordinate along that direction, g = k z:
+// Circular bend (Barr 1984, physics 2.2): the z axis becomes an arc of curvature k = angle / h in the plane
+// that contains z and (cos direction, sin direction, 0). With r the coordinate along that direction, g = k z:
 //   r' = r cos g + (1 - cos g) / k,   z' = (sin g) / k - r sin g
 // written with sinc, so that k = 0 is an ordinary value. Volume changes by 1 - k r.
 #pragma once
@@ -14,9 +14,22 @@ struct Bend {
   static constexpr const char* formula =
       "r -> r cos g + (1 - cos g)/k, z -> sin(g)/k - r sin g; g = k z, k = angle/h, r along direction";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      {"angle", 0, {-3.15, 3.15}, {-3.1, 3.1}, false, "rad", "turn of the axis between zeta = 0 and zeta = 1",
+      {"angle",
+       0,
+       {-3.15, 3.15},
+       {-3.1, 3.1},
+       false,
+       "rad",
+       "turn of the axis between zeta = 0 and zeta = 1",
        Follows::section},
-      {"direction", 0, {-6.3, 6.3}, {-6.3, 6.3}, false, "rad", "azimuth towards which it bends", Follows::section},
+      {"direction",
+       0,
+       {-6.3, 6.3},
+       {-6.3, 6.3},
+       false,
+       "rad",
+       "azimuth towards which it bends",
+       Follows::section},
   }};
   static constexpr Sections sections = Sections::tilt;
 
@@ -37,11 +50,11 @@ struct Bend {
     const auto [s, c] = math::sin_cos(b[1]);
     const T k = b[0] / h;
     const T r_bent = c * p[0] + s * p[1];
-    // The centre of curvature is at r = 1/k: with q = k z', d = 1 - k r', the angle g = atan2(q, d), rho = sqrt(q^2 + d^2)
-    // is 1 - k r.
+    // The centre of curvature is at r = 1/k: with q = k z', d = 1 - k r', the angle g = atan2(q, d), rho =
+    // sqrt(q^2 + d^2) is 1 - k r.
     const T q = k * p[2], d = -(k * r_bent) + 1.0;
     const T rho = math::sqrt(T(q * q + d * d));
-    const T half_tan = q / (rho + d);  // tan(g/2)
+    const T half_tan = q / (rho + d);                                  // tan(g/2)
     const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
     const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
     const T z = p[2] * atan_over(half_tan) * 2.0 / (rho + d);          // g / k

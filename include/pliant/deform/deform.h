@@ -1,5 +1,6 @@
-// What a global deformation is (design 1.1): one struct with its names, its parameters and its formula T(p, h; b),
-// Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape, zeta = p_z / h.
+// What a global deformation is (design 1.1): one struct with its names, its parameters and its formula T(p,
+// h; b), Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape, zeta
+// = p_z / h.
 //
 //   name, formula      for people and scene files
 //   parameters         std::array<ParameterSpec, n>

@@ -1,5 +1,5 @@
-// Jets: what the chain of deformations carries for each material point. S is the scalar of a point: Pack, so that four
-// points go at once, or Dual<1, Pack> for directional derivatives; any scalar works.
+// Jets: what the chain of deformations carries for each material point. S is the scalar of a point: Pack, so
+// that four points go at once, or Dual<1, Pack> for directional derivatives; any scalar works.
 //   s               reference shape, body frame, Eq. (3)
 //   s1 = J qs_dot   its rate            s2 = Jdot qs_dot   its quadratic velocity term
 //   J               columns ds/dq_s of the dynamic parameters, in the order of q_s

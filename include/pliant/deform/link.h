@@ -1,5 +1,6 @@
-// One link of a chain, T(p, h; b), applied to a batch of jets. Its derivatives come from dual numbers of its own few
-// variables and are multiplied into the chain (design 1.2): J <- [F J + T_h dh/da, G_T], F = dT/dp, G_T = dT/db.
+// One link of a chain, T(p, h; b), applied to a batch of jets. Its derivatives come from dual numbers of its
+// own few variables and are multiplied into the chain (design 1.2): J <- [F J + T_h dh/da, G_T], F = dT/dp,
+// G_T = dT/db.
 #pragma once
 
 #include <pliant/deform/deform.h>
@@ -12,8 +13,8 @@ namespace pliant {
 /// The half height of the shape as every link sees it. P is the scalar of the parameters.
 template <class P>
 struct HalfHeight {
-  Taylor2<P> h;                     ///< value and derivatives along the motion
-  VecMax<P, kMaxGlobal> slope;      ///< dh/dq_s of the columns of the shape
+  Taylor2<P> h;                 ///< value and derivatives along the motion
+  VecMax<P, kMaxGlobal> slope;  ///< dh/dq_s of the columns of the shape
 };
 
 /// The parameters of one link: values and rates, and which of them are dynamic.

@@ -1,4 +1,5 @@
-// Moving a state along velocities: positions add, rotations turn by the exponential map, and limits stop parameters.
+// Moving a state along velocities: positions add, rotations turn by the exponential map, and limits stop
+// parameters.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -15,12 +16,13 @@ void normalise_rotations(const Model& model, VecX<double>& q);
 /// Zero rates for parameters that had no inertia at the last evaluation.
 void hold_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v);
 
-/// Before the coordinates move by h v: impulses that keep every parameter within its limits at the end of the step.
+/// Before the coordinates move by h v: impulses that keep every parameter within its limits at the end of the
+/// step.
 void stop_at_limits_ahead(const Model& model, const Workspace<double>& work, State& state, double h,
                           StepCounters& counters);
 
-/// After a step of a high-order method: coordinates beyond a limit are projected onto it in the mass metric, and outward
-/// velocities are stopped by impulses.
+/// After a step of a high-order method: coordinates beyond a limit are projected onto it in the mass metric,
+/// and outward velocities are stopped by impulses.
 void stop_at_limits(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
 
 }  // namespace pliant

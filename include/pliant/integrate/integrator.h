@@ -22,9 +22,10 @@ class Integrator {
   virtual const char* name() const = 0;
   virtual int order() const = 0;
   /// Advances q, v and work by state.h (> 0, s); the caller counts the step.
-  virtual void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) = 0;
-  /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the step is
-  /// stable while it is at most 1.
+  virtual void step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                    StepCounters& counters) = 0;
+  /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
+  /// step is stable while it is at most 1.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
 };
 

@@ -1,5 +1,6 @@
-// The classical Runge-Kutta method of fourth order on (q, v, work). Quaternions are integrated as four numbers by
-// theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, which keeps the order.
+// The classical Runge-Kutta method of fourth order on (q, v, work). Quaternions are integrated as four
+// numbers by theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, which keeps
+// the order.
 #pragma once
 
 #include <pliant/integrate/integrator.h>

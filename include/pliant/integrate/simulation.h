@@ -21,7 +21,8 @@ class NumericalFailure : public std::runtime_error {
 class Simulation {
  public:
   /// Prepares the body (which must outlive the simulation) and starts at time 0.
-  explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1);
+  explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler",
+                      int threads = 1);
 
   /// One step of h seconds (> 0 and finite). Throws NumericalFailure, std::invalid_argument.
   void step(double h);
@@ -61,8 +62,9 @@ class Simulation {
   double start_energy_ = 0;
 };
 
-/// The largest step (s) for which the method keeps the motion about a state bounded, by the linearised elasticity and
-/// damping of global parameters and springs; infinite when nothing is stiff. Parts tied by springs are taken together.
+/// The largest step (s) for which the method keeps the motion about a state bounded, by the linearised
+/// elasticity and damping of global parameters and springs; infinite when nothing is stiff. Parts tied by
+/// springs are taken together.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -12,4 +12,7 @@ namespace pliant {
 /// std::system_error or std::runtime_error with path and reason when the file cannot be written.
 void write_png(const Image& image, const std::filesystem::path& path);
 
+/// Version of the PNG library in use.
+const char* png_library_version();
+
 }  // namespace pliant

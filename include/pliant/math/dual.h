@@ -23,9 +23,10 @@ struct Dual {
   template <class C, IfConstant<C> = 0>
   Dual(const C& value) : v(value), d{} {}  // NOLINT(google-explicit-constructor): constants mix in
 
-  /// From the same number of partials over a narrower scalar (double to Pack).
+  /// From the same number of partials over a narrower scalar (double to Pack). A dual that T can hold is a
+  /// constant.
   template <class C, std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, T> &&
-                                          !std::is_same_v<Dual<N, C>, T>,  // that one is a constant
+                                          !std::is_convertible_v<Dual<N, C>, T>,
                                       int> = 0>
   explicit Dual(const Dual<N, C>& o) : v(o.v) {
     for (std::size_t i = 0; i < N; ++i) d[i] = T(o.d[i]);

@@ -1,5 +1,5 @@
-// The elementary functions of the engine's formulas. Formulas call math::sin(x) and so on, whatever the scalar
-// (double, long double, Pack, Dual, Taylor2): the scalar's own overload is found beside its type.
+// The elementary functions of the engine's formulas. Formulas call math::sin(x) and so on, whatever the
+// scalar (double, long double, Pack, Dual, Taylor2): the scalar's own overload is found beside its type.
 #pragma once
 
 #include <cmath>
@@ -29,16 +29,24 @@ template <class T>
 struct SinCos {
   T sin, cos;
 };
-inline SinCos<double> sin_cos_of(double x) { return {std::sin(x), std::cos(x)}; }
-inline SinCos<long double> sin_cos_of(long double x) { return {std::sin(x), std::cos(x)}; }
+inline SinCos<double> sin_cos_of(double x) {
+  return {std::sin(x), std::cos(x)};
+}
+inline SinCos<long double> sin_cos_of(long double x) {
+  return {std::sin(x), std::cos(x)};
+}
 template <class T>
 inline SinCos<T> sin_cos(const T& x) {
   return sin_cos_of(x);
 }
 
 /// x where c > 0, else y; for a pack lane by lane, for a derivative number along the branch taken.
-inline double select_positive(double c, double x, double y) { return c > 0 ? x : y; }
-inline long double select_positive(long double c, long double x, long double y) { return c > 0 ? x : y; }
+inline double select_positive(double c, double x, double y) {
+  return c > 0 ? x : y;
+}
+inline long double select_positive(long double c, long double x, long double y) {
+  return c > 0 ? x : y;
+}
 
 template <class T>
 inline T where_positive(const T& c, const T& x, const T& y) {

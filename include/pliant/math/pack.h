@@ -15,8 +15,8 @@
 
 namespace pliant {
 
-// How a Pack is passed between functions depends on the target, so its name does: code compiled for different targets
-// does not link instead of failing at run time.
+// How a Pack is passed between functions depends on the target, so its name does: code compiled for different
+// targets does not link instead of failing at run time.
 #ifdef __AVX__
 inline namespace avx {
 #else

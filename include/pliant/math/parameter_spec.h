@@ -20,11 +20,11 @@ enum class Follows {
 
 struct ParameterSpec {
   const char* name;
-  double standard;     ///< default value
-  Range frozen;        ///< where it may be held
-  Range dynamic;       ///< where it may move as a degree of freedom (one-sided limits)
-  bool relative;       ///< the dynamic range is in multiples of the rest value
-  const char* unit;    ///< "m", "rad", "1"
+  double standard;   ///< default value
+  Range frozen;      ///< where it may be held
+  Range dynamic;     ///< where it may move as a degree of freedom (one-sided limits)
+  bool relative;     ///< the dynamic range is in multiples of the rest value
+  const char* unit;  ///< "m", "rad", "1"
   const char* meaning;
   Follows follows;
 };

@@ -6,8 +6,8 @@
 namespace pliant {
 
 struct QuadratureNode {
-  double x;       ///< in (0, 1)
-  double gap;     ///< 1 - x, accurate near 1
+  double x;    ///< in (0, 1)
+  double gap;  ///< 1 - x, accurate near 1
   double weight;
 };
 

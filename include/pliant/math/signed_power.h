@@ -1,5 +1,6 @@
-// Signed powers of a sine or cosine, C^eps = sgn(x) |x|^eps, the building block of the superquadrics (design 1.1).
-// The logarithm of |x| is kept with x, so that a power costs one exponential, and 0^eps log 0 is 0, never NaN.
+// Signed powers of a sine or cosine, C^eps = sgn(x) |x|^eps, the building block of the superquadrics
+// (design 1.1). The logarithm of |x| is kept with x, so that a power costs one exponential, and 0^eps log 0
+// is 0, never NaN.
 #pragma once
 
 #include <limits>
@@ -49,7 +50,8 @@ Taylor2<T> signed_power(const Trig<U>& c, const Taylor2<T>& eps) {
   return chain_rule(eps, p, slope, T(slope * c.log_abs));
 }
 
-/// The same along material directions: d(sgn(x)|x|^eps) = eps |x|^(eps-1) dx, which at x = 0 is infinite for eps < 1.
+/// The same along material directions: d(sgn(x)|x|^eps) = eps |x|^(eps-1) dx, which at x = 0 is infinite for
+/// eps < 1.
 template <int N>
 Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
   if (c.x.v != 0) return math::exp(Dual<N>(eps * c.log_abs)) * c.sign.v;
@@ -64,7 +66,8 @@ template <class T>
 T power_from_zero(const T& r, const T& p) {
   const T floor(1e-300);
   const T above = r - floor;
-  return math::where_positive(above, T(math::exp(T(p * math::log(math::where_positive(above, r, T(1)))))), T(0));
+  return math::where_positive(above, T(math::exp(T(p * math::log(math::where_positive(above, r, T(1)))))),
+                              T(0));
 }
 
 /// (x^p + y^p)^(1/p) for x, y >= 0 without overflow, whatever the exponent (physics 1.4).

@@ -1,5 +1,5 @@
-// sin(x)/x and atan(x)/x with all derivatives finite and exact to rounding at x = 0: a power series near 0, the quotient
-// elsewhere.
+// sin(x)/x and atan(x)/x with all derivatives finite and exact to rounding at x = 0: a power series near 0,
+// the quotient elsewhere.
 #pragma once
 
 #include <pliant/math/functions.h>
@@ -24,7 +24,8 @@ T sinc(const T& x) {
 /// atan(x) / x.
 template <class T>
 T atan_over(const T& x) {
-  // Three halvings, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), bring the argument below 0.2; the series does the rest.
+  // Three halvings, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), bring the argument below 0.2; the series does
+  // the rest.
   T y = x;
   T factor(1);
   for (int i = 0; i < 3; ++i) {

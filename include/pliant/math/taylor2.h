@@ -1,6 +1,6 @@
-// Truncated second-order Taylor numbers along one direction: value v, first derivative d, second derivative dd
-// with respect to that direction's parameter. A formula evaluated on q + t qdot gives, at t = 0, its value, its
-// rate and the quadratic velocity term (Jdot qdot), exactly.
+// Truncated second-order Taylor numbers along one direction: value v, first derivative d, second derivative
+// dd with respect to that direction's parameter. A formula evaluated on q + t qdot gives, at t = 0, its
+// value, its rate and the quadratic velocity term (Jdot qdot), exactly.
 #pragma once
 
 #include <type_traits>
@@ -19,7 +19,8 @@ struct Taylor2 {
 
   Taylor2() = default;
   template <class C, IfConstant<C> = 0>
-  Taylor2(const C& value) : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants mix in
+  Taylor2(const C& value)
+      : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants mix in
   Taylor2(const T& value, const T& first, const T& second) : v(value), d(first), dd(second) {}
 
   Taylor2& operator+=(const Taylor2& o) { return *this = *this + o; }

@@ -1,6 +1,6 @@
-// Mass points of a part: a quadrature of its material domain, integral mu (.) du ~ sum m_k (.)(u_k), exact to rounding for
-// what the dynamic parameters can do (design 1.3). No mesh. The cheapest of four rules is chosen when the part is
-// prepared:
+// Mass points of a part: a quadrature of its material domain, integral mu (.) du ~ sum m_k (.)(u_k), exact to
+// rounding for what the dynamic parameters can do (design 1.3). No mesh. The cheapest of four rules is chosen
+// when the part is prepared:
 //   affine    4 points carrying mass, centroid and second moments
 //   sections  3 such points in each plane section of a solid, times a rule along z
 //   rings     3 such points in each material ring (u, w) = const, times rules along u and w
@@ -21,14 +21,14 @@ struct MassPoints {
   std::vector<Material<Pack>> at;  ///< four points each; the last may hold points of no mass
   std::vector<Pack> mass;          ///< kg
   int n_points = 0;
-  std::string rule;                ///< "affine", "sections", "rings", "full"
-  int level = 0;                   ///< refinement that sufficed
+  std::string rule;  ///< "affine", "sections", "rings", "full"
+  int level = 0;     ///< refinement that sufficed
 };
 
-/// Lays the mass points of a part: of its solid (density in kg/m^3) or of its shell (density in kg/m^2), at rest.
-/// Refines until doubling the rule changes no entry of the mass matrix and of the inertial forces by more than 1e-13
-/// of its scale, at states spread over the ranges of the dynamic parameters; extra_level doubles it that many more
-/// times. Throws std::invalid_argument when the rest shape folds over.
+/// Lays the mass points of a part: of its solid (density in kg/m^3) or of its shell (density in kg/m^2), at
+/// rest. Refines until doubling the rule changes no entry of the mass matrix and of the inertial forces by
+/// more than 1e-13 of its scale, at states spread over the ranges of the dynamic parameters; extra_level
+/// doubles it that many more times. Throws std::invalid_argument when the rest shape folds over.
 MassPoints lay_mass_points(const Part& part, int extra_level = 0);
 
 }  // namespace pliant

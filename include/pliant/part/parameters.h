@@ -15,13 +15,13 @@ namespace pliant {
 inline constexpr int kMaxParameters = 64;
 
 struct Parameter {
-  std::string name;          ///< "a1", "taper.tx"
+  std::string name;  ///< "a1", "taper.tx"
   const ParameterSpec* spec;
-  TimeFunction rest;         ///< rest value; of a frozen parameter its value (at time 0)
-  double initial;            ///< value at time 0
-  double initial_rate = 0;   ///< rate at time 0, per second
+  TimeFunction rest;        ///< rest value; of a frozen parameter its value (at time 0)
+  double initial;           ///< value at time 0
+  double initial_rate = 0;  ///< rate at time 0, per second
   bool dynamic = false;
-  Range limits;              ///< one-sided limits of a dynamic parameter
+  Range limits;  ///< one-sided limits of a dynamic parameter
   bool initial_given = false, limits_given = false;
 
   double rest_value() const { return rest.value(0); }
@@ -35,8 +35,8 @@ struct ParameterValues {
 
 class Parameters {
  public:
-  /// The parameters of a shape and a chain, at their defaults, all frozen. Links of the same type are called by their
-  /// type, type2, type3 …
+  /// The parameters of a shape and a chain, at their defaults, all frozen. Links of the same type are called
+  /// by their type, type2, type3 …
   Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& links);
 
   int size() const { return static_cast<int>(all_.size()); }

@@ -1,5 +1,5 @@
-// A part: a solid primitive with its global deformations, its mass and its elasticity. This class holds everything that
-// does not depend on the type of the shape; Primitive<Shape, GlobalDeform> adds the kernels.
+// A part: a solid primitive with its global deformations, its mass and its elasticity. This class holds
+// everything that does not depend on the type of the shape; Primitive<Shape, GlobalDeform> adds the kernels.
 #pragma once
 
 #include <functional>
@@ -63,8 +63,10 @@ class Part {
   Part& make_shell();
   /// Total mass (kg) instead of the density.
   Part& mass(double total);
-  /// Inertia tensor about the frame's origin (kg m^2, body frame) and mass of a rigid part, instead of the density.
-  Part& inertia(double mass, const Mat3<double>& about_origin, const Vec3<double>& centre = Vec3<double>::Zero());
+  /// Inertia tensor about the frame's origin (kg m^2, body frame) and mass of a rigid part, instead of the
+  /// density.
+  Part& inertia(double mass, const Mat3<double>& about_origin,
+                const Vec3<double>& centre = Vec3<double>::Zero());
   /// The part does not move and has no coordinates.
   Part& fix();
 
@@ -88,7 +90,8 @@ class Part {
 
   // Prepared constants; valid after prepare().
 
-  /// Lays the mass points and takes the constants of a rigid part. Throws std::invalid_argument on a bad model.
+  /// Lays the mass points and takes the constants of a rigid part. Throws std::invalid_argument on a bad
+  /// model.
   void prepare();
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
@@ -107,19 +110,20 @@ class Part {
   void inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
                Inertia<Dual<1>>& out, Counters& counters) const;
   /// Material points: position, J, rates, in the body frame.
-  void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
-              std::vector<PointJet<double>>& out, Counters& counters) const;
+  void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
+              const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
   void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
               const VecMax<Dual<1>>& q_s_dot, std::vector<PointJet<Dual<1>>>& out, Counters& counters) const;
 
   /// Reference shape of material points, body frame: 3 x n.
   Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
   /// dF: derivative of the chain of deformations at undeformed points e (3 x n), one 3x3 each.
-  std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e, const ParameterValues<double>& values) const;
+  std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
+                                           const ParameterValues<double>& values) const;
   /// ds/d(u, v, w) at a material point, 3x3; infinite entries where the trigonometric map has them (eps < 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
-  /// Inside-outside function at a body-frame point: w - 1 of the point, zero on the surface, negative inside; through
-  /// the inverse deformations. And its gradient, 1/m.
+  /// Inside-outside function at a body-frame point: w - 1 of the point, zero on the surface, negative inside;
+  /// through the inverse deformations. And its gradient, 1/m.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Unit outward normal at a material point of the surface, body frame.
@@ -130,12 +134,14 @@ class Part {
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
   /// Jets of material points: position, J, rates, by level.
-  virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at, JetBatch<Pack>& batch) const = 0;
+  virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
+                    JetBatch<Pack>& batch) const = 0;
   virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
                     JetBatch<Dual<1, Pack>>& batch) const = 0;
 
  protected:
-  Part(std::string name, double density, std::unique_ptr<ShapeFace> shape, const std::vector<LinkInfo>& links);
+  Part(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+       const std::vector<LinkInfo>& links);
 
   /// The chain alone: takes seeded jets through all links with every parameter held.
   virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;

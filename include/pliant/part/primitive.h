@@ -1,5 +1,5 @@
-// Primitive<Shape, GlobalDeform>: the class of a part (design section 3). It computes s and J, Eqs. (3) and (4), for batches
-// of material points; everything else is Part.
+// Primitive<Shape, GlobalDeform>: the class of a part (design section 3). It computes s and J, Eqs. (3) and
+// (4), for batches of material points; everything else is Part.
 #pragma once
 
 #include <pliant/deform/any_chain.h>
@@ -16,7 +16,8 @@ class Primitive final : public Part {
       : Part(std::move(name), density, std::make_unique<ShapeFaceOf<Shape>>(), chain.links()),
         chain_(std::move(chain)) {}
 
-  void jets(const ParameterValues<double>& values, const Material<Pack>* at, JetBatch<Pack>& batch) const override {
+  void jets(const ParameterValues<double>& values, const Material<Pack>* at,
+            JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
   void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,

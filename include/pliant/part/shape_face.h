@@ -1,5 +1,5 @@
-// ShapeFace: a shape behind virtual calls, for everything done once, at load or for output. The kernels of a step are
-// templates (shape_jets.h).
+// ShapeFace: a shape behind virtual calls, for everything done once, at load or for output. The kernels of a
+// step are templates (shape_jets.h).
 #pragma once
 
 #include <memory>
@@ -33,13 +33,15 @@ class ShapeFace {
   /// e and its derivatives along three material directions carried by the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
-  // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same solid).
+  // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same
+  // solid).
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
   /// The material point of the shape where the rest map puts m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
-  /// The exponent of (X, Y) = (C_v^eps, S_v^eps) in which the rings of the rest map are superellipses; 1 for round ones.
+  /// The exponent of (X, Y) = (C_v^eps, S_v^eps) in which the rings of the rest map are superellipses; 1 for
+  /// round ones.
   virtual double ring_exponent(ShapeParameters a) const = 0;
   /// Whether the shape knows its plane sections in closed form.
   virtual bool has_sections() const = 0;
@@ -47,8 +49,8 @@ class ShapeFace {
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
 };
 
-/// For shapes that bring no label of their own: Newton's method on e(u, v, w) = x from the direction of x. Throws
-/// std::runtime_error when it finds none (the shape is then not star-shaped and needs its own).
+/// For shapes that bring no label of their own: Newton's method on e(u, v, w) = x from the direction of x.
+/// Throws std::runtime_error when it finds none (the shape is then not star-shaped and needs its own).
 Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
 /// The gradient of w by the same map; at the poles the limit along a meridian.
 Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
@@ -64,10 +66,10 @@ template <class Shape>
 struct RestMapOf<Shape, std::void_t<typename Shape::RestMap>> {
   using Map = typename Shape::RestMap;
 };
-#define PLIANT_HAS_MEMBER(member)                                                  \
-  template <class Shape, class = void>                                             \
-  inline constexpr bool has_##member = false;                                      \
-  template <class Shape>                                                           \
+#define PLIANT_HAS_MEMBER(member)             \
+  template <class Shape, class = void>        \
+  inline constexpr bool has_##member = false; \
+  template <class Shape>                      \
   inline constexpr bool has_##member<Shape, std::void_t<decltype(&Shape::member)>> = true;
 PLIANT_HAS_MEMBER(label)
 PLIANT_HAS_MEMBER(mesh_label)

@@ -1,5 +1,5 @@
-// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its Jacobian columns de/da of the dynamic
-// parameters and its rates along a + t a_dot.
+// The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its Jacobian columns de/da of
+// the dynamic parameters and its rates along a + t a_dot.
 #pragma once
 
 #include <pliant/deform/jet.h>

@@ -6,7 +6,8 @@
 namespace pliant {
 
 /// Mass matrix and inertial forces of a part over the given points instead of its own.
-void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
-                 const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
+void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
+                 const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
+                 Counters& counters);
 
 }  // namespace pliant

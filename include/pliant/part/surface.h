@@ -1,6 +1,6 @@
-// The surface of a part as a triangle mesh (design 1.1): laid from directions, without poles or seams. Balls are covered by
-// a cube whose upper and lower faces are bent to concentric rings, so that rims, edges and coordinate planes fall on
-// mesh lines; tori by a grid of the two angles.
+// The surface of a part as a triangle mesh (design 1.1): laid from directions, without poles or seams. Balls
+// are covered by a cube whose upper and lower faces are bent to concentric rings, so that rims, edges and
+// coordinate planes fall on mesh lines; tori by a grid of the two angles.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,9 @@ namespace pliant {
 /// Which material points and triangles cover a part; laid once, at the rest shape.
 class Surface {
  public:
-  /// resolution: edges along a quarter of a great circle, at least 1. A ball has 24 resolution^2 + 2 vertices and
-  /// 48 resolution^2 triangles; a torus 32 resolution^2 vertices. Throws std::invalid_argument outside [1, 512].
+  /// resolution: edges along a quarter of a great circle, at least 1. A ball has 24 resolution^2 + 2 vertices
+  /// and 48 resolution^2 triangles; a torus 32 resolution^2 vertices. Throws std::invalid_argument outside
+  /// [1, 512].
   Surface(const Part& part, int resolution);
 
   const std::vector<Material<double>>& material() const { return material_; }

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Triangles are counter-clockwise seen from outside. Several corners of one vertex may carry different normals: that
-/// is how an edge of a box stays sharp while the mesh has no duplicate vertices.
+/// Triangles are counter-clockwise seen from outside. Several corners of one vertex may carry different
+/// normals: that is how an edge of a box stays sharp while the mesh has no duplicate vertices.
 struct TriangleMesh {
   Eigen::Matrix3Xd x;          ///< vertices, metres
   Eigen::Matrix3Xd normals;    ///< unit normals

@@ -1,4 +1,5 @@
-// A scene: a MultiBody with how long and how to run it, and how to show it. read_scene() makes one from a JSON document.
+// A scene: a MultiBody with how long and how to run it, and how to show it. read_scene() makes one from a
+// JSON document.
 #pragma once
 
 #include <array>
@@ -45,22 +46,24 @@ struct GroundSetting {
 };
 
 struct Scene {
-  std::string name;          ///< file name without its ending, or given
-  std::string description;   ///< what the scene must show
+  std::string name;         ///< file name without its ending, or given
+  std::string description;  ///< what the scene must show
   MultiBody body;
   std::vector<Appearance> appearance;
   std::vector<Track> tracks;
 
-  double end = 1;                                    ///< s
-  double step = 1e-3;                                ///< s
+  double end = 1;      ///< s
+  double step = 1e-3;  ///< s
   std::string integrator = "semi_implicit_euler";
-  double frame_rate = 25;                            ///< recorded states and pictures per second
-  int width = 640, height = 480;                     ///< of pictures
+  double frame_rate = 25;         ///< recorded states and pictures per second
+  int width = 640, height = 480;  ///< of pictures
   CameraSetting camera;
   LightSetting light;
   GroundSetting ground;
 
-  std::uint64_t hash = 0;    ///< of the resolved document (overrides included), for resuming
+  std::string document;                ///< the file as it was read; a run keeps it beside its recording
+  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to it
+  std::uint64_t hash = 0;              ///< of the resolved document (overrides included), for resuming
 };
 
 }  // namespace pliant

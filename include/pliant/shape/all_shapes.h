@@ -1,5 +1,5 @@
-// The list of shapes. A new one is its file and an entry here; registry, explicit instances, schema, `pliant list` and
-// the law tests follow.
+// The list of shapes. A new one is its file and an entry here; registry, explicit instances, schema, `pliant
+// list` and the law tests follow.
 #pragma once
 
 #include <tuple>
@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-using AllShapes = std::tuple<Superellipsoid, SuperellipsoidRadial, Ellipsoid, Sphere, Cylinder, Cone, Supertoroid,
-                             Capsule, Box>;
+using AllShapes = std::tuple<Superellipsoid, SuperellipsoidRadial, Ellipsoid, Sphere, Cylinder, Cone,
+                             Supertoroid, Capsule, Box>;
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// Box of half sizes a1, a2, a3, a cylinder whose section is the unit square (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|):
+// Box of half sizes a1, a2, a3, a cylinder whose section is the unit square (X, Y) = (C_v, S_v) / max(|C_v|,
+// |S_v|):
 //   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
 #pragma once
 
@@ -8,7 +9,7 @@ namespace pliant {
 
 struct Box {
   static constexpr const char* name = "box";
-  static constexpr const char* formula = 
+  static constexpr const char* formula =
       "w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|), (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|)";
   static constexpr std::array<ParameterSpec, 3> parameters{{
       length("a1", 1, "half size along x"),
@@ -29,10 +30,13 @@ struct Box {
   }
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
-    return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])), T(math::abs(x[2]) / a[2]));
+    return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])),
+                     T(math::abs(x[2]) / a[2]));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 3>& a);

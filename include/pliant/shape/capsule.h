@@ -1,6 +1,7 @@
-// Capsule: a cylinder of radius r and length l along z between two half balls. With |u| <= pi/4 the side, beyond it the
-// caps, whose polar angle is twice that of the material direction:
-//   side (r C_v, r S_v, (l/2) tan u),   cap (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
+// Capsule: a cylinder of radius r and length l along z between two half balls. With |u| <= pi/4 the side,
+// beyond it the caps, whose polar angle is twice that of the material direction:
+//   side (r C_v, r S_v, (l/2) tan u),   cap (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 -
+//   C_u^2)))
 #pragma once
 
 #include <pliant/shape/shape.h>
@@ -10,7 +11,8 @@ namespace pliant {
 struct Capsule {
   static constexpr const char* name = "capsule";
   static constexpr const char* formula =
-      "side: w (r C_v, r S_v, (l/2) tan u); caps: w (r sin 2p C_v, r sin 2p S_v, +-(l/2 + r cos 2p)), p = pi/2 - |u|";
+      "side: w (r C_v, r S_v, (l/2) tan u); caps: w (r sin 2p C_v, r sin 2p S_v, +-(l/2 + r cos 2p)), p = "
+      "pi/2 - |u|";
   static constexpr std::array<ParameterSpec, 2> parameters{{
       length("r", 0.5, "radius", Follows::ring),
       length("l", 1, "length of the straight part", Follows::ring),
@@ -36,10 +38,12 @@ struct Capsule {
     const T half = a[1] * 0.5, z = math::abs(x[2]);
     const T ring2 = x[0] * x[0] + x[1] * x[1];
     const T off_axis = ring2 - T(1e-300);
-    const T ring = math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
+    const T ring =
+        math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
     const T side = ring / a[0];
     const T on_cap = z - half * side;
-    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0, smallest w > 0.
+    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0,
+    // smallest w > 0.
     const T s2 = ring2 + z * z;
     const T root2 = half * half * z * z + (a[0] * a[0] - half * half) * s2;
     const T off_centre = root2 - T(1e-300);
@@ -49,7 +53,9 @@ struct Capsule {
     return math::where_positive(on_cap, math::where_positive(off_centre, cap, T(0)), side);
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 2>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 2>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 2>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 2>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 2>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 2>& a);

@@ -1,5 +1,6 @@
-// Cone and frustum: a cylinder whose section shrinks or grows along z by the factor 1 + t z / a3 (t = -1: a cone with
-// its tip at z = a3). Surface (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z) with k on the unit cylinder; e = w times it.
+// Cone and frustum: a cylinder whose section shrinks or grows along z by the factor 1 + t z / a3 (t = -1: a
+// cone with its tip at z = a3). Surface (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z) with k on the unit
+// cylinder; e = w times it.
 #pragma once
 
 #include <pliant/shape/cylinder.h>
@@ -8,12 +9,19 @@ namespace pliant {
 
 struct Cone {
   static constexpr const char* name = "cone";
-  static constexpr const char* formula = "w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z), k on the unit cylinder";
+  static constexpr const char* formula =
+      "w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z), k on the unit cylinder";
   static constexpr std::array<ParameterSpec, 4> parameters{{
       length("a1", 1, "semi-axis along x at mid height"),
       length("a2", 1, "semi-axis along y at mid height"),
       length("a3", 1, "half height along z"),
-      {"t", -1, {-1, 1}, {-1, 1}, false, "1", "slope of the side: -1 a cone with its tip up, 0 a cylinder",
+      {"t",
+       -1,
+       {-1, 1},
+       {-1, 1},
+       false,
+       "1",
+       "slope of the side: -1 a cone with its tip up, 0 a cylinder",
        Follows::ring},
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
@@ -32,12 +40,15 @@ struct Cone {
   static T gauge(const Vec3<T>& x, const Vec<T, 4>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
     const T off_axis = ring2 - T(1e-300);
-    const T ring = math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
+    const T ring =
+        math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
     const T zeta = x[2] / a[2];
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 4>& a);

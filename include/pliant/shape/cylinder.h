@@ -1,5 +1,5 @@
-// Elliptic cylinder: e = w diag(a1, a2, a3) k, k the point of the unit cylinder |(k_x, k_y)| <= 1, |k_z| <= 1 in the
-// direction n = (C_u C_v, C_u S_v, S_u); the rim is at |u| = pi/4.
+// Elliptic cylinder: e = w diag(a1, a2, a3) k, k the point of the unit cylinder |(k_x, k_y)| <= 1, |k_z| <= 1
+// in the direction n = (C_u C_v, C_u S_v, S_u); the rim is at |u| = pi/4.
 #pragma once
 
 #include <pliant/shape/shape.h>
@@ -8,7 +8,8 @@ namespace pliant {
 
 struct Cylinder {
   static constexpr const char* name = "cylinder";
-  static constexpr const char* formula = "w diag(a1, a2, a3) n / max(|C_u|, |S_u|), n = (C_u C_v, C_u S_v, S_u)";
+  static constexpr const char* formula =
+      "w diag(a1, a2, a3) n / max(|C_u|, |S_u|), n = (C_u C_v, C_u S_v, S_u)";
   static constexpr std::array<ParameterSpec, 3> parameters{{
       length("a1", 1, "semi-axis along x"),
       length("a2", 1, "semi-axis along y"),
@@ -36,11 +37,14 @@ struct Cylinder {
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
     const T on_axis = ring2 - T(1e-300);
-    const T ring = math::where_positive(on_axis, T(math::sqrt(math::where_positive(on_axis, ring2, T(1)))), T(0));
+    const T ring =
+        math::where_positive(on_axis, T(math::sqrt(math::where_positive(on_axis, ring2, T(1)))), T(0));
     return math::max(ring, T(math::abs(x[2]) / a[2]));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 3>& a);

@@ -25,10 +25,13 @@ struct Ellipsoid {
   }
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
-    return math::sqrt(T(math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1])) + math::square(T(x[2] / a[2]))));
+    return math::sqrt(
+        T(math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1])) + math::square(T(x[2] / a[2]))));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 3>& a);

@@ -1,5 +1,5 @@
-// Material points of a solid primitive (design 1.1): u = latitude, v = longitude, w = radius in [0, 1], kept as the
-// exact cosines and sines of the two angles, so that poles and seams close without a gap.
+// Material points of a solid primitive (design 1.1): u = latitude, v = longitude, w = radius in [0, 1], kept
+// as the exact cosines and sines of the two angles, so that poles and seams close without a gap.
 #pragma once
 
 #include <pliant/math/pack.h>

@@ -1,4 +1,5 @@
-// Pieces of a material angle, or of a section coordinate, on which a shape is smooth: quadrature never crosses a kink.
+// Pieces of a material angle, or of a section coordinate, on which a shape is smooth: quadrature never
+// crosses a kink.
 #pragma once
 
 #include <vector>
@@ -13,10 +14,10 @@ struct Panel {
     power,     ///< half a quadrant, next to an axis, where e varies as |sin|^eps or |cos|^eps
   };
   Kind kind;
-  double from = 0, to = 0;            ///< angles of a smooth panel, rad
-  int sign_cos = 1, sign_sin = 1;     ///< quadrant of a power panel
-  bool along_sin = true;              ///< power panel: next to sin = 0 (else next to cos = 0)
-  double eps = 1;                     ///< power panel: exponent
+  double from = 0, to = 0;         ///< angles of a smooth panel, rad
+  int sign_cos = 1, sign_sin = 1;  ///< quadrant of a power panel
+  bool along_sin = true;           ///< power panel: next to sin = 0 (else next to cos = 0)
+  double eps = 1;                  ///< power panel: exponent
 };
 
 /// The quadrant panels of an exponent: smooth for eps = 1 where the caller says so by using another panel.

@@ -2,11 +2,13 @@
 //
 //   name, formula          for people and scene files
 //   parameters             std::array<ParameterSpec, n>
-//   e(m, a)                the point of the solid at material point m, with parameters a; templated on its scalars
-//   half_height(a)         h: half the extent along z, by which deformations measure zeta = z / h
+//   e(m, a)                the point of the solid at material point m, with parameters a; templated on its
+//   scalars half_height(a)         h: half the extent along z, by which deformations measure zeta = z / h
 //   mesh                   which grid covers its surface
-// That is all a shape needs. Those with closed forms for more say so, which is faster, and exact at the poles:
-//   gauge(x, a), label(x, a)   w of the point x (0 at the centre, 1 on the surface, above 1 outside; never overflows),
+// That is all a shape needs. Those with closed forms for more say so, which is faster, and exact at the
+// poles:
+//   gauge(x, a), label(x, a)   w of the point x (0 at the centre, 1 on the surface, above 1 outside; never
+//   overflows),
 //                              and the whole material point: the inverse of e
 //   mesh_label(g, a)           the surface point in the direction g of the mesh pattern
 //   profile(a), ring(a)        panels along u and v between which e is smooth, for quadrature

@@ -26,7 +26,9 @@ struct Sphere {
   static Material<double> label(const Vec3<double>& x, const Vec<double, 1>& a) {
     return Ellipsoid::label(x, Vec3<double>::Constant(a[0]));
   }
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 1>&) { return material_towards(g); }
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 1>&) {
+    return material_towards(g);
+  }
   static std::vector<Panel> profile(const Vec<double, 1>& a, bool) {
     return Ellipsoid::profile(Vec3<double>::Constant(a[0]), false);
   }

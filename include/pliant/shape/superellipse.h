@@ -1,4 +1,5 @@
-// The superellipse |x|^(2/eps) + |y|^(2/eps) = 1 of unit axes: its moments and its label, shared by the superquadrics.
+// The superellipse |x|^(2/eps) + |y|^(2/eps) = 1 of unit axes: its moments and its label, shared by the
+// superquadrics.
 #pragma once
 
 #include <utility>
@@ -14,7 +15,8 @@ Section superellipse_section(double eps);
 /// Cosine and sine of the material angle at which (C^eps, S^eps) points along (x, y); (1, 0) for the origin.
 std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, double eps);
 
-/// (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t; gap = 1 - |t| for accuracy there.
+/// (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t; gap = 1 - |t| for accuracy
+/// there.
 double superellipse_width(double t, double gap, double eps);
 
 /// The panels of a whole circle, or of the half -pi/2 .. pi/2.

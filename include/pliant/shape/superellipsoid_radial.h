@@ -1,6 +1,8 @@
-// Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u), and
+// Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u),
+// and
 //   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1 the gauge of unit axes.
-// A changing exponent strains it by bounded amounts (physics 1.5); same surface as Superellipsoid, other material map.
+// A changing exponent strains it by bounded amounts (physics 1.5); same surface as Superellipsoid, other
+// material map.
 #pragma once
 
 #include <pliant/shape/superellipsoid.h>
@@ -9,7 +11,8 @@ namespace pliant {
 
 struct SuperellipsoidRadial {
   static constexpr const char* name = "superellipsoid_radial";
-  static constexpr const char* formula = "diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2), n = (C_u C_v, C_u S_v, S_u)";
+  static constexpr const char* formula =
+      "diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2), n = (C_u C_v, C_u S_v, S_u)";
   static constexpr std::array<ParameterSpec, 5> parameters{{
       length("a1", 1, "semi-axis along x"),
       length("a2", 1, "semi-axis along y"),

@@ -1,4 +1,5 @@
-// Supertoroid (Barr 1981): a superellipse carried round a superellipse; -pi <= u, v < pi, w = 0 on the core ring:
+// Supertoroid (Barr 1981): a superellipse carried round a superellipse; -pi <= u, v < pi, w = 0 on the core
+// ring:
 //   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
 #pragma once
 

@@ -1,5 +1,6 @@
-// L D L^T of a small symmetric mass matrix that may lack inertia in some coordinates (design 1.3): a coordinate whose
-// pivot vanishes moves nothing right now; it is held, and everything else is solved as if it were not there.
+// L D L^T of a small symmetric mass matrix that may lack inertia in some coordinates (design 1.3): a
+// coordinate whose pivot vanishes moves nothing right now; it is held, and everything else is solved as if it
+// were not there.
 #pragma once
 
 #include <bitset>
@@ -9,7 +10,9 @@
 
 namespace pliant {
 
-inline double plain(double x) { return x; }
+inline double plain(double x) {
+  return x;
+}
 template <int N>
 double plain(const Dual<N>& x) {
   return x.v;
@@ -31,7 +34,8 @@ class SymmetricFactor {
       for (int k = 0; k < j; ++k) d -= L_(j, k) * L_(j, k) * D_[static_cast<std::size_t>(k)];
       const double diagonal = plain(A(j, j));
       if (!(diagonal > floor[j]) || !(plain(d) > kVanished * diagonal)) {
-        if (diagonal == diagonal) held_.set(static_cast<std::size_t>(j));  // not a number: leave it to the finite check
+        if (diagonal == diagonal)
+          held_.set(static_cast<std::size_t>(j));  // not a number: leave it to the finite check
       }
       D_[static_cast<std::size_t>(j)] = d;
       const bool gone = held_.test(static_cast<std::size_t>(j));

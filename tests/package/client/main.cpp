@@ -1,5 +1,5 @@
-// A user's program. Its unused parameters are warnings under pliant's own flags, which must not reach it; the layout of
-// Eigen's types and the rounding of products must.
+// A user's program. Its unused parameters are warnings under pliant's own flags, which must not reach it; the
+// layout of Eigen's types and the rounding of products must.
 #include <cmath>
 
 #include <pliant/math/dual.h>

@@ -1,0 +1,87 @@
+// pliant check: whether a scene can be run, and what a run would cost. Writes nothing.
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/frame_schedule.h>
+#include <pliant/scene/read_scene.h>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "scene_options.h"
+
+namespace pliant_cli {
+namespace {
+
+struct CheckCommand {
+  SceneOptions scene;
+  std::string diagnostics = "text";
+};
+
+// Wall time of a step, s: of the first steps of the scene, for a twentieth of a second.
+double seconds_per_step(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
+  using Clock = std::chrono::steady_clock;
+  if (schedule.steps() == 0) return 0;
+  const Clock::time_point start = Clock::now();
+  std::int64_t steps = 0;
+  double seconds = 0;
+  while (steps < schedule.steps() && seconds < 0.05) {
+    simulation.step(schedule.step());
+    ++steps;
+    seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  return seconds / static_cast<double>(steps);
+}
+
+void print_estimate(pliant::Scene& scene) {
+  const pliant::FrameSchedule schedule(scene.end, scene.step, scene.frame_rate);
+  pliant::Simulation simulation(scene.body, scene.integrator);
+  const double stable = pliant::largest_stable_step(simulation);
+  const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() + simulation.model().n_limits() + 1;
+  const auto frames = static_cast<double>(schedule.frames());
+  std::cout << "ok: " << scene.body.parts().size() << " parts, " << simulation.model().n_v() << " degrees of freedom\n"
+            << "estimate: " << schedule.steps() << " steps of " << schedule.step() << " s";
+  if (schedule.step() > stable)
+    std::cout << "\nwarning: the step is above the largest stable one, about " << stable << " s";
+  else
+    std::cout << ", " << seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps()) << " s of computing";
+  std::cout << "; " << schedule.frames() << " frames, a recording of " << frames * numbers * 8 / 1e6 << " MB\n";
+}
+
+int check(const CheckCommand& command) {
+  const bool machine = command.diagnostics == "json";
+  pliant::Diagnostics diagnostics;
+  std::unique_ptr<pliant::Scene> scene;
+  try {
+    scene = pliant::read_scene(command.scene.file, command.scene.overrides, diagnostics);
+  } catch (const pliant::SceneError& error) {
+    if (!machine) throw;
+    std::cout << error.diagnostics().json() << "\n";
+    return kInput;
+  }
+  if (machine)
+    std::cout << diagnostics.json() << "\n";
+  else if (diagnostics.warnings() > 0)
+    std::cerr << diagnostics.text() << "\n";
+  if (!machine) print_estimate(*scene);
+  return kDone;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<CheckCommand>();
+  CLI::App* command = app.add_subcommand("check", "Check a scene and estimate what a run costs; nothing is written");
+  add_scene_options(*command, options->scene);
+  command->add_option("--diagnostics", options->diagnostics, "Form of the faults: text, or json for programs")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->option_text("text|json");
+  command->footer(
+      "Example:\n  pliant check scenes/pull.json\n"
+      "Faults are told as  file:line:column: error: /json/pointer: what is wrong; what is expected.");
+  command->callback([options, &action] { action = [options] { return check(*options); }; });
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,83 @@
+// pliant doctor: what works on this machine.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <pliant/io/whole_file.h>
+#include <pliant/render/gl_context.h>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "machine.h"
+
+namespace pliant_cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+void print_graphics() {
+  bool any = false;
+  std::cout << "graphics\n";
+  for (const pliant::GlProbe& probe : pliant::probe_gl_backends()) {
+    std::cout << "  " << probe.name << ": ";
+    if (probe.opened)
+      std::cout << "works, " << probe.renderer << ", OpenGL " << probe.version << "\n";
+    else
+      std::cout << "no, " << probe.reason << "\n";
+    any = any || probe.opened;
+  }
+  if (!any) std::cout << "  no pictures (--png, render) until libosmesa6, or libegl1 with libgl1-mesa-dri, is installed\n";
+}
+
+// MB/s of a file that is written and reaches the disk.
+double write_speed(const fs::path& folder) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::size_t block = std::size_t{1} << 20, blocks = 64;
+  const std::vector<char> bytes(block, 'p');
+  const fs::path file = folder / ("pliant-doctor-" + std::to_string(::getpid()));
+  const Clock::time_point start = Clock::now();
+  {
+    pliant::WholeFile writer(file);
+    for (std::size_t i = 0; i < blocks; ++i) writer.write(bytes.data(), bytes.size());
+    writer.become_target(pliant::Durable::yes);
+  }
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  fs::remove(file);
+  return static_cast<double>(block * blocks) / 1e6 / seconds;
+}
+
+int examine(const fs::path& folder) {
+  std::cout << version_text();
+  const std::string features = processor_features();
+  std::cout << "processor\n  " << std::thread::hardware_concurrency() << " threads; features: "
+            << (features.empty() ? "not known" : features) << "\n  BLAS loaded: " << loaded_blas() << "\n";
+  print_graphics();
+  const std::string ffmpeg = find_program("ffmpeg");
+  std::cout << "films\n  ffmpeg: " << (ffmpeg.empty() ? "not installed (only needed to make films of frames)" : ffmpeg)
+            << "\n";
+  std::cout << "output folder " << folder.string() << "\n" << std::flush;
+  const fs::space_info space = fs::space(folder);
+  std::cout << "  writes " << static_cast<long>(write_speed(folder)) << " MB/s, " << space.available / 1000000
+            << " MB free\n";
+  return kDone;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Action& action) {
+  const auto folder = std::make_shared<std::string>(".");
+  CLI::App* command =
+      app.add_subcommand("doctor", "Tell what works here: graphics libraries, processor, ffmpeg, speed of the disk");
+  command->add_option("-o,--out", *folder, "Folder whose speed is measured [.]")->type_name("DIR");
+  command->callback([folder, &action] { action = [folder] { return examine(*folder); }; });
+}
+
+}  // namespace pliant_cli

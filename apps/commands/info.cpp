@@ -1,0 +1,138 @@
+// pliant info: what a scene is to the engine, without running it.
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/frame_schedule.h>
+#include <pliant/io/skipped.h>
+
+#include "command.h"
+#include "exit_codes.h"
+#include "scene_options.h"
+
+namespace pliant_cli {
+namespace {
+
+using pliant::Vec3;
+
+void print_vector(const Vec3<double>& x) { std::cout << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")"; }
+
+void print_parameters(const pliant::Part& part) {
+  const pliant::Parameters& parameters = part.parameters();
+  for (int i = 0; i < parameters.size(); ++i) {
+    const pliant::Parameter& p = parameters[i];
+    std::cout << (i == 0 ? "  parameters: " : ", ") << p.name << " = " << p.rest_value();
+    if (p.dynamic) std::cout << " (dynamic, from " << p.initial << ")";
+  }
+  if (parameters.size() > 0) std::cout << "\n";
+}
+
+void print_part(const pliant::PartModel& model) {
+  const pliant::Part& part = *model.part;
+  std::cout << "part " << part.name() << ": " << part.shape().name();
+  for (const pliant::LinkInfo& link : part.parameters().links()) std::cout << " > " << link.type;
+  std::cout << (part.shell() ? ", shell" : "") << "\n";
+  print_parameters(part);
+  const int frozen = part.parameters().size() - part.parameters().n_dynamic();
+  if (part.fixed())
+    std::cout << "  fixed: no degrees of freedom\n";
+  else
+    std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s() << " dynamic parameters; "
+              << frozen << " frozen)\n";
+  const pliant::Inertia<double>& inertia = part.rest_inertia();
+  const Vec3<double> centre = inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);
+  std::cout << "  mass " << inertia.mass << " kg, centre of mass ";
+  print_vector(centre);
+  std::cout << " m in its frame, size " << part.size() << " m\n";
+  if (inertia.M.rows() >= 6) {
+    // About the centre of mass: I_c = I_o - m (|r|^2 1 - r r^T).
+    const pliant::Mat3<double> about_origin = inertia.M.block<3, 3>(3, 3);
+    const pliant::Mat3<double> about_centre =
+        about_origin -
+        inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() - centre * centre.transpose());
+    std::cout << "  inertia about it (kg m^2): xx " << about_centre(0, 0) << ", yy " << about_centre(1, 1) << ", zz "
+              << about_centre(2, 2) << ", xy " << about_centre(0, 1) << ", xz " << about_centre(0, 2) << ", yz "
+              << about_centre(1, 2) << "\n";
+  }
+  const pliant::MassPoints& points = part.mass_points();
+  if (!points.rule.empty())
+    std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level " << points.level << "\n";
+}
+
+void print_point(const pliant::Simulation& simulation, const pliant::Point& point) {
+  if (point.part == nullptr) {
+    std::cout << "world ";
+    print_vector(point.world.value(0));
+    return;
+  }
+  const pliant::MaterialAngles at = pliant::angles(point.material);
+  std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
+  const pliant::Model& model = simulation.model();
+  print_vector(model.world_point(simulation.state(), model.body().index(*point.part), point.material));
+}
+
+void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {
+  for (const auto& spring : scene.body.springs()) {
+    std::cout << "spring " << spring->name << ": ";
+    print_point(simulation, spring->a);
+    std::cout << " to ";
+    print_point(simulation, spring->b);
+    std::cout << ", " << spring->stiffness << " N/m, " << spring->damping << " N s/m\n";
+  }
+  for (const auto& force : scene.body.forces()) {
+    std::cout << "force " << force->name << ": ";
+    print_point(simulation, force->at);
+    std::cout << "\n";
+  }
+  for (const auto& torque : scene.body.torques())
+    std::cout << "torque " << torque->name << ": " << torque->part->name() << "\n";
+  for (const pliant::Track& track : scene.tracks) {
+    std::cout << "track " << track.name << ": ";
+    print_point(simulation, track.point);
+    std::cout << "\n";
+  }
+}
+
+int info(const SceneOptions& options) {
+  const std::unique_ptr<pliant::Scene> scene = read(options);
+  const pliant::Simulation simulation(scene->body, scene->integrator);
+  const pliant::Model& model = simulation.model();
+  std::cout << scene->name << (scene->description.empty() ? "" : ": " + scene->description) << "\n";
+  int frozen = 0;
+  double mass = 0;
+  for (const pliant::PartModel& part : model.parts()) {
+    frozen += part.part->parameters().size() - part.n_s;
+    if (part.q0 >= 0) mass += part.part->total_mass();
+  }
+  std::cout << model.parts().size() << " parts, " << model.n_v() << " degrees of freedom (" << model.n_limits()
+            << " dynamic parameters, " << frozen << " frozen), " << mass << " kg in motion\n";
+  for (const pliant::PartModel& part : model.parts()) print_part(part);
+  print_forces(*scene, simulation);
+  std::cout << "skipped:\n";
+  for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";
+  const pliant::FrameSchedule schedule(scene->end, scene->step, scene->frame_rate);
+  std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end() << " s by "
+            << scene->integrator << ", " << schedule.frames() << " frames\n";
+  const double stable = pliant::largest_stable_step(simulation);
+  if (std::isfinite(stable))
+    std::cout << "largest stable step: about " << stable << " s\n";
+  else
+    std::cout << "largest stable step: no bound, nothing is stiff\n";
+  if (schedule.step() > stable)
+    std::cout << "warning: the step of " << schedule.step() << " s is above it; the run would likely fail\n";
+  return kDone;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<SceneOptions>();
+  CLI::App* command =
+      app.add_subcommand("info", "Tell about a scene: parts, degrees of freedom, mass, what is skipped, largest stable step");
+  add_scene_options(*command, *options);
+  command->footer("Example:\n  pliant info scenes/pull.json --set /time/step=0.01");
+  command->callback([options, &action] { action = [options] { return info(*options); }; });
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,95 @@
+// pliant render: pictures of a recorded run, with another camera or size if wanted.
+#include <memory>
+#include <optional>
+
+#include <pliant/io/frame_range.h>
+#include <pliant/io/run_files.h>
+
+#include "command.h"
+#include "draw_frames.h"
+#include "exit_codes.h"
+#include "graphics_option.h"
+#include "open_run.h"
+#include "options.h"
+#include "show_progress.h"
+#include "stop_signal.h"
+
+namespace pliant_cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RenderCommand {
+  std::string run, folder, size, shard;
+  std::string frames = ":";
+  std::vector<double> eye, target;
+  std::optional<double> field_of_view;
+  bool quiet = false, force = false, no_ground = false, no_shadows = false;
+  pliant::GlBackend backend = pliant::GlBackend::automatic;
+};
+
+void change_view(const RenderCommand& command, pliant::Scene& scene) {
+  if (!command.size.empty()) {
+    const PictureSize size = parse_picture_size(command.size);
+    scene.width = size.width;
+    scene.height = size.height;
+  }
+  if (!command.eye.empty()) scene.camera.eye = pliant::Vec3<double>(command.eye[0], command.eye[1], command.eye[2]);
+  if (!command.target.empty())
+    scene.camera.target = pliant::Vec3<double>(command.target[0], command.target[1], command.target[2]);
+  scene.camera.field_of_view = command.field_of_view.value_or(scene.camera.field_of_view);
+  if (command.no_ground) scene.ground.visible = false;
+  if (command.no_shadows) scene.light.shadows = false;
+}
+
+int render(const RenderCommand& command) {
+  const OpenRun run = open_run(command.run);
+  change_view(command, *run.scene);
+  pliant::FrameRange range = pliant::FrameRange::parse(command.frames);
+  if (!command.shard.empty()) range.parse_shard(command.shard);
+  const std::vector<std::int64_t> frames = range.frames(run.frames());
+  const fs::path folder = command.folder.empty() ? fs::path(command.run) / pliant::kFrameFolder : fs::path(command.folder);
+  prepare_frame_folder(folder, frames, "png", command.force);
+  catch_stop_signals();
+  const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
+  draw_frames(folder, *run.scene, *run.model, *run.recording, run.record.frame_rate, frames, *progress, command.backend);
+  return kDone;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<RenderCommand>();
+  CLI::App* command = app.add_subcommand("render", "Draw the frames of a run again, from its recording");
+  command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
+  command->add_option("-o,--out", options->folder, "Folder for the pictures [RUN/frames]")->type_name("DIR");
+  command->add_option("--frames", options->frames, "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
+      ->type_name("A:B:S");
+  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")->type_name("I/N");
+  command->add_option("--size", options->size, "Size in pixels [that of the run]")->check(picture_size())->type_name("WxH");
+  command->add_option("--camera-eye", options->eye, "Position of the camera, m")
+      ->expected(3)
+      ->check(any_number())
+      ->type_name("X Y Z");
+  command->add_option("--camera-target", options->target, "Point that the camera looks at, m")
+      ->expected(3)
+      ->check(any_number())
+      ->type_name("X Y Z");
+  command->add_option("--fov", options->field_of_view, "Vertical field of view, degrees")
+      ->check(CLI::Range(5.0, 120.0))
+      ->type_name("DEGREES");
+  command->add_flag("--no-ground", options->no_ground, "Without the ground");
+  command->add_flag("--no-shadows", options->no_shadows, "Without shadows");
+  add_graphics_option(*command, options->backend);
+  command->add_flag("--force", options->force, "Replace pictures that exist");
+  command->add_flag("--quiet", options->quiet, "Show errors only");
+  command->footer(
+      "Examples:\n"
+      "  pliant render out/pull --size 1920x1080 -o out/pull-hd\n"
+      "  pliant render out/pull --frames 0:100:10 --camera-eye 4 -3 2 -o out/pull-side\n"
+      "  for i in 1 2; do pliant render out/pull --shard $i/2 & done; wait\n"
+      "  ffmpeg -framerate 25 -i out/pull/frames/frame_%06d.png -pix_fmt yuv420p pull.mp4");
+  command->callback([options, &action] { action = [options] { return render(*options); }; });
+}
+
+}  // namespace pliant_cli

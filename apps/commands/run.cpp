@@ -1,0 +1,160 @@
+// pliant run: simulates a scene into a folder, and writes meshes and pictures of its frames when asked.
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <optional>
+
+#include <pliant/io/mesh_frames.h>
+#include <pliant/io/number_text.h>
+#include <pliant/io/run.h>
+#include <pliant/io/run_files.h>
+
+#include "command.h"
+#include "draw_frames.h"
+#include "exit_codes.h"
+#include "graphics_option.h"
+#include "options.h"
+#include "scene_options.h"
+#include "show_progress.h"
+#include "stop_signal.h"
+
+namespace pliant_cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RunCommand {
+  SceneOptions scene;
+  std::string folder, size;
+  std::optional<double> end, step, frame_rate;
+  bool obj = false, png = false, quiet = false, force = false, resume = false;
+  int threads = 0;
+  pliant::GlBackend backend = pliant::GlBackend::automatic;
+  std::vector<std::string> command_line;
+};
+
+fs::path folder_of(const RunCommand& command) {
+  if (!command.folder.empty()) return command.folder;
+  return fs::path("out") / (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
+}
+
+// What the command line says of how to run; a resumed run goes on as it began where it says nothing.
+void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& begun, pliant::Scene& scene) {
+  if (begun) {
+    scene.end = begun->end;
+    scene.step = begun->asked_step;
+    scene.frame_rate = begun->frame_rate;
+    scene.width = begun->width;
+    scene.height = begun->height;
+  }
+  scene.end = command.end.value_or(scene.end);
+  scene.step = command.step.value_or(scene.step);
+  scene.frame_rate = command.frame_rate.value_or(scene.frame_rate);
+  if (!command.size.empty()) {
+    const PictureSize size = parse_picture_size(command.size);
+    scene.width = size.width;
+    scene.height = size.height;
+  }
+}
+
+void write_frames(const RunCommand& command, pliant::Run& run, pliant::Progress& progress) {
+  std::vector<std::int64_t> frames(static_cast<std::size_t>(run.schedule().frames(run.simulation().time())));
+  std::iota(frames.begin(), frames.end(), 0);
+  const pliant::Scene& scene = run.scene();
+  const pliant::Model& model = run.simulation().model();
+  const auto series = [](const char* folder, const char* ending) {
+    return std::string(folder) + "/frame_*." + ending;
+  };
+  if (command.obj) {
+    run.write("meshes", {series(pliant::kMeshFolder, "obj"), fs::path(pliant::kMeshFolder) / pliant::kMaterialFile}, [&] {
+      const fs::path folder = run.folder() / pliant::kMeshFolder;
+      pliant::make_subfolder(folder);
+      pliant::write_mesh_frames(folder, pliant::MeshFormat::obj, scene, model, run.recording(), scene.frame_rate, frames,
+                                progress);
+    });
+  }
+  if (command.png) {
+    run.write("frames", {series(pliant::kFrameFolder, "png")}, [&] {
+      const fs::path folder = run.folder() / pliant::kFrameFolder;
+      pliant::make_subfolder(folder);
+      draw_frames(folder, scene, model, run.recording(), scene.frame_rate, frames, progress, command.backend);
+    });
+  }
+}
+
+int run_scene(const RunCommand& command) {
+  const fs::path folder = folder_of(command);
+  SceneOptions asked = command.scene;
+  std::optional<pliant::RunRecord> begun;
+  if (command.resume) {
+    begun = pliant::read_run_record(folder / pliant::kRunFile);
+    if (asked.overrides.empty()) asked.overrides = begun->overrides;
+  }
+  const std::unique_ptr<pliant::Scene> scene = read(asked);
+  apply_options(command, begun, *scene);
+
+  catch_stop_signals();
+  const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
+  pliant::RunOptions options;
+  options.folder = folder;
+  options.existing = command.resume  ? pliant::Existing::resume
+                     : command.force ? pliant::Existing::force
+                                     : pliant::Existing::refuse;
+  options.threads = command.threads;
+  options.scene_file = command.scene.file;
+  options.command = command.command_line;
+  options.stop = [] { return stop_signal() != 0; };
+  pliant::Run run(*scene, std::move(options), *progress);
+  if (!command.quiet && std::isfinite(run.record().stable_step))
+    progress->note("step " + pliant::number_text(run.record().step) + " s; the largest stable one is about " +
+                   pliant::number_text(run.record().stable_step) + " s");
+  if (!run.simulate()) {
+    run.finish(pliant::RunRecord::Status::stopped, "by signal " + std::to_string(stop_signal()));
+    std::cerr << "pliant: stopped at t = " << run.simulation().time() << " s; go on with --resume\n";
+    return kSignal + stop_signal();
+  }
+  write_frames(command, run, *progress);
+  run.finish(pliant::RunRecord::Status::complete);
+  if (!command.quiet)
+    std::cout << folder.string() << ": t = " << run.record().time << " s, " << run.record().step_counters.steps << " steps, "
+              << run.record().states << " states recorded; largest balance error " << run.record().max_balance_error
+              << " J\n";
+  return kDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line) {
+  const auto options = std::make_shared<RunCommand>();
+  options->command_line = command_line;
+  CLI::App* command = app.add_subcommand("run", "Simulate a scene and record its motion");
+  add_scene_options(*command, options->scene);
+  command->add_option("-o,--out", options->folder, "Folder for everything that is written [out/SCENE]")->type_name("DIR");
+  command->add_option("--end", options->end, "End of the run, s")->check(number_from_zero())->type_name("T");
+  command->add_option("--step", options->step, "Time step, s")->check(positive_number())->type_name("H");
+  command->add_option("--fps", options->frame_rate, "Recorded states and frames per second of the motion")
+      ->check(positive_number())
+      ->type_name("N");
+  command->add_flag("--obj", options->obj, "Write the surfaces of every frame as OBJ files");
+  command->add_flag("--png", options->png, "Draw a picture of every frame");
+  command->add_option("--size", options->size, "Size of pictures, pixels")->check(picture_size())->type_name("WxH");
+  add_graphics_option(*command, options->backend);
+  command->add_option("--threads", options->threads, "Threads [as many as are of use]; results do not depend on it")
+      ->check(count_up_to(4096))
+      ->type_name("N");
+  command->add_flag("--quiet", options->quiet, "Show errors only");
+  CLI::Option* force = command->add_flag("--force", options->force, "Replace the run that is in the folder");
+  command->add_flag("--resume", options->resume, "Go on with the run that is in the folder, to the last bit as if unbroken")
+      ->excludes(force);
+  command->footer(
+      "Examples:\n"
+      "  pliant run scenes/tumbling.json --obj --png -o out/tumbling\n"
+      "  pliant run scenes/pull.json --set /parts/0/density=500 --set /gravity=[0,0,-9.81] --end 2\n"
+      "  pliant run scenes/pull.json -o out/pull --resume --end 20    longer than it was, or after Ctrl-C\n"
+      "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy,\n"
+      "modes.npy, explained by layout.json), meshes/ and frames/.");
+  command->callback([options, &action] { action = [options] { return run_scene(*options); }; });
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,24 @@
+// Exit codes of the program; documented in its help.
+#pragma once
+
+namespace pliant_cli {
+
+enum ExitCode {
+  kDone = 0,
+  kInternal = 1,
+  kCommandLine = 2,
+  kInput = 3,
+  kNumerical = 5,
+  kFileSystem = 7,
+  kResources = 8,
+  kWouldOverwrite = 9,
+  kDoesNotFit = 10,
+  kSignal = 128,  // plus the number of the signal
+};
+
+inline constexpr const char* kExitCodesHelp =
+    "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 5 numerical failure,\n"
+    "7 file system, 8 resources (memory, graphics), 9 would overwrite, 10 recording does not fit,\n"
+    "130/143 stopped by a signal (go on with --resume).";
+
+}  // namespace pliant_cli

@@ -1,0 +1,109 @@
+#include "failure.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/progress.h>
+#include <pliant/io/recording.h>
+#include <pliant/io/run_folder.h>
+#include <pliant/math/nearest_name.h>
+#include <pliant/scene/diagnostics.h>
+#include <pliant/scene/text_file.h>
+
+#include "exit_codes.h"
+#include "stop_signal.h"
+
+namespace pliant_cli {
+namespace {
+
+int tell(const char* what, int code) {
+  std::cerr << "pliant: error: " << what << "\n";
+  return code;
+}
+
+// Names that could have been meant where a word was not understood.
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
+  const std::vector<std::string> words = app.remaining(true);
+  std::string text;
+  for (const std::string& word : words) {
+    const std::string name = word.substr(0, word.find('='));
+    text += (text.empty() ? "" : "\npliant: error: ");
+    if (&command == &app && word.compare(0, 1, "-") != 0)
+      text += "there is no command \"" + pliant::escaped(word) + "\"" + pliant::did_you_mean(name, command_names(app));
+    else if (word.compare(0, 1, "-") == 0)
+      text += "there is no option " + pliant::escaped(name) + pliant::did_you_mean(name, option_names(command));
+    else
+      text += "unexpected argument \"" + pliant::escaped(word) + "\"";
+  }
+  return text;
+}
+
+}  // namespace
+
+int reporting_failures(const std::function<int()>& task) {
+  try {
+    return task();
+  } catch (const pliant::SceneError& error) {
+    std::cerr << error.what() << "\n";
+    return kInput;
+  } catch (const pliant::FileError& error) {
+    return tell(error.what(), error.exit_code());
+  } catch (const pliant::OutputRefused& error) {
+    return tell(error.what(), kWouldOverwrite);
+  } catch (const pliant::RecordingMismatch& error) {
+    return tell(error.what(), kDoesNotFit);
+  } catch (const pliant::NumericalFailure& error) {
+    return tell(error.what(), kNumerical);
+  } catch (const pliant::Interrupted& error) {
+    std::cerr << "pliant: " << error.what() << "\n";
+    return kSignal + stop_signal();
+  } catch (const ResourceFailure& error) {
+    return tell(error.what(), kResources);
+  } catch (const std::bad_alloc&) {
+    return tell("out of memory", kResources);
+  } catch (const std::system_error& error) {
+    return tell(error.what(), kFileSystem);
+  } catch (const std::invalid_argument& error) {
+    return tell(error.what(), kInput);
+  } catch (const std::exception& error) {
+    return tell((std::string("internal: ") + error.what()).c_str(), kInternal);
+  }
+}
+
+int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) {  // help or version
+    app.exit(error, std::cout, std::cout);
+    return kDone;
+  }
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  const CLI::App& command = parsed.empty() ? app : *parsed.front();
+  const std::string unexpected = unexpected_words(app, command);
+  const std::string what = unexpected.empty() ? pliant::escaped(error.what()) : unexpected;
+  std::cerr << "pliant: error: " << what << "\nTry: pliant " << (parsed.empty() ? "" : command.get_name() + " ")
+            << "--help\n";
+  return kCommandLine;
+}
+
+}  // namespace pliant_cli

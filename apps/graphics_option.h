@@ -1,0 +1,15 @@
+// Which way to a picture is taken: --gl.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include <pliant/render/gl_context.h>
+
+namespace pliant_cli {
+
+void add_graphics_option(CLI::App& command, pliant::GlBackend& backend);
+
+}  // namespace pliant_cli

@@ -1,0 +1,68 @@
+#include "machine.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <unistd.h>
+
+#include <pliant/io/build_info.h>
+#include <pliant/io/png.h>
+
+namespace pliant_cli {
+
+std::string processor_features() {
+  std::string features;
+#if defined(__x86_64__)
+  const auto add = [&](bool there, const char* name) {
+    if (there) features += (features.empty() ? "" : " ") + std::string(name);
+  };
+  __builtin_cpu_init();
+  add(__builtin_cpu_supports("sse4.2"), "sse4.2");
+  add(__builtin_cpu_supports("avx"), "avx");
+  add(__builtin_cpu_supports("avx2"), "avx2");
+  add(__builtin_cpu_supports("fma"), "fma");
+  add(__builtin_cpu_supports("avx512f"), "avx512f");
+#endif
+  return features;
+}
+
+std::string loaded_blas() {
+  std::ifstream maps("/proc/self/maps");
+  std::set<std::string> libraries;
+  for (std::string line; std::getline(maps, line);) {
+    const std::string name = std::filesystem::path(line.substr(line.rfind(' ') + 1)).filename().string();
+    if (name.find("blas") != std::string::npos) libraries.insert(name);
+  }
+  std::string text;
+  for (const std::string& name : libraries) text += (text.empty() ? "" : " ") + name;
+  return text.empty() ? "none" : text;
+}
+
+std::string find_program(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string candidate = (std::filesystem::path(folder) / name).string();
+    if (::access(candidate.c_str(), X_OK) == 0) return candidate;
+  }
+  return {};
+}
+
+std::string version_text() {
+  std::string text;
+  for (const auto& [name, value] : pliant::build_info()) text += name + " " + value + "\n";
+  const std::string features = processor_features();
+  if (!features.empty()) text += "processor features here: " + features + "\n";
+  text += std::string("libpng ") + pliant::png_library_version() + "\n";
+  text +=
+      "licence: MIT. Eigen is MPL-2, nlohmann-json MIT, CLI11 BSD-3, libpng under its own permissive licence.\n"
+      "SuiteSparse: not linked into this program. pliant::core never links it; programs that link pliant::suitesparse get\n"
+      "CHOLMOD, whose core is LGPL-2.1+ and whose supernodal module is GPL-2+, and AMD (BSD-3).\n"
+      "graphics: OSMesa or EGL, opened only when a picture is asked for (pliant doctor tells which there are).\n";
+  return text;
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,46 @@
+#include "open_run.h"
+
+#include <pliant/io/frame_schedule.h>
+#include <pliant/io/run_files.h>
+#include <pliant/io/run_folder.h>
+#include <pliant/scene/read_scene.h>
+
+namespace pliant_cli {
+
+OpenRun open_run(const std::filesystem::path& folder) {
+  OpenRun run;
+  run.record = pliant::read_run_record(folder / pliant::kRunFile);
+  const std::filesystem::path file = folder / pliant::kSceneFile;
+  if (!std::filesystem::exists(file)) throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
+  pliant::Diagnostics warnings;  // they were shown when the run began
+  run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings);
+  if (run.scene->hash != run.record.scene_hash)
+    throw pliant::RecordingMismatch(file.string() + " is not the scene that was recorded: it was changed since");
+  run.scene->name = run.record.scene;
+  run.scene->frame_rate = run.record.frame_rate;
+  run.scene->width = run.record.width;
+  run.scene->height = run.record.height;
+  run.model = std::make_unique<pliant::Model>(run.scene->body);
+  run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
+  if (run.recording->rows() == 0) throw pliant::RecordingMismatch("the recording in " + folder.string() + " is empty");
+  return run;
+}
+
+std::int64_t OpenRun::frames() const {
+  const double reached = recording->time(recording->rows() - 1);
+  return pliant::FrameSchedule::with_exact_step(reached, record.step, record.frame_rate).frames(reached);
+}
+
+void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,
+                          const std::string& ending, bool force) {
+  if (folder.has_parent_path()) std::filesystem::create_directories(folder.parent_path());
+  pliant::make_subfolder(folder);
+  if (force) return;
+  for (const std::int64_t frame : frames) {
+    const std::filesystem::path file = folder / pliant::frame_name("frame", frame, ending);
+    if (std::filesystem::exists(file))
+      throw pliant::OutputRefused(file.string() + " exists; --force replaces it, -o names another folder");
+  }
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,26 @@
+// Checks of option values: the whole word must be understood, whatever the locale.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+namespace pliant_cli {
+
+/// A number > 0, finite.
+CLI::Validator positive_number();
+/// A number >= 0, finite.
+CLI::Validator number_from_zero();
+/// A finite number.
+CLI::Validator any_number();
+/// A whole number from 1 to most.
+CLI::Validator count_up_to(int most);
+
+/// "640x480": width and height in pixels, each from 1 to 8192.
+struct PictureSize {
+  int width = 0, height = 0;
+};
+CLI::Validator picture_size();
+PictureSize parse_picture_size(const std::string& text);
+
+}  // namespace pliant_cli

@@ -1,0 +1,26 @@
+#include "scene_options.h"
+
+#include <iostream>
+
+#include <pliant/scene/read_scene.h>
+
+namespace pliant_cli {
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+  command.add_option("scene", options.file, "Scene file (JSON); - is standard input")->required()->type_name("SCENE");
+  command
+      .add_option("--set", options.overrides,
+                  "Value in the scene by its JSON pointer, as /parts/0/density=500; may be given several times")
+      ->type_name("/POINTER=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+std::unique_ptr<pliant::Scene> read(const SceneOptions& options) {
+  pliant::Diagnostics diagnostics;
+  std::unique_ptr<pliant::Scene> scene = pliant::read_scene(options.file, options.overrides, diagnostics);
+  if (diagnostics.warnings() > 0) std::cerr << diagnostics.text() << "\n";
+  return scene;
+}
+
+}  // namespace pliant_cli

@@ -1,0 +1,11 @@
+// Signals that ask the program to stop: the first lets it end in good order, the second ends it at once.
+#pragma once
+
+namespace pliant_cli {
+
+/// Begins to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU; SIGPIPE is ignored from now on.
+void catch_stop_signals();
+/// The number of the signal that was caught, 0 for none.
+int stop_signal();
+
+}  // namespace pliant_cli

@@ -1,0 +1,80 @@
+// Time per step and per force evaluation, by what a part can do and by how many parts there are. CSV to
+// standard output; the last column is the evaluation's price in multiply-adds at this machine's measured
+// peak.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include <pliant/pliant.h>
+
+#include "timing.h"
+
+using namespace pliant;
+
+namespace {
+
+using Soft = Superellipsoid;
+
+void rigid(MultiBody& body, const std::string& name) {
+  auto& part = body.add<Primitive<Ellipsoid>>(name);
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {1, 2, 3});
+}
+/// A deformation that is there but frozen at nothing: must cost a rigid part no more.
+void rigid_null(MultiBody& body, const std::string& name) {
+  auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).move({0, 0, 0}, {1, 2, 3});
+}
+void three(MultiBody& body, const std::string& name) {
+  auto& part = body.add<Primitive<Ellipsoid>>(name);
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {1, 2, 3});
+  part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
+}
+void eleven(MultiBody& body, const std::string& name) {
+  auto& part = body.add<Primitive<Soft, Chain<Taper, Twist, Shear, BendOffset, Bend>>>(name);
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}, {"bend.direction", 0.3}}).move({0, 0, 0}, {1, 2, 3});
+  part.stiffness({{"a1", 1e5},
+                  {"a2", 1e5},
+                  {"a3", 1e5},
+                  {"taper.tx", 1e3},
+                  {"taper.ty", 1e3},
+                  {"twist.angle", 1e3},
+                  {"shear.sx", 1e4},
+                  {"shear.sy", 1e4},
+                  {"bend.angle", 1e3},
+                  {"bend.direction", 1e2},
+                  {"bend_offset.b1", 1e5}});
+  part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
+}
+
+void measure(const char* kind, void (*add)(MultiBody&, const std::string&), int parts, double peak) {
+  MultiBody body;
+  for (int i = 0; i < parts; ++i) add(body, "part" + std::to_string(i));
+  Simulation simulation(body, "semi_implicit_euler");
+  const State start = simulation.state();
+  for (int i = 0; i < 20; ++i) simulation.step(1e-4);
+  const double step = bench::seconds_per_call([&] { simulation.step(1e-9); }) / parts;
+  Workspace<double> work;
+  const double evaluation = bench::seconds_per_call([&] {
+                              simulation.dynamics().accelerations(0, start.q, start.v, start.at_limit, work);
+                            }) /
+                            parts;
+  const Part& one = *body.parts()[0];
+  std::printf("%s,%d,%d,%s,%d,%.4f,%.4f,%.0f\n", kind, one.n_s(), parts, one.mass_points().rule.c_str(),
+              one.mass_points().n_points, step * 1e6, evaluation * 1e6, evaluation * peak);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  const double peak = bench::multiply_add_peak();
+  std::printf("# multiply-adds per second %.3g, triad %.3g bytes/s\n", peak, bench::triad_bandwidth());
+  std::printf(
+      "part,n_s,parts,rule,points,step_us_per_part,evaluation_us_per_part,evaluation_multiply_adds\n");
+  for (const int parts : {1, 10, 1000}) {
+    measure("rigid", rigid, parts, peak);
+    measure("rigid with a null twist", rigid_null, parts, peak);
+    measure("3 parameters", three, parts, peak);
+    measure("11 parameters", eleven, parts, peak);
+  }
+}

@@ -1,0 +1,24 @@
+// Numbers as text: the shortest decimals that read back as the same number, whatever the locale.
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <string>
+
+namespace pliant {
+
+inline void append_number(std::string& text, double x) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
+}
+inline void append_number(std::string& text, std::int64_t n) {
+  char digits[32];
+  text.append(digits, std::to_chars(digits, digits + sizeof digits, n).ptr);
+}
+inline std::string number_text(double x) {
+  std::string text;
+  append_number(text, x);
+  return text;
+}
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+// run.json: what a run was asked to do, how far it came, what it cost and what was noticed. Rewritten whole while the run
+// goes on, so that its status always tells the truth about the files beside it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/build_info.h>
+
+namespace pliant {
+
+struct RunRecord {
+  enum class Status { running, complete, stopped, failed };
+
+  Status status = Status::running;
+  std::string message;  ///< why it stopped or failed
+
+  // What was asked.
+  BuildInfo build;
+  std::vector<std::string> command;    ///< the command line, for people
+  std::string scene;                   ///< name
+  std::string scene_file;
+  std::vector<std::string> overrides;  ///< of the scene, "/json/pointer=value"
+  std::uint64_t scene_hash = 0;
+  double end = 0;         ///< s, as asked
+  double asked_step = 0;  ///< s
+  double step = 0;        ///< s, as taken: asked_step, or a little less so that steps fill the run
+  double frame_rate = 0;  ///< 1/s
+  std::string integrator;
+  int threads = 1;
+  int width = 0, height = 0;  ///< of pictures
+
+  // How far it came.
+  std::int64_t steps = 0, steps_done = 0;
+  double time = 0;  ///< of the last state, s
+  std::int64_t states = 0;  ///< recorded
+  int resumed = 0;          ///< how often it was gone on with
+
+  // What it cost, over all resumptions.
+  std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage
+  StepCounters step_counters;
+  Counters counters;
+
+  // What was noticed.
+  double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest, s
+  double max_balance_error = 0;                                  ///< J, largest |balance| at a recorded state
+  double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
+  double max_kinetic = 0;                                        ///< J
+  std::vector<std::string> held;     ///< parameters that had no inertia and were held
+  std::vector<std::string> skipped;  ///< what the scene did not need
+  std::vector<std::string> notes;    ///< warnings and choices
+  std::vector<std::string> files;    ///< written, relative to the folder; series as "meshes/frame_*.obj"
+
+  /// Adds to the wall time of a stage.
+  void add_seconds(const std::string& stage, double seconds);
+  /// Adds a file or series once.
+  void add_file(const std::string& name);
+};
+
+/// Throws std::system_error.
+void write_run_record(const std::filesystem::path& file, const RunRecord& record);
+/// Throws RecordingMismatch when it cannot be read or is no such record.
+RunRecord read_run_record(const std::filesystem::path& file);
+
+}  // namespace pliant

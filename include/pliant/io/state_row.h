@@ -1,0 +1,23 @@
+// What a state holds beside t, q and v, as one row of numbers: modes.npy.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pliant/body/model.h>
+
+namespace pliant {
+
+struct ModeColumn {
+  std::string name, unit, meaning;
+};
+/// The columns of modes.npy, in order.
+std::vector<ModeColumn> mode_columns_of(const Model& model);
+
+/// The row of a state. Its last number is a hash of all bits of the state.
+void write_modes(const State& state, std::vector<double>& row);
+
+/// Fills in the rest of a state whose q and v are set. False when the row's hash is not that of the state.
+[[nodiscard]] bool read_modes(const std::vector<double>& row, State& state);
+
+}  // namespace pliant

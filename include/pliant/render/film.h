@@ -1,0 +1,46 @@
+// The pictures of a run's frames, drawn from its recording.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include <pliant/io/frame_meshes.h>
+#include <pliant/io/progress.h>
+#include <pliant/io/recording.h>
+#include <pliant/render/picture.h>
+#include <pliant/render/renderer.h>
+#include <pliant/scene/scene.h>
+
+namespace pliant {
+
+/// Makes the picture of any frame. Camera and ground are the same in all frames of a run: where the scene leaves them
+/// open, they follow from the whole recorded motion.
+class Film {
+ public:
+  /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
+  Film(const Scene& scene, const Model& model, const Recording& recording);
+
+  /// The picture at a time (s); valid until the next call.
+  const Picture& at(double time);
+  const Camera& camera() const { return picture_.camera; }
+
+ private:
+  void lay_tracks();
+  void choose_view();
+
+  const Scene* scene_;
+  const Model* model_;
+  const Recording* recording_;
+  FrameMeshes meshes_;
+  std::vector<std::vector<Eigen::Vector3d>> tracks_;  // of each track, its point at every recorded state
+  Picture picture_;
+};
+
+/// Draws frame_000000.png for each of the frames, which are taken at number / frame_rate seconds, into an existing folder;
+/// size: the scene's. Throws as Film, Renderer and write_png do.
+void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model, const Recording& recording,
+                   double frame_rate, const std::vector<std::int64_t>& frames, Progress& progress,
+                   GlBackend backend = GlBackend::automatic);
+
+}  // namespace pliant

@@ -1,0 +1,18 @@
+// From a JSON document to a Scene.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pliant/scene/diagnostics.h>
+#include <pliant/scene/scene.h>
+
+namespace pliant {
+
+/// Reads a scene file ("-" is standard input). overrides: "/json/pointer=value", applied before anything is
+/// checked. Warnings are left in diagnostics. Throws SceneError with all faults at once, FileError.
+std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
+                                  Diagnostics& diagnostics);
+
+}  // namespace pliant

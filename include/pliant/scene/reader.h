@@ -1,0 +1,61 @@
+// Reading validated values by key: what the file says, else the default that the record declares. Nothing is
+// checked again; asking for a key that the record does not declare, or that has neither value nor default, is
+// an error of the program and throws std::logic_error.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <pliant/math/time_function.h>
+#include <pliant/math/types.h>
+#include <pliant/scene/json_value.h>
+#include <pliant/scene/schema.h>
+
+namespace pliant {
+
+/// An object of the scene beside the record that it was validated against. Both must outlive it.
+class Reader {
+ public:
+  Reader(const JsonValue& object, const schema::Record& record) : object_(&object), record_(&record) {}
+
+  const JsonValue& json() const { return *object_; }
+  const schema::Record& record() const { return *record_; }
+  /// The name of the record: for an object with a tag, the value of the tag.
+  const std::string& name() const { return record_->name; }
+
+  /// The scene itself has the key.
+  bool given(std::string_view key) const;
+  /// The value of the key or its default; null when it has neither.
+  const JsonValue* find(const std::string& key) const;
+  const JsonValue& at(const std::string& key) const;
+
+  double number(const std::string& key) const;
+  std::int64_t integer(const std::string& key) const;
+  bool boolean(const std::string& key) const;
+  const std::string& text(const std::string& key) const;
+  Vec3<double> vector3(const std::string& key) const;
+  std::vector<double> numbers(const std::string& key) const;
+  TimeFunction time_function(const std::string& key) const;
+  TimeVector time_vector(const std::string& key) const;
+
+  /// The object under a key, with the record that its type names (the chosen one where there are several). An
+  /// absent key whose type is one record gives that record's defaults.
+  Reader object(const std::string& key) const;
+  /// The objects of an array under a key; empty for an absent key.
+  std::vector<Reader> objects(const std::string& key) const;
+
+ private:
+  const schema::Field& field(const std::string& key) const;
+
+  const JsonValue* object_;
+  const schema::Record* record_;
+};
+
+/// The record of a type that an object was validated against; null for a type without records.
+const schema::Record* chosen_record(const schema::Type& type, const JsonValue& object);
+
+Vec3<double> read_vector3(const JsonValue& value);
+
+}  // namespace pliant

@@ -1,0 +1,77 @@
+#include <pliant/io/frame_range.h>
+
+#include <charconv>
+#include <stdexcept>
+
+namespace pliant {
+namespace {
+
+// The whole of a text as a number >= 0.
+std::optional<std::int64_t> number(const std::string& text) {
+  std::int64_t value = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
+  return value;
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> pieces{""};
+  for (const char c : text) {
+    if (c == at)
+      pieces.emplace_back();
+    else
+      pieces.back() += c;
+  }
+  return pieces;
+}
+
+}  // namespace
+
+FrameRange FrameRange::parse(const std::string& text) {
+  const auto refuse = [&]() -> std::int64_t {
+    throw std::invalid_argument("frames \"" + text + "\" must be FIRST:END:STRIDE (END not included) or one number");
+  };
+  const std::vector<std::string> pieces = split(text, ':');
+  if (pieces.size() > 3) refuse();
+  const auto piece = [&](std::size_t i, std::int64_t otherwise) {
+    if (i >= pieces.size() || pieces[i].empty()) return otherwise;
+    const std::optional<std::int64_t> value = number(pieces[i]);
+    return value ? *value : refuse();
+  };
+  FrameRange range;
+  if (pieces.size() == 1) {
+    if (pieces[0].empty()) refuse();
+    range.first = piece(0, 0);
+    range.end = range.first + 1;
+    return range;
+  }
+  range.first = piece(0, 0);
+  if (!pieces[1].empty()) range.end = piece(1, 0);
+  range.stride = piece(2, 1);
+  if (range.stride < 1) refuse();
+  return range;
+}
+
+void FrameRange::parse_shard(const std::string& text) {
+  const std::vector<std::string> pieces = split(text, '/');
+  const std::optional<std::int64_t> i = number(pieces[0]), n = pieces.size() == 2 ? number(pieces[1]) : std::nullopt;
+  if (!i || !n || *i < 1 || *i > *n) throw std::invalid_argument("shard \"" + text + "\" must be i/n with 1 <= i <= n");
+  shard = *i - 1;
+  shards = *n;
+}
+
+std::vector<std::int64_t> FrameRange::frames(std::int64_t count) const {
+  if (first > 0 && first >= count)
+    throw std::invalid_argument("there is no frame " + std::to_string(first) + ": the recording has " +
+                                std::to_string(count) + " frames");
+  if (end && *end > count)
+    throw std::invalid_argument("there is no frame " + std::to_string(*end - 1) + ": the recording has " +
+                                std::to_string(count) + " frames");
+  std::vector<std::int64_t> numbers;
+  std::int64_t position = 0;
+  for (std::int64_t frame = first; frame < end.value_or(count); frame += stride)
+    if (position++ % shards == shard) numbers.push_back(frame);
+  return numbers;
+}
+
+}  // namespace pliant

@@ -1,0 +1,70 @@
+#include <pliant/io/frame_schedule.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include <pliant/io/number_text.h>
+
+namespace pliant {
+namespace {
+
+constexpr double kMostSteps = 1e12;
+/// Part of a step within which a frame counts as on the step.
+constexpr double kOnStep = 1e-6;
+
+void require(bool good, const char* what, double value, const char* expected) {
+  if (!good) throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
+}
+
+// end / step rounded up, but to the nearest where that is as good as exact.
+double steps_between(double end, double step, double rate) {
+  require(std::isfinite(end) && end >= 0, "the end time", end, "a number of seconds >= 0");
+  require(std::isfinite(step) && step > 0, "the step", step, "a number of seconds > 0");
+  require(std::isfinite(rate) && rate > 0, "the frame rate", rate, "a number per second > 0");
+  const double exact = end / step, near = std::round(exact);
+  const double steps = std::abs(exact - near) <= 1e-9 * std::max(1.0, exact) ? near : std::ceil(exact);
+  if (!(steps <= kMostSteps))
+    throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) + " s takes " +
+                                number_text(steps) + " steps; the limit is 1e12");
+  if (!(end * rate <= kMostSteps))
+    throw std::invalid_argument("a run to " + number_text(end) + " s has " + number_text(end * rate) +
+                                " frames; the limit is 1e12");
+  return steps;
+}
+
+}  // namespace
+
+FrameSchedule::FrameSchedule(double end, double step, double rate) : step_(step), rate_(rate) {
+  const double steps = steps_between(end, step, rate);
+  steps_ = static_cast<std::int64_t>(steps);
+  if (steps > 0 && std::abs(steps * step - end) > 1e-9 * end) step_ = end / steps;
+}
+
+FrameSchedule FrameSchedule::with_exact_step(double end, double step, double rate) {
+  FrameSchedule schedule;
+  schedule.step_ = step;
+  schedule.rate_ = rate;
+  schedule.steps_ = static_cast<std::int64_t>(steps_between(end, step, rate));
+  return schedule;
+}
+
+bool FrameSchedule::records(std::int64_t step) const {
+  if (step == 0 || step == steps_) return true;
+  if (step < 0 || step > steps_) return false;
+  const double per_step = rate_ * step_, at = static_cast<double>(step);
+  const auto near = static_cast<std::int64_t>(std::floor(at * per_step));
+  const std::int64_t count = frames();
+  for (std::int64_t k = std::max<std::int64_t>(0, near - 1); k <= near + 2 && k < count; ++k) {
+    const double place = static_cast<double>(k) / per_step, on = std::round(place);
+    if (std::abs(place - on) <= kOnStep ? on == at : std::abs(place - at) < 1) return true;
+  }
+  return false;
+}
+
+std::int64_t FrameSchedule::frames(double until) const {
+  return static_cast<std::int64_t>(std::floor(until * rate_ + kOnStep * rate_ * step_ + 1e-9)) + 1;
+}
+
+}  // namespace pliant

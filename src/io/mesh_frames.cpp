@@ -1,0 +1,35 @@
+#include <pliant/io/mesh_frames.h>
+
+#include <pliant/io/frame_meshes.h>
+#include <pliant/io/obj.h>
+#include <pliant/io/ply.h>
+#include <pliant/io/run_files.h>
+#include <pliant/io/whole_file.h>
+
+namespace pliant {
+
+void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene, const Model& model,
+                       const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
+                       Progress& progress) {
+  FrameMeshes meshes(scene, model);
+  progress.begin("meshes", static_cast<double>(frames.size()), "frames");
+  double done = 0;
+  for (const std::int64_t frame : frames) {
+    const std::vector<NamedMesh>& now = meshes.at(recording.at(static_cast<double>(frame) / frame_rate));
+    if (format == MeshFormat::obj)
+      write_obj(folder / frame_name("frame", frame, "obj"), now, kMaterialFile);
+    else
+      write_ply(folder / frame_name("frame", frame, "ply"), now);
+    progress.advance(++done);
+  }
+  if (format == MeshFormat::obj) {
+    std::vector<NamedMesh> colors;
+    for (std::size_t i = 0; i < scene.appearance.size(); ++i)
+      if (scene.appearance[i].visible) colors.push_back({scene.body.parts()[i]->name(), scene.appearance[i].color, {}});
+    const std::string text = mtl_text(colors);
+    write_whole_file(folder / kMaterialFile, text.data(), text.size());
+  }
+  progress.end();
+}
+
+}  // namespace pliant

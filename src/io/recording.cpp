@@ -1,0 +1,161 @@
+#include <pliant/io/recording.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <pliant/body/dynamics.h>
+#include <pliant/io/number_text.h>
+#include <pliant/io/run_files.h>
+#include <pliant/io/state_row.h>
+
+namespace pliant {
+namespace {
+
+int mode_count(const Model& model) { return 3 + kWorks + model.n_limits() + 1; }
+
+// The names of a table's columns must be the model's.
+void compare_columns(const nlohmann::json& layout, const char* table, int count, const std::filesystem::path& file,
+                     const std::function<std::string(int)>& name) {
+  const nlohmann::json& columns = layout.at("tables").at(table);
+  for (int i = 0; i < std::min(count, static_cast<int>(columns.size())); ++i) {
+    const std::string recorded = columns.at(static_cast<std::size_t>(i)).at("name");
+    if (recorded != name(i))
+      throw RecordingMismatch(file.string() + " was recorded from another scene: column " + std::to_string(i) + " of " +
+                              table + " is " + recorded + ", the scene has " + name(i) + " there");
+  }
+  if (static_cast<int>(columns.size()) != count)
+    throw RecordingMismatch(file.string() + " was recorded from another scene: " + table + " has " +
+                            std::to_string(columns.size()) + " columns, the scene " + std::to_string(count));
+}
+
+void compare_layout(const std::filesystem::path& file, const Model& model) {
+  std::ifstream stream(file);
+  if (!stream) throw RecordingMismatch("there is no recording: cannot read " + file.string());
+  try {
+    const nlohmann::json layout = nlohmann::json::parse(stream);
+    if (layout.at("version") != 1)
+      throw RecordingMismatch(file.string() + " is of version " + layout.at("version").dump() + ", expected 1");
+    compare_columns(layout, kCoordinatesFile, model.n_q(), file, [&](int i) { return model.coordinate_name(i); });
+    compare_columns(layout, kVelocitiesFile, model.n_v(), file, [&](int i) { return model.velocity_name(i); });
+  } catch (const nlohmann::json::exception& fault) {
+    throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
+  }
+}
+
+NpyReader open_table(const std::filesystem::path& path, int columns) {
+  try {
+    NpyReader reader(path);
+    if (reader.columns() != columns)
+      throw RecordingMismatch(path.string() + " has " + std::to_string(reader.columns()) + " columns, the scene needs " +
+                              std::to_string(columns));
+    return reader;
+  } catch (const std::system_error&) {
+    throw;
+  } catch (const RecordingMismatch&) {
+    throw;
+  } catch (const std::runtime_error& fault) {
+    throw RecordingMismatch(fault.what());
+  }
+}
+
+}  // namespace
+
+RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes)
+    : times_(std::move(times)),
+      coordinates_(std::move(coordinates)),
+      velocities_(std::move(velocities)),
+      modes_(std::move(modes)) {}
+
+RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model) {
+  return {NpyWriter::create(folder / kTimesFile, kNpyVector), NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
+          NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
+          NpyWriter::create(folder / kModesFile, mode_count(model))};
+}
+
+RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows) {
+  return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
+          NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
+          NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
+          NpyWriter::resume(folder / kModesFile, mode_count(model), rows)};
+}
+
+void RecordingWriter::append(const State& state) {
+  const double time = state.time();
+  coordinates_.append(state.q.data());
+  velocities_.append(state.v.data());
+  write_modes(state, row_);
+  modes_.append(row_.data());
+  times_.append(&time);
+}
+
+void RecordingWriter::flush(bool to_disk) {
+  for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_}) to_disk ? table->flush_to_disk() : table->flush();
+}
+
+std::size_t RecordingWriter::pending_bytes() const {
+  return coordinates_.pending_bytes() + velocities_.pending_bytes() + modes_.pending_bytes();
+}
+
+Recording::Recording(const std::filesystem::path& folder, const Model& model)
+    : model_(&model),
+      coordinates_((compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
+      velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
+      modes_(open_table(folder / kModesFile, mode_count(model))) {
+  const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
+  const std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
+  times_.resize(static_cast<std::size_t>(rows));
+  for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
+  for (std::size_t row = 1; row < times_.size(); ++row)
+    if (!(times_[row] > times_[row - 1]))
+      throw RecordingMismatch((folder / kTimesFile).string() + " is damaged: time does not grow at row " +
+                              std::to_string(row));
+}
+
+State Recording::state(std::int64_t row) const {
+  State state;
+  state.q.resize(coordinates_.columns());
+  state.v.resize(velocities_.columns());
+  coordinates_.read(row, state.q.data());
+  velocities_.read(row, state.v.data());
+  std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
+  modes_.read(row, modes.data());
+  if (!read_modes(modes, state) || !(state.time() == time(row)))
+    throw RecordingMismatch("the recorded state at row " + std::to_string(row) + " is damaged: its check number does not fit");
+  return state;
+}
+
+State Recording::at(double t) const {
+  if (times_.empty()) throw std::out_of_range("the recording holds no state");
+  const auto next = std::lower_bound(times_.begin(), times_.end(), t);
+  const std::int64_t after = next - times_.begin();
+  if (after == rows()) return state(rows() - 1);
+  if (after == 0) return state(0);
+  State low = state(after - 1);
+  const State high = state(after);
+  // A frame on a step is that step's state, however the two times were rounded.
+  const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
+  if (high.time() - t <= tolerance) return high;
+  if (t - low.time() <= tolerance) return low;
+  const double x = (t - low.time()) / span;
+  const double h01 = x * x * (3 - 2 * x), h00 = 1 - h01, h10 = x * (1 - x) * (1 - x), h11 = -x * x * (1 - x);
+  const Dynamics dynamics(*model_);
+  VecX<double> low_rate, high_rate;
+  dynamics.coordinate_rates(low.q, low.v, low_rate);
+  dynamics.coordinate_rates(high.q, high.v, high_rate);
+  low.q = h00 * low.q + h01 * high.q + span * (h10 * low_rate + h11 * high_rate);
+  for (const PartModel& part : model_->parts())
+    if (part.q0 >= 0) low.q.segment<4>(part.q0 + 3).normalize();
+  low.v = (1 - x) * low.v + x * high.v;
+  low.work = (1 - x) * low.work + x * high.work;
+  low.start = t;
+  low.step = 0;
+  return low;
+}
+
+}  // namespace pliant

@@ -1,0 +1,266 @@
+#include <pliant/io/run.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <pliant/io/number_text.h>
+#include <pliant/io/run_files.h>
+#include <pliant/io/skipped.h>
+#include <pliant/io/trajectory.h>
+#include <pliant/io/whole_file.h>
+
+namespace pliant {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kFlushEvery{250};
+constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+template <class Value>
+void require_same(const char* what, const Value& recorded, const Value& now, const std::string& hint = "") {
+  if (recorded == now) return;
+  std::string message = std::string("the run cannot be gone on with: ") + what + " was ";
+  if constexpr (std::is_arithmetic_v<Value>)
+    message += number_text(recorded) + " and is now " + number_text(now);
+  else
+    message += recorded + " and is now " + now;
+  throw RecordingMismatch(message + hint);
+}
+
+// The simulation of a scene whose settings are as they should be.
+std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
+  if (scene.appearance.size() != scene.body.parts().size())
+    throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) + " parts, but tells the looks of " +
+                                std::to_string(scene.appearance.size()));
+  for (const Track& track : scene.tracks)
+    if (track.point.part == nullptr) throw std::invalid_argument("track '" + track.name + "' follows no part");
+  return std::make_unique<Simulation>(scene.body, scene.integrator, threads);
+}
+
+}  // namespace
+
+int automatic_threads(const Scene& scene) {
+  // A round of the pool costs about as much as a deforming part or a hundred rigid ones (bench/step_bench).
+  double parts = 0;
+  for (const auto& part : scene.body.parts()) parts += part->fixed() ? 0 : part->rigid() ? 0.01 : 1;
+  const auto useful = static_cast<int>(std::min(parts / 4, 1024.0));
+  return std::clamp(useful, 1, std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+}
+
+Run::Run(Scene& scene, RunOptions options, Progress& progress)
+    : scene_(&scene), options_(std::move(options)), progress_(&progress), schedule_(scene.end, scene.step, scene.frame_rate) {
+  const Clock::time_point start = Clock::now();
+  if (options_.threads <= 0) options_.threads = automatic_threads(scene);
+  simulation_ = prepare(scene, options_.threads);
+  const double stable_step = largest_stable_step(*simulation_);
+  const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
+  folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
+  if (options_.existing == Existing::resume)
+    begin_again();
+  else
+    begin_anew();
+  record_.status = RunRecord::Status::running;
+  record_.message.clear();
+  record_.command = options_.command;
+  record_.scene = scene.name;
+  record_.scene_file = options_.scene_file;
+  record_.overrides = scene.overrides;
+  record_.end = scene.end;
+  record_.threads = options_.threads;
+  record_.width = scene.width;
+  record_.height = scene.height;
+  record_.steps = schedule_.steps();
+  record_.stable_step = stable_step;
+  record_.skipped = skipped_work(simulation_->model());
+  record_.add_seconds("prepare", seconds_since(start));
+  if (schedule_.step() > stable_step) {
+    note("warning: the step of " + number_text(schedule_.step()) + " s is above the largest stable one, about " +
+         number_text(stable_step) + " s");
+  }
+  write_layout(folder_->path(), simulation_->model(), schedule_);
+  for (const char* file : {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
+    if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
+  save(true);
+}
+
+Run::~Run() = default;
+
+void Run::begin_anew() {
+  record_.build = build_info();
+  record_.scene_hash = scene_->hash;
+  record_.asked_step = scene_->step;
+  record_.step = schedule_.step();
+  record_.frame_rate = scene_->frame_rate;
+  record_.integrator = scene_->integrator;
+  if (schedule_.step() != scene_->step) {
+    note("the end " + number_text(scene_->end) + " s is no multiple of the step " + number_text(scene_->step) +
+         " s: steps of " + number_text(schedule_.step()) + " s are taken");
+  }
+  write_run_record(*folder_ / kRunFile, record_);  // from here on the folder is known as a run's
+  if (!scene_->document.empty())
+    write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
+  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::create(folder_->path(), simulation_->model()));
+  record_state();
+  writer_->flush();
+}
+
+void Run::begin_again() {
+  record_ = read_run_record(*folder_ / kRunFile);
+  for (const auto& [name, value] : build_info()) {
+    const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
+                                       [&key = name](const auto& entry) { return entry.first == key; });
+    require_same(("its program's " + name).c_str(), recorded == record_.build.end() ? "unknown" : recorded->second, value,
+                 "; only the same build gives the same numbers");
+  }
+  if (record_.scene_hash != scene_->hash)
+    throw RecordingMismatch("the run cannot be gone on with: the scene or its --set values are not those it began with");
+  require_same("the integrator", record_.integrator, scene_->integrator);
+  require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
+  require_same("the step", record_.asked_step, scene_->step);
+  schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
+    note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " + number_text(record_.step) +
+         " s: it goes on to " + number_text(schedule_.end()) + " s");
+  }
+
+  const Recording recorded = recording();
+  std::int64_t keep = recorded.rows();
+  if (keep > 0) {
+    State last = recorded.state(keep - 1);
+    if (last.step > schedule_.steps())
+      throw RecordingMismatch("the run is at t = " + number_text(last.time()) + " s already, beyond the end of " +
+                              number_text(scene_->end) + " s");
+    first_step_ = last.step;
+    // A state recorded only because the run ended there is not in the recording of an unbroken run.
+    if (schedule_.records(last.step))
+      recorded_step_ = last.step;
+    else
+      --keep;
+    simulation_->set_state(std::move(last));
+  }
+  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
+  if (keep == 0 && first_step_ == 0) record_state();
+  counted_steps_ = record_.step_counters;
+  counted_work_ = record_.counters;
+  ++record_.resumed;
+}
+
+void Run::note(const std::string& text) {
+  if (std::find(record_.notes.begin(), record_.notes.end(), text) == record_.notes.end()) record_.notes.push_back(text);
+  progress_->note(text);
+}
+
+void Run::record_state() {
+  if (simulation_->state().step == recorded_step_) return;
+  recorded_step_ = simulation_->state().step;
+  writer_->append(simulation_->state());
+  const Ledger ledger = simulation_->ledger();
+  record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
+  record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
+  record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
+}
+
+void Run::save(bool to_disk) {
+  writer_->flush(to_disk);
+  record_.time = simulation_->time();
+  record_.steps_done = simulation_->state().step;
+  record_.states = writer_->rows();
+  const StepCounters& session = simulation_->step_counters();
+  record_.step_counters.steps = counted_steps_.steps + session.steps;
+  record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
+  record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
+  record_.counters = counted_work_;
+  record_.counters += simulation_->counters();
+  for (const std::string& held : simulation_->held())
+    if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end()) record_.held.push_back(held);
+  write_run_record(*folder_ / kRunFile, record_);
+  saved_ = Clock::now();
+}
+
+void Run::step_to_end() {
+  Clock::time_point flushed = Clock::now();
+  const double first_time = simulation_->time();
+  progress_->begin("simulate", schedule_.end() - first_time, "s");
+  for (std::int64_t step = first_step_; step < schedule_.steps();) {
+    if (options_.stop && options_.stop()) {
+      stopped_ = true;
+      break;
+    }
+    simulation_->step(schedule_.step());
+    step = simulation_->state().step;
+    progress_->advance(simulation_->time() - first_time);
+    if (!schedule_.records(step)) continue;
+    record_state();
+    const Clock::time_point now = Clock::now();
+    if (now - flushed < kFlushEvery && writer_->pending_bytes() < kFlushBytes) continue;
+    writer_->flush();
+    flushed = now;
+    if (now - saved_ > 8 * kFlushEvery) save();
+  }
+  if (stopped_) record_state();
+  progress_->end();
+}
+
+bool Run::simulate() {
+  const Clock::time_point start = Clock::now();
+  try {
+    try {
+      step_to_end();
+    } catch (const NumericalFailure&) {
+      // The simulation holds the last good state: what led to the failure is in the recording.
+      record_state();
+      record_.add_seconds("simulate", seconds_since(start));
+      save(true);
+      write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording());
+      record_.add_file(kTrajectoryFile);
+      throw;
+    }
+    record_.add_seconds("simulate", seconds_since(start));
+    save(true);
+    write("trajectory", {kTrajectoryFile},
+          [&] { write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording()); });
+  } catch (const std::exception& failure) {
+    fail(failure.what());
+    throw;
+  }
+  return !stopped_;
+}
+
+void Run::write(const std::string& stage, const std::vector<std::string>& files, const std::function<void()>& task) {
+  const Clock::time_point start = Clock::now();
+  try {
+    task();
+  } catch (const Interrupted& interruption) {
+    finish(RunRecord::Status::stopped, stage + ": " + interruption.what());
+    throw;
+  } catch (const std::exception& failure) {
+    fail(stage + ": " + failure.what());
+    throw;
+  }
+  record_.add_seconds(stage, seconds_since(start));
+  for (const std::string& file : files) record_.add_file(file);
+  save();
+}
+
+void Run::finish(RunRecord::Status status, const std::string& message) {
+  record_.status = status;
+  record_.message = message;
+  save(true);
+}
+
+void Run::fail(const std::string& message) noexcept {
+  try {
+    record_.status = RunRecord::Status::failed;
+    record_.message = message;
+    save();
+  } catch (const std::exception&) {
+    // The disk may be what failed; the first failure is the one that is reported.
+  }
+}
+
+}  // namespace pliant

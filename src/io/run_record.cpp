@@ -1,0 +1,160 @@
+#include <pliant/io/run_record.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include <pliant/io/recording.h>
+#include <pliant/io/whole_file.h>
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 4> kStatus{"running", "complete", "stopped", "failed"};
+
+// JSON knows no infinity: an absent bound is null.
+Json bound(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+
+std::string hex(std::uint64_t hash) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+template <class Value>
+Json pairs(const std::vector<std::pair<std::string, Value>>& list) {
+  Json object = Json::object();
+  for (const auto& [name, value] : list) object[name] = value;
+  return object;
+}
+
+template <class Value>
+std::vector<std::pair<std::string, Value>> read_pairs(const Json& object) {
+  std::vector<std::pair<std::string, Value>> list;
+  for (const auto& [name, value] : object.items()) list.emplace_back(name, value.template get<Value>());
+  return list;
+}
+
+}  // namespace
+
+void RunRecord::add_seconds(const std::string& stage, double amount) {
+  for (auto& [name, sum] : seconds)
+    if (name == stage) {
+      sum += amount;
+      return;
+    }
+  seconds.emplace_back(stage, amount);
+}
+
+void RunRecord::add_file(const std::string& name) {
+  if (std::find(files.begin(), files.end(), name) == files.end()) files.push_back(name);
+}
+
+void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
+  Json json;
+  json["format"] = "pliant run";
+  json["status"] = kStatus[static_cast<std::size_t>(r.status)];
+  json["message"] = r.message;
+  json["progress"] = {{"time", r.time}, {"steps", r.steps}, {"steps_done", r.steps_done},
+                      {"states", r.states}, {"resumed", r.resumed}};
+  json["scene"] = {{"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
+  json["options"] = {{"end", r.end},
+                     {"asked_step", r.asked_step},
+                     {"step", r.step},
+                     {"frame_rate", r.frame_rate},
+                     {"integrator", r.integrator},
+                     {"threads", r.threads},
+                     {"width", r.width},
+                     {"height", r.height},
+                     {"command", r.command}};
+  json["build"] = pairs(r.build);
+  json["wall_seconds"] = pairs(r.seconds);
+  json["work"] = {{"steps", r.step_counters.steps},
+                  {"evaluations", r.step_counters.evaluations},
+                  {"limit_impulses", r.step_counters.limit_impulses},
+                  {"jacobian_points", r.counters.jacobian_points},
+                  {"rate_points", r.counters.rate_points},
+                  {"mass_matrices", r.counters.mass_matrices},
+                  {"inertial_forces", r.counters.inertial_forces},
+                  {"point_jets", r.counters.point_jets},
+                  {"surfaces", r.counters.surfaces}};
+  json["monitors"] = {{"max_balance_error", r.max_balance_error},
+                      {"max_energy", r.max_energy},
+                      {"max_kinetic", r.max_kinetic},
+                      {"largest_stable_step", bound(r.stable_step)}};
+  json["held"] = r.held;
+  json["skipped"] = r.skipped;
+  json["notes"] = r.notes;
+  json["files"] = r.files;
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  write_whole_file(file, text.data(), text.size(), Durable::yes);
+}
+
+RunRecord read_run_record(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw RecordingMismatch("there is no run: cannot read " + file.string());
+  try {
+    const Json json = Json::parse(stream);
+    RunRecord r;
+    const std::string status = json.at("status");
+    const auto found = std::find(kStatus.begin(), kStatus.end(), status);
+    if (found == kStatus.end()) throw RecordingMismatch(file.string() + " has the unknown status " + status);
+    r.status = static_cast<RunRecord::Status>(found - kStatus.begin());
+    json.at("message").get_to(r.message);
+    const Json& progress = json.at("progress");
+    progress.at("time").get_to(r.time);
+    progress.at("steps").get_to(r.steps);
+    progress.at("steps_done").get_to(r.steps_done);
+    progress.at("states").get_to(r.states);
+    progress.at("resumed").get_to(r.resumed);
+    const Json& scene = json.at("scene");
+    scene.at("name").get_to(r.scene);
+    scene.at("file").get_to(r.scene_file);
+    scene.at("overrides").get_to(r.overrides);
+    r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
+    const Json& options = json.at("options");
+    options.at("end").get_to(r.end);
+    options.at("asked_step").get_to(r.asked_step);
+    options.at("step").get_to(r.step);
+    options.at("frame_rate").get_to(r.frame_rate);
+    options.at("integrator").get_to(r.integrator);
+    options.at("threads").get_to(r.threads);
+    options.at("width").get_to(r.width);
+    options.at("height").get_to(r.height);
+    options.at("command").get_to(r.command);
+    r.build = read_pairs<std::string>(json.at("build"));
+    r.seconds = read_pairs<double>(json.at("wall_seconds"));
+    const Json& work = json.at("work");
+    work.at("steps").get_to(r.step_counters.steps);
+    work.at("evaluations").get_to(r.step_counters.evaluations);
+    work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
+    work.at("jacobian_points").get_to(r.counters.jacobian_points);
+    work.at("rate_points").get_to(r.counters.rate_points);
+    work.at("mass_matrices").get_to(r.counters.mass_matrices);
+    work.at("inertial_forces").get_to(r.counters.inertial_forces);
+    work.at("point_jets").get_to(r.counters.point_jets);
+    work.at("surfaces").get_to(r.counters.surfaces);
+    const Json& monitors = json.at("monitors");
+    monitors.at("max_balance_error").get_to(r.max_balance_error);
+    monitors.at("max_energy").get_to(r.max_energy);
+    monitors.at("max_kinetic").get_to(r.max_kinetic);
+    if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
+    json.at("held").get_to(r.held);
+    json.at("skipped").get_to(r.skipped);
+    json.at("notes").get_to(r.notes);
+    json.at("files").get_to(r.files);
+    return r;
+  } catch (const nlohmann::json::exception& fault) {
+    throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
+  } catch (const std::logic_error&) {
+    throw RecordingMismatch(file.string() + " is damaged: its scene hash is no number");
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,111 @@
+#include <pliant/io/trajectory.h>
+
+#include <pliant/io/number_text.h>
+#include <pliant/io/whole_file.h>
+
+namespace pliant {
+namespace {
+
+constexpr const char* kAxes[3] = {".x", ".y", ".z"};
+
+void add_axes(std::vector<std::string>& names, const std::string& stem) {
+  for (const char* axis : kAxes) names.push_back(stem + axis);
+}
+
+void add_vector(std::vector<double>& numbers, const Vec3<double>& x) { numbers.insert(numbers.end(), {x[0], x[1], x[2]}); }
+
+// A cell of a CSV file: in quotes where it has to be.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulation)
+    : scene_(&scene), simulation_(&simulation), parts_shown_(simulation.model().parts().size() <= kMostParts) {
+  // A part that deforms has its centre of mass somewhere else sooner or later, unless its shape is symmetric: then the
+  // column would only repeat c, which the state at time 0 alone cannot tell. So it is shown for every such part with links.
+  for (const PartModel& part : simulation.model().parts()) {
+    const double offset = part.part->rest_inertia().moment.norm();
+    const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
+    centre_shown_.push_back(part.q0 >= 0 && (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
+  }
+}
+
+std::vector<std::string> TrajectoryTable::columns() const {
+  const Model& model = simulation_->model();
+  std::vector<std::string> names{"t"};
+  for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
+    const PartModel& part = model.parts()[i];
+    if (part.q0 < 0) continue;
+    for (int k = 0; k < 7 + part.n_s; ++k) names.push_back(model.coordinate_name(part.q0 + k));
+    for (int k = 0; k < 6 + part.n_s; ++k) names.push_back(model.velocity_name(part.v0 + k));
+    if (centre_shown_[i]) add_axes(names, part.part->name() + ".com");
+  }
+  for (const Track& track : scene_->tracks) add_axes(names, "track." + track.name);
+  for (const char* energy : {"kinetic", "gravity", "elastic", "springs", "total"})
+    names.push_back(std::string("energy.") + energy);
+  for (const char* work : kWorkNames) names.push_back(std::string("work.") + work);
+  names.push_back("balance");
+  add_axes(names, "momentum");
+  add_axes(names, "angular_momentum");
+  return names;
+}
+
+void TrajectoryTable::add_part(const State& state, std::size_t i, std::vector<double>& numbers) const {
+  const PartModel& part = simulation_->model().parts()[i];
+  if (part.q0 < 0) return;
+  const double *q = state.q.data() + part.q0, *v = state.v.data() + part.v0;
+  numbers.insert(numbers.end(), q, q + 7 + part.n_s);
+  numbers.insert(numbers.end(), v, v + 6 + part.n_s);
+  if (!centre_shown_[i]) return;
+  const PartWorkspace<double>& work = work_.parts[i];
+  add_vector(numbers, work.c + work.R * work.inertia.moment / work.inertia.mass);
+}
+
+void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
+  const Model& model = simulation_->model();
+  Ledger ledger = simulation_->dynamics().ledger(state, work_);
+  ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
+  numbers.assign(1, state.time());
+  for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
+  for (const Track& track : scene_->tracks)
+    add_vector(numbers, model.world_point(state, model.body().index(*track.point.part), track.point.material));
+  numbers.insert(numbers.end(), {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs, ledger.energy()});
+  numbers.insert(numbers.end(), ledger.work.data(), ledger.work.data() + kWorks);
+  numbers.push_back(ledger.balance);
+  add_vector(numbers, ledger.momentum);
+  add_vector(numbers, ledger.angular_momentum);
+}
+
+void write_trajectory(const std::filesystem::path& path, const Scene& scene, const Simulation& simulation,
+                      const Recording& recording) {
+  TrajectoryTable table(scene, simulation);
+  WholeFile file(path);
+  std::string text;
+  for (const std::string& name : table.columns()) text += (text.empty() ? "" : ",") + cell(name);
+  text += '\n';
+  std::vector<double> numbers;
+  for (std::int64_t i = 0; i < recording.rows(); ++i) {
+    table.row(recording.state(i), numbers);
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      if (k > 0) text += ',';
+      append_number(text, numbers[k]);
+    }
+    text += '\n';
+    if (text.size() > 1 << 20) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.become_target();
+}
+
+}  // namespace pliant

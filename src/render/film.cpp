@@ -1,0 +1,93 @@
+#include <pliant/render/film.h>
+
+#include <algorithm>
+
+#include <pliant/io/png.h>
+#include <pliant/io/run_files.h>
+
+namespace pliant {
+namespace {
+
+Eigen::Vector3f vector_of(const Color& color) {
+  return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
+}
+
+}  // namespace
+
+Film::Film(const Scene& scene, const Model& model, const Recording& recording)
+    : scene_(&scene), model_(&model), recording_(&recording), meshes_(scene, model) {
+  if (recording.rows() == 0) throw std::out_of_range("the recording holds no state");
+  lay_tracks();
+  choose_view();
+  if (scene.light.direction) picture_.lights.to_key = scene.light.direction->cast<float>();
+  picture_.lights.shadows = scene.light.shadows;
+}
+
+void Film::lay_tracks() {
+  tracks_.resize(scene_->tracks.size());
+  if (tracks_.empty()) return;
+  for (std::int64_t row = 0; row < recording_->rows(); ++row) {
+    const State state = recording_->state(row);
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      const Point& point = scene_->tracks[i].point;
+      tracks_[i].push_back(model_->world_point(state, model_->body().index(*point.part), point.material));
+    }
+  }
+}
+
+void Film::choose_view() {
+  Eigen::AlignedBox3d bodies;
+  for (std::int64_t row = 0; row < recording_->rows(); ++row) bodies.extend(meshes_.bounds(recording_->state(row)));
+  picture_.ground.shown = scene_->ground.visible;
+  if (scene_->ground.height)
+    picture_.ground.height = *scene_->ground.height;
+  else if (!bodies.isEmpty())
+    picture_.ground.height = bodies.min().z() - 1e-3 * bodies.sizes().maxCoeff();
+
+  Eigen::AlignedBox3d all = bodies;
+  for (const auto& track : tracks_)
+    for (const Eigen::Vector3d& x : track) all.extend(x);
+  const CameraSetting& asked = scene_->camera;
+  const double aspect = static_cast<double>(scene_->width) / scene_->height;
+  Camera& camera = picture_.camera;
+  camera = automatic_camera(all, aspect, asked.field_of_view);
+  if (asked.target) {
+    camera.eye += *asked.target - camera.target;
+    camera.target = *asked.target;
+  }
+  if (asked.eye) camera.eye = *asked.eye;
+}
+
+const Picture& Film::at(double time) {
+  const State state = recording_->at(time);
+  picture_.bodies.clear();
+  for (const NamedMesh& named : meshes_.at(state)) picture_.bodies.push_back({&named.mesh, vector_of(named.color)});
+  picture_.tracks.clear();
+  std::int64_t rows = 0;  // recorded before now
+  while (rows < recording_->rows() && recording_->time(rows) < state.time()) ++rows;
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const Point& point = scene_->tracks[i].point;
+    Picture::Track track;
+    track.points.assign(tracks_[i].begin(), tracks_[i].begin() + rows);
+    track.points.push_back(model_->world_point(state, model_->body().index(*point.part), point.material));
+    track.color = vector_of(scene_->tracks[i].color);
+    picture_.tracks.push_back(std::move(track));
+  }
+  return picture_;
+}
+
+void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model, const Recording& recording,
+                   double frame_rate, const std::vector<std::int64_t>& frames, Progress& progress, GlBackend backend) {
+  if (frames.empty()) return;
+  Film film(scene, model, recording);
+  Renderer renderer(scene.width, scene.height, backend);
+  progress.begin("frames", static_cast<double>(frames.size()), "frames");
+  double done = 0;
+  for (const std::int64_t frame : frames) {
+    write_png(renderer.draw(film.at(static_cast<double>(frame) / frame_rate)), folder / frame_name("frame", frame, "png"));
+    progress.advance(++done);
+  }
+  progress.end();
+}
+
+}  // namespace pliant

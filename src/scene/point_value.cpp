@@ -1,0 +1,64 @@
+#include <pliant/scene/point_value.h>
+
+#include <pliant/math/functions.h>
+#include <pliant/scene/reader.h>
+
+namespace pliant {
+
+namespace schema {
+
+namespace {
+
+Field radial() {
+  return optional("w", number(between(0, 1), "1"), "Radial coordinate: 0 at the centre, 1 on the surface.",
+                  "1");
+}
+
+Record by_coordinates() {
+  return {"point_at_coordinates",
+          "A material point by its coordinates.",
+          {required("u", number(between(-kPi, kPi), "rad"), "Latitude of the shape.", "0"),
+           required("v", number(between(-kPi, kPi), "rad"), "Longitude of the shape.", "0"), radial()}};
+}
+
+Record by_direction() {
+  const Check not_zero = [](const JsonValue& value, const ReportAt& report) {
+    if (read_vector3(value).isZero(0)) report(value, "expected a direction that is not zero", kWholeValue);
+  };
+  return {"point_in_direction",
+          "The material point that lies, seen from the centre of the shape, in a direction.",
+          {required("direction", vector3("1").checked(not_zero),
+                    "Direction in the part's frame, of any length.", "[0, 0, 1]"),
+           radial()}};
+}
+
+Record by_place() {
+  return {"point_near",
+          "The surface point nearest to a place, in the rest shape.",
+          {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
+}
+
+}  // namespace
+
+Type material_point() {
+  return one_of({record(by_coordinates()), record(by_direction()), record(by_place())})
+      .expecting(
+          "a material point {\"u\", \"v\", \"w\"}, {\"direction\": [x, y, z], \"w\"} or {\"near\": [x, y, "
+          "z]}")
+      .defined_as("material_point");
+}
+
+}  // namespace schema
+
+MaterialPointValue read_material_point(const JsonValue& value) {
+  using Form = MaterialPointValue::Form;
+  if (const JsonValue* near = value.find("near")) return {Form::kNear, read_vector3(*near), 1};
+  const JsonValue* w = value.find("w");
+  const double radial = w != nullptr ? w->number() : 1;
+  if (const JsonValue* direction = value.find("direction")) {
+    return {Form::kDirection, read_vector3(*direction), radial};
+  }
+  return {Form::kCoordinates, {value.find("u")->number(), value.find("v")->number(), radial}, radial};
+}
+
+}  // namespace pliant

@@ -1,0 +1,116 @@
+#include <pliant/scene/reader.h>
+
+#include <stdexcept>
+
+#include <pliant/scene/time_value.h>
+
+namespace pliant {
+
+namespace {
+
+const JsonValue& empty_object() {
+  static const JsonValue object({}, JsonValue::Object());
+  return object;
+}
+
+}  // namespace
+
+const schema::Record* chosen_record(const schema::Type& type, const JsonValue& object) {
+  using Kind = schema::Type::Kind;
+  if (type.kind == Kind::kRecord) return type.records[0].get();
+  if (type.kind == Kind::kTagged) {
+    const JsonValue* tag = object.find(type.tag);
+    for (const schema::RecordPtr& record : type.records) {
+      if (tag != nullptr && tag->is_string() && tag->string() == record->name) return record.get();
+    }
+    return nullptr;
+  }
+  const schema::Type* chosen = type.kind == Kind::kOneOf ? schema::chosen_alternative(type, object) : nullptr;
+  return chosen == nullptr ? nullptr : chosen_record(*chosen, object);
+}
+
+const schema::Field& Reader::field(const std::string& key) const {
+  const schema::Field* f = record_->find(key);
+  if (f == nullptr)
+    throw std::logic_error("record \"" + record_->name + "\" declares no key \"" + key + "\"");
+  return *f;
+}
+
+bool Reader::given(std::string_view key) const {
+  return object_->find(key) != nullptr;
+}
+
+const JsonValue* Reader::find(const std::string& key) const {
+  const schema::Field& f = field(key);
+  const JsonValue* value = object_->find(key);
+  return value != nullptr ? value : f.default_value.get();
+}
+
+const JsonValue& Reader::at(const std::string& key) const {
+  const JsonValue* value = find(key);
+  if (value == nullptr) {
+    throw std::logic_error("key \"" + key + "\" of record \"" + record_->name +
+                           "\" has neither value nor default");
+  }
+  return *value;
+}
+
+double Reader::number(const std::string& key) const {
+  return at(key).number();
+}
+std::int64_t Reader::integer(const std::string& key) const {
+  return static_cast<std::int64_t>(at(key).number());
+}
+bool Reader::boolean(const std::string& key) const {
+  return at(key).boolean();
+}
+const std::string& Reader::text(const std::string& key) const {
+  return at(key).string();
+}
+Vec3<double> Reader::vector3(const std::string& key) const {
+  return read_vector3(at(key));
+}
+TimeFunction Reader::time_function(const std::string& key) const {
+  return read_time_function(at(key));
+}
+TimeVector Reader::time_vector(const std::string& key) const {
+  return read_time_vector(at(key));
+}
+
+std::vector<double> Reader::numbers(const std::string& key) const {
+  std::vector<double> x;
+  for (const JsonValue& element : at(key).array()) x.push_back(element.number());
+  return x;
+}
+
+Reader Reader::object(const std::string& key) const {
+  const schema::Type& type = field(key).type;
+  const JsonValue* value = find(key);
+  const bool defaults = value == nullptr && type.kind == schema::Type::Kind::kRecord;
+  const JsonValue& object = defaults ? empty_object() : at(key);
+  const schema::Record* record = chosen_record(type, object);
+  if (record == nullptr)
+    throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no record");
+  return {object, *record};
+}
+
+std::vector<Reader> Reader::objects(const std::string& key) const {
+  const schema::Type& type = field(key).type;
+  std::vector<Reader> all;
+  const JsonValue* value = find(key);
+  if (value == nullptr) return all;
+  for (const JsonValue& element : value->array()) {
+    const schema::Record* record = chosen_record(type.inner[0], element);
+    if (record == nullptr)
+      throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no records");
+    all.emplace_back(element, *record);
+  }
+  return all;
+}
+
+Vec3<double> read_vector3(const JsonValue& value) {
+  const JsonValue::Array& x = value.array();
+  return {x[0].number(), x[1].number(), x[2].number()};
+}
+
+}  // namespace pliant

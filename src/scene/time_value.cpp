@@ -1,0 +1,131 @@
+#include <pliant/scene/time_value.h>
+
+#include <pliant/math/formula.h>
+
+#include "json_write.h"
+
+namespace pliant {
+
+namespace schema {
+
+namespace {
+
+void check_formula(const JsonValue& value, const ReportAt& report) {
+  try {
+    Formula formula(value.string());
+  } catch (const FormulaError& e) {
+    report(value, e.reason(), e.offset());
+  }
+}
+
+/// Times that increase, and as many values as times.
+Check key_rule(const char* values) {
+  return [values](const JsonValue& frames, const ReportAt& report) {
+    const JsonValue::Array& t = frames.find("t")->array();
+    const JsonValue& y = *frames.find(values);
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      if (t[i].number() > t[i - 1].number()) continue;
+      report(t[i], "expected a time later than the one before it, " + shortest(t[i - 1].number()),
+             kWholeValue);
+    }
+    if (y.array().size() != t.size()) {
+      report(y, "expected as many as there are times, " + std::to_string(t.size()), kWholeValue);
+    }
+  };
+}
+
+Type times() {
+  return array(number(any(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
+}
+
+Type formula() {
+  return text(1).expecting("a formula of t in quotes").checked(check_formula);
+}
+
+Type key_frames() {
+  return record({"key_frames",
+                 "Key frames: a twice continuously differentiable cubic spline through the values; constant "
+                 "before the "
+                 "first and after the last key.",
+                 {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
+                  required("y", array(number(any(), ""), 1), "Values at these times, in the unit of the key.",
+                           "[0, 0.5, 0]"),
+                  optional("end_rates", array(number(any(), ""), 2, 2),
+                           "Rates of change at the first and the last key; without them the second "
+                           "derivative is zero "
+                           "there.")}})
+      .checked(key_rule("y"));
+}
+
+Type point_key_frames() {
+  return record({"point_key_frames",
+                 "Key frames of points: a twice continuously differentiable cubic spline through them; "
+                 "constant before "
+                 "the first and after the last key.",
+                 {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
+                  required("points", array(vector3(""), 1),
+                           "Points [x, y, z] at these times, in the unit of the key.",
+                           "[[0, 0, 0], [0, 0, 1], [0, 0, 0]]")}})
+      .checked(key_rule("points"));
+}
+
+std::string in(const std::string& unit) {
+  return unit.empty() || unit == "1" ? "" : " (" + unit + ")";
+}
+
+}  // namespace
+
+Type time_function(std::string unit) {
+  const std::string words =
+      "a number" + in(unit) + ", a formula of t in quotes, or key frames {\"t\": [...], \"y\": [...]}";
+  return one_of({number(any(), std::move(unit)), formula(), key_frames()})
+      .expecting(words)
+      .defined_as("time_function");
+}
+
+Type time_vector(std::string unit) {
+  const std::string words = "[x, y, z] of numbers" + in(unit) +
+                            " or formulas of t in quotes, or key frames {\"t\": [...], \"points\": [...]}";
+  Type each = array(time_function(std::move(unit)), 3, 3);
+  return one_of({each.expecting(words), point_key_frames()}).expecting(words).defined_as("time_vector");
+}
+
+}  // namespace schema
+
+namespace {
+
+std::vector<double> numbers(const JsonValue& array) {
+  std::vector<double> x;
+  for (const JsonValue& element : array.array()) x.push_back(element.number());
+  return x;
+}
+
+}  // namespace
+
+TimeFunction read_time_function(const JsonValue& value) {
+  if (value.is_number()) return value.number();
+  if (value.is_string()) return TimeFunction::formula(value.string());
+  std::vector<double> t = numbers(*value.find("t")), y = numbers(*value.find("y"));
+  if (const JsonValue* rates = value.find("end_rates")) {
+    return TimeFunction::key_frames(std::move(t), std::move(y), rates->array()[0].number(),
+                                    rates->array()[1].number());
+  }
+  return TimeFunction::key_frames(std::move(t), std::move(y));
+}
+
+TimeVector read_time_vector(const JsonValue& value) {
+  if (value.is_array()) {
+    const JsonValue::Array& x = value.array();
+    return {read_time_function(x[0]), read_time_function(x[1]), read_time_function(x[2])};
+  }
+  const std::vector<double> t = numbers(*value.find("t"));
+  TimeVector path;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::vector<double> y;
+    for (const JsonValue& point : value.find("points")->array()) y.push_back(point.array()[i].number());
+    path.component[i] = TimeFunction::key_frames(t, std::move(y));
+  }
+  return path;
+}
+
+}  // namespace pliant
