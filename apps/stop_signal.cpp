@@ -1,6 +1,5 @@
 #include "stop_signal.h"
 
-#include <initializer_list>
 #include <csignal>
 #include <initializer_list>
 
@@ -31,6 +30,8 @@ void catch_stop_signals() {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-int stop_signal() { return caught; }
+int stop_signal() {
+  return caught;
+}
 
 }  // namespace pliant_cli

@@ -1,4 +1,5 @@
-// Text is written into one block that is reserved for the longest lines there can be, without a check a number.
+// Text is written into one block that is reserved for the longest lines there can be, without a check a
+// number.
 #include <pliant/io/obj.h>
 
 #include <algorithm>
@@ -14,9 +15,13 @@ namespace {
 constexpr std::size_t kLongestNumber = 26;
 constexpr std::size_t kLongestLine = 3 * (2 * kLongestNumber + 2) + 8;
 
-char* put(char* at, double x) { return std::to_chars(at, at + kLongestNumber, x).ptr; }
+char* put(char* at, double x) {
+  return std::to_chars(at, at + kLongestNumber, x).ptr;
+}
 
-char* put(char* at, std::int64_t n) { return std::to_chars(at, at + kLongestNumber, n).ptr; }
+char* put(char* at, std::int64_t n) {
+  return std::to_chars(at, at + kLongestNumber, n).ptr;
+}
 
 // A component of a unit vector with six decimals: "-0.577350".
 char* put_unit(char* at, double x) {
@@ -111,18 +116,21 @@ std::string mtl_text(const std::vector<NamedMesh>& meshes) {
   return text;
 }
 
-void write_obj(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes, const std::string& material_file) {
+void write_obj(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
+               const std::string& material_file) {
   const std::string text = obj_text(meshes, material_file);
   write_whole_file(path, text.data(), text.size());
 }
 
-void write_obj(const std::filesystem::path& path, const Simulation& simulation, const Part& part, const Surface& surface) {
+void write_obj(const std::filesystem::path& path, const Simulation& simulation, const Part& part,
+               const Surface& surface) {
   const Model& model = simulation.model();
   const int i = model.body().index(part);
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path());
   write_obj(path, {{part.name(),
                     {},
-                    surface.world_mesh(part, model.values(simulation.state(), i), model.position(simulation.state(), i),
+                    surface.world_mesh(part, model.values(simulation.state(), i),
+                                       model.position(simulation.state(), i),
                                        model.orientation(simulation.state(), i))}});
 }
 
