@@ -1,5 +1,6 @@
 #include "stop_signal.h"
 
+#include <initializer_list>
 #include <csignal>
 #include <initializer_list>
 

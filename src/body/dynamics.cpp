@@ -195,6 +195,7 @@ void press(const PartModel& m, const std::int8_t* at_limit, PartWorkspace<double
     w.a_r += columns[static_cast<std::size_t>(i)] * (-at_limit[k] * result.lambda[i]);
     w.pressed.push_back(k);
   }
+  for (const int k : w.pressed) w.a_r[6 + k] = 0;  // to the last bit
 }
 
 /// The same for a derivative: the pressed parameters have no acceleration.
@@ -393,8 +394,7 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
   }
 }
 
-Ledger Dynamics::ledger(const State& state, Workspace<double>& work) const {
-  const double t = state.time();
+Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
   accelerations(t, state.q, state.v, state.at_limit, work);
   Ledger ledger;
   ledger.work = state.work;

@@ -8,20 +8,24 @@
 
 namespace pliant {
 
+namespace {
+void advance_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h) {
+  q.segment<3>(m.q0) += h * v.segment<3>(m.v0);
+  const Vec3<double> half = 0.5 * h * v.segment<3>(m.v0 + 3);
+  const double angle = half.norm();
+  const Vec3<double> axis = sinc(angle) * half;
+  const Eigen::Quaterniond turn(std::cos(angle), axis[0], axis[1], axis[2]);
+  auto theta = q.segment<4>(m.q0 + 3);
+  const Eigen::Quaterniond now =
+      (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * turn).normalized();
+  theta << now.w(), now.x(), now.y(), now.z();
+  q.segment(m.q0 + 7, m.n_s) += h * v.segment(m.v0 + 6, m.n_s);
+}
+}  // namespace
+
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h) {
-  for (const PartModel& m : model.parts()) {
-    if (m.q0 < 0) continue;
-    q.segment<3>(m.q0) += h * v.segment<3>(m.v0);
-    const Vec3<double> half = 0.5 * h * v.segment<3>(m.v0 + 3);
-    const double angle = half.norm();
-    const Vec3<double> axis = sinc(angle) * half;
-    const Eigen::Quaterniond turn(std::cos(angle), axis[0], axis[1], axis[2]);
-    auto theta = q.segment<4>(m.q0 + 3);
-    const Eigen::Quaterniond now =
-        (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * turn).normalized();
-    theta << now.w(), now.x(), now.y(), now.z();
-    q.segment(m.q0 + 7, m.n_s) += h * v.segment(m.v0 + 6, m.n_s);
-  }
+  for (const PartModel& m : model.parts())
+    if (m.q0 >= 0) advance_part(m, q, v, h);
 }
 
 void normalise_rotations(const Model& model, VecX<double>& q) {
@@ -40,50 +44,98 @@ void hold_inertialess(const Model& model, const Workspace<double>& work, VecX<do
 
 namespace {
 
-/// One-sided rows of a part: parameter k may not leave its limit; sign is the admissible direction.
-struct Row {
-  int k;
-  double sign;
-  double gap;       ///< distance to the limit, >= 0 inside
-  double velocity;  ///< least velocity along sign
-};
-
 Range limits_of(const PartModel& m, int k) {
   return m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].limits;
 }
 
-/// Solves the rows and adds the impulses to the velocities of the part (body-frame v_r); returns the work
-/// done.
-double resolve(const PartModel& m, const PartWorkspace<double>& w, const std::vector<Row>& rows,
-               VecMax<double>& v_r, StepCounters& counters) {
-  const auto n = static_cast<Eigen::Index>(rows.size());
-  MatX<double> W(n, n);
-  VecX<double> b(n);
-  std::vector<VecMax<double>> columns;
-  for (const Row& row : rows) {
-    VecMax<double> impulse = VecMax<double>::Zero(6 + m.n_s);
-    impulse[6 + row.k] = row.sign;
-    Dynamics::apply_impulse(w, impulse);
-    columns.push_back(impulse);
+/// A one-sided row of a part: sign * x_k >= bound for parameter k, at its lower limit (sign 1) or its upper
+/// one (-1).
+struct Row {
+  int k;
+  double sign, bound;
+};
+
+/// The least change of x = (c, omega, q_s parts of a velocity or of a small motion) in the mass metric that
+/// meets its rows, which push only: sum of M^-1 e_k sign lambda, lambda >= 0.
+class LimitRows {
+ public:
+  LimitRows(const PartModel& m, const PartWorkspace<double>& w) : m_(m), w_(w) {}
+
+  bool empty() const { return rows_.empty(); }
+  void add(const Row& row) {
+    rows_.push_back(row);
+    VecMax<double> response = VecMax<double>::Zero(6 + m_.n_s);
+    response[6 + row.k] = row.sign;
+    Dynamics::apply_impulse(w_, response);
+    responses_.push_back(response);
   }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
-    b[i] = row.sign * v_r[6 + row.k] - row.velocity;
-    for (Eigen::Index j = 0; j < n; ++j) W(i, j) = row.sign * columns[static_cast<std::size_t>(j)][6 + row.k];
+  /// Adds the rows of bound(k, sign) that x does not meet; false when there is none.
+  template <class Bound>
+  bool add_unmet(const VecMax<double>& x, Bound&& bound) {
+    const std::size_t before = rows_.size();
+    for (int k = 0; k < m_.n_s; ++k) {
+      if (w_.factor.held(6 + k)) continue;
+      for (const double sign : {1.0, -1.0})
+        if (sign * x[6 + k] < bound(k, sign) && !has(k, sign)) add({k, sign, bound(k, sign)});
+    }
+    return rows_.size() > before;
   }
-  const VecX<double> lambda = solve_complementarity(W, b).lambda;
-  const VecMax<double> before = v_r;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(lambda[i] > 0)) continue;
-    v_r += columns[static_cast<std::size_t>(i)] * lambda[i];
-    ++counters.limit_impulses;
+
+  /// x with the impulses of the rows; on a velocity they do the work sum lambda sign (x + x') / 2.
+  VecMax<double> meet(const VecMax<double>& x, double* work) {
+    const auto n = static_cast<Eigen::Index>(rows_.size());
+    MatX<double> W(n, n);
+    VecX<double> b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Row& row = rows_[static_cast<std::size_t>(i)];
+      b[i] = row.sign * x[6 + row.k] - row.bound;
+      for (Eigen::Index j = 0; j < n; ++j)
+        W(i, j) = row.sign * responses_[static_cast<std::size_t>(j)][6 + row.k];
+    }
+    lambda_ = solve_complementarity(W, b).lambda;
+    VecMax<double> after = x;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (lambda_[i] > 0) after += responses_[static_cast<std::size_t>(i)] * lambda_[i];
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Row& row = rows_[static_cast<std::size_t>(i)];
+      if (!(lambda_[i] > 0)) continue;
+      after[6 + row.k] = row.sign * row.bound;  // to the last bit
+      if (work != nullptr) *work += lambda_[i] * row.sign * 0.5 * (x[6 + row.k] + after[6 + row.k]);
+    }
+    return after;
   }
-  double work = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
-    work += lambda[i] * row.sign * 0.5 * (before[6 + row.k] + v_r[6 + row.k]);
+  /// The rows that the last meet() pushed.
+  template <class F>
+  int for_each_pushed(F&& act) const {
+    int pushed = 0;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (lambda_[static_cast<Eigen::Index>(i)] > 0) {
+        act(rows_[i]);
+        ++pushed;
+      }
+    return pushed;
   }
-  return work;
+
+ private:
+  bool has(int k, double sign) const {
+    for (const Row& row : rows_)
+      if (row.k == k && row.sign == sign) return true;
+    return false;
+  }
+
+  const PartModel& m_;
+  const PartWorkspace<double>& w_;
+  std::vector<Row> rows_;
+  std::vector<VecMax<double>> responses_;
+  VecX<double> lambda_;
+};
+
+/// The same with every row of bound(k, sign) that is passed, if only by what the others push.
+template <class Bound>
+VecMax<double> meet_all(LimitRows& rows, const VecMax<double>& x, Bound&& bound, double* work) {
+  VecMax<double> now = x;
+  while (rows.add_unmet(now, bound)) now = rows.meet(x, nullptr);
+  return rows.empty() ? now : rows.meet(x, work);
 }
 
 void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecMax<double>& v_r,
@@ -98,6 +150,34 @@ VecMax<double> body_velocity(const PartModel& m, const PartWorkspace<double>& w,
   return v_r;
 }
 
+/// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
+/// them P and L. work: evaluated at the coordinates before; left at those now.
+void keep_momenta(const Dynamics& dynamics, double t, const std::vector<bool>& moved, const State& before,
+                  State& state, Workspace<double>& work) {
+  const auto& parts = dynamics.model().parts();
+  std::vector<VecMax<double>> momenta(parts.size());
+  std::vector<Mat3<double>> R(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!moved[i]) continue;
+    momenta[i] = work.parts[i].inertia.M * work.parts[i].v_r;
+    R[i] = work.parts[i].R;
+  }
+  dynamics.accelerations(t, state.q, state.v, state.at_limit, work);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PartModel& m = parts[i];
+    if (!moved[i]) continue;
+    const PartWorkspace<double>& w = work.parts[i];
+    const Vec3<double> P = R[i] * momenta[i].head<3>();
+    const Vec3<double> slid = before.q.segment<3>(m.q0) - state.q.segment<3>(m.q0);
+    const Vec3<double> L = R[i] * momenta[i].segment<3>(3) + slid.cross(P);
+    VecMax<double> v_r = momenta[i];
+    v_r.head<3>() = w.R.transpose() * P;
+    v_r.segment<3>(3) = w.R.transpose() * L;
+    Dynamics::apply_impulse(w, v_r);
+    take_velocity(m, w, v_r, state.v);
+  }
+}
+
 }  // namespace
 
 void stop_at_limits_ahead(const Model& model, const Workspace<double>& work, State& state, double h,
@@ -105,100 +185,100 @@ void stop_at_limits_ahead(const Model& model, const Workspace<double>& work, Sta
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.n_s == 0) continue;
-    std::vector<Row> rows;
-    bool crosses = false;
-    for (int k = 0; k < m.n_s; ++k) {
-      if (work.parts[i].factor.held(6 + k)) continue;
+    auto then = [&](int k) { return state.q[m.q0 + 7 + k] + h * state.v[m.v0 + 6 + k]; };
+    auto at = [&](int k) -> std::int8_t& { return state.at_limit[static_cast<std::size_t>(m.limit0 + k)]; };
+    // The velocity that would just reach a limit at the end of the step.
+    auto bound = [&](int k, double sign) {
       const Range range = limits_of(m, k);
-      const double q = state.q[m.q0 + 7 + k], reach = std::abs(h * state.v[m.v0 + 6 + k]);
-      // A row for every limit that this step could touch, with room for what the other rows push.
-      if (q - range.min <= 2 * reach) rows.push_back({k, 1, q - range.min, (range.min - q) / h});
-      if (range.max - q <= 2 * reach) rows.push_back({k, -1, range.max - q, (q - range.max) / h});
-      const double then = q + h * state.v[m.v0 + 6 + k];
-      crosses = crosses || then < range.min || then > range.max;
-    }
+      return sign * ((sign > 0 ? range.min : range.max) - state.q[m.q0 + 7 + k]) / h;
+    };
+    LimitRows rows(m, work.parts[i]);
+    bool crosses = false;
+    for (int k = 0; k < m.n_s; ++k) crosses = crosses || !limits_of(m, k).contains(then(k));
     if (crosses) {
-      VecMax<double> v_r = body_velocity(m, work.parts[i], state.v);
-      state.work[static_cast<int>(Work::limits)] += resolve(m, work.parts[i], rows, v_r, counters);
+      const VecMax<double> v_r = meet_all(rows, body_velocity(m, work.parts[i], state.v), bound,
+                                          &state.work[static_cast<int>(Work::limits)]);
       take_velocity(m, work.parts[i], v_r, state.v);
     }
-    for (int k = 0; k < m.n_s; ++k) {
-      const Range range = limits_of(m, k);
-      double& v = state.v[m.v0 + 6 + k];
-      const double q = state.q[m.q0 + 7 + k], then = q + h * v, near = 1e-12 * (range.max - range.min);
-      std::int8_t& at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
-      at = 0;
-      if (then <= range.min + near) at = -1;
-      if (then >= range.max - near) at = 1;
-    }
+    for (int k = 0; k < m.n_s; ++k)
+      at(k) = then(k) <= limits_of(m, k).min ? -1 : (then(k) >= limits_of(m, k).max ? 1 : 0);
+    if (!rows.empty())
+      counters.limit_impulses +=
+          rows.for_each_pushed([&](const Row& row) { at(row.k) = row.sign > 0 ? -1 : 1; });
   }
 }
 
-void stop_at_limits(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) {
+void settle_on_limits(const Model& model, State& state) {
+  for (const PartModel& m : model.parts())
+    for (int k = 0; k < m.n_s; ++k) {
+      const std::int8_t at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
+      const Range range = limits_of(m, k);
+      if (at != 0) state.q[m.q0 + 7 + k] = at < 0 ? range.min : range.max;
+    }
+}
+
+void stop_at_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                    StepCounters& counters) {
   const Model& model = dynamics.model();
   bool any = false;
   for (const PartModel& m : model.parts())
     for (int k = 0; k < m.n_s && !any; ++k) {
-      const Range range = limits_of(m, k);
-      const double q = state.q[m.q0 + 7 + k], v = state.v[m.v0 + 6 + k];
       const std::int8_t at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
-      any = q < range.min || q > range.max || (at < 0 && v != 0) || (at > 0 && v != 0);
+      any = (at != 0 && state.v[m.v0 + 6 + k] != 0) || !limits_of(m, k).contains(state.q[m.q0 + 7 + k]);
     }
-  if (!any) return;
+  if (!any || !state.q.allFinite() || !state.v.allFinite()) return;
 
-  const double before = dynamics.ledger(state, work).energy();
+  const double before = dynamics.ledger(t, state, work).energy();
+  const State passed = state;
+  std::vector<bool> moved(model.parts().size(), false);
+  bool any_moved = false;
+  for (std::size_t i = 0; i < model.parts().size(); ++i) {
+    const PartModel& m = model.parts()[i];
+    if (m.n_s == 0) continue;
+    // Positions: the least motion in the mass metric that closes every overshoot, and passes no other limit.
+    auto gap = [&](int k, double sign) {
+      const Range range = limits_of(m, k);
+      return sign * ((sign > 0 ? range.min : range.max) - state.q[m.q0 + 7 + k]);
+    };
+    LimitRows overshot(m, work.parts[i]);
+    const VecMax<double> shift = meet_all(overshot, VecMax<double>::Zero(6 + m.n_s), gap, nullptr);
+    if (overshot.empty()) continue;
+    moved[i] = any_moved = true;
+    VecX<double> move = VecX<double>::Zero(state.v.size());
+    take_velocity(m, work.parts[i], shift, move);
+    advance_part(m, state.q, move, 1);
+    overshot.for_each_pushed([&](const Row& row) {
+      const Range range = limits_of(m, row.k);
+      state.q[m.q0 + 7 + row.k] = row.sign > 0 ? range.min : range.max;
+    });
+  }
+  if (any_moved) keep_momenta(dynamics, t, moved, passed, state, work);
+
+  // Velocities: what is on a limit may only leave it.
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     const PartWorkspace<double>& w = work.parts[i];
-    std::vector<Row> rows;
+    auto at = [&](int k) -> std::int8_t& { return state.at_limit[static_cast<std::size_t>(m.limit0 + k)]; };
+    LimitRows on(m, w);
+    bool outward = false;
     for (int k = 0; k < m.n_s; ++k) {
-      std::int8_t& at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
       const Range range = limits_of(m, k);
-      const double q = state.q[m.q0 + 7 + k];
-      if (q <= range.min || at < 0) rows.push_back({k, 1, q - range.min, 0});
-      if (q >= range.max || at > 0) rows.push_back({k, -1, range.max - q, 0});
-      at = 0;
+      double& q = state.q[m.q0 + 7 + k];
+      at(k) = q <= range.min ? -1 : (q >= range.max ? 1 : 0);
+      if (at(k) == 0) continue;
+      q = at(k) < 0 ? range.min : range.max;
+      if (w.factor.held(6 + k)) continue;
+      on.add({k, at(k) < 0 ? 1.0 : -1.0, 0});
+      outward = outward || at(k) * state.v[m.v0 + 6 + k] > 0;
     }
-    if (rows.empty()) continue;
-    // Positions: the least motion in the mass metric that closes every overshoot.
-    const auto n = static_cast<Eigen::Index>(rows.size());
-    MatX<double> W(n, n);
-    VecX<double> b(n);
-    std::vector<VecMax<double>> columns;
-    for (const Row& row : rows) {
-      VecMax<double> push = VecMax<double>::Zero(6 + m.n_s);
-      push[6 + row.k] = row.sign;
-      Dynamics::apply_impulse(w, push);
-      columns.push_back(push);
+    if (outward) {
+      take_velocity(m, w, on.meet(body_velocity(m, w, state.v), nullptr), state.v);
+      counters.limit_impulses += on.for_each_pushed([](const Row&) {});
     }
-    for (Eigen::Index r = 0; r < n; ++r) {
-      b[r] = rows[static_cast<std::size_t>(r)].gap;
-      for (Eigen::Index c = 0; c < n; ++c)
-        W(r, c) = rows[static_cast<std::size_t>(r)].sign *
-                  columns[static_cast<std::size_t>(c)][6 + rows[static_cast<std::size_t>(r)].k];
-    }
-    const VecX<double> lambda = solve_complementarity(W, b).lambda;
-    VecMax<double> shift = VecMax<double>::Zero(6 + m.n_s);
-    for (Eigen::Index r = 0; r < n; ++r) shift += columns[static_cast<std::size_t>(r)] * lambda[r];
-    VecX<double> move = VecX<double>::Zero(state.v.size());
-    take_velocity(m, w, shift, move);
-    advance_coordinates(model, state.q, move, 1);
-    // Velocities.
-    VecMax<double> v_r = body_velocity(m, w, state.v);
-    resolve(m, w, rows, v_r, counters);
-    take_velocity(m, w, v_r, state.v);
-    for (const Row& row : rows) {
-      const Range range = limits_of(m, row.k);
-      double& q = state.q[m.q0 + 7 + row.k];
-      const double limit = row.sign > 0 ? range.min : range.max;
-      const double near = 1e-10 * (std::isfinite(range.max - range.min) ? range.max - range.min : 1.0);
-      if (std::abs(q - limit) > near || row.sign * state.v[m.v0 + 6 + row.k] > 0) continue;
-      q = limit;
-      state.v[m.v0 + 6 + row.k] = 0;
-      state.at_limit[static_cast<std::size_t>(m.limit0 + row.k)] = row.sign > 0 ? -1 : 1;
-    }
+    for (int k = 0; k < m.n_s; ++k)
+      if (at(k) * state.v[m.v0 + 6 + k] < 0) at(k) = 0;  // it leaves
   }
-  state.work[static_cast<int>(Work::limits)] += dynamics.ledger(state, work).energy() - before;
+  state.work[static_cast<int>(Work::limits)] += dynamics.ledger(t, state, work).energy() - before;
 }
 
 }  // namespace pliant

@@ -33,7 +33,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   state.work += h * work_sum;
   hold_inertialess(dynamics.model(), work, state.v);
   normalise_rotations(dynamics.model(), state.q);
-  stop_at_limits(dynamics, state, work, counters);
+  stop_at_limits(dynamics, t + h, state, work, counters);
 }
 
 double Rk4::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

@@ -16,6 +16,7 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   hold_inertialess(dynamics.model(), work, state.v);
   stop_at_limits_ahead(dynamics.model(), work, state, h, counters);
   advance_coordinates(dynamics.model(), state.q, state.v, h);
+  settle_on_limits(dynamics.model(), state);
 }
 
 double SemiImplicitEuler::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

@@ -54,7 +54,11 @@ class Dynamics {
   /// q_dot of (q, v): quaternion rate theta_dot = 1/2 theta o (0, omega).
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
   /// Energies, works and momenta; balance is left to the caller.
-  Ledger ledger(const State& state, Workspace<double>& work) const;
+  Ledger ledger(const State& state, Workspace<double>& work) const {
+    return ledger(state.time(), state, work);
+  }
+  /// The same with the coordinates and velocities of the state taken at time t (s).
+  Ledger ledger(double t, const State& state, Workspace<double>& work) const;
   /// Velocity change M^-1 f of a part for a generalised impulse, by the factor that the last evaluation left.
   static void apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse);
   /// The first term that is not finite in an evaluation at this state, in words; empty if all are finite.

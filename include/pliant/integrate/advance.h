@@ -21,8 +21,12 @@ void hold_inertialess(const Model& model, const Workspace<double>& work, VecX<do
 void stop_at_limits_ahead(const Model& model, const Workspace<double>& work, State& state, double h,
                           StepCounters& counters);
 
-/// After a step of a high-order method: coordinates beyond a limit are projected onto it in the mass metric,
-/// and outward velocities are stopped by impulses.
-void stop_at_limits(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
+/// After the coordinates moved: parameters that came to a limit are on it to the last bit.
+void settle_on_limits(const Model& model, State& state);
+
+/// After a step of a high-order method, which ends at time t (s): coordinates beyond a limit are projected
+/// onto it in the mass metric, and outward velocities are stopped by impulses.
+void stop_at_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                    StepCounters& counters);
 
 }  // namespace pliant
