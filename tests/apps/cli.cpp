@@ -121,7 +121,9 @@ TEST_CASE("commands that tell") {
     CHECK(list.code == 0);
     CHECK(list.out.size() > 100);
   }
-  CHECK(Json::parse(place.pliant("schema").out).contains("properties"));
+  const Result schema = place.pliant("schema");
+  CHECK(Json::parse(schema.out).contains("properties"));
+  CHECK(schema.out == bytes_of(fs::path(PLIANT_SCENES) / "pliant-scene.schema.json"));
   CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
 }
 
