@@ -7,8 +7,9 @@
 namespace pliant_cli {
 
 void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,
-                 const pliant::Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
-                 pliant::Progress& progress, pliant::GlBackend backend) {
+                 const pliant::Recording& recording, double frame_rate,
+                 const std::vector<std::int64_t>& frames, pliant::Progress& progress,
+                 pliant::GlBackend backend) {
   try {
     const pliant::GlContext probe(backend);
   } catch (const std::runtime_error& error) {

@@ -11,7 +11,8 @@ namespace pliant_cli {
 
 /// As pliant::render_frames; throws ResourceFailure when no graphics library opens.
 void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,
-                 const pliant::Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
-                 pliant::Progress& progress, pliant::GlBackend backend);
+                 const pliant::Recording& recording, double frame_rate,
+                 const std::vector<std::int64_t>& frames, pliant::Progress& progress,
+                 pliant::GlBackend backend);
 
 }  // namespace pliant_cli

@@ -52,9 +52,11 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
     const std::string name = word.substr(0, word.find('='));
     text += (text.empty() ? "" : "\npliant: error: ");
     if (&command == &app && word.compare(0, 1, "-") != 0)
-      text += "there is no command \"" + pliant::escaped(word) + "\"" + pliant::did_you_mean(name, command_names(app));
+      text += "there is no command \"" + pliant::escaped(word) + "\"" +
+              pliant::did_you_mean(name, command_names(app));
     else if (word.compare(0, 1, "-") == 0)
-      text += "there is no option " + pliant::escaped(name) + pliant::did_you_mean(name, option_names(command));
+      text +=
+          "there is no option " + pliant::escaped(name) + pliant::did_you_mean(name, option_names(command));
     else
       text += "unexpected argument \"" + pliant::escaped(word) + "\"";
   }
@@ -102,8 +104,8 @@ int report_parse_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = parsed.empty() ? app : *parsed.front();
   const std::string unexpected = unexpected_words(app, command);
   const std::string what = unexpected.empty() ? pliant::escaped(error.what()) : unexpected;
-  std::cerr << "pliant: error: " << what << "\nTry: pliant " << (parsed.empty() ? "" : command.get_name() + " ")
-            << "--help\n";
+  std::cerr << "pliant: error: " << what << "\nTry: pliant "
+            << (parsed.empty() ? "" : command.get_name() + " ") << "--help\n";
   return kCommandLine;
 }
 

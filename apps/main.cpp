@@ -13,16 +13,19 @@
 namespace {
 
 int run_command(int argc, char** argv) {
-  CLI::App app{"pliant simulates deformable solid primitives: scenes in JSON, motion as tables, meshes and pictures."};
+  CLI::App app{
+      "pliant simulates deformable solid primitives: scenes in JSON, motion as tables, meshes and pictures."};
   app.name("pliant");
   app.require_subcommand(1);
-  app.set_version_flag("--version", pliant_cli::version_text(), "Print versions, what is linked, and licences");
-  app.footer(std::string("Examples:\n"
-                         "  pliant run scenes/pull.json --png -o out/pull    simulate, record, draw\n"
-                         "  pliant info scenes/pull.json                     what the scene is to the engine\n"
-                         "  pliant list shapes                               parameters, ranges, formulas\n"
-                         "  pliant run --help                                options of a command\n\n") +
-             pliant_cli::kExitCodesHelp);
+  app.set_version_flag("--version", pliant_cli::version_text(),
+                       "Print versions, what is linked, and licences");
+  app.footer(
+      std::string("Examples:\n"
+                  "  pliant run scenes/pull.json --png -o out/pull    simulate, record, draw\n"
+                  "  pliant info scenes/pull.json                     what the scene is to the engine\n"
+                  "  pliant list shapes                               parameters, ranges, formulas\n"
+                  "  pliant run --help                                options of a command\n\n") +
+      pliant_cli::kExitCodesHelp);
   pliant_cli::Action action;
   pliant_cli::add_run(app, action, std::vector<std::string>(argv, argv + argc));
   pliant_cli::add_check(app, action);
@@ -49,7 +52,8 @@ int run_command(int argc, char** argv) {
 int main(int argc, char** argv) {
   return pliant_cli::reporting_failures([&] {
     const int code = run_command(argc, argv);
-    if (!std::cout.flush()) throw std::system_error(errno, std::generic_category(), "cannot write standard output");
+    if (!std::cout.flush())
+      throw std::system_error(errno, std::generic_category(), "cannot write standard output");
     return code;
   });
 }

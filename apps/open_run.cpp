@@ -11,18 +11,21 @@ OpenRun open_run(const std::filesystem::path& folder) {
   OpenRun run;
   run.record = pliant::read_run_record(folder / pliant::kRunFile);
   const std::filesystem::path file = folder / pliant::kSceneFile;
-  if (!std::filesystem::exists(file)) throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
+  if (!std::filesystem::exists(file))
+    throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
   pliant::Diagnostics warnings;  // they were shown when the run began
   run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings);
   if (run.scene->hash != run.record.scene_hash)
-    throw pliant::RecordingMismatch(file.string() + " is not the scene that was recorded: it was changed since");
+    throw pliant::RecordingMismatch(file.string() +
+                                    " is not the scene that was recorded: it was changed since");
   run.scene->name = run.record.scene;
   run.scene->frame_rate = run.record.frame_rate;
   run.scene->width = run.record.width;
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
   run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
-  if (run.recording->rows() == 0) throw pliant::RecordingMismatch("the recording in " + folder.string() + " is empty");
+  if (run.recording->rows() == 0)
+    throw pliant::RecordingMismatch("the recording in " + folder.string() + " is empty");
   return run;
 }
 

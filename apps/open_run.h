@@ -1,4 +1,5 @@
-// A finished (or unfinished) run opened for reading: its scene is built again from the copy beside the recording.
+// A finished (or unfinished) run opened for reading: its scene is built again from the copy beside the
+// recording.
 #pragma once
 
 #include <filesystem>
@@ -20,11 +21,12 @@ struct OpenRun {
   std::int64_t frames() const;
 };
 
-/// Throws pliant::FileError when the folder holds no run, pliant::RecordingMismatch when this program cannot read it.
+/// Throws pliant::FileError when the folder holds no run, pliant::RecordingMismatch when this program cannot
+/// read it.
 OpenRun open_run(const std::filesystem::path& folder);
 
-/// Makes a folder for frames where there is none. Throws pliant::OutputRefused when a file of one of these frames exists and
-/// `force` is not given.
+/// Makes a folder for frames where there is none. Throws pliant::OutputRefused when a file of one of these
+/// frames exists and `force` is not given.
 void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,
                           const std::string& ending, bool force);
 

@@ -64,7 +64,8 @@ PictureSize parse_picture_size(const std::string& text) {
 CLI::Validator picture_size() {
   return {[](std::string& text) -> std::string {
             if (parse_picture_size(text).width > 0) return {};
-            return "\"" + text + "\" is not a size like 640x480 (each side from 1 to " + std::to_string(kMostPixels) + ")";
+            return "\"" + text + "\" is not a size like 640x480 (each side from 1 to " +
+                   std::to_string(kMostPixels) + ")";
           },
           ""};
 }

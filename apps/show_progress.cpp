@@ -66,7 +66,8 @@ class Watched : public pliant::Progress {
   // "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left"
   std::string numbers() const {
     const double wall = elapsed();
-    std::string text = printed("%3.0f %%, ", 100 * fraction()) + printed("%.6g of %.6g ", done_, total_) + unit_;
+    std::string text =
+        printed("%3.0f %%, ", 100 * fraction()) + printed("%.6g of %.6g ", done_, total_) + unit_;
     if (wall > 0 && unit_ == "s") text += printed(", %.3g times real time", done_ / wall);
     if (fraction() > 0 && fraction() < 1) text += ", " + duration(wall * (1 / fraction() - 1)) + " left";
     return text;
@@ -132,7 +133,9 @@ class Lines final : public Watched {
 
 class Quiet final : public pliant::Progress {
  public:
-  void begin(const std::string& stage, double, const std::string&) override { simulating_ = stage == "simulate"; }
+  void begin(const std::string& stage, double, const std::string&) override {
+    simulating_ = stage == "simulate";
+  }
   void advance(double) override {
     if (!simulating_ && stop_signal() != 0) throw pliant::Interrupted("stopped by a signal");
   }

@@ -7,7 +7,8 @@
 
 namespace pliant_cli {
 
-/// Its advance() throws pliant::Interrupted when a stop signal came during a stage that cannot stop in the middle itself.
+/// Its advance() throws pliant::Interrupted when a stop signal came during a stage that cannot stop in the
+/// middle itself.
 std::unique_ptr<pliant::Progress> make_progress(bool quiet);
 
 }  // namespace pliant_cli

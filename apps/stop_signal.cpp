@@ -1,6 +1,5 @@
 #include "stop_signal.h"
 
-#include <initializer_list>
 #include <csignal>
 #include <initializer_list>
 
@@ -32,6 +31,8 @@ void catch_stop_signals() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-int stop_signal() { return caught; }
+int stop_signal() {
+  return caught;
+}
 
 }  // namespace pliant_cli

@@ -39,15 +39,19 @@ void print_estimate(pliant::Scene& scene) {
   const pliant::FrameSchedule schedule(scene.end, scene.step, scene.frame_rate);
   pliant::Simulation simulation(scene.body, scene.integrator);
   const double stable = pliant::largest_stable_step(simulation);
-  const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() + simulation.model().n_limits() + 1;
+  const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
+                         simulation.model().n_limits() + 1;
   const auto frames = static_cast<double>(schedule.frames());
-  std::cout << "ok: " << scene.body.parts().size() << " parts, " << simulation.model().n_v() << " degrees of freedom\n"
+  std::cout << "ok: " << scene.body.parts().size() << " parts, " << simulation.model().n_v()
+            << " degrees of freedom\n"
             << "estimate: " << schedule.steps() << " steps of " << schedule.step() << " s";
   if (schedule.step() > stable)
     std::cout << "\nwarning: the step is above the largest stable one, about " << stable << " s";
   else
-    std::cout << ", " << seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps()) << " s of computing";
-  std::cout << "; " << schedule.frames() << " frames, a recording of " << frames * numbers * 8 / 1e6 << " MB\n";
+    std::cout << ", " << seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps())
+              << " s of computing";
+  std::cout << "; " << schedule.frames() << " frames, a recording of " << frames * numbers * 8 / 1e6
+            << " MB\n";
 }
 
 int check(const CheckCommand& command) {
@@ -73,7 +77,8 @@ int check(const CheckCommand& command) {
 
 void add_check(CLI::App& app, Action& action) {
   const auto options = std::make_shared<CheckCommand>();
-  CLI::App* command = app.add_subcommand("check", "Check a scene and estimate what a run costs; nothing is written");
+  CLI::App* command =
+      app.add_subcommand("check", "Check a scene and estimate what a run costs; nothing is written");
   add_scene_options(*command, options->scene);
   command->add_option("--diagnostics", options->diagnostics, "Form of the faults: text, or json for programs")
       ->check(CLI::IsMember({"text", "json"}))

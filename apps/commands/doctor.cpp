@@ -34,7 +34,9 @@ void print_graphics() {
       std::cout << "no, " << probe.reason << "\n";
     any = any || probe.opened;
   }
-  if (!any) std::cout << "  no pictures (--png, render) until libosmesa6, or libegl1 with libgl1-mesa-dri, is installed\n";
+  if (!any)
+    std::cout
+        << "  no pictures (--png, render) until libosmesa6, or libegl1 with libgl1-mesa-dri, is installed\n";
 }
 
 // MB/s of a file that is written and reaches the disk.
@@ -57,12 +59,13 @@ double write_speed(const fs::path& folder) {
 int examine(const fs::path& folder) {
   std::cout << version_text();
   const std::string features = processor_features();
-  std::cout << "processor\n  " << std::thread::hardware_concurrency() << " threads; features: "
-            << (features.empty() ? "not known" : features) << "\n  BLAS loaded: " << loaded_blas() << "\n";
+  std::cout << "processor\n  " << std::thread::hardware_concurrency()
+            << " threads; features: " << (features.empty() ? "not known" : features)
+            << "\n  BLAS loaded: " << loaded_blas() << "\n";
   print_graphics();
   const std::string ffmpeg = find_program("ffmpeg");
-  std::cout << "films\n  ffmpeg: " << (ffmpeg.empty() ? "not installed (only needed to make films of frames)" : ffmpeg)
-            << "\n";
+  std::cout << "films\n  ffmpeg: "
+            << (ffmpeg.empty() ? "not installed (only needed to make films of frames)" : ffmpeg) << "\n";
   std::cout << "output folder " << folder.string() << "\n" << std::flush;
   const fs::space_info space = fs::space(folder);
   std::cout << "  writes " << static_cast<long>(write_speed(folder)) << " MB/s, " << space.available / 1000000
@@ -74,8 +77,8 @@ int examine(const fs::path& folder) {
 
 void add_doctor(CLI::App& app, Action& action) {
   const auto folder = std::make_shared<std::string>(".");
-  CLI::App* command =
-      app.add_subcommand("doctor", "Tell what works here: graphics libraries, processor, ffmpeg, speed of the disk");
+  CLI::App* command = app.add_subcommand(
+      "doctor", "Tell what works here: graphics libraries, processor, ffmpeg, speed of the disk");
   command->add_option("-o,--out", *folder, "Folder whose speed is measured [.]")->type_name("DIR");
   command->callback([folder, &action] { action = [folder] { return examine(*folder); }; });
 }

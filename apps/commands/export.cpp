@@ -29,12 +29,14 @@ int export_meshes(const ExportCommand& command) {
   pliant::FrameRange range = pliant::FrameRange::parse(command.frames);
   if (!command.shard.empty()) range.parse_shard(command.shard);
   const std::vector<std::int64_t> frames = range.frames(run.frames());
-  const fs::path folder = command.folder.empty() ? fs::path(command.run) / pliant::kMeshFolder : fs::path(command.folder);
+  const fs::path folder =
+      command.folder.empty() ? fs::path(command.run) / pliant::kMeshFolder : fs::path(command.folder);
   prepare_frame_folder(folder, frames, command.format, command.force);
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
-  pliant::write_mesh_frames(folder, command.format == "obj" ? pliant::MeshFormat::obj : pliant::MeshFormat::ply, *run.scene,
-                            *run.model, *run.recording, run.record.frame_rate, frames, *progress);
+  pliant::write_mesh_frames(folder,
+                            command.format == "obj" ? pliant::MeshFormat::obj : pliant::MeshFormat::ply,
+                            *run.scene, *run.model, *run.recording, run.record.frame_rate, frames, *progress);
   return kDone;
 }
 
@@ -42,16 +44,20 @@ int export_meshes(const ExportCommand& command) {
 
 void add_export(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ExportCommand>();
-  CLI::App* command = app.add_subcommand("export", "Write the surfaces of a run's frames, from its recording");
+  CLI::App* command =
+      app.add_subcommand("export", "Write the surfaces of a run's frames, from its recording");
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_option("--to", options->format, "Format: obj (text, with colours) or ply (binary)")
       ->required()
       ->check(CLI::IsMember({"obj", "ply"}))
       ->option_text("obj|ply");
   command->add_option("-o,--out", options->folder, "Folder for the files [RUN/meshes]")->type_name("DIR");
-  command->add_option("--frames", options->frames, "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
+  command
+      ->add_option("--frames", options->frames,
+                   "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
       ->type_name("A:B:S");
-  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")->type_name("I/N");
+  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")
+      ->type_name("I/N");
   command->add_flag("--force", options->force, "Replace files that exist");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   command->footer(

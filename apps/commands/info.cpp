@@ -16,7 +16,9 @@ namespace {
 
 using pliant::Vec3;
 
-void print_vector(const Vec3<double>& x) { std::cout << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")"; }
+void print_vector(const Vec3<double>& x) {
+  std::cout << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+}
 
 void print_parameters(const pliant::Part& part) {
   const pliant::Parameters& parameters = part.parameters();
@@ -38,10 +40,11 @@ void print_part(const pliant::PartModel& model) {
   if (part.fixed())
     std::cout << "  fixed: no degrees of freedom\n";
   else
-    std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s() << " dynamic parameters; "
-              << frozen << " frozen)\n";
+    std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s()
+              << " dynamic parameters; " << frozen << " frozen)\n";
   const pliant::Inertia<double>& inertia = part.rest_inertia();
-  const Vec3<double> centre = inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);
+  const Vec3<double> centre =
+      inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);
   std::cout << "  mass " << inertia.mass << " kg, centre of mass ";
   print_vector(centre);
   std::cout << " m in its frame, size " << part.size() << " m\n";
@@ -49,15 +52,16 @@ void print_part(const pliant::PartModel& model) {
     // About the centre of mass: I_c = I_o - m (|r|^2 1 - r r^T).
     const pliant::Mat3<double> about_origin = inertia.M.block<3, 3>(3, 3);
     const pliant::Mat3<double> about_centre =
-        about_origin -
-        inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() - centre * centre.transpose());
-    std::cout << "  inertia about it (kg m^2): xx " << about_centre(0, 0) << ", yy " << about_centre(1, 1) << ", zz "
-              << about_centre(2, 2) << ", xy " << about_centre(0, 1) << ", xz " << about_centre(0, 2) << ", yz "
-              << about_centre(1, 2) << "\n";
+        about_origin - inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() -
+                                       centre * centre.transpose());
+    std::cout << "  inertia about it (kg m^2): xx " << about_centre(0, 0) << ", yy " << about_centre(1, 1)
+              << ", zz " << about_centre(2, 2) << ", xy " << about_centre(0, 1) << ", xz "
+              << about_centre(0, 2) << ", yz " << about_centre(1, 2) << "\n";
   }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
-    std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level " << points.level << "\n";
+    std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
+              << points.level << "\n";
 }
 
 void print_point(const pliant::Simulation& simulation, const pliant::Point& point) {
@@ -105,15 +109,16 @@ int info(const SceneOptions& options) {
     frozen += part.part->parameters().size() - part.n_s;
     if (part.q0 >= 0) mass += part.part->total_mass();
   }
-  std::cout << model.parts().size() << " parts, " << model.n_v() << " degrees of freedom (" << model.n_limits()
-            << " dynamic parameters, " << frozen << " frozen), " << mass << " kg in motion\n";
+  std::cout << model.parts().size() << " parts, " << model.n_v() << " degrees of freedom ("
+            << model.n_limits() << " dynamic parameters, " << frozen << " frozen), " << mass
+            << " kg in motion\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
   print_forces(*scene, simulation);
   std::cout << "skipped:\n";
   for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";
   const pliant::FrameSchedule schedule(scene->end, scene->step, scene->frame_rate);
-  std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end() << " s by "
-            << scene->integrator << ", " << schedule.frames() << " frames\n";
+  std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end()
+            << " s by " << scene->integrator << ", " << schedule.frames() << " frames\n";
   const double stable = pliant::largest_stable_step(simulation);
   if (std::isfinite(stable))
     std::cout << "largest stable step: about " << stable << " s\n";
@@ -128,8 +133,8 @@ int info(const SceneOptions& options) {
 
 void add_info(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SceneOptions>();
-  CLI::App* command =
-      app.add_subcommand("info", "Tell about a scene: parts, degrees of freedom, mass, what is skipped, largest stable step");
+  CLI::App* command = app.add_subcommand(
+      "info", "Tell about a scene: parts, degrees of freedom, mass, what is skipped, largest stable step");
   add_scene_options(*command, *options);
   command->footer("Example:\n  pliant info scenes/pull.json --set /time/step=0.01");
   command->callback([options, &action] { action = [options] { return info(*options); }; });

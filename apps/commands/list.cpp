@@ -28,9 +28,10 @@ std::string range_text(const pliant::Range& range, bool relative) {
 void print_parameters(const pliant::ParameterSpec* specs, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const pliant::ParameterSpec& p = specs[i];
-    std::cout << "    " << std::left << std::setw(7) << p.name << " default " << std::setw(5) << text_of(p.standard)
-              << " " << std::setw(4) << (p.unit[0] == '1' ? "" : p.unit) << " frozen " << range_text(p.frozen, false)
-              << ", dynamic " << range_text(p.dynamic, p.relative) << "\n            " << p.meaning << "\n";
+    std::cout << "    " << std::left << std::setw(7) << p.name << " default " << std::setw(5)
+              << text_of(p.standard) << " " << std::setw(4) << (p.unit[0] == '1' ? "" : p.unit) << " frozen "
+              << range_text(p.frozen, false) << ", dynamic " << range_text(p.dynamic, p.relative)
+              << "\n            " << p.meaning << "\n";
   }
 }
 
@@ -82,7 +83,10 @@ void add_list(CLI::App& app, Action& action) {
     names.push_back(k.name);
     footer += std::string("  ") + k.name + ": " + k.meaning + "\n";
   }
-  command->add_option("kind", *kind, "What to list")->required()->check(CLI::IsMember(names))->option_text("KIND REQUIRED");
+  command->add_option("kind", *kind, "What to list")
+      ->required()
+      ->check(CLI::IsMember(names))
+      ->option_text("KIND REQUIRED");
   command->footer(footer);
   command->callback([kind, &action] {
     action = [kind] {

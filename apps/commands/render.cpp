@@ -34,7 +34,8 @@ void change_view(const RenderCommand& command, pliant::Scene& scene) {
     scene.width = size.width;
     scene.height = size.height;
   }
-  if (!command.eye.empty()) scene.camera.eye = pliant::Vec3<double>(command.eye[0], command.eye[1], command.eye[2]);
+  if (!command.eye.empty())
+    scene.camera.eye = pliant::Vec3<double>(command.eye[0], command.eye[1], command.eye[2]);
   if (!command.target.empty())
     scene.camera.target = pliant::Vec3<double>(command.target[0], command.target[1], command.target[2]);
   scene.camera.field_of_view = command.field_of_view.value_or(scene.camera.field_of_view);
@@ -48,11 +49,13 @@ int render(const RenderCommand& command) {
   pliant::FrameRange range = pliant::FrameRange::parse(command.frames);
   if (!command.shard.empty()) range.parse_shard(command.shard);
   const std::vector<std::int64_t> frames = range.frames(run.frames());
-  const fs::path folder = command.folder.empty() ? fs::path(command.run) / pliant::kFrameFolder : fs::path(command.folder);
+  const fs::path folder =
+      command.folder.empty() ? fs::path(command.run) / pliant::kFrameFolder : fs::path(command.folder);
   prepare_frame_folder(folder, frames, "png", command.force);
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
-  draw_frames(folder, *run.scene, *run.model, *run.recording, run.record.frame_rate, frames, *progress, command.backend);
+  draw_frames(folder, *run.scene, *run.model, *run.recording, run.record.frame_rate, frames, *progress,
+              command.backend);
   return kDone;
 }
 
@@ -63,10 +66,15 @@ void add_render(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("render", "Draw the frames of a run again, from its recording");
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_option("-o,--out", options->folder, "Folder for the pictures [RUN/frames]")->type_name("DIR");
-  command->add_option("--frames", options->frames, "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
+  command
+      ->add_option("--frames", options->frames,
+                   "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
       ->type_name("A:B:S");
-  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")->type_name("I/N");
-  command->add_option("--size", options->size, "Size in pixels [that of the run]")->check(picture_size())->type_name("WxH");
+  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")
+      ->type_name("I/N");
+  command->add_option("--size", options->size, "Size in pixels [that of the run]")
+      ->check(picture_size())
+      ->type_name("WxH");
   command->add_option("--camera-eye", options->eye, "Position of the camera, m")
       ->expected(3)
       ->check(any_number())

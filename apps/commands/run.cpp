@@ -36,11 +36,13 @@ struct RunCommand {
 
 fs::path folder_of(const RunCommand& command) {
   if (!command.folder.empty()) return command.folder;
-  return fs::path("out") / (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
+  return fs::path("out") /
+         (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
 }
 
 // What the command line says of how to run; a resumed run goes on as it began where it says nothing.
-void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& begun, pliant::Scene& scene) {
+void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& begun,
+                   pliant::Scene& scene) {
   if (begun) {
     scene.end = begun->end;
     scene.step = begun->asked_step;
@@ -67,12 +69,14 @@ void write_frames(const RunCommand& command, pliant::Run& run, pliant::Progress&
     return std::string(folder) + "/frame_*." + ending;
   };
   if (command.obj) {
-    run.write("meshes", {series(pliant::kMeshFolder, "obj"), fs::path(pliant::kMeshFolder) / pliant::kMaterialFile}, [&] {
-      const fs::path folder = run.folder() / pliant::kMeshFolder;
-      pliant::make_subfolder(folder);
-      pliant::write_mesh_frames(folder, pliant::MeshFormat::obj, scene, model, run.recording(), scene.frame_rate, frames,
-                                progress);
-    });
+    run.write("meshes",
+              {series(pliant::kMeshFolder, "obj"), fs::path(pliant::kMeshFolder) / pliant::kMaterialFile},
+              [&] {
+                const fs::path folder = run.folder() / pliant::kMeshFolder;
+                pliant::make_subfolder(folder);
+                pliant::write_mesh_frames(folder, pliant::MeshFormat::obj, scene, model, run.recording(),
+                                          scene.frame_rate, frames, progress);
+              });
   }
   if (command.png) {
     run.write("frames", {series(pliant::kFrameFolder, "png")}, [&] {
@@ -117,9 +121,9 @@ int run_scene(const RunCommand& command) {
   write_frames(command, run, *progress);
   run.finish(pliant::RunRecord::Status::complete);
   if (!command.quiet)
-    std::cout << folder.string() << ": t = " << run.record().time << " s, " << run.record().step_counters.steps << " steps, "
-              << run.record().states << " states recorded; largest balance error " << run.record().max_balance_error
-              << " J\n";
+    std::cout << folder.string() << ": t = " << run.record().time << " s, "
+              << run.record().step_counters.steps << " steps, " << run.record().states
+              << " states recorded; largest balance error " << run.record().max_balance_error << " J\n";
   return kDone;
 }
 
@@ -130,7 +134,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   options->command_line = command_line;
   CLI::App* command = app.add_subcommand("run", "Simulate a scene and record its motion");
   add_scene_options(*command, options->scene);
-  command->add_option("-o,--out", options->folder, "Folder for everything that is written [out/SCENE]")->type_name("DIR");
+  command->add_option("-o,--out", options->folder, "Folder for everything that is written [out/SCENE]")
+      ->type_name("DIR");
   command->add_option("--end", options->end, "End of the run, s")->check(number_from_zero())->type_name("T");
   command->add_option("--step", options->step, "Time step, s")->check(positive_number())->type_name("H");
   command->add_option("--fps", options->frame_rate, "Recorded states and frames per second of the motion")
@@ -138,21 +143,28 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       ->type_name("N");
   command->add_flag("--obj", options->obj, "Write the surfaces of every frame as OBJ files");
   command->add_flag("--png", options->png, "Draw a picture of every frame");
-  command->add_option("--size", options->size, "Size of pictures, pixels")->check(picture_size())->type_name("WxH");
+  command->add_option("--size", options->size, "Size of pictures, pixels")
+      ->check(picture_size())
+      ->type_name("WxH");
   add_graphics_option(*command, options->backend);
-  command->add_option("--threads", options->threads, "Threads [as many as are of use]; results do not depend on it")
+  command
+      ->add_option("--threads", options->threads,
+                   "Threads [as many as are of use]; results do not depend on it")
       ->check(count_up_to(4096))
       ->type_name("N");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run that is in the folder");
-  command->add_flag("--resume", options->resume, "Go on with the run that is in the folder, to the last bit as if unbroken")
+  command
+      ->add_flag("--resume", options->resume,
+                 "Go on with the run that is in the folder, to the last bit as if unbroken")
       ->excludes(force);
   command->footer(
       "Examples:\n"
       "  pliant run scenes/tumbling.json --obj --png -o out/tumbling\n"
       "  pliant run scenes/pull.json --set /parts/0/density=500 --set /gravity=[0,0,-9.81] --end 2\n"
       "  pliant run scenes/pull.json -o out/pull --resume --end 20    longer than it was, or after Ctrl-C\n"
-      "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy,\n"
+      "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, "
+      "q.npy, v.npy,\n"
       "modes.npy, explained by layout.json), meshes/ and frames/.");
   command->callback([options, &action] { action = [options] { return run_scene(*options); }; });
 }

@@ -13,7 +13,8 @@ void add_schema(CLI::App& app, Action& action) {
   command->footer(
       "Example:\n"
       "  pliant schema > pliant-scene.schema.json\n"
-      "A scene that begins with  \"$schema\": \"pliant-scene.schema.json\"  is completed and checked by editors.");
+      "A scene that begins with  \"$schema\": \"pliant-scene.schema.json\"  is completed and checked by "
+      "editors.");
   command->callback([&action] {
     action = [] {
       std::cout << pliant::schema::schema_json(pliant::scene_record());

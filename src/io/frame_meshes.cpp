@@ -43,7 +43,8 @@ Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) {
     const Part& solid = *model_->parts()[shown.part].part;
     const Mat3<double> turn = model_->orientation(state, part).toRotationMatrix();
     const Eigen::Matrix3Xd x =
-        (turn * (shown.rigid ? shown.body.x : solid.s(shown.surface.material(), model_->values(state, part)))).colwise() +
+        (turn * (shown.rigid ? shown.body.x : solid.s(shown.surface.material(), model_->values(state, part))))
+            .colwise() +
         model_->position(state, part);
     box.extend(Vec3<double>(x.rowwise().minCoeff()));
     box.extend(Vec3<double>(x.rowwise().maxCoeff()));

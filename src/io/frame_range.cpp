@@ -29,7 +29,8 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 FrameRange FrameRange::parse(const std::string& text) {
   const auto refuse = [&]() -> std::int64_t {
-    throw std::invalid_argument("frames \"" + text + "\" must be FIRST:END:STRIDE (END not included) or one number");
+    throw std::invalid_argument("frames \"" + text +
+                                "\" must be FIRST:END:STRIDE (END not included) or one number");
   };
   const std::vector<std::string> pieces = split(text, ':');
   if (pieces.size() > 3) refuse();
@@ -54,8 +55,10 @@ FrameRange FrameRange::parse(const std::string& text) {
 
 void FrameRange::parse_shard(const std::string& text) {
   const std::vector<std::string> pieces = split(text, '/');
-  const std::optional<std::int64_t> i = number(pieces[0]), n = pieces.size() == 2 ? number(pieces[1]) : std::nullopt;
-  if (!i || !n || *i < 1 || *i > *n) throw std::invalid_argument("shard \"" + text + "\" must be i/n with 1 <= i <= n");
+  const std::optional<std::int64_t> i = number(pieces[0]),
+                                    n = pieces.size() == 2 ? number(pieces[1]) : std::nullopt;
+  if (!i || !n || *i < 1 || *i > *n)
+    throw std::invalid_argument("shard \"" + text + "\" must be i/n with 1 <= i <= n");
   shard = *i - 1;
   shards = *n;
 }

@@ -15,7 +15,8 @@ constexpr double kMostSteps = 1e12;
 constexpr double kOnStep = 1e-6;
 
 void require(bool good, const char* what, double value, const char* expected) {
-  if (!good) throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
+  if (!good)
+    throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
 }
 
 // end / step rounded up, but to the nearest where that is as good as exact.
@@ -26,8 +27,8 @@ double steps_between(double end, double step, double rate) {
   const double exact = end / step, near = std::round(exact);
   const double steps = std::abs(exact - near) <= 1e-9 * std::max(1.0, exact) ? near : std::ceil(exact);
   if (!(steps <= kMostSteps))
-    throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) + " s takes " +
-                                number_text(steps) + " steps; the limit is 1e12");
+    throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) +
+                                " s takes " + number_text(steps) + " steps; the limit is 1e12");
   if (!(end * rate <= kMostSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s has " + number_text(end * rate) +
                                 " frames; the limit is 1e12");

@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene, const Model& model,
-                       const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
-                       Progress& progress) {
+void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene,
+                       const Model& model, const Recording& recording, double frame_rate,
+                       const std::vector<std::int64_t>& frames, Progress& progress) {
   FrameMeshes meshes(scene, model);
   progress.begin("meshes", static_cast<double>(frames.size()), "frames");
   double done = 0;
@@ -25,7 +25,8 @@ void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, c
   if (format == MeshFormat::obj) {
     std::vector<NamedMesh> colors;
     for (std::size_t i = 0; i < scene.appearance.size(); ++i)
-      if (scene.appearance[i].visible) colors.push_back({scene.body.parts()[i]->name(), scene.appearance[i].color, {}});
+      if (scene.appearance[i].visible)
+        colors.push_back({scene.body.parts()[i]->name(), scene.appearance[i].color, {}});
     const std::string text = mtl_text(colors);
     write_whole_file(folder / kMaterialFile, text.data(), text.size());
   }

@@ -34,21 +34,25 @@ std::string ply_bytes(const std::vector<NamedMesh>& meshes) {
 #else
   std::string bytes = "ply\nformat binary_big_endian 1.0\n";
 #endif
-  for (std::size_t i = 0; i < meshes.size(); ++i) bytes += "comment part " + std::to_string(i) + " " + meshes[i].name + "\n";
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    bytes += "comment part " + std::to_string(i) + " " + meshes[i].name + "\n";
   bytes += "element vertex " + std::to_string(vertices) + "\n";
-  for (const char* property : {"double x", "double y", "double z", "float nx", "float ny", "float nz", "uchar red",
-                               "uchar green", "uchar blue", "int part"})
+  for (const char* property : {"double x", "double y", "double z", "float nx", "float ny", "float nz",
+                               "uchar red", "uchar green", "uchar blue", "int part"})
     bytes += std::string("property ") + property + "\n";
-  bytes += "element face " + std::to_string(triangles) + "\nproperty list uchar int vertex_indices\nend_header\n";
+  bytes +=
+      "element face " + std::to_string(triangles) + "\nproperty list uchar int vertex_indices\nend_header\n";
 
-  bytes.reserve(bytes.size() + static_cast<std::size_t>(vertices) * 43 + static_cast<std::size_t>(triangles) * 13);
+  bytes.reserve(bytes.size() + static_cast<std::size_t>(vertices) * 43 +
+                static_cast<std::size_t>(triangles) * 13);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const TriangleMesh& mesh = meshes[i].mesh;
     const Eigen::Matrix3Xd normals = vertex_normals(mesh);
     for (Eigen::Index k = 0; k < mesh.x.cols(); ++k) {
       for (int axis = 0; axis < 3; ++axis) put(bytes, mesh.x(axis, k));
       for (int axis = 0; axis < 3; ++axis) put(bytes, static_cast<float>(normals(axis, k)));
-      for (const double channel : meshes[i].color) put(bytes, static_cast<std::uint8_t>(std::lround(255 * channel)));
+      for (const double channel : meshes[i].color)
+        put(bytes, static_cast<std::uint8_t>(std::lround(255 * channel)));
       put(bytes, static_cast<std::int32_t>(i));
     }
   }

@@ -77,6 +77,8 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   write_whole_file(path, encoding.bytes.data(), encoding.bytes.size());
 }
 
-const char* png_library_version() { return png_get_libpng_ver(nullptr); }
+const char* png_library_version() {
+  return png_get_libpng_ver(nullptr);
+}
 
 }  // namespace pliant

@@ -17,17 +17,20 @@
 namespace pliant {
 namespace {
 
-int mode_count(const Model& model) { return 3 + kWorks + model.n_limits() + 1; }
+int mode_count(const Model& model) {
+  return 3 + kWorks + model.n_limits() + 1;
+}
 
 // The names of a table's columns must be the model's.
-void compare_columns(const nlohmann::json& layout, const char* table, int count, const std::filesystem::path& file,
-                     const std::function<std::string(int)>& name) {
+void compare_columns(const nlohmann::json& layout, const char* table, int count,
+                     const std::filesystem::path& file, const std::function<std::string(int)>& name) {
   const nlohmann::json& columns = layout.at("tables").at(table);
   for (int i = 0; i < std::min(count, static_cast<int>(columns.size())); ++i) {
     const std::string recorded = columns.at(static_cast<std::size_t>(i)).at("name");
     if (recorded != name(i))
-      throw RecordingMismatch(file.string() + " was recorded from another scene: column " + std::to_string(i) + " of " +
-                              table + " is " + recorded + ", the scene has " + name(i) + " there");
+      throw RecordingMismatch(file.string() + " was recorded from another scene: column " +
+                              std::to_string(i) + " of " + table + " is " + recorded + ", the scene has " +
+                              name(i) + " there");
   }
   if (static_cast<int>(columns.size()) != count)
     throw RecordingMismatch(file.string() + " was recorded from another scene: " + table + " has " +
@@ -40,9 +43,12 @@ void compare_layout(const std::filesystem::path& file, const Model& model) {
   try {
     const nlohmann::json layout = nlohmann::json::parse(stream);
     if (layout.at("version") != 1)
-      throw RecordingMismatch(file.string() + " is of version " + layout.at("version").dump() + ", expected 1");
-    compare_columns(layout, kCoordinatesFile, model.n_q(), file, [&](int i) { return model.coordinate_name(i); });
-    compare_columns(layout, kVelocitiesFile, model.n_v(), file, [&](int i) { return model.velocity_name(i); });
+      throw RecordingMismatch(file.string() + " is of version " + layout.at("version").dump() +
+                              ", expected 1");
+    compare_columns(layout, kCoordinatesFile, model.n_q(), file,
+                    [&](int i) { return model.coordinate_name(i); });
+    compare_columns(layout, kVelocitiesFile, model.n_v(), file,
+                    [&](int i) { return model.velocity_name(i); });
   } catch (const nlohmann::json::exception& fault) {
     throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
   }
@@ -52,8 +58,8 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
   try {
     NpyReader reader(path);
     if (reader.columns() != columns)
-      throw RecordingMismatch(path.string() + " has " + std::to_string(reader.columns()) + " columns, the scene needs " +
-                              std::to_string(columns));
+      throw RecordingMismatch(path.string() + " has " + std::to_string(reader.columns()) +
+                              " columns, the scene needs " + std::to_string(columns));
     return reader;
   } catch (const std::system_error&) {
     throw;
@@ -66,19 +72,22 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
 
 }  // namespace
 
-RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes)
+RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities,
+                                 NpyWriter modes)
     : times_(std::move(times)),
       coordinates_(std::move(coordinates)),
       velocities_(std::move(velocities)),
       modes_(std::move(modes)) {}
 
 RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model) {
-  return {NpyWriter::create(folder / kTimesFile, kNpyVector), NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
+  return {NpyWriter::create(folder / kTimesFile, kNpyVector),
+          NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
           NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
           NpyWriter::create(folder / kModesFile, mode_count(model))};
 }
 
-RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows) {
+RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model,
+                                        std::int64_t rows) {
   return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
           NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
           NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
@@ -95,7 +104,8 @@ void RecordingWriter::append(const State& state) {
 }
 
 void RecordingWriter::flush(bool to_disk) {
-  for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_}) to_disk ? table->flush_to_disk() : table->flush();
+  for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_})
+    to_disk ? table->flush_to_disk() : table->flush();
 }
 
 std::size_t RecordingWriter::pending_bytes() const {
@@ -104,7 +114,8 @@ std::size_t RecordingWriter::pending_bytes() const {
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
     : model_(&model),
-      coordinates_((compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
+      coordinates_(
+          (compare_layout(folder / kLayoutFile, model), open_table(folder / kCoordinatesFile, model.n_q()))),
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
       modes_(open_table(folder / kModesFile, mode_count(model))) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
@@ -126,7 +137,8 @@ State Recording::state(std::int64_t row) const {
   std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
   modes_.read(row, modes.data());
   if (!read_modes(modes, state) || !(state.time() == time(row)))
-    throw RecordingMismatch("the recorded state at row " + std::to_string(row) + " is damaged: its check number does not fit");
+    throw RecordingMismatch("the recorded state at row " + std::to_string(row) +
+                            " is damaged: its check number does not fit");
   return state;
 }
 

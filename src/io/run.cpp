@@ -19,7 +19,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kFlushEvery{250};
 constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 template <class Value>
 void require_same(const char* what, const Value& recorded, const Value& now, const std::string& hint = "") {
@@ -35,10 +37,11 @@ void require_same(const char* what, const Value& recorded, const Value& now, con
 // The simulation of a scene whose settings are as they should be.
 std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
   if (scene.appearance.size() != scene.body.parts().size())
-    throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) + " parts, but tells the looks of " +
-                                std::to_string(scene.appearance.size()));
+    throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) +
+                                " parts, but tells the looks of " + std::to_string(scene.appearance.size()));
   for (const Track& track : scene.tracks)
-    if (track.point.part == nullptr) throw std::invalid_argument("track '" + track.name + "' follows no part");
+    if (track.point.part == nullptr)
+      throw std::invalid_argument("track '" + track.name + "' follows no part");
   return std::make_unique<Simulation>(scene.body, scene.integrator, threads);
 }
 
@@ -53,7 +56,10 @@ int automatic_threads(const Scene& scene) {
 }
 
 Run::Run(Scene& scene, RunOptions options, Progress& progress)
-    : scene_(&scene), options_(std::move(options)), progress_(&progress), schedule_(scene.end, scene.step, scene.frame_rate) {
+    : scene_(&scene),
+      options_(std::move(options)),
+      progress_(&progress),
+      schedule_(scene.end, scene.step, scene.frame_rate) {
   const Clock::time_point start = Clock::now();
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_.threads);
@@ -79,11 +85,12 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.skipped = skipped_work(simulation_->model());
   record_.add_seconds("prepare", seconds_since(start));
   if (schedule_.step() > stable_step) {
-    note("warning: the step of " + number_text(schedule_.step()) + " s is above the largest stable one, about " +
-         rounded_text(stable_step) + " s");
+    note("warning: the step of " + number_text(schedule_.step()) +
+         " s is above the largest stable one, about " + rounded_text(stable_step) + " s");
   }
   write_layout(folder_->path(), simulation_->model(), schedule_);
-  for (const char* file : {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
+  for (const char* file :
+       {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
     if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
   save(true);
 }
@@ -98,8 +105,8 @@ void Run::begin_anew() {
   record_.frame_rate = scene_->frame_rate;
   record_.integrator = scene_->integrator;
   if (schedule_.step() != scene_->step) {
-    note("the end " + number_text(scene_->end) + " s is no multiple of the step " + number_text(scene_->step) +
-         " s: steps of " + number_text(schedule_.step()) + " s are taken");
+    note("the end " + number_text(scene_->end) + " s is no multiple of the step " +
+         number_text(scene_->step) + " s: steps of " + number_text(schedule_.step()) + " s are taken");
   }
   write_run_record(*folder_ / kRunFile, record_);  // from here on the folder is known as a run's
   if (!scene_->document.empty())
@@ -114,18 +121,20 @@ void Run::begin_again() {
   for (const auto& [name, value] : build_info()) {
     const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
                                        [&key = name](const auto& entry) { return entry.first == key; });
-    require_same(("its program's " + name).c_str(), recorded == record_.build.end() ? "unknown" : recorded->second, value,
+    require_same(("its program's " + name).c_str(),
+                 recorded == record_.build.end() ? "unknown" : recorded->second, value,
                  "; only the same build gives the same numbers");
   }
   if (record_.scene_hash != scene_->hash)
-    throw RecordingMismatch("the run cannot be gone on with: the scene or its --set values are not those it began with");
+    throw RecordingMismatch(
+        "the run cannot be gone on with: the scene or its --set values are not those it began with");
   require_same("the integrator", record_.integrator, scene_->integrator);
   require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
   require_same("the step", record_.asked_step, scene_->step);
   schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
   if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
-    note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " + number_text(record_.step) +
-         " s: it goes on to " + number_text(schedule_.end()) + " s");
+    note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " +
+         number_text(record_.step) + " s: it goes on to " + number_text(schedule_.end()) + " s");
   }
 
   const Recording recorded = recording();
@@ -133,8 +142,8 @@ void Run::begin_again() {
   if (keep > 0) {
     State last = recorded.state(keep - 1);
     if (last.step > schedule_.steps())
-      throw RecordingMismatch("the run is at t = " + number_text(last.time()) + " s already, beyond the end of " +
-                              number_text(scene_->end) + " s");
+      throw RecordingMismatch("the run is at t = " + number_text(last.time()) +
+                              " s already, beyond the end of " + number_text(scene_->end) + " s");
     first_step_ = last.step;
     // A state recorded only because the run ended there is not in the recording of an unbroken run.
     if (schedule_.records(last.step))
@@ -143,7 +152,8 @@ void Run::begin_again() {
       --keep;
     simulation_->set_state(std::move(last));
   }
-  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
+  writer_ =
+      std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
   if (keep == 0 && first_step_ == 0) record_state();
   counted_steps_ = record_.step_counters;
   counted_work_ = record_.counters;
@@ -151,7 +161,8 @@ void Run::begin_again() {
 }
 
 void Run::note(const std::string& text) {
-  if (std::find(record_.notes.begin(), record_.notes.end(), text) == record_.notes.end()) record_.notes.push_back(text);
+  if (std::find(record_.notes.begin(), record_.notes.end(), text) == record_.notes.end())
+    record_.notes.push_back(text);
   progress_->note(text);
 }
 
@@ -181,7 +192,8 @@ void Run::write_record() {
   record_.counters = counted_work_;
   record_.counters += simulation_->counters();
   for (const std::string& held : simulation_->held())
-    if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end()) record_.held.push_back(held);
+    if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end())
+      record_.held.push_back(held);
   write_run_record(*folder_ / kRunFile, record_);
   saved_ = Clock::now();
 }
@@ -235,7 +247,8 @@ bool Run::simulate() {
   return !stopped_;
 }
 
-void Run::write(const std::string& stage, const std::vector<std::string>& files, const std::function<void()>& task) {
+void Run::write(const std::string& stage, const std::vector<std::string>& files,
+                const std::function<void()>& task) {
   const Clock::time_point start = Clock::now();
   try {
     task();

@@ -8,7 +8,8 @@ namespace pliant {
 namespace {
 
 bool all_digits(const std::string& text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 // "NAME.part-PID-N" is NAME still being written.
@@ -17,7 +18,8 @@ std::string finished_name(const std::string& name) {
   if (mark == std::string::npos) return name;
   const std::string tail = name.substr(mark + 6);
   const std::size_t dash = tail.find('-');
-  if (dash == std::string::npos || !all_digits(tail.substr(0, dash)) || !all_digits(tail.substr(dash + 1))) return name;
+  if (dash == std::string::npos || !all_digits(tail.substr(0, dash)) || !all_digits(tail.substr(dash + 1)))
+    return name;
   return name.substr(0, mark);
 }
 
@@ -37,9 +39,11 @@ std::string frame_name(const std::string& stem, std::int64_t number, const std::
 }
 
 bool is_run_file(const std::filesystem::path& relative) {
-  static constexpr std::array<const char*, 9> top{kRunFile,         kSceneFile, kLayoutFile,     kTimesFile, kCoordinatesFile,
-                                                  kVelocitiesFile, kModesFile, kTrajectoryFile, kLockFile};
-  const std::string folder = relative.parent_path().string(), name = finished_name(relative.filename().string());
+  static constexpr std::array<const char*, 9> top{kRunFile,   kSceneFile,       kLayoutFile,
+                                                  kTimesFile, kCoordinatesFile, kVelocitiesFile,
+                                                  kModesFile, kTrajectoryFile,  kLockFile};
+  const std::string folder = relative.parent_path().string(),
+                    name = finished_name(relative.filename().string());
   if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end();
   if (folder == kMeshFolder) return name == kMaterialFile || is_frame(name, "obj") || is_frame(name, "ply");
   return folder == kFrameFolder && is_frame(name, "png");

@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 namespace pliant {
 namespace {
 
-bool exists_at_all(const fs::path& path) { return fs::symlink_status(path).type() != fs::file_type::not_found; }
+bool exists_at_all(const fs::path& path) {
+  return fs::symlink_status(path).type() != fs::file_type::not_found;
+}
 
 // What a folder holds, relative to it, folders inside left out.
 std::vector<fs::path> files_of(const fs::path& folder) {
@@ -49,12 +51,14 @@ class RunFolder::Lock {
         const ssize_t length = ::pread(descriptor_, owner, sizeof owner - 1, 0);
         ::close(descriptor_);
         throw OutputRefused("the output folder " + folder.string() + " is in use by another run (process " +
-                            (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") + ")");
+                            (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
+                            ")");
       }
       // Had the holder before us just removed the file, our lock would be on a file without a name.
-      struct stat held {}, named {};
-      if (::fstat(descriptor_, &held) == 0 && ::stat(path_.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
-          held.st_dev == named.st_dev)
+      struct stat held {
+      }, named{};
+      if (::fstat(descriptor_, &held) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+          held.st_ino == named.st_ino && held.st_dev == named.st_dev)
         break;
       ::close(descriptor_);
     }
@@ -78,10 +82,12 @@ class RunFolder::Lock {
 };
 
 RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) : folder_(std::move(folder)) {
-  if (folder_.filename().empty() && folder_.has_parent_path()) folder_ = folder_.parent_path();  // "out/" is "out"
+  if (folder_.filename().empty() && folder_.has_parent_path())
+    folder_ = folder_.parent_path();  // "out/" is "out"
   const fs::file_status status = fs::symlink_status(folder_);
   if (fs::is_symlink(status))
-    throw OutputRefused("the output folder " + folder_.string() + " is a symbolic link; name the folder it leads to");
+    throw OutputRefused("the output folder " + folder_.string() +
+                        " is a symbolic link; name the folder it leads to");
   if (fs::exists(status) && !fs::is_directory(status))
     throw OutputRefused("the output folder " + folder_.string() + " is a file");
   if (!fs::exists(status)) {
@@ -96,11 +102,13 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
     if (entry.path().filename() != kLockFile) empty = false;
   if (!empty && existing == Existing::refuse)
-    throw OutputRefused("the output folder " + folder_.string() + " is not empty; " +
-                        (ours ? "--resume goes on with the run in it, --force starts it anew" : "choose another with -o"));
+    throw OutputRefused(
+        "the output folder " + folder_.string() + " is not empty; " +
+        (ours ? "--resume goes on with the run in it, --force starts it anew" : "choose another with -o"));
   if (!empty && !ours)
-    throw OutputRefused("the output folder " + folder_.string() + " is not empty and holds no run of pliant (no " +
-                        kRunFile + "); choose another with -o");
+    throw OutputRefused("the output folder " + folder_.string() +
+                        " is not empty and holds no run of pliant (no " + kRunFile +
+                        "); choose another with -o");
   if (existing == Existing::resume && !ours)
     throw OutputRefused("there is no run to resume in the folder " + folder_.string());
   lock_ = std::make_unique<Lock>(folder_);

@@ -22,7 +22,9 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<const char*, 4> kStatus{"running", "complete", "stopped", "failed"};
 
 // JSON knows no infinity: an absent bound is null.
-Json bound(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json bound(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
 
 std::string hex(std::uint64_t hash) {
   char text[20];
@@ -64,9 +66,13 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["format"] = "pliant run";
   json["status"] = kStatus[static_cast<std::size_t>(r.status)];
   json["message"] = r.message;
-  json["progress"] = {{"time", r.time}, {"steps", r.steps}, {"steps_done", r.steps_done},
-                      {"states", r.states}, {"resumed", r.resumed}};
-  json["scene"] = {{"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
+  json["progress"] = {{"time", r.time},
+                      {"steps", r.steps},
+                      {"steps_done", r.steps_done},
+                      {"states", r.states},
+                      {"resumed", r.resumed}};
+  json["scene"] = {
+      {"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
   json["options"] = {{"end", r.end},
                      {"asked_step", r.asked_step},
                      {"step", r.step},
@@ -102,7 +108,8 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
 RunRecord read_run_record(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream)
-    throw FileError(FileError::Reason::kMissing, "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
+    throw FileError(FileError::Reason::kMissing,
+                    "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
   try {
     const Json json = Json::parse(stream);
     RunRecord r;
@@ -148,7 +155,8 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     monitors.at("max_balance_error").get_to(r.max_balance_error);
     monitors.at("max_energy").get_to(r.max_energy);
     monitors.at("max_kinetic").get_to(r.max_kinetic);
-    if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
+    if (!monitors.at("largest_stable_step").is_null())
+      monitors.at("largest_stable_step").get_to(r.stable_step);
     json.at("held").get_to(r.held);
     json.at("skipped").get_to(r.skipped);
     json.at("notes").get_to(r.notes);

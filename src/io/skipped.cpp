@@ -10,15 +10,19 @@ std::vector<std::string> skipped_work(const Model& model) {
       continue;
     }
     ++moving;
-    if (part.n_s == 0) ++rigid;
-    else frozen += part.part->parameters().size() - part.n_s;
+    if (part.n_s == 0)
+      ++rigid;
+    else
+      frozen += part.part->parameters().size() - part.n_s;
   }
   std::vector<std::string> skipped;
   if (fixed > 0) skipped.push_back("coordinates of parts that do not move: " + std::to_string(fixed));
   if (rigid > 0)
-    skipped.push_back("J and Jdot qs_dot of rigid parts, whose inertia is constant: " + std::to_string(rigid));
+    skipped.push_back("J and Jdot qs_dot of rigid parts, whose inertia is constant: " +
+                      std::to_string(rigid));
   if (frozen > 0)
-    skipped.push_back("rows and columns of frozen parameters in parts that deform: " + std::to_string(frozen));
+    skipped.push_back("rows and columns of frozen parameters in parts that deform: " +
+                      std::to_string(frozen));
   if (moving > 0) skipped.push_back("meshes and elements: no part deforms locally");
   if (moving > 1 && model.springs().empty()) skipped.push_back("coupling: no spring ties the parts");
   if (model.springs().empty() && model.forces().empty() && model.torques().empty())

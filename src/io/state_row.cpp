@@ -36,9 +36,8 @@ double hash_of(const State& state, const double* modes, std::size_t count) {
 }  // namespace
 
 std::vector<ModeColumn> mode_columns_of(const Model& model) {
-  std::vector<ModeColumn> columns{{"start", "s", "time of step 0"},
-                                  {"step_size", "s", "step"},
-                                  {"step", "1", "steps since start"}};
+  std::vector<ModeColumn> columns{
+      {"start", "s", "time of step 0"}, {"step_size", "s", "step"}, {"step", "1", "steps since start"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
@@ -69,7 +68,8 @@ bool read_modes(const std::vector<double>& row, State& state) {
   state.step = static_cast<std::int64_t>(row[2]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[3 + static_cast<std::size_t>(i)];
   state.at_limit.clear();
-  for (std::size_t i = first_limit; i + 1 < row.size(); ++i) state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
+  for (std::size_t i = first_limit; i + 1 < row.size(); ++i)
+    state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
   return true;
 }
 

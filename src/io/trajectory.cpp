@@ -12,7 +12,9 @@ void add_axes(std::vector<std::string>& names, const std::string& stem) {
   for (const char* axis : kAxes) names.push_back(stem + axis);
 }
 
-void add_vector(std::vector<double>& numbers, const Vec3<double>& x) { numbers.insert(numbers.end(), {x[0], x[1], x[2]}); }
+void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
+  numbers.insert(numbers.end(), {x[0], x[1], x[2]});
+}
 
 // A cell of a CSV file: in quotes where it has to be.
 std::string cell(const std::string& text) {
@@ -28,13 +30,17 @@ std::string cell(const std::string& text) {
 }  // namespace
 
 TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulation)
-    : scene_(&scene), simulation_(&simulation), parts_shown_(simulation.model().parts().size() <= kMostParts) {
-  // A part that deforms has its centre of mass somewhere else sooner or later, unless its shape is symmetric: then the
-  // column would only repeat c, which the state at time 0 alone cannot tell. So it is shown for every such part with links.
+    : scene_(&scene),
+      simulation_(&simulation),
+      parts_shown_(simulation.model().parts().size() <= kMostParts) {
+  // A part that deforms has its centre of mass somewhere else sooner or later, unless its shape is symmetric:
+  // then the column would only repeat c, which the state at time 0 alone cannot tell. So it is shown for
+  // every such part with links.
   for (const PartModel& part : simulation.model().parts()) {
     const double offset = part.part->rest_inertia().moment.norm();
     const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
-    centre_shown_.push_back(part.q0 >= 0 && (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
+    centre_shown_.push_back(part.q0 >= 0 &&
+                            (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
   }
 }
 
@@ -76,8 +82,10 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   numbers.assign(1, state.time());
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
   for (const Track& track : scene_->tracks)
-    add_vector(numbers, model.world_point(state, model.body().index(*track.point.part), track.point.material));
-  numbers.insert(numbers.end(), {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs, ledger.energy()});
+    add_vector(numbers,
+               model.world_point(state, model.body().index(*track.point.part), track.point.material));
+  numbers.insert(numbers.end(),
+                 {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs, ledger.energy()});
   numbers.insert(numbers.end(), ledger.work.data(), ledger.work.data() + kWorks);
   numbers.push_back(ledger.balance);
   add_vector(numbers, ledger.momentum);

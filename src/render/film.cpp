@@ -37,7 +37,8 @@ void Film::lay_tracks() {
 
 void Film::choose_view() {
   Eigen::AlignedBox3d bodies;
-  for (std::int64_t row = 0; row < recording_->rows(); ++row) bodies.extend(meshes_.bounds(recording_->state(row)));
+  for (std::int64_t row = 0; row < recording_->rows(); ++row)
+    bodies.extend(meshes_.bounds(recording_->state(row)));
   picture_.ground.shown = scene_->ground.visible;
   if (scene_->ground.height)
     picture_.ground.height = *scene_->ground.height;
@@ -61,7 +62,8 @@ void Film::choose_view() {
 const Picture& Film::at(double time) {
   const State state = recording_->at(time);
   picture_.bodies.clear();
-  for (const NamedMesh& named : meshes_.at(state)) picture_.bodies.push_back({&named.mesh, vector_of(named.color)});
+  for (const NamedMesh& named : meshes_.at(state))
+    picture_.bodies.push_back({&named.mesh, vector_of(named.color)});
   picture_.tracks.clear();
   std::int64_t rows = 0;  // recorded before now
   while (rows < recording_->rows() && recording_->time(rows) < state.time()) ++rows;
@@ -76,15 +78,17 @@ const Picture& Film::at(double time) {
   return picture_;
 }
 
-void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model, const Recording& recording,
-                   double frame_rate, const std::vector<std::int64_t>& frames, Progress& progress, GlBackend backend) {
+void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model,
+                   const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
+                   Progress& progress, GlBackend backend) {
   if (frames.empty()) return;
   Film film(scene, model, recording);
   Renderer renderer(scene.width, scene.height, backend);
   progress.begin("frames", static_cast<double>(frames.size()), "frames");
   double done = 0;
   for (const std::int64_t frame : frames) {
-    write_png(renderer.draw(film.at(static_cast<double>(frame) / frame_rate)), folder / frame_name("frame", frame, "png"));
+    write_png(renderer.draw(film.at(static_cast<double>(frame) / frame_rate)),
+              folder / frame_name("frame", frame, "png"));
     progress.advance(++done);
   }
   progress.end();

@@ -1,4 +1,5 @@
-// The program from outside: exit codes, messages, what it leaves in folders, how it takes signals (stress cases I47-I59).
+// The program from outside: exit codes, messages, what it leaves in folders, how it takes signals (stress
+// cases I47-I59).
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -6,10 +7,10 @@
 #include <thread>
 #include <vector>
 
-#include <nlohmann/json.hpp>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "../io/new_folder.h"
 #include "catch.h"
@@ -40,8 +41,8 @@ struct Place {
 
   // `arguments` as typed in a shell; before: put in front of the program.
   Result pliant(const std::string& arguments, const std::string& before = "") const {
-    const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " + arguments +
-                             " > .out 2> .err";
+    const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
+                             arguments + " > .out 2> .err";
     const int status = std::system(("LC_ALL=C " + line).c_str());
     Result result;
     result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -58,14 +59,17 @@ struct Place {
   }
 };
 
-bool has(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
 
 // Starts a run and returns its process once it is recording.
 pid_t start_long_run(const Place& place, const std::string& run) {
   const pid_t child = ::fork();
   if (child == 0) {
     if (::chdir(place.folder.path.c_str()) != 0) ::_exit(99);
-    ::execl(PLIANT_PROGRAM, "pliant", "run", "top.json", "--end", "100000", "-o", run.c_str(), "--quiet", nullptr);
+    ::execl(PLIANT_PROGRAM, "pliant", "run", "top.json", "--end", "100000", "-o", run.c_str(), "--quiet",
+            nullptr);
     ::_exit(99);
   }
   for (int i = 0; i < 600; ++i) {
@@ -86,7 +90,8 @@ int exit_code_of(pid_t child) {
 
 TEST_CASE("help, version and a run") {
   const Place place;
-  for (const char* command : {"", "run ", "check ", "info ", "list ", "render ", "export ", "schema ", "doctor "}) {
+  for (const char* command :
+       {"", "run ", "check ", "info ", "list ", "render ", "export ", "schema ", "doctor "}) {
     const Result help = place.pliant(std::string(command) + "--help");
     CHECK(help.code == 0);
     CHECK(has(help.out, "pliant"));
@@ -94,7 +99,8 @@ TEST_CASE("help, version and a run") {
   }
   const Result version = place.pliant("--version");
   CHECK(version.code == 0);
-  for (const char* word : {"pliant ", "compiler ", "eigen ", "SuiteSparse", "GPL", "libpng"}) CHECK(has(version.out, word));
+  for (const char* word : {"pliant ", "compiler ", "eigen ", "SuiteSparse", "GPL", "libpng"})
+    CHECK(has(version.out, word));
 
   const Result run = place.pliant("run top.json --obj");
   CHECK(run.code == 0);
@@ -110,7 +116,8 @@ TEST_CASE("commands that tell") {
   const Place place;
   const Result info = place.pliant("info top.json");
   CHECK(info.code == 0);
-  for (const char* words : {"7 degrees of freedom", "mass ", "inertia", "rule \"", "skipped", "largest stable step: about"})
+  for (const char* words :
+       {"7 degrees of freedom", "mass ", "inertia", "rule \"", "skipped", "largest stable step: about"})
     CHECK(has(info.out, words));
   CHECK(has(place.pliant("info top.json --set /time/step=10").out, "warning"));
   const Result check = place.pliant("check top.json");
@@ -355,8 +362,10 @@ TEST_CASE("pictures: drawn with the run, and again from the recording the same")
   CHECK(place.pliant("render r --quiet -o again --frames 2").code == 0);
   CHECK(bytes_of(place.folder / "again/frame_000002.png") == picture);
   CHECK(place.pliant("render r --quiet").code == 9);
-  CHECK(place.pliant("render r --quiet -o other --frames 2 --size 80x60 --camera-eye -1 -2.5 .5 --camera-target 0 0 0").code ==
-        0);
+  CHECK(place
+            .pliant("render r --quiet -o other --frames 2 --size 80x60 --camera-eye -1 -2.5 .5 "
+                    "--camera-target 0 0 0")
+            .code == 0);
   CHECK(bytes_of(place.folder / "other/frame_000002.png") != picture);
   CHECK(place.record("r").at("files").dump().find("frames/frame_*.png") != std::string::npos);
 }

@@ -39,7 +39,8 @@ TEST_CASE("I33, N24: impossible runs are refused with the reason") {
     CHECK_THROWS_AS(FrameSchedule(1, bad, 25), std::invalid_argument);
     CHECK_THROWS_AS(FrameSchedule(1, 0.1, bad), std::invalid_argument);
   }
-  for (const double bad : {-1.0, nan, HUGE_VAL}) CHECK_THROWS_AS(FrameSchedule(bad, 0.1, 25), std::invalid_argument);
+  for (const double bad : {-1.0, nan, HUGE_VAL})
+    CHECK_THROWS_AS(FrameSchedule(bad, 0.1, 25), std::invalid_argument);
   CHECK_THROWS_AS(FrameSchedule(1, 1e-300, 25), std::invalid_argument);
   CHECK_THROWS_AS(FrameSchedule(1, 0.1, 1e300), std::invalid_argument);
 }

@@ -70,8 +70,10 @@ TEST_CASE("an OBJ file reads back exactly") {
     const TriangleMesh& mesh = named.mesh;
     for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t, ++triangle)
       for (int k = 0; k < 3; ++k) {
-        CHECK(obj.triangles[triangle][static_cast<std::size_t>(k)] == static_cast<int>(vertex) + mesh.triangles(k, t) + 1);
-        CHECK(obj.corners[triangle][static_cast<std::size_t>(k)] == static_cast<int>(normal) + mesh.corners(k, t) + 1);
+        CHECK(obj.triangles[triangle][static_cast<std::size_t>(k)] ==
+              static_cast<int>(vertex) + mesh.triangles(k, t) + 1);
+        CHECK(obj.corners[triangle][static_cast<std::size_t>(k)] ==
+              static_cast<int>(normal) + mesh.corners(k, t) + 1);
       }
     for (Eigen::Index i = 0; i < mesh.x.cols(); ++i) CHECK(obj.x[vertex++] == mesh.x.col(i));
     for (Eigen::Index i = 0; i < mesh.normals.cols(); ++i)
@@ -118,7 +120,8 @@ TEST_CASE("a PLY file has the size and the numbers its header tells") {
   }
   CHECK(bytes.find("element vertex " + std::to_string(vertices) + "\n") != std::string::npos);
   CHECK(bytes.find("element face " + std::to_string(triangles) + "\n") != std::string::npos);
-  REQUIRE(bytes.size() == data + static_cast<std::size_t>(vertices) * 43 + static_cast<std::size_t>(triangles) * 13);
+  REQUIRE(bytes.size() ==
+          data + static_cast<std::size_t>(vertices) * 43 + static_cast<std::size_t>(triangles) * 13);
   double x[3];
   float n[3];
   std::memcpy(x, bytes.data() + data, sizeof x);
@@ -128,7 +131,8 @@ TEST_CASE("a PLY file has the size and the numbers its header tells") {
   // The last face is of the last part.
   std::int32_t corner = 0;
   std::memcpy(&corner, bytes.data() + bytes.size() - 4, 4);
-  CHECK(corner == vertices - meshes.back().mesh.x.cols() + meshes.back().mesh.triangles(2, meshes.back().mesh.triangles.cols() - 1));
+  CHECK(corner == vertices - meshes.back().mesh.x.cols() +
+                      meshes.back().mesh.triangles(2, meshes.back().mesh.triangles.cols() - 1));
 }
 
 TEST_CASE("frames become files of their number") {
@@ -142,8 +146,10 @@ TEST_CASE("frames become files of their number") {
   REQUIRE(run.simulate());
   fs::create_directory(folder / "m");
   const Model& model = run.simulation().model();
-  write_mesh_frames(folder / "m", MeshFormat::obj, *scene, model, run.recording(), scene->frame_rate, {0, 10}, silent);
-  write_mesh_frames(folder / "m", MeshFormat::ply, *scene, model, run.recording(), scene->frame_rate, {3}, silent);
+  write_mesh_frames(folder / "m", MeshFormat::obj, *scene, model, run.recording(), scene->frame_rate, {0, 10},
+                    silent);
+  write_mesh_frames(folder / "m", MeshFormat::ply, *scene, model, run.recording(), scene->frame_rate, {3},
+                    silent);
   CHECK(fs::exists(folder / "m" / "frame_000000.obj"));
   CHECK(fs::exists(folder / "m" / "frame_000010.obj"));
   CHECK(fs::exists(folder / "m" / "frame_000003.ply"));
@@ -152,6 +158,7 @@ TEST_CASE("frames become files of their number") {
   const ReadObj first = read_obj(bytes_of(folder / "m" / "frame_000000.obj")),
                 last = read_obj(bytes_of(folder / "m" / "frame_000010.obj"));
   Vec3<double> shift = Vec3<double>::Zero();
-  for (std::size_t i = 0; i < first.x.size(); ++i) shift += (last.x[i] - first.x[i]) / static_cast<double>(first.x.size());
+  for (std::size_t i = 0; i < first.x.size(); ++i)
+    shift += (last.x[i] - first.x[i]) / static_cast<double>(first.x.size());
   CHECK(shift[0] == Approx(0.5).epsilon(1e-12));
 }

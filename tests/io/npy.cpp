@@ -45,7 +45,8 @@ TEST_CASE("a table reads back bit for bit") {
     std::vector<double> row(static_cast<std::size_t>(columns == kNpyVector ? 1 : columns));
     for (int i = 0; i < 25; ++i) {
       reader.read(i, row.data());
-      for (std::size_t k = 0; k < row.size(); ++k) CHECK(row[k] == std::sqrt(i + 0.1 * static_cast<double>(k)));
+      for (std::size_t k = 0; k < row.size(); ++k)
+        CHECK(row[k] == std::sqrt(i + 0.1 * static_cast<double>(k)));
     }
     CHECK_THROWS_AS(reader.read(25, row.data()), std::out_of_range);
     CHECK_THROWS_AS(reader.read(-1, row.data()), std::out_of_range);

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 namespace {
 
 bool same_bits(const State& a, const State& b) {
-  return a.start == b.start && a.h == b.h && a.step == b.step && a.q == b.q && a.v == b.v && a.work == b.work &&
-         a.at_limit == b.at_limit;
+  return a.start == b.start && a.h == b.h && a.step == b.step && a.q == b.q && a.v == b.v &&
+         a.work == b.work && a.at_limit == b.at_limit;
 }
 
 // Records every `stride`-th of the first steps; returns the recorded states.
@@ -66,7 +66,8 @@ TEST_CASE("the layout names every column") {
   const auto& tables = layout.at("tables");
   for (const char* table : {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile}) {
     const NpyReader reader(folder / table);
-    CHECK(tables.at(table).size() == static_cast<std::size_t>(reader.columns() == kNpyVector ? 1 : reader.columns()));
+    CHECK(tables.at(table).size() ==
+          static_cast<std::size_t>(reader.columns() == kNpyVector ? 1 : reader.columns()));
   }
   const auto& first = tables.at(kCoordinatesFile).at(0);
   CHECK(first.at("name") == "blob.c.x");

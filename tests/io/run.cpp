@@ -1,12 +1,12 @@
-// Runs in their folders: broken and resumed ones end with the same bytes as unbroken ones, folders are never shared or
-// mixed, and run.json tells the truth about every ending.
+// Runs in their folders: broken and resumed ones end with the same bytes as unbroken ones, folders are never
+// shared or mixed, and run.json tells the truth about every ending.
 #include <pliant/io/run.h>
 
 #include <sstream>
 
-#include <nlohmann/json.hpp>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include "catch.h"
 #include "new_folder.h"
@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile, kTrajectoryFile};
+constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile,
+                                    kTrajectoryFile};
 
 std::string results_of(const fs::path& folder) {
   std::string bytes;
@@ -27,7 +28,9 @@ std::string results_of(const fs::path& folder) {
   return bytes;
 }
 
-nlohmann::json record_of(const fs::path& folder) { return nlohmann::json::parse(bytes_of(folder / kRunFile)); }
+nlohmann::json record_of(const fs::path& folder) {
+  return nlohmann::json::parse(bytes_of(folder / kRunFile));
+}
 
 struct How {
   Existing existing = Existing::refuse;
@@ -45,7 +48,8 @@ bool run(Scene& scene, const fs::path& folder, const How& how = {}) {
   if (how.stop_after >= 0) options.stop = [&] { return steps++ >= how.stop_after; };
   Run session(scene, options, silent);
   const bool complete = session.simulate();
-  session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped, complete ? "" : "by the test");
+  session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped,
+                 complete ? "" : "by the test");
   return complete;
 }
 
@@ -70,7 +74,9 @@ TEST_CASE("N66: any number of threads gives the same bytes") {
   }
 }
 
-TEST_CASE("N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken one") {
+TEST_CASE(
+    "N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken "
+    "one") {
   const NewFolder folder;
   for (const char* integrator : {"semi_implicit_euler", "rk4"}) {
     const fs::path unbroken = folder / (std::string(integrator) + "_unbroken");
@@ -86,7 +92,8 @@ TEST_CASE("N67: stopped anywhere and resumed, with other threads, the run ends w
       CHECK(record_of(broken).at("status") == "complete");
       CHECK(record_of(broken).at("progress").at("resumed") == 2);
       CHECK(record_of(broken).at("work").at("steps") == 200);
-      CHECK(record_of(broken).at("work").at("evaluations") == record_of(unbroken).at("work").at("evaluations"));
+      CHECK(record_of(broken).at("work").at("evaluations") ==
+            record_of(unbroken).at("work").at("evaluations"));
     }
   }
 }
@@ -195,8 +202,9 @@ TEST_CASE("I49: a folder that is not empty is refused; force removes the files o
   set_bytes(out / "notes.txt", "mine");
   fs::create_directory(out / kMeshFolder);
   fs::create_directory(out / kFrameFolder);
-  for (const char* file : {"meshes/frame_000001.obj", "meshes/frame_000001.ply", "meshes/parts.mtl", "frames/frame_000001.png",
-                           "frames/frame_000002.png.part-12-0", "frames/cat.png", "frames/frame_1.png"})
+  for (const char* file :
+       {"meshes/frame_000001.obj", "meshes/frame_000001.ply", "meshes/parts.mtl", "frames/frame_000001.png",
+        "frames/frame_000002.png.part-12-0", "frames/cat.png", "frames/frame_1.png"})
     set_bytes(out / file, "x");
   REQUIRE(run(*free_top(), out, {Existing::force}));
   CHECK(bytes_of(out / "notes.txt") == "mine");

@@ -1,4 +1,5 @@
-// Scenes for the tests of recordings, built without a file: deforming and rigid parts, springs, forcing, limits.
+// Scenes for the tests of recordings, built without a file: deforming and rigid parts, springs, forcing,
+// limits.
 #pragma once
 
 #include <memory>
@@ -6,8 +7,8 @@
 #include <pliant/part/registry.h>
 #include <pliant/scene/scene.h>
 
-/// Three parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an actuated rest
-/// value; a rigid one on a spring; a fixed one.
+/// Three parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an
+/// actuated rest value; a rigid one on a spring; a fixed one.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();
@@ -32,7 +33,8 @@ inline std::unique_ptr<pliant::Scene> pulled_scene() {
                      world(TimeVector(TimeFunction::formula("0.4 + 0.2 * sin(9 * t)"), 0, 1)), 800, 2);
   scene->body.spring("link", point(blob, 0.5, 1), point(rider, -1, 2), 500, 1, 0.1);
   scene->body.spring("hold", point(rider, 0, 0), point(wall, 0, 0), 300, 1);
-  scene->body.force("push", point(blob, 0.3, 0.2), TimeVector(0, TimeFunction::formula("5 * cos(30 * t)"), 0));
+  scene->body.force("push", point(blob, 0.3, 0.2),
+                    TimeVector(0, TimeFunction::formula("5 * cos(30 * t)"), 0));
   scene->appearance.resize(3);
   for (Appearance& look : scene->appearance) look.resolution = 2;
   scene->tracks.push_back({"grip", point(blob, 0, 0), {}});

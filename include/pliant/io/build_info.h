@@ -1,4 +1,5 @@
-// Which program wrote a file: a run goes on only with the build that began it, since only that gives the same bits.
+// Which program wrote a file: a run goes on only with the build that began it, since only that gives the same
+// bits.
 #pragma once
 
 #include <string>

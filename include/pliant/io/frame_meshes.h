@@ -20,11 +20,12 @@ struct NamedMesh {
 
 class FrameMeshes {
  public:
-  /// Lays the surfaces of the visible parts. Both must outlive it. Throws std::invalid_argument on a bad resolution.
+  /// Lays the surfaces of the visible parts. Both must outlive it. Throws std::invalid_argument on a bad
+  /// resolution.
   FrameMeshes(const Scene& scene, const Model& model);
 
-  /// The meshes at a state, in the order of the parts; the reference is valid until the next call. Meshes of rigid parts are
-  /// evaluated once and then only moved.
+  /// The meshes at a state, in the order of the parts; the reference is valid until the next call. Meshes of
+  /// rigid parts are evaluated once and then only moved.
   const std::vector<NamedMesh>& at(const State& state);
   /// The box around all vertices at a state.
   Eigen::AlignedBox3d bounds(const State& state);

@@ -15,12 +15,14 @@ struct FrameRange {
   std::int64_t stride = 1;
   std::int64_t shard = 0, shards = 1;  ///< 0 <= shard < shards
 
-  /// From "first:end:stride" with any part left out ("10:", ":50:5", "7" for one frame). Throws std::invalid_argument.
+  /// From "first:end:stride" with any part left out ("10:", ":50:5", "7" for one frame). Throws
+  /// std::invalid_argument.
   static FrameRange parse(const std::string& text);
   /// Takes "i/n" with 1 <= i <= n. Throws std::invalid_argument.
   void parse_shard(const std::string& text);
 
-  /// The numbers, of `count` frames that there are. Throws std::invalid_argument when the range asks for others.
+  /// The numbers, of `count` frames that there are. Throws std::invalid_argument when the range asks for
+  /// others.
   std::vector<std::int64_t> frames(std::int64_t count) const;
 };
 

@@ -1,6 +1,7 @@
-// Which steps a run takes, which of them it records, and at which times pictures are taken. Frame k is at k / rate. A
-// frame that falls on a step is that step's state; of one between two steps both are recorded, so that the picture comes
-// from Hermite interpolation over a single step. The first and the last state are always recorded.
+// Which steps a run takes, which of them it records, and at which times pictures are taken. Frame k is at k /
+// rate. A frame that falls on a step is that step's state; of one between two steps both are recorded, so
+// that the picture comes from Hermite interpolation over a single step. The first and the last state are
+// always recorded.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +10,9 @@ namespace pliant {
 
 class FrameSchedule {
  public:
-  /// A run from 0 to `end` (s, >= 0) in steps of about `step` (s, > 0), with `rate` (> 0) frames per second. Where end is no
-  /// multiple of step (to 1e-9) the step is made smaller, to end / ceil(end / step). Throws std::invalid_argument when a
-  /// number is out of range or more than 1e12 steps would be needed.
+  /// A run from 0 to `end` (s, >= 0) in steps of about `step` (s, > 0), with `rate` (> 0) frames per second.
+  /// Where end is no multiple of step (to 1e-9) the step is made smaller, to end / ceil(end / step). Throws
+  /// std::invalid_argument when a number is out of range or more than 1e12 steps would be needed.
   FrameSchedule(double end, double step, double rate);
   /// The same with a step that must not change (a run goes on): the end is the first step at or after `end`.
   static FrameSchedule with_exact_step(double end, double step, double rate);

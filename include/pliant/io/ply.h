@@ -1,5 +1,5 @@
-// Binary PLY files of a frame: one closed mesh a part, with colours and the number of the part at every vertex. A vertex
-// has one normal here (the mean of its corners'), so that meshes stay closed.
+// Binary PLY files of a frame: one closed mesh a part, with colours and the number of the part at every
+// vertex. A vertex has one normal here (the mean of its corners'), so that meshes stay closed.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 
 namespace pliant {
 
-/// The bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar), part (int); triangles.
+/// The bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar), part (int);
+/// triangles.
 std::string ply_bytes(const std::vector<NamedMesh>& meshes);
 
 /// Writes a file (whole or absent). Throws std::system_error.

@@ -1,6 +1,7 @@
-// The recording of a run: every entry of the recorded states, in tables of doubles (t.npy, q.npy, v.npy, and modes.npy for
-// step count, works, limit flags and a check number). A recorded state is a state after a step, never an interpolated one,
-// and going on from any of them gives the same bits. layout.json names every column.
+// The recording of a run: every entry of the recorded states, in tables of doubles (t.npy, q.npy, v.npy, and
+// modes.npy for step count, works, limit flags and a check number). A recorded state is a state after a step,
+// never an interpolated one, and going on from any of them gives the same bits. layout.json names every
+// column.
 #pragma once
 
 #include <cstdint>
@@ -46,16 +47,19 @@ class RecordingWriter {
 /// Reads states. The number of rows is fixed when it is opened.
 class Recording {
  public:
-  /// Throws std::system_error when a file cannot be read, RecordingMismatch when the columns are not those of the model.
+  /// Throws std::system_error when a file cannot be read, RecordingMismatch when the columns are not those of
+  /// the model.
   Recording(const std::filesystem::path& folder, const Model& model);
 
   std::int64_t rows() const { return static_cast<std::int64_t>(times_.size()); }
   double time(std::int64_t row) const { return times_[static_cast<std::size_t>(row)]; }
-  /// A state as it was recorded, to the last bit. Throws RecordingMismatch when its check number does not fit.
+  /// A state as it was recorded, to the last bit. Throws RecordingMismatch when its check number does not
+  /// fit.
   State state(std::int64_t row) const;
-  /// The state at a time (s): the recorded one where there is one, else q by cubic Hermite interpolation from q and v of
-  /// the states around it, v by its derivative's end values linearly; for pictures and meshes, not to go on from. Times
-  /// outside the recording give its first or last state. Throws RecordingMismatch, std::out_of_range when it is empty.
+  /// The state at a time (s): the recorded one where there is one, else q by cubic Hermite interpolation from
+  /// q and v of the states around it, v by its derivative's end values linearly; for pictures and meshes, not
+  /// to go on from. Times outside the recording give its first or last state. Throws RecordingMismatch,
+  /// std::out_of_range when it is empty.
   State at(double time) const;
 
  private:

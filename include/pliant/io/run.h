@@ -1,4 +1,5 @@
-// Runs a scene into a folder: simulates, records, and keeps run.json true. Everything here happens without a GL library.
+// Runs a scene into a folder: simulates, records, and keeps run.json true. Everything here happens without a
+// GL library.
 #pragma once
 
 #include <chrono>
@@ -25,24 +26,27 @@ struct RunOptions {
   std::function<bool()> stop;        ///< asked after every step; true ends the run in good order
 };
 
-/// A run in its folder. The scene's end, step, frame rate, integrator and picture size are what the run uses; they may be
-/// changed before it begins.
+/// A run in its folder. The scene's end, step, frame rate, integrator and picture size are what the run uses;
+/// they may be changed before it begins.
 class Run {
  public:
   /// Prepares the model first, then makes, locks and begins the folder (or, resuming, reads it). Throws
-  /// std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming another scene, build, step, method or
-  /// frame rate), std::system_error. The scene must outlive the run.
+  /// std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming another scene, build,
+  /// step, method or frame rate), std::system_error. The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Steps to the end and writes trajectory.csv. False when `stop` ended it: the last state is recorded and the run can be
-  /// resumed. Throws NumericalFailure (the last good state is then recorded), std::system_error.
+  /// Steps to the end and writes trajectory.csv. False when `stop` ended it: the last state is recorded and
+  /// the run can be resumed. Throws NumericalFailure (the last good state is then recorded),
+  /// std::system_error.
   bool simulate();
 
-  /// A stage after the simulation, its wall time and files noted in run.json: write("meshes", "meshes/frame_*.obj", ...).
-  void write(const std::string& stage, const std::vector<std::string>& files, const std::function<void()>& task);
+  /// A stage after the simulation, its wall time and files noted in run.json: write("meshes",
+  /// "meshes/frame_*.obj", ...).
+  void write(const std::string& stage, const std::vector<std::string>& files,
+             const std::function<void()>& task);
 
   /// Writes the last word into run.json: complete, or stopped with a message.
   void finish(RunRecord::Status status, const std::string& message = "");
@@ -75,13 +79,14 @@ class Run {
   RunRecord record_;
   std::int64_t first_step_ = 0;      // where this session began
   std::int64_t recorded_step_ = -1;  // of the last recorded state
-  StepCounters counted_steps_;   // of the sessions before
+  StepCounters counted_steps_;       // of the sessions before
   Counters counted_work_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
 };
 
-/// As many threads as the parts of a scene have a use for, at most what the machine has; results do not depend on it.
+/// As many threads as the parts of a scene have a use for, at most what the machine has; results do not
+/// depend on it.
 int automatic_threads(const Scene& scene);
 
 }  // namespace pliant

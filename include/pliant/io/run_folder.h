@@ -1,5 +1,5 @@
-// The folder of a run: never shared by two runs, never mixed with files of another, never over anything a run did not
-// write.
+// The folder of a run: never shared by two runs, never mixed with files of another, never over anything a run
+// did not write.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +22,9 @@ enum class Existing {
 /// Holds the folder: while it lives, a lock file with the number of the process keeps other runs out.
 class RunFolder {
  public:
-  /// Makes the folder and those above it. scene: the file that is read, which must not lie in a folder to be emptied;
-  /// may be empty. Throws OutputRefused (not empty, a file, a symbolic link, in use, not a run's), std::system_error.
+  /// Makes the folder and those above it. scene: the file that is read, which must not lie in a folder to be
+  /// emptied; may be empty. Throws OutputRefused (not empty, a file, a symbolic link, in use, not a run's),
+  /// std::system_error.
   RunFolder(std::filesystem::path folder, Existing existing, const std::filesystem::path& scene = {});
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -39,7 +40,8 @@ class RunFolder {
   std::unique_ptr<Lock> lock_;
 };
 
-/// Makes a folder inside a run's folder. Throws OutputRefused when something else has its name (a symbolic link counts).
+/// Makes a folder inside a run's folder. Throws OutputRefused when something else has its name (a symbolic
+/// link counts).
 void make_subfolder(const std::filesystem::path& folder);
 
 }  // namespace pliant

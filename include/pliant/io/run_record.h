@@ -1,5 +1,5 @@
-// run.json: what a run was asked to do, how far it came, what it cost and what was noticed. Rewritten whole while the run
-// goes on, so that its status always tells the truth about the files beside it.
+// run.json: what a run was asked to do, how far it came, what it cost and what was noticed. Rewritten whole
+// while the run goes on, so that its status always tells the truth about the files beside it.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ struct RunRecord {
 
   // What was asked.
   BuildInfo build;
-  std::vector<std::string> command;    ///< the command line, for people
-  std::string scene;                   ///< name
+  std::vector<std::string> command;  ///< the command line, for people
+  std::string scene;                 ///< name
   std::string scene_file;
   std::vector<std::string> overrides;  ///< of the scene, "/json/pointer=value"
   std::uint64_t scene_hash = 0;
@@ -37,7 +37,7 @@ struct RunRecord {
 
   // How far it came.
   std::int64_t steps = 0, steps_done = 0;
-  double time = 0;  ///< of the last state, s
+  double time = 0;          ///< of the last state, s
   std::int64_t states = 0;  ///< recorded
   int resumed = 0;          ///< how often it was gone on with
 

@@ -1,15 +1,17 @@
-// trajectory.csv: the recorded motion for people and for plotting. Made from the recording, so that the file is whole or
-// absent. One header line, one line a recorded state, numbers in the shortest form that reads back exactly. Columns:
+// trajectory.csv: the recorded motion for people and for plotting. Made from the recording, so that the file
+// is whole or absent. One header line, one line a recorded state, numbers in the shortest form that reads
+// back exactly. Columns:
 //   t                                        s
 //   of every moving part, by its name (up to kMostParts parts; above, only totals are written):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s in the world, rad/s in the body frame
 //     NAME.PARAMETER_dot                     rates
-//     NAME.com.x y z                         true centre of mass (m, world), where it is not the frame's origin
+//     NAME.com.x y z                         true centre of mass (m, world), where it is not the frame's
+//     origin
 //   track.NAME.x y z                         points that the scene tracks, m
-//   energy.kinetic gravity elastic springs total, work.KIND, balance     J; balance = energy - energy at 0 - works
-//   momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
+//   energy.kinetic gravity elastic springs total, work.KIND, balance     J; balance = energy - energy at 0 -
+//   works momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
 #pragma once
 
 #include <filesystem>
@@ -26,8 +28,8 @@ class TrajectoryTable {
  public:
   static constexpr std::size_t kMostParts = 100;
 
-  /// scene: the tracks; simulation: the model, its dynamics and the energy that the balance refers to. Both must outlive
-  /// the table.
+  /// scene: the tracks; simulation: the model, its dynamics and the energy that the balance refers to. Both
+  /// must outlive the table.
   TrajectoryTable(const Scene& scene, const Simulation& simulation);
 
   std::vector<std::string> columns() const;

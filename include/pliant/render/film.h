@@ -14,8 +14,8 @@
 
 namespace pliant {
 
-/// Makes the picture of any frame. Camera and ground are the same in all frames of a run: where the scene leaves them
-/// open, they follow from the whole recorded motion.
+/// Makes the picture of any frame. Camera and ground are the same in all frames of a run: where the scene
+/// leaves them open, they follow from the whole recorded motion.
 class Film {
  public:
   /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
@@ -37,10 +37,10 @@ class Film {
   Picture picture_;
 };
 
-/// Draws frame_000000.png for each of the frames, which are taken at number / frame_rate seconds, into an existing folder;
-/// size: the scene's. Throws as Film, Renderer and write_png do.
-void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model, const Recording& recording,
-                   double frame_rate, const std::vector<std::int64_t>& frames, Progress& progress,
-                   GlBackend backend = GlBackend::automatic);
+/// Draws frame_000000.png for each of the frames, which are taken at number / frame_rate seconds, into an
+/// existing folder; size: the scene's. Throws as Film, Renderer and write_png do.
+void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model,
+                   const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
+                   Progress& progress, GlBackend backend = GlBackend::automatic);
 
 }  // namespace pliant
