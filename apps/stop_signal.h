@@ -3,7 +3,8 @@
 
 namespace pliant_cli {
 
-/// Begins to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU; SIGPIPE is ignored from now on.
+/// Begins to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU; SIGPIPE and SIGXFSZ
+/// are ignored from now on: a write that fails is an error where it happens.
 void catch_stop_signals();
 /// The number of the signal that was caught, 0 for none.
 int stop_signal();

@@ -1,11 +1,12 @@
-// Text is written into one block that is reserved for the longest lines there can be, without a check a
-// number.
+// Text goes line by line into a block that stays in the cache, and from there to the file or string it is
+// meant for.
 #include <pliant/io/obj.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
+#include <functional>
+#include <memory>
 
 #include <pliant/io/whole_file.h>
 
@@ -13,7 +14,36 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kLongestNumber = 26;
-constexpr std::size_t kLongestLine = 3 * (2 * kLongestNumber + 2) + 8;
+constexpr std::size_t kLongestLine = 3 * (2 * kLongestNumber + 3) + 8;
+
+using Sink = std::function<void(const char*, std::size_t)>;
+
+class Block {
+ public:
+  explicit Block(Sink sink) : sink_(std::move(sink)), bytes_(new char[kSize]) {}
+
+  /// Room for one line; what was written of it is told by wrote().
+  char* line() {
+    if (used_ + kLongestLine > kSize) flush();
+    return bytes_.get() + used_;
+  }
+  void wrote(const char* end) { used_ = static_cast<std::size_t>(end - bytes_.get()); }
+  void text(const std::string& text) {
+    flush();
+    sink_(text.data(), text.size());
+  }
+  void flush() {
+    sink_(bytes_.get(), used_);
+    used_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kSize = std::size_t{1} << 17;
+
+  Sink sink_;
+  std::unique_ptr<char[]> bytes_;
+  std::size_t used_ = 0;
+};
 
 char* put(char* at, double x) {
   return std::to_chars(at, at + kLongestNumber, x).ptr;
@@ -49,20 +79,19 @@ std::string group_name(const std::string& name) {
 }
 
 // Lines of one mesh. vertex, normal: numbers of its first, from 1.
-void add_mesh(std::string& text, const TriangleMesh& mesh, std::int64_t vertex, std::int64_t normal) {
-  const std::size_t begin = text.size();
-  const auto lines = static_cast<std::size_t>(mesh.x.cols() + mesh.normals.cols() + mesh.triangles.cols());
-  text.resize(begin + lines * kLongestLine);
-  char* at = text.data() + begin;
+void add_mesh(Block& block, const TriangleMesh& mesh, std::int64_t vertex, std::int64_t normal) {
   for (Eigen::Index i = 0; i < mesh.x.cols(); ++i) {
+    char* at = block.line();
     *at++ = 'v';
     for (int k = 0; k < 3; ++k) {
       *at++ = ' ';
       at = put(at, mesh.x(k, i));
     }
     *at++ = '\n';
+    block.wrote(at);
   }
   for (Eigen::Index i = 0; i < mesh.normals.cols(); ++i) {
+    char* at = block.line();
     *at++ = 'v';
     *at++ = 'n';
     for (int k = 0; k < 3; ++k) {
@@ -70,8 +99,10 @@ void add_mesh(std::string& text, const TriangleMesh& mesh, std::int64_t vertex, 
       at = put_unit(at, mesh.normals(k, i));
     }
     *at++ = '\n';
+    block.wrote(at);
   }
   for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+    char* at = block.line();
     *at++ = 'f';
     for (int k = 0; k < 3; ++k) {
       *at++ = ' ';
@@ -81,24 +112,29 @@ void add_mesh(std::string& text, const TriangleMesh& mesh, std::int64_t vertex, 
       at = put(at, normal + mesh.corners(k, i));
     }
     *at++ = '\n';
+    block.wrote(at);
   }
-  text.resize(static_cast<std::size_t>(at - text.data()));
+}
+
+void write_text(const std::vector<NamedMesh>& meshes, const std::string& material_file, Sink sink) {
+  Block block(std::move(sink));
+  block.text("# pliant\n" + (material_file.empty() ? "" : "mtllib " + material_file + "\n"));
+  std::int64_t vertex = 1, normal = 1;
+  for (const NamedMesh& named : meshes) {
+    const std::string group = group_name(named.name);
+    block.text("g " + group + "\n" + (material_file.empty() ? "" : "usemtl " + group + "\n"));
+    add_mesh(block, named.mesh, vertex, normal);
+    vertex += named.mesh.x.cols();
+    normal += named.mesh.normals.cols();
+  }
+  block.flush();
 }
 
 }  // namespace
 
 std::string obj_text(const std::vector<NamedMesh>& meshes, const std::string& material_file) {
-  std::string text = "# pliant\n";
-  if (!material_file.empty()) text += "mtllib " + material_file + "\n";
-  std::int64_t vertex = 1, normal = 1;
-  for (const NamedMesh& named : meshes) {
-    const std::string group = group_name(named.name);
-    text += "g " + group + "\n";
-    if (!material_file.empty()) text += "usemtl " + group + "\n";
-    add_mesh(text, named.mesh, vertex, normal);
-    vertex += named.mesh.x.cols();
-    normal += named.mesh.normals.cols();
-  }
+  std::string text;
+  write_text(meshes, material_file, [&](const char* bytes, std::size_t size) { text.append(bytes, size); });
   return text;
 }
 
@@ -118,8 +154,9 @@ std::string mtl_text(const std::vector<NamedMesh>& meshes) {
 
 void write_obj(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& material_file) {
-  const std::string text = obj_text(meshes, material_file);
-  write_whole_file(path, text.data(), text.size());
+  WholeFile file(path);
+  write_text(meshes, material_file, [&](const char* bytes, std::size_t size) { file.write(bytes, size); });
+  file.become_target();
 }
 
 void write_obj(const std::filesystem::path& path, const Simulation& simulation, const Part& part,

@@ -181,6 +181,10 @@ void Run::save(bool to_disk) {
   record_.time = simulation_->time();
   record_.steps_done = simulation_->state().step;
   record_.states = writer_->rows();
+  write_record();
+}
+
+void Run::write_record() {
   const StepCounters& session = simulation_->step_counters();
   record_.step_counters.steps = counted_steps_.steps + session.steps;
   record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
@@ -270,9 +274,9 @@ void Run::fail(const std::string& message) noexcept {
   try {
     record_.status = RunRecord::Status::failed;
     record_.message = message;
-    save();
+    write_record();  // without the tables, which may be what failed
   } catch (const std::exception&) {
-    // The disk may be what failed; the first failure is the one that is reported.
+    // The first failure is the one that is reported.
   }
 }
 

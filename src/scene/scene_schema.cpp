@@ -224,7 +224,7 @@ const Type& parameter_type() {
           .expecting(
               "a number, or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
               "\"max\"}")
-          .defined_as("parameter");
+          .defined_as("parameter_value");
   return type;
 }
 

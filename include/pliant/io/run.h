@@ -65,6 +65,7 @@ class Run {
   void record_state();
   void step_to_end();
   void save(bool to_disk = false);
+  void write_record();
   void fail(const std::string& message) noexcept;
   void note(const std::string& text);
 

@@ -1,0 +1,371 @@
+// The program from outside: exit codes, messages, what it leaves in folders, how it takes signals (stress
+// cases I47-I59).
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include "../io/new_folder.h"
+#include "catch.h"
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const kTop = R"({
+  "gravity": [0, 0, 0],
+  "time": {"end": 0.5, "step": 0.001, "integrator": "rk4"},
+  "parts": [{"name": "top", "shape": "ellipsoid", "deformations": ["twist"],
+             "parameters": {"a1": 0.3, "a2": 0.2, "a3": 0.1, "twist.angle": {"rest": 0.1, "stiffness": 100}},
+             "angular_velocity": [1, 0.1, 2], "velocity": [0.2, 0, 0], "resolution": 2}],
+  "output": {"size": [64, 48]}
+})";
+
+struct Result {
+  int code = -1;
+  std::string out, err;
+};
+
+// A folder with a scene in it, in which the program runs.
+struct Place {
+  NewFolder folder;
+  Place() { set_bytes(folder / "top.json", kTop); }
+
+  // `arguments` as typed in a shell; before: put in front of the program.
+  Result pliant(const std::string& arguments, const std::string& before = "") const {
+    const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
+                             arguments + " > .out 2> .err";
+    const int status = std::system(("LC_ALL=C " + line).c_str());
+    Result result;
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    result.out = bytes_of(folder / ".out");
+    result.err = bytes_of(folder / ".err");
+    return result;
+  }
+  Json record(const std::string& run) const { return Json::parse(bytes_of(folder / (run + "/run.json"))); }
+  std::string motion(const std::string& run) const {
+    std::string bytes;
+    for (const char* file : {"t.npy", "q.npy", "v.npy", "modes.npy", "trajectory.csv"})
+      bytes += bytes_of(folder / (run + "/" + file));
+    return bytes;
+  }
+};
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+// Starts a run and returns its process once it is recording.
+pid_t start_long_run(const Place& place, const std::string& run) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    if (::chdir(place.folder.path.c_str()) != 0) ::_exit(99);
+    ::execl(PLIANT_PROGRAM, "pliant", "run", "top.json", "--end", "100000", "-o", run.c_str(), "--quiet",
+            nullptr);
+    ::_exit(99);
+  }
+  for (int i = 0; i < 600; ++i) {
+    std::error_code ignored;
+    if (fs::file_size(place.folder / (run + "/t.npy"), ignored) > 200 && !ignored) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return child;
+}
+
+int exit_code_of(pid_t child) {
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+}  // namespace
+
+TEST_CASE("help, version and a run") {
+  const Place place;
+  for (const char* command :
+       {"", "run ", "check ", "info ", "list ", "render ", "export ", "schema ", "doctor "}) {
+    const Result help = place.pliant(std::string(command) + "--help");
+    CHECK(help.code == 0);
+    CHECK(has(help.out, "pliant"));
+    CHECK(help.err.empty());
+  }
+  const Result version = place.pliant("--version");
+  CHECK(version.code == 0);
+  for (const char* word : {"pliant ", "compiler ", "eigen ", "SuiteSparse", "GPL", "libpng"})
+    CHECK(has(version.out, word));
+
+  const Result run = place.pliant("run top.json --obj");
+  CHECK(run.code == 0);
+  CHECK(place.record("out/top").at("status") == "complete");
+  for (const char* file : {"layout.json", "scene.json", "trajectory.csv", "meshes/frame_000000.obj",
+                           "meshes/frame_000012.obj", "meshes/parts.mtl"})
+    CHECK(fs::exists(place.folder / ("out/top/" + std::string(file))));
+  CHECK_FALSE(fs::exists(place.folder / "out/top/meshes/frame_000013.obj"));
+  CHECK_FALSE(fs::exists(place.folder / "out/top/frames"));
+}
+
+TEST_CASE("commands that tell") {
+  const Place place;
+  const Result info = place.pliant("info top.json");
+  CHECK(info.code == 0);
+  for (const char* words :
+       {"7 degrees of freedom", "mass ", "inertia", "rule \"", "skipped", "largest stable step: about"})
+    CHECK(has(info.out, words));
+  CHECK(has(place.pliant("info top.json --set /time/step=10").out, "warning"));
+  const Result check = place.pliant("check top.json");
+  CHECK(check.code == 0);
+  CHECK(has(check.out, "500 steps"));
+  for (const char* kind : {"shapes", "deformations", "integrators", "functions"}) {
+    const Result list = place.pliant(std::string("list ") + kind);
+    CHECK(list.code == 0);
+    CHECK(list.out.size() > 100);
+  }
+  const Result schema = place.pliant("schema");
+  CHECK(Json::parse(schema.out).contains("properties"));
+  CHECK(schema.out == bytes_of(fs::path(PLIANT_SCENES) / "pliant-scene.schema.json"));
+  CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
+}
+
+TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
+  const Place place;
+  const auto mistake = [&](const std::string& arguments, const std::string& words) {
+    const Result result = place.pliant(arguments);
+    CHECK(result.code == 2);
+    INFO(arguments << ": " << result.err);
+    CHECK(has(result.err, words));
+    CHECK(result.out.empty());
+    CHECK_FALSE(fs::exists(place.folder / "out"));
+  };
+  mistake("", "Usage");
+  mistake("rn top.json", "did you mean \"run\"");
+  mistake("run top.json --obk", "did you mean \"--obj\"");
+  mistake("run top.json --stp=0.1", "did you mean \"--step\"");
+  mistake("run top.json --step", "--step");
+  mistake("run", "scene");
+  for (const char* bad : {"abc", "1e-3s", "0,001", "-1", "0", "nan", "inf", "1e400", "0x10"})
+    mistake(std::string("run top.json --step=") + bad, "is not a number > 0");
+  mistake("run top.json --end=-1", "is not a number >= 0");
+  mistake("run top.json --end 1 --end 2", "--end");
+  mistake("run top.json --threads 1.5", "whole number");
+  mistake("run top.json --size 640", "640x480");
+  mistake("run top.json --size 99999x1", "8192");
+  mistake("run top.json --force --resume", "excludes");
+  mistake("run top.json second.json", "second.json");
+  mistake("list shape", "shapes");
+  mistake("export out --to stl", "stl");
+  mistake("render", "run");
+}
+
+TEST_CASE("I47: numbers do not follow the locale") {
+  const Place place;
+  CHECK(place.pliant("run top.json --end 0.1 --quiet -o a", "LC_ALL=de_DE.UTF-8").code == 0);
+  CHECK(place.pliant("run top.json --end 0.1 --quiet -o b").code == 0);
+  CHECK(place.motion("a") == place.motion("b"));
+}
+
+TEST_CASE("I48: standard input, names that begin with a dash, names with blanks and accents") {
+  const Place place;
+  CHECK(place.pliant("run - --end 0.1 --quiet < top.json").code == 0);
+  CHECK(place.record("out/scene").at("status") == "complete");
+  CHECK(place.pliant("export out/scene --to obj --quiet --frames 0").code == 0);
+  fs::copy_file(place.folder / "top.json", place.folder / "-dash.json");
+  CHECK(place.pliant("run --end 0.1 --quiet -o dash -- -dash.json").code == 0);
+  fs::copy_file(place.folder / "top.json", place.folder / "größer als.json");
+  CHECK(place.pliant("run 'größer als.json' --end 0.1 --quiet").code == 0);
+  CHECK(fs::exists(place.folder / "out/größer als/run.json"));
+}
+
+TEST_CASE("faults of the input end with code 3 before a folder is made") {
+  const Place place;
+  const Result missing = place.pliant("run tip.json");
+  CHECK(missing.code == 3);
+  CHECK(has(missing.err, "did you mean \"top.json\""));
+  const Result wrong = place.pliant("run top.json --set /parts/0/densiti=3 --set /time/step=-1");
+  CHECK(wrong.code == 3);
+  CHECK(has(wrong.err, "did you mean \"density\""));
+  CHECK(has(wrong.err, "/time/step"));
+  const Result model = place.pliant("check top.json --set '/parts/0/parameters/a1=-1'");
+  CHECK(model.code == 3);
+  const Result machine = place.pliant("check top.json --set /parts/0/densiti=3 --diagnostics json");
+  CHECK(machine.code == 3);
+  CHECK(Json::parse(machine.out).at("errors") == 1);
+  CHECK_FALSE(fs::exists(place.folder / "out"));
+  CHECK(place.pliant("render nowhere").code == 3);
+}
+
+TEST_CASE("a step that is too large: warned before, code 5, the good part kept") {
+  const Place place;
+  const Result result = place.pliant("run top.json --step 2 --end 4000 -o r");
+  CHECK(result.code == 5);
+  CHECK(has(result.err, "warning"));
+  CHECK(has(result.err, "largest stable"));
+  CHECK(place.record("r").at("status") == "failed");
+  CHECK(fs::exists(place.folder / "r/trajectory.csv"));
+}
+
+TEST_CASE("I49, I50: what is there is not written over") {
+  const Place place;
+  REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
+  const std::string motion = place.motion("r");
+  CHECK(place.pliant("run top.json -o r --quiet").code == 9);
+  CHECK(place.pliant("run top.json -o top.json --force").code == 9);
+  CHECK(place.pliant("run r/scene.json -o r --force").code == 9);
+  CHECK(place.pliant("run top.json -o . --force").code == 9);
+  CHECK(bytes_of(place.folder / "top.json") == kTop);
+  CHECK(place.motion("r") == motion);
+  CHECK(place.pliant("run top.json -o r/ --quiet --force").code == 0);
+  CHECK(place.motion("r") == motion);
+  CHECK(place.pliant("export r --to obj --quiet --frames 3").code == 0);
+  CHECK(place.pliant("export r --to obj --quiet").code == 9);
+  CHECK_FALSE(fs::exists(place.folder / "r/meshes/frame_000000.obj"));
+  CHECK(place.pliant("export r --to obj --quiet --force").code == 0);
+  CHECK(place.pliant("export r --to ply --quiet --shard 2/2 -o p").code == 0);
+  CHECK(fs::exists(place.folder / "p/frame_000001.ply"));
+  CHECK_FALSE(fs::exists(place.folder / "p/frame_000000.ply"));
+  CHECK(place.pliant("export r --to ply --frames 5:99").code == 3);
+}
+
+TEST_CASE("I51: a file system that takes no more ends with code 7, and what is there is whole") {
+  const Place place;
+  // 512-byte blocks: run.json and scene.json fit, the growing tables do not for long.
+  const Result result = place.pliant("run top.json --fps 1000 --end 2 -o r --quiet", "ulimit -f 40;");
+  CHECK(result.code == 7);
+  CHECK(has(result.err, "cannot write"));
+  CHECK(place.record("r").at("status") == "failed");
+  CHECK_FALSE(fs::exists(place.folder / "r/trajectory.csv"));
+  for (const fs::directory_entry& entry : fs::directory_iterator(place.folder / "r"))
+    CHECK_FALSE(has(entry.path().string(), ".part-"));
+  CHECK(place.pliant("run top.json -o r --quiet --resume").code == 0);
+  REQUIRE(place.pliant("run top.json --fps 1000 --end 2 -o unbroken --quiet").code == 0);
+  CHECK(place.motion("r") == place.motion("unbroken"));
+  if (fs::exists("/dev/full")) CHECK(place.pliant("list shapes > /dev/full #").code == 7);
+  if (::geteuid() != 0) {
+    fs::create_directory(place.folder / "readonly");
+    fs::permissions(place.folder / "readonly", fs::perms::owner_read | fs::perms::owner_exec);
+    CHECK(place.pliant("run top.json -o readonly/r").code == 7);
+  }
+}
+
+TEST_CASE("I52: a signal ends the run in good order, and it can be resumed to the same bytes") {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const Place place;
+    const pid_t child = start_long_run(place, "r");
+    ::kill(child, signal);
+    CHECK(exit_code_of(child) == 128 + signal);
+    const Json record = place.record("r");
+    CHECK(record.at("status") == "stopped");
+    CHECK_FALSE(fs::exists(place.folder / "r/pliant.lock"));
+    CHECK(fs::exists(place.folder / "r/trajectory.csv"));
+    const std::string end = std::to_string(record.at("progress").at("time").get<double>() + 0.75);
+    CHECK(place.pliant("run top.json -o r --quiet --resume --end " + end).code == 0);
+    REQUIRE(place.pliant("run top.json -o unbroken --quiet --end " + end).code == 0);
+    CHECK(place.motion("r") == place.motion("unbroken"));
+  }
+}
+
+TEST_CASE("I53: after a kill the run can be resumed to the same bytes") {
+  const Place place;
+  const pid_t child = start_long_run(place, "r");
+  ::kill(child, SIGKILL);
+  CHECK(exit_code_of(child) == -SIGKILL);
+  CHECK(place.record("r").at("status") == "running");
+  CHECK(place.pliant("export r --to obj --quiet --frames 0 -o m").code == 0);
+  const std::string times = bytes_of(place.folder / "r/t.npy");
+  double last = 0;
+  std::memcpy(&last, times.data() + (times.size() - 8), sizeof last);
+  const std::string end = std::to_string(last + 0.75);
+  CHECK(place.pliant("run top.json -o r --quiet --resume --end " + end).code == 0);
+  REQUIRE(place.pliant("run top.json -o unbroken --quiet --end " + end).code == 0);
+  CHECK(place.motion("r") == place.motion("unbroken"));
+}
+
+TEST_CASE("I55: a run that does not fit is not resumed: code 10") {
+  const Place place;
+  REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
+  CHECK(place.pliant("run top.json -o r --resume --set /parts/0/density=5").code == 10);
+  CHECK(place.pliant("run top.json -o r --resume --step 0.002").code == 10);
+  CHECK(place.pliant("run top.json -o r --resume --fps 30").code == 10);
+  CHECK(place.pliant("run top.json -o nothing --resume").code == 3);
+  std::string scene = bytes_of(place.folder / "r/scene.json");
+  set_bytes(place.folder / "r/scene.json", scene + " ");
+  CHECK(place.pliant("export r --to obj").code == 10);
+  set_bytes(place.folder / "r/scene.json", scene);
+  std::string q = bytes_of(place.folder / "r/q.npy");
+  q.back() = static_cast<char>(q.back() ^ 1);
+  set_bytes(place.folder / "r/q.npy", q);
+  const Result flipped = place.pliant("run top.json -o r --resume");
+  CHECK(flipped.code == 10);
+  CHECK(has(flipped.err, "check number"));
+}
+
+TEST_CASE("I57: a closed standard output is no crash") {
+  const Place place;
+  const Result piped = place.pliant("run top.json -o r 2>&1 | true; echo done");
+  CHECK(piped.code == 0);
+  const Result list = place.pliant("list shapes | head -1; true");
+  CHECK(list.code == 0);
+}
+
+TEST_CASE("I58: a second run in the same folder is refused while the first goes on") {
+  const Place place;
+  const pid_t child = start_long_run(place, "r");
+  for (const char* how : {"", "--force", "--resume"}) {
+    const Result second = place.pliant(std::string("run top.json -o r ") + how);
+    CHECK(second.code == 9);
+    if (*how != 0) CHECK(has(second.err, "in use by another run (process " + std::to_string(child)));
+  }
+  ::kill(child, SIGINT);
+  CHECK(exit_code_of(child) == 128 + SIGINT);
+}
+
+TEST_CASE("I59: a scene without parts") {
+  const Place place;
+  set_bytes(place.folder / "empty.json", R"({"parts": []})");
+  CHECK(place.pliant("run empty.json --obj --quiet").code == 0);
+  CHECK(place.record("out/empty").at("status") == "complete");
+  CHECK(fs::exists(place.folder / "out/empty/meshes/frame_000000.obj"));
+  CHECK(place.pliant("info empty.json").code == 0);
+  CHECK(place.pliant("run top.json --end 0 --quiet").code == 0);
+}
+
+TEST_CASE("no graphics library is opened unless a picture is asked for") {
+  const Place place;
+  const Result run = place.pliant("run top.json -o r --obj", "LD_DEBUG=files");
+  CHECK(run.code == 0);
+  CHECK(has(run.err, "libpng"));  // LD_DEBUG works
+  for (const char* library : {"OSMesa", "libEGL", "libGL", "libLLVM"}) CHECK_FALSE(has(run.err, library));
+}
+
+TEST_CASE("a scene set on the command line is the one that is rendered and exported") {
+  const Place place;
+  REQUIRE(place.pliant("run top.json -o r --quiet --set /parts/0/name=fish --end 0.1 --fps 20").code == 0);
+  CHECK(place.pliant("export r --to obj --quiet").code == 0);
+  CHECK(has(bytes_of(place.folder / "r/meshes/frame_000002.obj"), "g fish\n"));
+  CHECK_FALSE(fs::exists(place.folder / "r/meshes/frame_000003.obj"));
+}
+
+TEST_CASE("pictures: drawn with the run, and again from the recording the same") {
+  const Place place;
+  const Result run = place.pliant("run top.json -o r --quiet --png --fps 6");
+  if (run.code == 8) return;  // no graphics library here
+  REQUIRE(run.code == 0);
+  const std::string picture = bytes_of(place.folder / "r/frames/frame_000002.png");
+  CHECK(picture.substr(1, 3) == "PNG");
+  CHECK(place.pliant("render r --quiet -o again --frames 2").code == 0);
+  CHECK(bytes_of(place.folder / "again/frame_000002.png") == picture);
+  CHECK(place.pliant("render r --quiet").code == 9);
+  CHECK(place
+            .pliant("render r --quiet -o other --frames 2 --size 80x60 --camera-eye -1 -2.5 .5 "
+                    "--camera-target 0 0 0")
+            .code == 0);
+  CHECK(bytes_of(place.folder / "other/frame_000002.png") != picture);
+  CHECK(place.record("r").at("files").dump().find("frames/frame_*.png") != std::string::npos);
+}

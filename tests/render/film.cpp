@@ -1,0 +1,95 @@
+// Pictures of a recorded motion: one camera and one ground for all frames, tracks that grow, settings of the
+// scene kept.
+#include <pliant/render/film.h>
+
+#include "../io/new_folder.h"
+#include "../io/test_scenes.h"
+#include "catch.h"
+
+#include <pliant/io/run.h>
+
+using namespace pliant;
+
+namespace {
+
+// A run of the pulled scene, and its film.
+struct Filmed {
+  NewFolder folder;
+  std::unique_ptr<Scene> scene = pulled_scene();
+  Progress silent;
+  std::unique_ptr<Run> run;
+  std::unique_ptr<Recording> recording;
+
+  Filmed() {
+    RunOptions options;
+    options.folder = folder / "r";
+    run = std::make_unique<Run>(*scene, options, silent);
+    REQUIRE(run->simulate());
+    recording = std::make_unique<Recording>(run->recording());
+  }
+  Film film() const { return {*scene, run->simulation().model(), *recording}; }
+};
+
+bool same(const Camera& a, const Camera& b) {
+  return a.eye == b.eye && a.target == b.target && a.field_of_view == b.field_of_view;
+}
+
+}  // namespace
+
+TEST_CASE("camera and ground do not move, and hold the whole motion") {
+  const Filmed filmed;
+  Film film = filmed.film();
+  const Camera camera = film.camera();
+  const double ground = film.at(0).ground.height;
+  for (int k = 0; k <= 10; ++k) {
+    const Picture& picture = film.at(0.02 * k);
+    CHECK(same(picture.camera, camera));
+    CHECK(picture.ground.height == ground);
+    CHECK(bounds(picture).min().z() > ground);
+    CHECK(picture.bodies.size() == 3);
+    REQUIRE(picture.tracks.size() == 1);
+    CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
+    // Every vertex is inside the picture.
+    const Eigen::Vector3d back = (camera.eye - camera.target).normalized();
+    const Eigen::Vector3d right = camera.up.cross(back).normalized(), up = back.cross(right);
+    const double half = std::tan(camera.field_of_view * kPi / 360);
+    for (const Picture::Body& body : picture.bodies)
+      for (Eigen::Index i = 0; i < body.mesh->x.cols(); ++i) {
+        const Eigen::Vector3d p = body.mesh->x.col(i) - camera.eye;
+        const double depth = -back.dot(p);
+        CHECK(depth > 0);
+        CHECK(std::abs(up.dot(p)) < half * depth);
+        CHECK(std::abs(right.dot(p)) < half * depth * 640 / 480);
+      }
+  }
+}
+
+TEST_CASE("a part of the recording later gives the same camera") {
+  const Filmed filmed;
+  Film first = filmed.film(), second = filmed.film();
+  first.at(0.2);
+  CHECK(same(first.camera(), second.camera()));
+}
+
+TEST_CASE("what the scene says of camera, light and ground holds") {
+  Filmed filmed;
+  Scene& scene = *filmed.scene;
+  scene.camera.eye = Vec3<double>(1, 2, 3);
+  scene.camera.field_of_view = 50;
+  scene.ground.height = -2.5;
+  scene.light.direction = Vec3<double>(0, 0, 1);
+  scene.light.shadows = false;
+  scene.appearance[1].visible = false;
+  scene.appearance[0].color = {0.25, 0.5, 1};
+  Film film = filmed.film();
+  const Picture& picture = film.at(0.1);
+  CHECK(picture.camera.eye == Eigen::Vector3d(1, 2, 3));
+  CHECK(picture.camera.field_of_view == 50);
+  CHECK(picture.ground.height == -2.5);
+  CHECK(picture.lights.to_key == Eigen::Vector3f(0, 0, 1));
+  CHECK_FALSE(picture.lights.shadows);
+  REQUIRE(picture.bodies.size() == 2);
+  CHECK(picture.bodies[0].color == Eigen::Vector3f(0.25f, 0.5f, 1));
+  scene.camera.target = Vec3<double>(0, 0, 1);
+  CHECK(filmed.film().camera().target == Eigen::Vector3d(0, 0, 1));
+}
