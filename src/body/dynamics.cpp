@@ -445,6 +445,11 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
     if (!work.parts[i].inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
     if (!work.parts[i].inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
   }
+  for (const PartModel& m : model_->parts())
+    for (const int k : m.part->parameters().dynamic()) {
+      const Parameter& p = m.part->parameters()[k];
+      if (!std::isfinite(p.rest.value(t))) return "the rest value of " + m.part->name() + "." + p.name;
+    }
   for (const SpringModel& s : model_->springs())
     for (const Point* end : {&s.spring->a, &s.spring->b})
       if (end->part == nullptr && !end->world.value(t).allFinite())
