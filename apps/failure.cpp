@@ -45,7 +45,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
-  const std::vector<std::string> words = app.remaining(true);
+  std::vector<std::string> words = app.remaining(true);
+  if (&command == &app && words.size() > 1) words.resize(1);  // without a command the rest has no meaning
   std::string text;
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
@@ -66,7 +67,7 @@ int reporting_failures(const std::function<int()>& task) {
   try {
     return task();
   } catch (const pliant::SceneError& error) {
-    std::cerr << error.what() << "\n";
+    std::cerr << error.what();
     return kInput;
   } catch (const pliant::FileError& error) {
     return tell(error.what(), error.exit_code());

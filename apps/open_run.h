@@ -20,7 +20,7 @@ struct OpenRun {
   std::int64_t frames() const;
 };
 
-/// Throws pliant::RecordingMismatch when the folder holds no run or one that this program cannot read.
+/// Throws pliant::FileError when the folder holds no run, pliant::RecordingMismatch when this program cannot read it.
 OpenRun open_run(const std::filesystem::path& folder);
 
 /// Makes a folder for frames where there is none. Throws pliant::OutputRefused when a file of one of these frames exists and

@@ -19,7 +19,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options) {
   pliant::Diagnostics diagnostics;
   std::unique_ptr<pliant::Scene> scene = pliant::read_scene(options.file, options.overrides, diagnostics);
-  if (diagnostics.warnings() > 0) std::cerr << diagnostics.text() << "\n";
+  if (diagnostics.warnings() > 0) std::cerr << diagnostics.text();
   return scene;
 }
 

@@ -64,7 +64,7 @@ int check(const CheckCommand& command) {
   if (machine)
     std::cout << diagnostics.json() << "\n";
   else if (diagnostics.warnings() > 0)
-    std::cerr << diagnostics.text() << "\n";
+    std::cerr << diagnostics.text();
   if (!machine) print_estimate(*scene);
   return kDone;
 }

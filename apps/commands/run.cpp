@@ -108,7 +108,7 @@ int run_scene(const RunCommand& command) {
   pliant::Run run(*scene, std::move(options), *progress);
   if (!command.quiet && std::isfinite(run.record().stable_step))
     progress->note("step " + pliant::number_text(run.record().step) + " s; the largest stable one is about " +
-                   pliant::number_text(run.record().stable_step) + " s");
+                   pliant::rounded_text(run.record().stable_step) + " s");
   if (!run.simulate()) {
     run.finish(pliant::RunRecord::Status::stopped, "by signal " + std::to_string(stop_signal()));
     std::cerr << "pliant: stopped at t = " << run.simulation().time() << " s; go on with --resume\n";

@@ -80,7 +80,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.add_seconds("prepare", seconds_since(start));
   if (schedule_.step() > stable_step) {
     note("warning: the step of " + number_text(schedule_.step()) + " s is above the largest stable one, about " +
-         number_text(stable_step) + " s");
+         rounded_text(stable_step) + " s");
   }
   write_layout(folder_->path(), simulation_->model(), schedule_);
   for (const char* file : {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include <pliant/io/recording.h>
 #include <pliant/io/whole_file.h>
+#include <pliant/scene/text_file.h>
 
 namespace pliant {
 namespace {
@@ -98,7 +101,8 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
 
 RunRecord read_run_record(const std::filesystem::path& file) {
   std::ifstream stream(file);
-  if (!stream) throw RecordingMismatch("there is no run: cannot read " + file.string());
+  if (!stream)
+    throw FileError(FileError::Reason::kMissing, "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
   try {
     const Json json = Json::parse(stream);
     RunRecord r;

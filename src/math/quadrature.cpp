@@ -30,8 +30,7 @@ std::vector<QuadratureNode> gauss_rule(int n) {
   return rule;
 }
 
-std::vector<QuadratureNode> one_end_rule(int n) {
-  constexpr double q = 4;
+std::vector<QuadratureNode> one_end_rule(int n, double q) {
   std::vector<QuadratureNode> rule = gauss_rule(n);
   for (QuadratureNode& node : rule) {
     const double y = node.x;

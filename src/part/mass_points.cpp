@@ -27,7 +27,7 @@ struct Point {
 struct Levels {
   int u = 0, w = 0, v = 0;  // sections use u for zeta
 };
-constexpr std::array<int, 12> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
+constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 int size_at(int level) {
   return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))];
@@ -166,11 +166,12 @@ struct AngleNode {
   double weight;
 };
 
-Trig<Dual<1>> with_slope(double log_abs, double sign, double slope) {
+/// By its logarithm, whose slope stays finite where the value underflows.
+Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   const double value = sign * std::exp(log_abs);
   Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};
-  t.x.d[0] = slope;
-  t.log_abs.d[0] = value != 0 ? slope / value : 0;
+  t.x.d[0] = value * log_slope;
+  t.log_abs.d[0] = log_slope;
   return t;
 }
 Trig<Dual<1>> with_slope(double value, double slope) {
@@ -181,7 +182,8 @@ Trig<Dual<1>> with_slope(double value, double slope) {
   return r;
 }
 
-std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int level) {
+/// moving: exponents are dynamic, so that no power of the variable stays what it is.
+std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int level, bool moving) {
   std::vector<AngleNode> nodes;
   const int n = size_at(level);
   for (const Panel& panel : panels) {
@@ -200,19 +202,33 @@ std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int level) 
       }
     } else {
       // Variable t = |near|^eps in [0, 2^(-eps/2)], near the sine or the cosine that vanishes at the axis.
+      // There a fixed exponent leaves powers of t^(2/eps): t = x^q with q a multiple of eps makes them
+      // smooth.
+      const double q = moving ? 4 : panel.eps * std::ceil(3 / panel.eps);
       const double top = std::exp2(-panel.eps / 2);
-      for (const QuadratureNode& node : one_end_rule(n)) {
-        const double t = top * node.x;
-        const double log_near = std::log(t) / panel.eps, near = std::exp(log_near);
-        const double far2 = -std::expm1(2 * log_near), far = std::sqrt(far2);
-        const double near_slope = near / (panel.eps * t), far_slope = -near * near_slope / far;
+      auto add = [&](double log_near, double weight) {
+        const double near2 = std::exp(2 * log_near), far2 = -std::expm1(2 * log_near);
+        const double log_near_slope = std::exp(-panel.eps * log_near) / panel.eps;  // 1 / (eps t)
+        const double log_far_slope = -near2 * log_near_slope / far2;
         const double sign_near = panel.along_sin ? panel.sign_sin : panel.sign_cos;
         const double sign_far = panel.along_sin ? panel.sign_cos : panel.sign_sin;
-        const Trig<Dual<1>> a = with_slope(log_near, sign_near, sign_near * near_slope);
-        const Trig<Dual<1>> b = with_slope(0.5 * std::log(far2), sign_far, sign_far * far_slope);
-        nodes.push_back(panel.along_sin ? AngleNode{b, a, top * node.weight}
-                                        : AngleNode{a, b, top * node.weight});
+        const Trig<Dual<1>> a = from_log(log_near, log_near_slope, sign_near);
+        const Trig<Dual<1>> b = from_log(0.5 * std::log(far2), log_far_slope, sign_far);
+        nodes.push_back(panel.along_sin ? AngleNode{b, a, weight} : AngleNode{a, b, weight});
+      };
+      double reach = top;
+      if (panel.eps < 0.25) {
+        // All that happens does so next to the corner, where log near is the good variable; below e^-16 the
+        // far side does not change any more.
+        const double from = std::log(std::sqrt(0.5)), to = -16;
+        for (const QuadratureNode& node : gauss_rule(n)) {
+          const double log_near = from + (to - from) * node.x;
+          add(log_near, panel.eps * std::exp(panel.eps * log_near) * (from - to) * node.weight);
+        }
+        reach = std::exp(panel.eps * to);
       }
+      for (const QuadratureNode& node : one_end_rule(n, q))
+        add(std::log(reach * node.x) / panel.eps, reach * node.weight);
     }
   }
   return nodes;
@@ -230,8 +246,10 @@ Trig<double> drop(const Trig<Dual<1>>& t) {
 
 std::vector<Point> ring_points(const Request& r, const Levels& levels) {
   const ShapeFace& shape = r.part.shape();
-  const std::vector<AngleNode> u_nodes = angle_nodes(shape.profile(r.a, r.dynamic_exponents), levels.u);
-  const std::vector<AngleNode> v_nodes = angle_nodes(shape.ring(r.a, r.dynamic_exponents), levels.v);
+  const std::vector<AngleNode> u_nodes =
+      angle_nodes(shape.profile(r.a, r.dynamic_exponents), levels.u, r.dynamic_exponents);
+  const std::vector<AngleNode> v_nodes =
+      angle_nodes(shape.ring(r.a, r.dynamic_exponents), levels.v, r.dynamic_exponents);
   std::vector<QuadratureNode> w_nodes{{1, 0, 1}};
   if (!r.part.shell()) w_nodes = gauss_rule(size_at(levels.w));
   const double ring_exponent = shape.ring_exponent(r.a);

@@ -20,5 +20,10 @@ inline std::string number_text(double x) {
   append_number(text, x);
   return text;
 }
+/// Four significant digits, for people.
+inline std::string rounded_text(double x) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, 4).ptr};
+}
 
 }  // namespace pliant

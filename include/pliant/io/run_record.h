@@ -64,7 +64,7 @@ struct RunRecord {
 
 /// Throws std::system_error.
 void write_run_record(const std::filesystem::path& file, const RunRecord& record);
-/// Throws RecordingMismatch when it cannot be read or is no such record.
+/// Throws FileError when there is none, RecordingMismatch when it is damaged.
 RunRecord read_run_record(const std::filesystem::path& file);
 
 }  // namespace pliant

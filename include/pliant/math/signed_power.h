@@ -54,7 +54,7 @@ Taylor2<T> signed_power(const Trig<U>& c, const Taylor2<T>& eps) {
 /// eps < 1.
 template <int N>
 Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
-  if (c.x.v != 0) return math::exp(Dual<N>(eps * c.log_abs)) * c.sign.v;
+  if (c.log_abs.v > kLogZero) return math::exp(Dual<N>(eps * c.log_abs)) * c.sign.v;
   const double slope = eps.v == 1 ? 1.0 : (eps.v > 1 ? 0.0 : std::numeric_limits<double>::infinity());
   Dual<N> r(0.0);
   for (std::size_t i = 0; i < N; ++i) r.d[i] = c.x.d[i] != 0 ? slope * c.x.d[i] : 0.0;

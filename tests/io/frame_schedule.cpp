@@ -1,0 +1,91 @@
+// Which steps are taken and recorded; which frames are asked for.
+#include <pliant/io/frame_schedule.h>
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "catch.h"
+
+#include <pliant/io/frame_range.h>
+
+using namespace pliant;
+
+TEST_CASE("N28: steps fill the run, and the last falls on its end") {
+  const FrameSchedule whole(1, 1e-3, 25);
+  CHECK(whole.steps() == 1000);
+  CHECK(whole.step() == 1e-3);
+  CHECK(whole.end() == 1);
+  CHECK(whole.frames() == 26);
+  const FrameSchedule third(1, 0.3, 25);
+  CHECK(third.steps() == 4);
+  CHECK(third.step() == 0.25);
+  CHECK(third.end() == 1);
+  const FrameSchedule rounded(0.3, 0.1, 10);  // 0.3 / 0.1 is 2.9999999999999996
+  CHECK(rounded.steps() == 3);
+  CHECK(rounded.step() == 0.1);
+  const FrameSchedule kept = FrameSchedule::with_exact_step(1, 0.3, 25);
+  CHECK(kept.steps() == 4);
+  CHECK(kept.step() == 0.3);
+  const FrameSchedule none(0, 0.1, 25);
+  CHECK(none.steps() == 0);
+  CHECK(none.frames() == 1);
+  CHECK(none.records(0));
+}
+
+TEST_CASE("I33, N24: impossible runs are refused with the reason") {
+  const double nan = std::nan("");
+  for (const double bad : {0.0, -1.0, nan, HUGE_VAL}) {
+    CHECK_THROWS_AS(FrameSchedule(1, bad, 25), std::invalid_argument);
+    CHECK_THROWS_AS(FrameSchedule(1, 0.1, bad), std::invalid_argument);
+  }
+  for (const double bad : {-1.0, nan, HUGE_VAL}) CHECK_THROWS_AS(FrameSchedule(bad, 0.1, 25), std::invalid_argument);
+  CHECK_THROWS_AS(FrameSchedule(1, 1e-300, 25), std::invalid_argument);
+  CHECK_THROWS_AS(FrameSchedule(1, 0.1, 1e300), std::invalid_argument);
+}
+
+TEST_CASE("N30: a frame is a recorded step, or lies inside a recorded step") {
+  for (const double step : {1e-3, 0.0007, 0.01, 0.4, 1.0 / 3})
+    for (const double rate : {1.0, 24.0, 25.0, 60.0, 1000.0, 2999.0}) {
+      const FrameSchedule schedule(1.3, step, rate);
+      std::set<std::int64_t> recorded;
+      for (std::int64_t i = 0; i <= schedule.steps(); ++i)
+        if (schedule.records(i)) recorded.insert(i);
+      CHECK(recorded.count(0) == 1);
+      CHECK(recorded.count(schedule.steps()) == 1);
+      std::set<std::int64_t> needed{0, schedule.steps()};
+      for (std::int64_t k = 0; k < schedule.frames(); ++k) {
+        const double place = schedule.frame_time(k) / schedule.step();
+        if (std::abs(place - std::round(place)) < 1e-6) {
+          needed.insert(std::llround(place));
+        } else {
+          needed.insert(static_cast<std::int64_t>(std::floor(place)));
+          needed.insert(static_cast<std::int64_t>(std::ceil(place)));
+        }
+      }
+      CHECK(recorded == needed);
+    }
+}
+
+TEST_CASE("ranges of frames") {
+  const auto frames = [](const std::string& text) { return FrameRange::parse(text).frames(10); };
+  CHECK(frames(":").size() == 10);
+  CHECK(frames("2:5:2") == std::vector<std::int64_t>{2, 4});
+  CHECK(frames("7") == std::vector<std::int64_t>{7});
+  CHECK(frames("::4") == std::vector<std::int64_t>{0, 4, 8});
+  CHECK(frames("8:") == std::vector<std::int64_t>{8, 9});
+  CHECK(frames("5:3").empty());
+  for (const char* bad : {"", "a", "1:2:0", "-1", "1:2:3:4", "1.5", " 1", "0:5:-1"})
+    CHECK_THROWS_AS(FrameRange::parse(bad), std::invalid_argument);
+  for (const char* beyond : {"10", "0:11", "12:"}) CHECK_THROWS_AS(frames(beyond), std::invalid_argument);
+  std::set<std::int64_t> all;
+  for (int i = 1; i <= 3; ++i) {
+    FrameRange range = FrameRange::parse("1::2");
+    range.parse_shard(std::to_string(i) + "/3");
+    for (const std::int64_t k : range.frames(10)) CHECK(all.insert(k).second);
+  }
+  CHECK(all == std::set<std::int64_t>{1, 3, 5, 7, 9});
+  FrameRange range;
+  for (const char* bad : {"0/2", "3/2", "1", "1/2/3", "a/2", "1/"})
+    CHECK_THROWS_AS(range.parse_shard(bad), std::invalid_argument);
+}

@@ -1,0 +1,167 @@
+// Tables: round trips, going on after a cut, and what a reader makes of damage.
+#include <pliant/io/npy.h>
+
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include "catch.h"
+#include "new_folder.h"
+
+#include <pliant/io/whole_file.h>
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+namespace {
+
+void append_rows(NpyWriter& writer, int columns, int from, int to) {
+  std::vector<double> row(static_cast<std::size_t>(columns == kNpyVector ? 1 : columns));
+  for (int i = from; i < to; ++i) {
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = std::sqrt(i + 0.1 * static_cast<double>(k));
+    writer.append(row.data());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a table reads back bit for bit") {
+  const NewFolder folder;
+  for (const int columns : {kNpyVector, 0, 1, 7}) {
+    const fs::path file = folder / ("t" + std::to_string(columns) + ".npy");
+    {
+      NpyWriter writer = NpyWriter::create(file, columns);
+      append_rows(writer, columns, 0, 10);
+      writer.flush();
+      append_rows(writer, columns, 10, 25);
+      writer.flush_to_disk();
+      writer.flush();
+      CHECK(writer.rows() == 25);
+    }
+    const NpyReader reader(file);
+    REQUIRE(reader.rows() == 25);
+    REQUIRE(reader.columns() == columns);
+    if (columns == 0) continue;
+    std::vector<double> row(static_cast<std::size_t>(columns == kNpyVector ? 1 : columns));
+    for (int i = 0; i < 25; ++i) {
+      reader.read(i, row.data());
+      for (std::size_t k = 0; k < row.size(); ++k) CHECK(row[k] == std::sqrt(i + 0.1 * static_cast<double>(k)));
+    }
+    CHECK_THROWS_AS(reader.read(25, row.data()), std::out_of_range);
+    CHECK_THROWS_AS(reader.read(-1, row.data()), std::out_of_range);
+  }
+}
+
+TEST_CASE("the header is NumPy's") {
+  const NewFolder folder;
+  {
+    NpyWriter writer = NpyWriter::create(folder / "q.npy", 3);
+    append_rows(writer, 3, 0, 4);
+    writer.flush();
+  }
+  const std::string bytes = bytes_of(folder / "q.npy");
+  REQUIRE(bytes.size() == 128 + 4 * 3 * 8);
+  CHECK(bytes.substr(0, 6) == "\x93NUMPY");
+  CHECK(bytes.substr(10, 60) == "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 3), } ");
+  CHECK(bytes[127] == '\n');
+}
+
+TEST_CASE("I53: rows that were not flushed do not count, and half a row neither") {
+  const NewFolder folder;
+  const fs::path file = folder / "v.npy";
+  NpyWriter writer = NpyWriter::create(file, 2);
+  append_rows(writer, 2, 0, 5);
+  writer.flush();
+  append_rows(writer, 2, 5, 9);
+  CHECK(NpyReader(file).rows() == 5);
+  const std::string whole = bytes_of(file);
+  // Killed between writing rows and the header that counts them.
+  set_bytes(file, whole + std::string(100, 'x'));
+  CHECK(NpyReader(file).rows() == 5);
+  for (std::size_t cut = 128; cut <= whole.size(); ++cut) {
+    set_bytes(file, whole.substr(0, cut));
+    CHECK(NpyReader(file).rows() == static_cast<std::int64_t>((cut - 128) / 16));
+  }
+  for (const std::size_t cut : {0, 5, 9, 50, 127}) {
+    set_bytes(file, whole.substr(0, cut));
+    CHECK_THROWS_AS(NpyReader(file), std::runtime_error);
+  }
+}
+
+TEST_CASE("going on cuts off what comes behind") {
+  const NewFolder folder;
+  const fs::path file = folder / "v.npy", unbroken = folder / "u.npy";
+  {
+    NpyWriter writer = NpyWriter::create(file, 2);
+    append_rows(writer, 2, 0, 8);
+    writer.flush();
+  }
+  {
+    NpyWriter writer = NpyWriter::resume(file, 2, 5);
+    append_rows(writer, 2, 5, 12);
+    writer.flush();
+    NpyWriter other = NpyWriter::create(unbroken, 2);
+    append_rows(other, 2, 0, 12);
+    other.flush();
+  }
+  CHECK(bytes_of(file) == bytes_of(unbroken));
+  CHECK_THROWS_AS(NpyWriter::resume(file, 2, 13), std::runtime_error);
+  CHECK_THROWS_AS(NpyWriter::resume(file, 3, 5), std::runtime_error);
+}
+
+TEST_CASE("I55: damaged headers are refused") {
+  const NewFolder folder;
+  const fs::path file = folder / "v.npy";
+  {
+    NpyWriter writer = NpyWriter::create(file, 2);
+    append_rows(writer, 2, 0, 8);
+    writer.flush();
+  }
+  const std::string whole = bytes_of(file);
+  const auto with = [&](const std::string& what, const std::string& other) {
+    std::string bytes = whole;
+    bytes.replace(bytes.find(what), what.size(), other);
+    set_bytes(file, bytes);
+    CHECK_THROWS_AS(NpyReader(file), std::runtime_error);
+  };
+  with("NUMPY", "NUMPX");
+  with("<f8", "<f4");
+  with("False", "True ");
+  with("'shape'", "'shapx'");
+  with("(8, 2), }", "(8,2,2),}");
+  with("(8, 2), }", "(), }    ");
+  with(", 2), }", std::string(", 99999999999999999999999), }").substr(0, 7));
+  CHECK_THROWS_AS(NpyReader(folder / "absent.npy"), std::system_error);
+}
+
+TEST_CASE("I50: a table is never written over a file or through a link") {
+  const NewFolder folder;
+  set_bytes(folder / "precious", "data");
+  fs::create_symlink(folder / "precious", folder / "t.npy");
+  CHECK_THROWS_AS(NpyWriter::create(folder / "t.npy", 1), std::system_error);
+  CHECK_THROWS_AS(NpyWriter::create(folder / "precious", 1), std::system_error);
+  CHECK(bytes_of(folder / "precious") == "data");
+}
+
+TEST_CASE("I51: a full disk is an error at once") {
+  if (!fs::exists("/dev/full")) return;
+  const NewFolder folder;
+  fs::create_symlink("/dev/full", folder / "full");
+  CHECK_THROWS_AS(NpyWriter::create(folder / "full", 1), std::system_error);
+  CHECK_THROWS_AS(WholeFile("/dev/full/file"), std::system_error);
+}
+
+TEST_CASE("a whole file replaces a link and leaves nothing when it is given up") {
+  const NewFolder folder;
+  set_bytes(folder / "precious", "data");
+  fs::create_symlink(folder / "precious", folder / "out.txt");
+  write_whole_file(folder / "out.txt", "new", 3, Durable::yes);
+  CHECK(bytes_of(folder / "precious") == "data");
+  CHECK(bytes_of(folder / "out.txt") == "new");
+  CHECK_FALSE(fs::is_symlink(folder / "out.txt"));
+  {
+    WholeFile given_up(folder / "never.txt");
+    given_up.write("half");
+  }
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
+}

@@ -1,0 +1,181 @@
+// Recordings: states come back to the last bit, damage is found, pictures between steps are smooth.
+#include <pliant/io/recording.h>
+
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "new_folder.h"
+#include "test_scenes.h"
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/run_files.h>
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+namespace {
+
+bool same_bits(const State& a, const State& b) {
+  return a.start == b.start && a.h == b.h && a.step == b.step && a.q == b.q && a.v == b.v && a.work == b.work &&
+         a.at_limit == b.at_limit;
+}
+
+// Records every `stride`-th of the first steps; returns the recorded states.
+std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int stride) {
+  Simulation simulation(scene.body, scene.integrator);
+  write_layout(folder, simulation.model(), FrameSchedule(scene.end, scene.step, scene.frame_rate));
+  RecordingWriter writer = RecordingWriter::create(folder, simulation.model());
+  std::vector<State> states;
+  for (int i = 0; i <= steps; ++i) {
+    if (i > 0) simulation.step(scene.step);
+    if (i % stride != 0) continue;
+    writer.append(simulation.state());
+    states.push_back(simulation.state());
+  }
+  writer.flush();
+  CHECK(writer.rows() == static_cast<std::int64_t>(states.size()));
+  return states;
+}
+
+}  // namespace
+
+TEST_CASE("recorded states come back to the last bit, limits and works included") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  const std::vector<State> states = record(folder.path, *scene, 60, 3);
+  const Model model(scene->body);
+  const Recording recording(folder.path, model);
+  REQUIRE(recording.rows() == static_cast<std::int64_t>(states.size()));
+  bool limited = false;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    CHECK(same_bits(recording.state(static_cast<std::int64_t>(i)), states[i]));
+    for (const std::int8_t at : states[i].at_limit) limited = limited || at != 0;
+  }
+  CHECK(limited);
+  CHECK(states.back().work.cwiseAbs().maxCoeff() > 0);
+}
+
+TEST_CASE("the layout names every column") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  record(folder.path, *scene, 3, 1);
+  const nlohmann::json layout = nlohmann::json::parse(bytes_of(folder / kLayoutFile));
+  const auto& tables = layout.at("tables");
+  for (const char* table : {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile}) {
+    const NpyReader reader(folder / table);
+    CHECK(tables.at(table).size() == static_cast<std::size_t>(reader.columns() == kNpyVector ? 1 : reader.columns()));
+  }
+  const auto& first = tables.at(kCoordinatesFile).at(0);
+  CHECK(first.at("name") == "blob.c.x");
+  CHECK(first.at("part") == "blob");
+  CHECK(first.at("coordinate") == "c.x");
+  CHECK(first.at("unit") == "m");
+  CHECK(tables.at(kVelocitiesFile).at(3).at("unit") == "rad/s");
+  CHECK(layout.at("frames").at("rate") == 50);
+}
+
+TEST_CASE("I53: after a kill the shortest table tells how many states there are") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  const std::vector<State> states = record(folder.path, *scene, 20, 2);
+  const Model model(scene->body);
+  std::int64_t rows = static_cast<std::int64_t>(states.size());
+  for (const char* table : {kVelocitiesFile, kTimesFile, kModesFile, kCoordinatesFile}) {
+    const std::string bytes = bytes_of(folder / table);
+    const std::size_t row = (bytes.size() - 128) / states.size();
+    --rows;
+    set_bytes(folder / table, bytes.substr(0, 128 + row * static_cast<std::size_t>(rows) + 5));
+    const Recording recording(folder.path, model);
+    REQUIRE(recording.rows() == rows);
+    CHECK(same_bits(recording.state(rows - 1), states[static_cast<std::size_t>(rows - 1)]));
+  }
+  RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
+  writer.append(states[static_cast<std::size_t>(rows)]);
+  writer.flush();
+  CHECK(same_bits(Recording(folder.path, model).state(rows), states[static_cast<std::size_t>(rows)]));
+}
+
+TEST_CASE("I55: one bit that flipped is found") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  record(folder.path, *scene, 4, 1);
+  const Model model(scene->body);
+  for (const char* table : {kCoordinatesFile, kVelocitiesFile, kModesFile}) {
+    const std::string whole = bytes_of(folder / table);
+    const std::size_t row = (whole.size() - 128) / 5;
+    for (std::size_t byte = 128 + 2 * row; byte < 128 + 3 * row; byte += 11) {
+      std::string bytes = whole;
+      bytes[byte] = static_cast<char>(bytes[byte] ^ 0x10);
+      set_bytes(folder / table, bytes);
+      const Recording recording(folder.path, model);
+      CHECK_THROWS_AS(recording.state(2), RecordingMismatch);
+      CHECK_NOTHROW(recording.state(1));
+    }
+    set_bytes(folder / table, whole);
+  }
+}
+
+TEST_CASE("I55: a recording of another scene is refused by the column that differs") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  record(folder.path, *scene, 4, 1);
+  const auto top = free_top();
+  const Model other(top->body);
+  CHECK_THROWS_AS(Recording(folder.path, other), RecordingMismatch);
+  set_bytes(folder / kLayoutFile, "{");
+  const Model model(scene->body);
+  CHECK_THROWS_AS(Recording(folder.path, model), RecordingMismatch);
+}
+
+TEST_CASE("pictures between two steps lie on the motion to fourth order") {
+  double last = 0;
+  for (const double h : {0.04, 0.02}) {
+    const NewFolder folder;
+    const auto scene = free_top();
+    scene->step = h;
+    record(folder.path, *scene, static_cast<int>(std::lround(0.4 / h)), 1);
+    const Model model(scene->body);
+    const Recording recording(folder.path, model);
+    // The truth from much smaller steps.
+    const auto fine = free_top();
+    Simulation simulation(fine->body, "rk4");
+    double worst = 0;
+    for (int i = 1; i <= 400; ++i) {
+      simulation.step(0.001);
+      const State between = recording.at(0.001 * i);
+      worst = std::max(worst, (between.q - simulation.state().q).cwiseAbs().maxCoeff());
+      CHECK(std::abs(between.q.segment<4>(3).norm() - 1) < 1e-15);
+    }
+    if (last > 0) CHECK(last / worst > 11);
+    last = worst;
+  }
+  CHECK(last < 1e-6);
+}
+
+TEST_CASE("a recorded time gives the recorded state itself") {
+  const NewFolder folder;
+  const auto scene = free_top();
+  const std::vector<State> states = record(folder.path, *scene, 30, 10);
+  const Model model(scene->body);
+  const Recording recording(folder.path, model);
+  for (const State& state : states) {
+    CHECK(same_bits(recording.at(state.time()), state));
+    CHECK(same_bits(recording.at(std::nextafter(state.time(), 0)), state));
+    CHECK(same_bits(recording.at(std::nextafter(state.time(), 9)), state));
+  }
+  CHECK(same_bits(recording.at(-1), states.front()));
+  CHECK(same_bits(recording.at(99), states.back()));
+}
+
+TEST_CASE("I59: a scene without parts records its times") {
+  const NewFolder folder;
+  Scene scene;
+  record(folder.path, scene, 5, 1);
+  const Model model(scene.body);
+  const Recording recording(folder.path, model);
+  CHECK(recording.rows() == 6);
+  CHECK(recording.state(5).q.size() == 0);
+}

@@ -1,0 +1,311 @@
+// Runs in their folders: broken and resumed ones end with the same bytes as unbroken ones, folders are never shared or
+// mixed, and run.json tells the truth about every ending.
+#include <pliant/io/run.h>
+
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "catch.h"
+#include "new_folder.h"
+#include "test_scenes.h"
+
+#include <pliant/io/run_files.h>
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kResults[] = {kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile, kTrajectoryFile};
+
+std::string results_of(const fs::path& folder) {
+  std::string bytes;
+  for (const char* file : kResults) bytes += bytes_of(folder / file);
+  return bytes;
+}
+
+nlohmann::json record_of(const fs::path& folder) { return nlohmann::json::parse(bytes_of(folder / kRunFile)); }
+
+struct How {
+  Existing existing = Existing::refuse;
+  int threads = 1;
+  long stop_after = -1;  // steps
+};
+
+bool run(Scene& scene, const fs::path& folder, const How& how = {}) {
+  Progress silent;
+  RunOptions options;
+  options.folder = folder;
+  options.existing = how.existing;
+  options.threads = how.threads;
+  long steps = 0;
+  if (how.stop_after >= 0) options.stop = [&] { return steps++ >= how.stop_after; };
+  Run session(scene, options, silent);
+  const bool complete = session.simulate();
+  session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped, complete ? "" : "by the test");
+  return complete;
+}
+
+std::unique_ptr<Scene> scene_for(const std::string& integrator) {
+  auto scene = pulled_scene();
+  scene->integrator = integrator;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("N66: any number of threads gives the same bytes") {
+  const NewFolder folder;
+  for (const char* integrator : {"semi_implicit_euler", "rk4"}) {
+    std::string first;
+    for (const int threads : {1, 2, 3}) {
+      const fs::path out = folder / (std::string(integrator) + std::to_string(threads));
+      REQUIRE(run(*scene_for(integrator), out, {Existing::refuse, threads}));
+      if (threads == 1) first = results_of(out);
+      CHECK(results_of(out) == first);
+    }
+  }
+}
+
+TEST_CASE("N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken one") {
+  const NewFolder folder;
+  for (const char* integrator : {"semi_implicit_euler", "rk4"}) {
+    const fs::path unbroken = folder / (std::string(integrator) + "_unbroken");
+    REQUIRE(run(*scene_for(integrator), unbroken));
+    for (const long first : {0L, 1L, 19L, 20L, 57L, 199L}) {
+      const fs::path broken = folder / (integrator + std::to_string(first));
+      CHECK_FALSE(run(*scene_for(integrator), broken, {Existing::refuse, 1, first}));
+      CHECK(record_of(broken).at("status") == "stopped");
+      CHECK(record_of(broken).at("progress").at("steps_done") == first);
+      run(*scene_for(integrator), broken, {Existing::resume, 3, 33});
+      REQUIRE(run(*scene_for(integrator), broken, {Existing::resume, 2}));
+      CHECK(results_of(broken) == results_of(unbroken));
+      CHECK(record_of(broken).at("status") == "complete");
+      CHECK(record_of(broken).at("progress").at("resumed") == 2);
+      CHECK(record_of(broken).at("work").at("steps") == 200);
+      CHECK(record_of(broken).at("work").at("evaluations") == record_of(unbroken).at("work").at("evaluations"));
+    }
+  }
+}
+
+TEST_CASE("I53: killed at any moment, the run can be resumed to the same bytes") {
+  const NewFolder folder;
+  const fs::path unbroken = folder / "unbroken", killed = folder / "killed";
+  const auto long_scene = [] {
+    auto scene = pulled_scene();
+    scene->end = 0.5;
+    scene->frame_rate = 1000;
+    return scene;
+  };
+  REQUIRE(run(*long_scene(), unbroken));
+  {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      try {
+        Progress silent;
+        RunOptions options;
+        options.folder = killed;
+        const auto scene = long_scene();
+        long steps = 0;
+        options.stop = [&] {
+          if (++steps > 300) ::raise(SIGKILL);
+          return false;
+        };
+        Run session(*scene, options, silent);
+        session.simulate();
+      } catch (...) {
+      }
+      ::_exit(1);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    REQUIRE(WIFSIGNALED(status));
+  }
+  CHECK(record_of(killed).at("status") == "running");
+  CHECK_FALSE(fs::exists(killed / kTrajectoryFile));
+  REQUIRE(run(*long_scene(), killed, {Existing::resume}));
+  CHECK(results_of(killed) == results_of(unbroken));
+}
+
+TEST_CASE("a complete run goes on to a later end as if it had never stopped") {
+  const NewFolder folder;
+  const auto until = [](double end) {
+    auto scene = pulled_scene();
+    scene->end = end;
+    return scene;
+  };
+  REQUIRE(run(*until(0.2), folder / "a"));
+  REQUIRE(run(*until(0.13), folder / "b"));  // not on a frame
+  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));
+  CHECK(results_of(folder / "a") == results_of(folder / "b"));
+  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));  // nothing left to do
+  CHECK(results_of(folder / "a") == results_of(folder / "b"));
+  CHECK_THROWS_AS(run(*until(0.1), folder / "b", {Existing::resume}), RecordingMismatch);
+}
+
+TEST_CASE("N30: the frame rate does not steer the motion") {
+  const NewFolder folder;
+  const Model* model = nullptr;
+  std::vector<State> last;
+  for (const double rate : {1.0, 24.0, 1000.0, 3001.0}) {
+    const auto scene = pulled_scene();
+    scene->frame_rate = rate;
+    const fs::path out = folder / std::to_string(rate);
+    REQUIRE(run(*scene, out));
+    const Model here(scene->body);
+    model = &here;
+    const Recording recording(out, *model);
+    last.push_back(recording.state(recording.rows() - 1));
+    CHECK(last.back().q == last.front().q);
+    CHECK(last.back().v == last.front().v);
+    CHECK(last.back().step == 200);
+  }
+}
+
+TEST_CASE("I55: a run goes on only with the scene, step, method and frame rate it began with") {
+  const NewFolder folder;
+  run(*pulled_scene(), folder / "r", {Existing::refuse, 1, 50});
+  const std::string before = results_of(folder / "r");
+  const auto refused = [&](void (*change)(Scene&)) {
+    const auto scene = pulled_scene();
+    change(*scene);
+    CHECK_THROWS_AS(run(*scene, folder / "r", {Existing::resume}), RecordingMismatch);
+  };
+  refused([](Scene& s) { s.hash = 1; });
+  refused([](Scene& s) { s.step = 2e-3; });
+  refused([](Scene& s) { s.frame_rate = 25; });
+  refused([](Scene& s) { s.integrator = "semi_implicit_euler"; });
+  std::string record = bytes_of(folder / "r" / kRunFile);
+  record.replace(record.find("\"compiler\": \""), 13, "\"compiler\": \"x");
+  set_bytes(folder / "r" / kRunFile, record);
+  CHECK_THROWS_AS(run(*pulled_scene(), folder / "r", {Existing::resume}), RecordingMismatch);
+  CHECK(results_of(folder / "r") == before);
+}
+
+TEST_CASE("I49: a folder that is not empty is refused; force removes the files of a run and nothing else") {
+  const NewFolder folder;
+  const fs::path out = folder / "r";
+  REQUIRE(run(*pulled_scene(), out));
+  const std::string first = results_of(out);
+  CHECK_THROWS_AS(run(*free_top(), out), OutputRefused);
+  CHECK(results_of(out) == first);
+  set_bytes(out / "notes.txt", "mine");
+  fs::create_directory(out / kMeshFolder);
+  fs::create_directory(out / kFrameFolder);
+  for (const char* file : {"meshes/frame_000001.obj", "meshes/frame_000001.ply", "meshes/parts.mtl", "frames/frame_000001.png",
+                           "frames/frame_000002.png.part-12-0", "frames/cat.png", "frames/frame_1.png"})
+    set_bytes(out / file, "x");
+  REQUIRE(run(*free_top(), out, {Existing::force}));
+  CHECK(bytes_of(out / "notes.txt") == "mine");
+  CHECK_FALSE(fs::exists(out / kMeshFolder));
+  CHECK(fs::exists(out / "frames/cat.png"));
+  CHECK(fs::exists(out / "frames/frame_1.png"));
+  CHECK(std::distance(fs::directory_iterator(out / kFrameFolder), fs::directory_iterator()) == 2);
+  CHECK(record_of(out).at("scene").at("name") == "top");
+
+  fs::create_directory(folder / "home");
+  set_bytes(folder / "home" / "letter.txt", "dear");
+  CHECK_THROWS_AS(run(*free_top(), folder / "home", {Existing::force}), OutputRefused);
+  CHECK_THROWS_AS(run(*free_top(), folder / "home", {Existing::resume}), OutputRefused);
+  CHECK_THROWS_AS(run(*free_top(), folder / "absent", {Existing::resume}), OutputRefused);
+  CHECK_FALSE(fs::exists(folder / "absent"));
+}
+
+TEST_CASE("I50: files, links and the folder of the scene are not written over") {
+  const NewFolder folder;
+  set_bytes(folder / "file", "x");
+  CHECK_THROWS_AS(run(*free_top(), folder / "file", {Existing::force}), OutputRefused);
+  fs::create_directory(folder / "real");
+  fs::create_directory_symlink(folder / "real", folder / "link");
+  CHECK_THROWS_AS(run(*free_top(), folder / "link"), OutputRefused);
+  CHECK(fs::is_empty(folder / "real"));
+
+  REQUIRE(run(*free_top(), folder / "r"));
+  set_bytes(folder / "r" / kSceneFile, "{}");
+  CHECK_THROWS_AS(RunFolder(folder / "r", Existing::force, folder / "r" / kSceneFile), OutputRefused);
+  CHECK(bytes_of(folder / "r" / kSceneFile) == "{}");
+  CHECK_THROWS_AS(make_subfolder(folder / "file"), OutputRefused);
+  CHECK_THROWS_AS(make_subfolder(folder / "link"), OutputRefused);
+}
+
+TEST_CASE("I58: two runs never share a folder") {
+  const NewFolder folder;
+  {
+    const RunFolder held(folder / "r", Existing::refuse);
+    CHECK(bytes_of(folder / "r" / kLockFile) == std::to_string(::getpid()));
+    CHECK_THROWS_AS(RunFolder(folder / "r", Existing::refuse), OutputRefused);
+    set_bytes(folder / "r" / kRunFile, "{}");
+    CHECK_THROWS_AS(RunFolder(folder / "r", Existing::force), OutputRefused);
+    CHECK_THROWS_AS(RunFolder(folder / "r", Existing::resume), OutputRefused);
+  }
+  CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
+  set_bytes(folder / "r" / kLockFile, "12345");  // of a process that was killed
+  CHECK_NOTHROW(RunFolder(folder / "r", Existing::force));
+}
+
+TEST_CASE("a motion beyond all bounds ends with its last good state on record") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  scene->step = 0.5;
+  scene->end = 500;
+  CHECK_THROWS_AS(run(*scene, folder / "r"), NumericalFailure);
+  const nlohmann::json record = record_of(folder / "r");
+  CHECK(record.at("status") == "failed");
+  CHECK(record.at("message").get<std::string>().find("not a finite number") != std::string::npos);
+  CHECK(record.at("notes").dump().find("largest stable") != std::string::npos);
+  const Model model(scene->body);
+  const Recording recording(folder / "r", model);
+  const State last = recording.state(recording.rows() - 1);
+  CHECK(last.q.allFinite());
+  CHECK(last.time() == record.at("progress").at("time"));
+  const std::string table = bytes_of(folder / "r" / kTrajectoryFile);
+  CHECK(table.find("nan") == std::string::npos);
+  CHECK(table.find("inf") == std::string::npos);
+}
+
+TEST_CASE("a bad scene is refused before a folder is made") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  scene->integrator = "rk5";
+  CHECK_THROWS_AS(run(*scene, folder / "r"), std::invalid_argument);
+  const auto looks = pulled_scene();
+  looks->appearance.clear();
+  CHECK_THROWS_AS(run(*looks, folder / "r"), std::invalid_argument);
+  CHECK_FALSE(fs::exists(folder / "r"));
+}
+
+TEST_CASE("I59: no parts, and no time, are runs too") {
+  const NewFolder folder;
+  Scene empty;
+  REQUIRE(run(empty, folder / "empty"));
+  CHECK(record_of(folder / "empty").at("progress").at("states") == 26);
+  const auto still = free_top();
+  still->end = 0;
+  REQUIRE(run(*still, folder / "still"));
+  CHECK(record_of(folder / "still").at("progress").at("states") == 1);
+}
+
+TEST_CASE("run.json tells what was done and what was not needed") {
+  const NewFolder folder;
+  const auto scene = free_top();
+  scene->end = 0.335;
+  REQUIRE(run(*scene, folder / "r"));
+  const RunRecord record = read_run_record(folder / "r" / kRunFile);
+  CHECK(record.status == RunRecord::Status::complete);
+  CHECK(record.steps == 34);
+  CHECK(record.step == 0.335 / 34);
+  CHECK(record.asked_step == 0.01);
+  CHECK(record.time == 0.335 / 34 * 34);
+  CHECK(record.notes.size() == 1);
+  CHECK(record.step_counters.evaluations == 4 * 34);
+  CHECK(record.counters.jacobian_points == 0);
+  CHECK(record.counters.rate_points == 0);
+  CHECK(record.counters.surfaces == 0);
+  CHECK_FALSE(record.skipped.empty());
+  CHECK(std::isinf(record.stable_step));
+  for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
+  CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
+}

@@ -1,0 +1,97 @@
+// trajectory.csv: header, full precision, totals only for crowds.
+#include <pliant/io/trajectory.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "catch.h"
+#include "new_folder.h"
+#include "test_scenes.h"
+
+#include <pliant/io/run.h>
+#include <pliant/io/run_files.h>
+
+using namespace pliant;
+
+namespace {
+
+std::vector<std::string> cells(const std::string& line) {
+  std::vector<std::string> found{""};
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      found.back() += line[++i];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      found.emplace_back();
+    else
+      found.back() += line[i];
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("the table holds the recorded numbers exactly, by name") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  Progress silent;
+  RunOptions options;
+  options.folder = folder / "r";
+  Run run(*scene, options, silent);
+  REQUIRE(run.simulate());
+  const Recording recording = run.recording();
+  const Model& model = run.simulation().model();
+
+  std::istringstream table(bytes_of(folder / "r" / kTrajectoryFile));
+  std::string line;
+  std::getline(table, line);
+  const std::vector<std::string> header = cells(line);
+  const auto column = [&](const std::string& name) {
+    const auto at = std::find(header.begin(), header.end(), name);
+    REQUIRE(at != header.end());
+    return static_cast<std::size_t>(at - header.begin());
+  };
+  CHECK(header.front() == "t");
+  column("blob.com.x");
+  column("rider, \"heavy\".com.z");  // its frame is not at its centre of mass
+  CHECK(std::find(header.begin(), header.end(), "wall.c.x") == header.end());
+
+  double worst = 0;
+  for (std::int64_t row = 0; row < recording.rows(); ++row) {
+    REQUIRE(std::getline(table, line));
+    const std::vector<std::string> text = cells(line);
+    REQUIRE(text.size() == header.size());
+    std::vector<double> numbers;
+    for (const std::string& cell : text) numbers.push_back(std::strtod(cell.c_str(), nullptr));
+    const State state = recording.state(row);
+    CHECK(numbers[0] == state.time());
+    for (int i = 0; i < model.n_q(); ++i) CHECK(numbers[column(model.coordinate_name(i))] == state.q[i]);
+    for (int i = 0; i < model.n_v(); ++i) CHECK(numbers[column(model.velocity_name(i))] == state.v[i]);
+    for (int i = 0; i < kWorks; ++i)
+      CHECK(numbers[column(std::string("work.") + kWorkNames[static_cast<std::size_t>(i)])] == state.work[i]);
+    const Vec3<double> grip = model.world_point(state, 0, scene->tracks[0].point.material);
+    CHECK(numbers[column("track.grip.y")] == grip[1]);
+    const double sum = numbers[column("energy.kinetic")] + numbers[column("energy.gravity")] +
+                       numbers[column("energy.elastic")] + numbers[column("energy.springs")];
+    CHECK(numbers[column("energy.total")] == Approx(sum).epsilon(1e-14));
+    worst = std::max(worst, std::abs(numbers[column("balance")]));
+  }
+  CHECK_FALSE(std::getline(table, line));
+  CHECK(worst == run.record().max_balance_error);
+  CHECK(worst < 1e-3);
+}
+
+TEST_CASE("above a hundred parts only totals are written") {
+  Scene scene;
+  for (int i = 0; i < 101; ++i) scene.body.add(make_part("p" + std::to_string(i), "sphere", {}, 1));
+  scene.appearance.resize(101);
+  const Simulation simulation(scene.body);
+  TrajectoryTable table(scene, simulation);
+  CHECK(table.columns().size() == 1 + 5 + kWorks + 1 + 6);
+  std::vector<double> numbers;
+  table.row(simulation.state(), numbers);
+  CHECK(numbers.size() == table.columns().size());
+}
