@@ -170,30 +170,29 @@ VecMax<S> inverse_column(const SymmetricFactor<S>& factor, int n, int i) {
 // limits: parameters at a limit are pressed onto it by forces >= 0, found on the small system W = C M^-1 C^T
 void press(const PartModel& m, const std::int8_t* at_limit, PartWorkspace<double>& w) {
   w.pressed.clear();
-  std::vector<int> rows;
+  std::array<int, kMaxGlobal> rows{};
+  int n = 0;
   for (int k = 0; k < m.n_s; ++k)
-    if (at_limit[k] != 0 && !w.factor.held(6 + k)) rows.push_back(k);
-  if (rows.empty()) return;
-  const auto n = static_cast<Eigen::Index>(rows.size());
-  MatX<double> W(n, n);
-  VecX<double> b(n);
-  std::vector<VecMax<double>> columns;
-  for (const int k : rows) columns.push_back(inverse_column<double>(w.factor, 6 + m.n_s, 6 + k));
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const int k = rows[static_cast<std::size_t>(i)];
-    const double sign = -at_limit[k];  // the admissible direction
-    b[i] = sign * w.a_r[6 + k];
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const int l = rows[static_cast<std::size_t>(j)];
-      W(i, j) = sign * -at_limit[l] * columns[static_cast<std::size_t>(j)][6 + k];
+    if (at_limit[k] != 0 && !w.factor.held(6 + k)) rows[static_cast<std::size_t>(n++)] = k;
+  if (n == 0) return;
+  MatMax<double, kMaxLimitRows> W(n, n);
+  VecMax<double, kMaxLimitRows> b(n);
+  std::array<VecMax<double>, kMaxGlobal> columns;
+  for (int j = 0; j < n; ++j) {
+    const auto c = static_cast<std::size_t>(j);
+    columns[c] = inverse_column<double>(w.factor, 6 + m.n_s, 6 + rows[c]);
+    for (int i = 0; i < n; ++i) {
+      const int k = rows[static_cast<std::size_t>(i)];
+      W(i, j) = at_limit[k] * at_limit[rows[c]] * columns[c][6 + k];
     }
+    b[j] = -at_limit[rows[c]] * w.a_r[6 + rows[c]];  // along the admissible direction
   }
-  const ComplementarityResult result = solve_complementarity(W, b);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(result.lambda[i] > 0)) continue;
-    const int k = rows[static_cast<std::size_t>(i)];
-    w.a_r += columns[static_cast<std::size_t>(i)] * (-at_limit[k] * result.lambda[i]);
-    w.pressed.push_back(k);
+  const VecMax<double, kMaxLimitRows> lambda = solve_complementarity(W, b).lambda;
+  for (int i = 0; i < n; ++i) {
+    if (!(lambda[i] > 0)) continue;
+    const auto c = static_cast<std::size_t>(i);
+    w.a_r += columns[c] * (-at_limit[rows[c]] * lambda[i]);
+    w.pressed.push_back(rows[c]);
   }
   for (const int k : w.pressed) w.a_r[6 + k] = 0;  // to the last bit
 }
@@ -236,9 +235,9 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
   work.v_dot.resize(model.n_v());
   work.power.setConstant(S(0.0));
   const int n_parts = static_cast<int>(parts.size());
-  auto each_part = [&](const std::function<void(int)>& task) {
+  auto each_part = [&](auto&& task) {
     if (pool_ != nullptr)
-      pool_->run(n_parts, task);
+      pool_->run(n_parts, std::ref(task));
     else
       for (int i = 0; i < n_parts; ++i) task(i);
   };
@@ -445,6 +444,11 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
     if (!work.parts[i].inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
     if (!work.parts[i].inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
   }
+  for (const PartModel& m : model_->parts())
+    for (const int k : m.part->parameters().dynamic()) {
+      const Parameter& p = m.part->parameters()[k];
+      if (!std::isfinite(p.rest.value(t))) return "the rest value of " + m.part->name() + "." + p.name;
+    }
   for (const SpringModel& s : model_->springs())
     for (const Point* end : {&s.spring->a, &s.spring->b})
       if (end->part == nullptr && !end->world.value(t).allFinite())

@@ -1,5 +1,6 @@
 #include <pliant/integrate/advance.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -61,73 +62,77 @@ class LimitRows {
  public:
   LimitRows(const PartModel& m, const PartWorkspace<double>& w) : m_(m), w_(w) {}
 
-  bool empty() const { return rows_.empty(); }
+  bool empty() const { return n_ == 0; }
   void add(const Row& row) {
-    rows_.push_back(row);
     VecMax<double> response = VecMax<double>::Zero(6 + m_.n_s);
     response[6 + row.k] = row.sign;
     Dynamics::apply_impulse(w_, response);
-    responses_.push_back(response);
+    rows_[n_] = row;
+    responses_[n_++] = response;
   }
   /// Adds the rows of bound(k, sign) that x does not meet; false when there is none.
   template <class Bound>
   bool add_unmet(const VecMax<double>& x, Bound&& bound) {
-    const std::size_t before = rows_.size();
+    const std::size_t before = n_;
     for (int k = 0; k < m_.n_s; ++k) {
       if (w_.factor.held(6 + k)) continue;
       for (const double sign : {1.0, -1.0})
         if (sign * x[6 + k] < bound(k, sign) && !has(k, sign)) add({k, sign, bound(k, sign)});
     }
-    return rows_.size() > before;
+    return n_ > before;
   }
 
   /// x with the impulses of the rows; on a velocity they do the work sum lambda sign (x + x') / 2.
   VecMax<double> meet(const VecMax<double>& x, double* work) {
-    const auto n = static_cast<Eigen::Index>(rows_.size());
-    MatX<double> W(n, n);
-    VecX<double> b(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Row& row = rows_[static_cast<std::size_t>(i)];
-      b[i] = row.sign * x[6 + row.k] - row.bound;
-      for (Eigen::Index j = 0; j < n; ++j)
-        W(i, j) = row.sign * responses_[static_cast<std::size_t>(j)][6 + row.k];
+    const auto n = static_cast<Eigen::Index>(n_);
+    MatMax<double, kMaxLimitRows> W(n, n);
+    VecMax<double, kMaxLimitRows> b(n);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Row& row = rows_[i];
+      const auto r = static_cast<Eigen::Index>(i);
+      b[r] = row.sign * x[6 + row.k] - row.bound;
+      for (std::size_t j = 0; j < n_; ++j)
+        W(r, static_cast<Eigen::Index>(j)) = row.sign * responses_[j][6 + row.k];
     }
     lambda_ = solve_complementarity(W, b).lambda;
     VecMax<double> after = x;
-    for (Eigen::Index i = 0; i < n; ++i)
-      if (lambda_[i] > 0) after += responses_[static_cast<std::size_t>(i)] * lambda_[i];
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Row& row = rows_[static_cast<std::size_t>(i)];
-      if (!(lambda_[i] > 0)) continue;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (pushed(i)) after += responses_[i] * lambda_[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Row& row = rows_[i];
+      if (!pushed(i)) continue;
       after[6 + row.k] = row.sign * row.bound;  // to the last bit
-      if (work != nullptr) *work += lambda_[i] * row.sign * 0.5 * (x[6 + row.k] + after[6 + row.k]);
+      if (work != nullptr)
+        *work += lambda_[static_cast<Eigen::Index>(i)] * row.sign * 0.5 * (x[6 + row.k] + after[6 + row.k]);
     }
     return after;
   }
   /// The rows that the last meet() pushed.
   template <class F>
   int for_each_pushed(F&& act) const {
-    int pushed = 0;
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      if (lambda_[static_cast<Eigen::Index>(i)] > 0) {
+    int count = 0;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (pushed(i)) {
         act(rows_[i]);
-        ++pushed;
+        ++count;
       }
-    return pushed;
+    return count;
   }
 
  private:
+  bool pushed(std::size_t i) const { return lambda_[static_cast<Eigen::Index>(i)] > 0; }
   bool has(int k, double sign) const {
-    for (const Row& row : rows_)
-      if (row.k == k && row.sign == sign) return true;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (rows_[i].k == k && rows_[i].sign == sign) return true;
     return false;
   }
 
   const PartModel& m_;
   const PartWorkspace<double>& w_;
-  std::vector<Row> rows_;
-  std::vector<VecMax<double>> responses_;
-  VecX<double> lambda_;
+  std::size_t n_ = 0;
+  std::array<Row, kMaxLimitRows> rows_;
+  std::array<VecMax<double>, kMaxLimitRows> responses_;  ///< M^-1 e_k sign
+  VecMax<double, kMaxLimitRows> lambda_;
 };
 
 /// The same with every row of bound(k, sign) that is passed, if only by what the others push.

@@ -1,7 +1,7 @@
 #include <pliant/solve/complementarity.h>
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 
@@ -14,27 +14,34 @@ constexpr double kRounding = 1e-14;
 /// A row that adds less than this part of its own diagonal to the tight ones depends on them.
 constexpr double kDependent = 1e-12;
 
+template <int Max>
 class ActiveSet {
+  using Matrix = MatMax<double, Max>;
+  using Vector = VecMax<double, Max>;
+
  public:
-  ActiveSet(const MatX<double>& W, const VecX<double>& b)
+  ActiveSet(const Matrix& W, const Vector& b)
       : W_(W),
         b_(b),
-        lambda_(VecX<double>::Zero(b.size())),
-        out_(static_cast<std::size_t>(b.size()), false) {}
+        lambda_(Vector::Zero(b.size())),
+        tight_(b.size()),
+        is_tight_(VecMax<int, Max>::Zero(b.size())),
+        out_(VecMax<int, Max>::Zero(b.size())) {}
 
   /// The row that is open most, in the metric of W; -1 when none is.
-  Eigen::Index most_open() const {
-    Eigen::Index worst = -1;
+  int most_open() const {
+    int worst = -1;
     double most = 0;
-    for (Eigen::Index i = 0; i < b_.size(); ++i) {
-      if (out_[static_cast<std::size_t>(i)] || !(W_(i, i) > 0)) continue;
+    for (int i = 0; i < b_.size(); ++i) {
+      if (out_[i] != 0 || is_tight_[i] != 0 || !(W_(i, i) > 0)) continue;
       double slack = b_[i], terms = std::abs(b_[i]);
-      for (const Eigen::Index j : tight_) {
-        slack += W_(i, j) * lambda_[j];
-        terms += std::abs(W_(i, j) * lambda_[j]);
+      for (int k = 0; k < n_; ++k) {
+        const double term = W_(i, tight_[k]) * lambda_[tight_[k]];
+        slack += term;
+        terms += std::abs(term);
       }
       const double open = slack < -kRounding * terms ? slack * slack / W_(i, i) : 0;
-      if (open > most && std::find(tight_.begin(), tight_.end(), i) == tight_.end()) {
+      if (open > most) {
         worst = i;
         most = open;
       }
@@ -43,85 +50,99 @@ class ActiveSet {
   }
 
   /// Makes row j tight; other rows may come loose on the way. Returns the number of systems solved.
-  int tighten(Eigen::Index j) {
+  int tighten(int j) {
     for (int solved = 1;; ++solved) {
-      // W_PP y = W_Pj: what a unit impulse of row j takes from the others.
-      const auto n = static_cast<Eigen::Index>(tight_.size());
-      const MatX<double> block = W_(tight_, tight_);
-      const Eigen::LDLT<MatX<double>> factor(block);
-      const VecX<double> y = n > 0 ? VecX<double>(factor.solve(W_(tight_, j))) : VecX<double>();
+      // W_PP y = W_Pj: what a unit impulse of row j takes from the tight ones.
+      Vector y(n_);
+      for (int k = 0; k < n_; ++k) y[k] = W_(tight_[k], j);
+      solve_tight(y);
       double pivot = W_(j, j), slack = b_[j] + W_(j, j) * lambda_[j];
-      for (Eigen::Index k = 0; k < n; ++k) {
-        const Eigen::Index i = tight_[static_cast<std::size_t>(k)];
-        pivot -= W_(j, i) * y[k];
-        slack += W_(j, i) * lambda_[i];
+      for (int k = 0; k < n_; ++k) {
+        pivot -= W_(j, tight_[k]) * y[k];
+        slack += W_(j, tight_[k]) * lambda_[tight_[k]];
       }
       // As far as the row closes, or as the first of the others comes loose.
       const bool dependent = !(pivot > kDependent * W_(j, j));
       double reach = dependent ? -1 : std::max(0.0, -slack / pivot);
-      Eigen::Index loose = -1;
-      for (Eigen::Index k = 0; k < n; ++k) {
+      int loose = -1;
+      for (int k = 0; k < n_; ++k) {
         if (!(y[k] > 0)) continue;
-        const double until = lambda_[tight_[static_cast<std::size_t>(k)]] / y[k];
+        const double until = lambda_[tight_[k]] / y[k];
         if (reach < 0 || until < reach) {
           reach = until;
           loose = k;
         }
       }
       if (reach < 0) {  // it contradicts the tight rows: no impulse closes it
-        out_[static_cast<std::size_t>(j)] = true;
-        release(j);
+        out_[j] = 1;
+        lambda_[j] = 0;
         return solved;
       }
       lambda_[j] += reach;
-      for (Eigen::Index k = 0; k < n; ++k) lambda_[tight_[static_cast<std::size_t>(k)]] -= reach * y[k];
+      for (int k = 0; k < n_; ++k) lambda_[tight_[k]] -= reach * y[k];
       if (loose < 0) {
-        tight_.push_back(j);
+        tight_[n_++] = j;
+        is_tight_[j] = 1;
         refine();
         return solved;
       }
-      release(tight_[static_cast<std::size_t>(loose)]);
+      release(loose);
     }
   }
 
-  const VecX<double>& lambda() const { return lambda_; }
+  const Vector& lambda() const { return lambda_; }
 
  private:
-  void release(Eigen::Index i) {
-    lambda_[i] = 0;
-    tight_.erase(std::remove(tight_.begin(), tight_.end(), i), tight_.end());
+  void release(int k) {
+    lambda_[tight_[k]] = 0;
+    is_tight_[tight_[k]] = 0;
+    for (--n_; k < n_; ++k) tight_[k] = tight_[k + 1];
+  }
+  void solve_tight(Vector& x) const {
+    if (n_ == 0) return;
+    Matrix block(n_, n_);
+    for (int i = 0; i < n_; ++i)
+      for (int j = 0; j < n_; ++j) block(i, j) = W_(tight_[i], tight_[j]);
+    const Eigen::LDLT<Matrix> factor(block);
+    x = factor.solve(x);
   }
   /// The impulses of the tight rows anew, so that rounding does not pile up over many changes.
   void refine() {
-    const MatX<double> block = W_(tight_, tight_);
-    const VecX<double> x = Eigen::LDLT<MatX<double>>(block).solve(-b_(tight_));
-    for (std::size_t k = 0; k < tight_.size(); ++k)
-      lambda_[tight_[k]] = std::max(0.0, x[static_cast<Eigen::Index>(k)]);
+    Vector x(n_);
+    for (int k = 0; k < n_; ++k) x[k] = -b_[tight_[k]];
+    solve_tight(x);
+    for (int k = 0; k < n_; ++k) lambda_[tight_[k]] = std::max(0.0, x[k]);
   }
 
-  const MatX<double>& W_;
-  const VecX<double>& b_;
-  VecX<double> lambda_;
-  std::vector<Eigen::Index> tight_;
-  std::vector<bool> out_;
+  const Matrix& W_;
+  const Vector& b_;
+  Vector lambda_;
+  int n_ = 0;  ///< tight rows, in the order in which they came
+  VecMax<int, Max> tight_, is_tight_, out_;
 };
 
 }  // namespace
 
-ComplementarityResult solve_complementarity(const MatX<double>& W, const VecX<double>& b) {
-  const Eigen::Index n = b.size();
-  ComplementarityResult result;
-  ActiveSet rows(W, b);
-  const int most = 50 * static_cast<int>(n) + 50;
-  for (Eigen::Index next = rows.most_open(); next >= 0 && result.pivots < most; next = rows.most_open())
+template <int Max>
+ComplementarityResult<Max> solve_complementarity(const MatMax<double, Max>& W, const VecMax<double, Max>& b) {
+  ComplementarityResult<Max> result;
+  ActiveSet<Max> rows(W, b);
+  const int n = static_cast<int>(b.size()), most = 50 * n + 50;
+  for (int next = rows.most_open(); next >= 0 && result.pivots < most; next = rows.most_open())
     result.pivots += rows.tighten(next);
   result.lambda = rows.lambda();
-  const VecX<double> slack = W * result.lambda + b;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    result.residual = std::max({result.residual, -slack[i], -result.lambda[i] * W(i, i)});
-    result.residual = std::max(result.residual, std::min(result.lambda[i] * W(i, i), slack[i]));
+  for (int i = 0; i < n; ++i) {
+    double slack = b[i];
+    for (int j = 0; j < n; ++j) slack += W(i, j) * result.lambda[j];
+    const double push = result.lambda[i] * W(i, i);
+    result.residual = std::max({result.residual, -slack, -push, std::min(push, slack)});
   }
   return result;
 }
+
+template ComplementarityResult<Eigen::Dynamic> solve_complementarity(const MatX<double>&,
+                                                                     const VecX<double>&);
+template ComplementarityResult<kMaxLimitRows> solve_complementarity(const MatMax<double, kMaxLimitRows>&,
+                                                                    const VecMax<double, kMaxLimitRows>&);
 
 }  // namespace pliant

@@ -56,7 +56,7 @@ TEST_CASE("random positive definite problems are solved as enumeration solves th
     const MatX<double> C = random_matrix(draws, n, n + 2);
     const MatX<double> W = C * C.transpose();
     const VecX<double> b = random_vector(draws, n);
-    const ComplementarityResult result = solve_complementarity(W, b);
+    const ComplementarityResult<> result = solve_complementarity(W, b);
     const VecX<double> expected = by_enumeration(W, b);
     REQUIRE(expected.size() == n);
     CHECK((result.lambda - expected).norm() <= 1e-8 * (1 + expected.norm()));
@@ -72,7 +72,7 @@ TEST_CASE("rank-deficient problems: the same velocities as enumeration, impulses
     if (trial % 3 == 0) C.row(n - 1) = C.row(0);  // the same row twice
     const MatX<double> W = C * C.transpose();
     const VecX<double> b = C * random_vector(draws, rank);  // rows that can be met
-    const ComplementarityResult result = solve_complementarity(W, b);
+    const ComplementarityResult<> result = solve_complementarity(W, b);
     INFO("n " << n << " rank " << rank << " pivots " << result.pivots << "\nW\n"
               << W << "\nb " << b.transpose());
     CHECK(result.lambda.minCoeff() >= -1e-12);
@@ -89,13 +89,28 @@ TEST_CASE("scale does not matter", "[solve]") {
     const MatX<double> W = C * C.transpose();
     const VecX<double> b = random_vector(draws, 5);
     const VecX<double> lambda = solve_complementarity(W, b).lambda;
-    CHECK(solve_complementarity(W, scale * b).lambda == scale * lambda);
-    CHECK(solve_complementarity(scale * W, b).lambda == lambda / scale);
+    CHECK(solve_complementarity(W, VecX<double>(scale * b)).lambda == scale * lambda);
+    CHECK(solve_complementarity(MatX<double>(scale * W), b).lambda == lambda / scale);
   }
 }
 
 TEST_CASE("nothing to do and nothing at all", "[solve]") {
-  CHECK(solve_complementarity(MatX<double>::Identity(3, 3), VecX<double>::Ones(3)).lambda.norm() == 0);
-  CHECK(solve_complementarity(MatX<double>::Identity(3, 3), VecX<double>::Zero(3)).lambda.norm() == 0);
+  const MatX<double> I = MatX<double>::Identity(3, 3);
+  CHECK(solve_complementarity(I, VecX<double>(VecX<double>::Ones(3))).lambda.norm() == 0);
+  CHECK(solve_complementarity(I, VecX<double>(VecX<double>::Zero(3))).lambda.norm() == 0);
   CHECK(solve_complementarity(MatX<double>(0, 0), VecX<double>(0)).lambda.size() == 0);
+}
+
+TEST_CASE("without the heap: the same impulses", "[solve]") {
+  Draws draws(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const int n = 1 + trial % 8;
+    const MatX<double> C = random_matrix(draws, n, n + 1);
+    const MatX<double> W = C * C.transpose();
+    const VecX<double> b = random_vector(draws, n);
+    const MatMax<double, kMaxLimitRows> W_bounded = W;
+    const VecMax<double, kMaxLimitRows> b_bounded = b;
+    CHECK(VecX<double>(solve_complementarity(W_bounded, b_bounded).lambda) ==
+          solve_complementarity(W, b).lambda);
+  }
 }

@@ -1,0 +1,170 @@
+// What a scene does not need is not computed (design section 2), by the counters of the kernels; and a step
+// allocates nothing on the heap.
+#include "catch.h"
+
+#include <cstdlib>
+#include <new>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+long allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new[](std::size_t size) {
+  return operator new(size);
+}
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto align = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace {
+
+const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
+
+Counters after_steps(Simulation& simulation, int steps) {
+  for (int i = 0; i < steps; ++i) simulation.step(1e-3);
+  return simulation.counters();
+}
+
+}  // namespace
+
+TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix", "[skip]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    Part& part = test::add(body, "rigid", "superellipsoid", {"taper", "bend"}, 1000);
+    part.rest({{"a1", 0.3}, {"bend.angle", 0.3}}).move({1, 0, 0}, {1, 2, 3});
+    body.spring("spring", point(part, 0.3, 1), world(0, 0, 1), 100);
+    Simulation simulation(body, method);
+    const Counters counters = after_steps(simulation, 10);
+    CHECK(counters.jacobian_points == 0);
+    CHECK(counters.rate_points == 0);
+    CHECK(counters.mass_matrices == 0);
+    CHECK(counters.point_jets == 0);
+    CHECK(counters.surfaces == 0);
+    CHECK(counters.inertial_forces == simulation.step_counters().evaluations);
+    CHECK(simulation.model().n_q() == 7);
+  }
+}
+
+TEST_CASE("a part that does not move has no coordinates and costs nothing", "[skip]") {
+  MultiBody body;
+  test::add(body, "post", "box", {"taper"}, 1000).fix();
+  Part& part = test::add(body, "ball", "sphere", {}, 1000);
+  body.spring("spring", point(*body.find("post"), 0.3, 1), point(part, 0, 0), 100);
+  Simulation simulation(body);
+  const Counters counters = after_steps(simulation, 10);
+  CHECK(simulation.model().n_q() == 7);
+  CHECK(simulation.model().parts()[0].q0 == -1);
+  CHECK(counters.mass_matrices == 0);
+  CHECK(counters.point_jets == 0);
+}
+
+TEST_CASE("at rest: no rates and no inertial forces", "[skip]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {"taper"}, 1000);
+    part.stiffness({{"a1", 100}, {"taper.tx", 100}});
+    Simulation simulation(body, method);
+    const Counters counters = after_steps(simulation, 10);
+    CHECK(counters.inertial_forces == 0);
+    CHECK(counters.rate_points == 0);
+    CHECK(counters.mass_matrices == simulation.step_counters().evaluations);
+  }
+}
+
+TEST_CASE("some parameters frozen: their columns are gone, and the rule is the one for what moves",
+          "[skip]") {
+  MultiBody body;
+  Part& part = test::add(body, "part", "superellipsoid", {"taper", "twist"}, 1000);
+  part.make_dynamic({"a1", "twist.angle"});
+  Simulation simulation(body);
+  CHECK(part.rest_inertia().M.rows() == 8);
+  CHECK(simulation.model().n_v() == 8);
+  CHECK(part.mass_points().rule == "sections");
+  // Scales alone need four points.
+  MultiBody scales;
+  Part& scaled = test::add(scales, "part", "supertoroid", {}, 1000);
+  scaled.make_dynamic({"a1", "a2", "a3"});
+  const Simulation of_scales(scales);
+  CHECK(scaled.mass_points().n_points == 4);
+}
+
+TEST_CASE("no output, no surface; evaluations are counted", "[skip]") {
+  MultiBody body;
+  test::tumbling_solid(body);
+  Simulation rk4(body, "rk4"), euler(body, "semi_implicit_euler");
+  CHECK(after_steps(rk4, 10).surfaces == 0);
+  after_steps(euler, 10);
+  CHECK(rk4.step_counters().evaluations == 40);
+  CHECK(euler.step_counters().evaluations == 10);
+  CHECK(rk4.step_counters().steps == 10);
+  CHECK(rk4.counters().rate_points == 40 * body.parts()[0]->mass_points().n_points);
+}
+
+TEST_CASE("a step takes nothing from the heap", "[skip]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    Part& a = test::tumbling_solid(body, "a");
+    a.damping(0.1, 0.001, 0.1).rest("a1", test::wave(0.3, 0.05, 20));
+    Part& b = test::add(body, "b", "box", {}, 1000);
+    b.place({1, 0, 0}).move({0, 0, 0}, {1, 2, 3});
+    body.spring("tie", point(a, 0.3, 1), point(b, 0, 0), 100, 1, 0.3);
+    body.force("push", point(a, 0.3, 1), TimeVector(test::wave(0, 1, 3), 0, 0));
+    body.torque("turn", b, TimeVector(test::wave(0, 1, 3), 0, 0));
+    Simulation simulation(body, method);
+    simulation.step(1e-3);
+    simulation.step(1e-3);
+    const long before = allocations;
+    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
+    const long taken = allocations - before;
+    INFO(method);
+    CHECK(taken == 0);
+  }
+}
+
+TEST_CASE("a parameter resting on its limit takes nothing from the heap", "[skip]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
+    part.make_dynamic({"a1", "a3"}).limits("a1", {0.5, 1}).move({0, 0, 0}, {0, 0, 2});
+    Simulation simulation(body, method);
+    for (int i = 0; i < 5; ++i) simulation.step(1e-3);
+    REQUIRE(simulation.state().q[7] == 1);
+    const long before = allocations;
+    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
+    const long taken = allocations - before;
+    INFO(method);
+    CHECK(taken == 0);
+  }
+}
