@@ -348,7 +348,7 @@ double change_on_doubling(const Part& part, int trials) {
 
 }  // namespace
 
-TEST_CASE("N16: doubling the rule changes nothing: frozen exponents", "[mass]") {
+TEST_CASE("N16: doubling the rule changes nothing: frozen exponents", "[mass][long]") {
   const std::vector<std::vector<std::string>> chains{{},       {"taper"},       {"twist"},
                                                      {"bend"}, {"bend_offset"}, {"taper", "twist", "bend"}};
   const double exponents[][2] = {{0.1, 0.1}, {0.3, 1}, {0.5, 0.5}, {1, 1},       {1.7, 0.3},
@@ -368,7 +368,7 @@ TEST_CASE("N16: doubling the rule changes nothing: frozen exponents", "[mass]") 
       }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass]") {
+TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass][long]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain :
          std::vector<std::vector<std::string>>{{}, {"taper"}, {"twist", "shear"}, {"bend"}})
@@ -383,7 +383,7 @@ TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass]") 
       }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom", "[mass]") {
+TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom", "[mass][long]") {
   for (bool shell : {false, true})
     for (double eps : {0.1, 0.7, 1.9}) {
       const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {"taper"}, 1000);
