@@ -14,7 +14,8 @@ struct QuadratureNode {
 /// Gauss-Legendre with n points: exact for polynomials of degree 2n - 1.
 std::vector<QuadratureNode> gauss_rule(int n);
 
-/// n points for integrands with an algebraic or logarithmic singularity at 0: Gauss-Legendre in y, x = y^q, q >= 1.
+/// n points for integrands with an algebraic or logarithmic singularity at 0: Gauss-Legendre in y, x = y^q, q
+/// >= 1.
 std::vector<QuadratureNode> one_end_rule(int n, double q = 4);
 
 /// 2n points for singularities at both ends: one_end_rule on either half.

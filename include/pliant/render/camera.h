@@ -16,7 +16,8 @@ struct Camera {
 
 /// A three-quarter view, slightly from above, that holds the whole box with a margin. aspect = width /
 /// height; field_of_view in degrees. An empty box is taken as the unit cube on the origin. Throws
-/// std::invalid_argument when the box is not finite, aspect is not positive or field_of_view is not in (0, 180).
+/// std::invalid_argument when the box is not finite, aspect is not positive or field_of_view is not in (0,
+/// 180).
 Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect,
                         double field_of_view = Camera().field_of_view);
 

@@ -28,7 +28,7 @@ function(pliant_install_library name)
   set(PLIANT_COMPONENT ${name})
   set(PLIANT_COMPONENT_NEEDS ${needs})
   set(PLIANT_COMPONENT_FINDS "${finds}")
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/pliant-component.cmake.in
+  configure_file(${PROJECT_SOURCE_DIR}/src/cmake/pliant-component.cmake.in
                  ${PROJECT_BINARY_DIR}/package/pliant-${name}.cmake @ONLY)
 
   set(targets pliant_${name})
@@ -52,7 +52,7 @@ function(_pliant_write_pkg_config file)
   list(TRANSFORM definitions PREPEND -D)
   list(JOIN definitions " " definitions)
   list(JOIN flags " " flags)
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/pliant.pc.in ${file} @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/src/cmake/pliant.pc.in ${file} @ONLY)
 endfunction()
 
 # What is installed once: headers of the libraries that are built, the package's config and version, pliant.pc.
@@ -66,11 +66,11 @@ function(pliant_install_package)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/pliant DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${not_built})
 
   set(build ${PROJECT_BINARY_DIR}/package)
-  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pliant-config.cmake.in ${build}/pliant-config.cmake
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/src/cmake/pliant-config.cmake.in ${build}/pliant-config.cmake
                                 INSTALL_DESTINATION ${PLIANT_PACKAGE_DIR} NO_SET_AND_CHECK_MACRO)
   write_basic_package_version_file(${build}/pliant-config-version.cmake COMPATIBILITY SameMinorVersion)
   install(FILES ${build}/pliant-config.cmake ${build}/pliant-config-version.cmake
-                ${PROJECT_SOURCE_DIR}/cmake/FindCHOLMOD.cmake
+                ${PROJECT_SOURCE_DIR}/src/cmake/FindCHOLMOD.cmake
           DESTINATION ${PLIANT_PACKAGE_DIR})
 
   _pliant_write_pkg_config(${build}/pliant.pc)
