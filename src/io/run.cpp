@@ -48,11 +48,20 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 }  // namespace
 
 int automatic_threads(const Scene& scene) {
-  // A round of the pool costs about as much as a deforming part or a hundred rigid ones (bench/step_bench).
-  double parts = 0;
-  for (const auto& part : scene.body.parts()) parts += part->fixed() ? 0 : part->rigid() ? 0.01 : 1;
-  const auto useful = static_cast<int>(std::min(parts / 4, 1024.0));
-  return std::clamp(useful, 1, std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  // Microseconds of an evaluation at the least, as bench/step_bench measures them; sending work to the pool
+  // and waiting for it takes about 10.
+  constexpr double rigid = 0.1, affine = 1.5, other = 30, worth_a_thread = 50;
+  double cost = 0;
+  for (const auto& part : scene.body.parts()) {
+    if (part->fixed()) continue;
+    const Parameters& parameters = part->parameters();
+    double part_cost = part->rigid() ? rigid : affine;
+    for (const int i : parameters.dynamic())
+      if (parameters[i].spec->follows != Follows::affine) part_cost = other;
+    cost += part_cost;
+  }
+  const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);
 }
 
 Run::Run(Scene& scene, RunOptions options, Progress& progress)
