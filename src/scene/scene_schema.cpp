@@ -126,7 +126,7 @@ Record part_record() {
 Record make_scene_record() {
   const Record time{"time",
                     "How long, and how to step.",
-                    {optional("end", number(above(0), "s"), "End of the run; it starts at 0.", "1"),
+                    {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
                      optional("step", number(above(0), "s"), "Time step.", "0.001"),
                      optional("integrator", choice(integrator_choices()), "Method of time integration.",
                               "\"semi_implicit_euler\"")}};

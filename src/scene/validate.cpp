@@ -227,6 +227,7 @@ class Validator {
   }
 
   void check_record(const JsonValue& value, const Record& record, const std::string& tag) {
+    std::vector<std::string> misspelt;
     for (const JsonValue::Member& member : value.members()) {
       if (faults_.full()) return;
       const bool ignored = schema::is_ignored_key(member.key) || member.key == tag ||
@@ -234,7 +235,7 @@ class Validator {
       if (ignored) continue;
       const Field* field = record.find(member.key);
       if (field == nullptr) {
-        unknown_key(member, record, tag);
+        misspelt.push_back(unknown_key(member, record, tag));
         continue;
       }
       const Step step(this, member.key);
@@ -242,6 +243,7 @@ class Validator {
     }
     for (const Field& field : record.fields) {
       if (!field.required || value.find(field.key) != nullptr) continue;
+      if (std::find(misspelt.begin(), misspelt.end(), field.key) != misspelt.end()) continue;
       fault(value.place(), pointer_,
             "missing key \"" + field.key + "\"; expected " + field.type.words() +
                 (field.example.empty() ? "" : ", for example \"" + field.key + "\": " + field.example));
@@ -266,7 +268,8 @@ class Validator {
     }
   }
 
-  void unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
+  /// Returns the key that is probably meant; empty when none is near.
+  std::string unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
     std::vector<std::string> keys;
     if (!tag.empty()) keys.push_back(tag);
     for (const Field& field : record.fields) keys.push_back(field.key);
@@ -287,6 +290,7 @@ class Validator {
       hint = keys.empty() ? "; expected no keys" : "; expected one of " + list;
     }
     fault(member.key_place, pointer_join(pointer_, member.key), "unknown key" + hint);
+    return nearest_name(member.key, keys);
   }
 
   void check_one_of(const JsonValue& value, const Type& type) {
