@@ -1,10 +1,9 @@
 #include "parameter_reader.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
 #include <pliant/part/registry.h>
-#include <pliant/scene/time_value.h>
 
 #include "json_write.h"
 
@@ -103,13 +102,13 @@ bool ParameterReader::contradicts(const Entry& e) {
 bool ParameterReader::read_rest(const Entry& e) {
   if (e.rest == nullptr) return true;
   const ParameterSpec& spec = *e.parameter.spec;
-  const TimeFunction f = read_time_function(*e.rest);
-  if (!faults_.finite(*e.rest, f, end_)) return false;
-  const double now = f.value(0);
+  const std::optional<TimeFunction> f = times_.function(*e.rest, Needs::value_and_rate);
+  if (!f) return false;
+  const double now = f->value(0);
   const bool narrowed = e.dynamic && !spec.relative;
   const Range& allowed = narrowed ? spec.dynamic : spec.frozen;
   if (!allowed.contains(now)) {
-    const std::string start = f.is_constant() ? "" : "it is " + shortest(now) + " at time 0; ";
+    const std::string start = f->is_constant() ? "" : "it is " + shortest(now) + " at time 0; ";
     const std::string why = narrowed && spec.frozen.contains(now)
                                 ? " for a dynamic " + e.parameter.name + " (a frozen one may be in [" +
                                       shortest(spec.frozen.min) + ", " + shortest(spec.frozen.max) + "])"
@@ -117,12 +116,12 @@ bool ParameterReader::read_rest(const Entry& e) {
     faults_.value(*e.rest, start + "expected " + words(allowed, spec.unit) + why);
     return false;
   }
-  if (!e.dynamic && !f.is_constant()) {
+  if (!e.dynamic && !f->is_constant()) {
     faults_.value(*e.rest, "it moves in time, but " + e.parameter.name +
                                " is frozen; expected a number, or \"dynamic\": true beside it");
     return false;
   }
-  part_.rest(e.parameter.name, f);
+  part_.rest(e.parameter.name, *f);
   return true;
 }
 
@@ -163,9 +162,9 @@ void ParameterReader::read_limits(const Entry& e) {
   if (!range.contains(rest)) {
     if (e.rest != nullptr)
       return faults_.value(*e.rest, "expected a rest value within the limits, " + between);
-    const JsonValue* passed = e.min != nullptr && rest < range.min ? e.min : e.max;
-    return faults_.value(*passed, "the rest value of " + e.parameter.name + ", " + shortest(rest) +
-                                      ", is outside this limit; expected limits around it");
+    const bool below = e.min != nullptr && rest < range.min;
+    return faults_.value(below ? *e.min : *e.max, std::string("expected at ") + (below ? "most" : "least") +
+                                                      " the rest value, " + shortest(rest));
   }
   if (e.initial != nullptr && !range.contains(e.initial->number()))
     return faults_.value(*e.initial, "expected an initial value within the limits, " + between);

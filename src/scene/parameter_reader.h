@@ -9,6 +9,7 @@
 #include <pliant/scene/reader.h>
 
 #include "scene_faults.h"
+#include "time_reader.h"
 
 namespace pliant {
 
@@ -16,7 +17,7 @@ class ParameterReader {
  public:
   /// in_matrix: the parameters of the part's stiffness matrix, which makes them dynamic. end: of the run, s.
   ParameterReader(Part& part, const std::vector<std::string>& in_matrix, double end, SceneFaults& faults)
-      : part_(part), in_matrix_(in_matrix), end_(end), faults_(faults) {}
+      : part_(part), in_matrix_(in_matrix), times_(end, faults), faults_(faults) {}
 
   /// Reads the key "parameters" of a part; values with known faults are passed over.
   void read(const Reader& part);
@@ -40,7 +41,7 @@ class ParameterReader {
 
   Part& part_;
   const std::vector<std::string>& in_matrix_;
-  double end_;
+  TimeReader times_;
   SceneFaults& faults_;
 };
 

@@ -59,8 +59,8 @@ std::unique_ptr<Part> PartReader::read() {
   try {
     ParameterReader(*part_, in_matrix, end_, faults_).read(r_);
     if (has_matrix) read_stiffness(r_.object("stiffness_matrix"));
-  } catch (const std::invalid_argument& e) {  // too many of them are dynamic
-    faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), e.what());
+  } catch (const std::invalid_argument& e) {
+    refused(e);
   }
   if (r_.given("inertia")) read_inertia(r_.object("inertia"));
   part_->place(r_.vector3("position"), orientation());
@@ -88,7 +88,7 @@ void PartReader::read_stiffness(const Reader& r) {
   const MatX<double> full = matrix(K);
   const double lowest = Eigen::SelfAdjointEigenSolver<MatX<double>>(full).eigenvalues().minCoeff();
   if (!(lowest >= -1e-12 * full.cwiseAbs().maxCoeff()))
-    return faults_.value(K, "it has the negative eigenvalue " + shortest(lowest) +
+    return faults_.value(K, "it has the negative eigenvalue " + brief(lowest) +
                                 ", a direction in which it pushes away; expected none below 0");
   std::vector<std::string> all;
   for (const JsonValue& name : names.array()) all.push_back(name.string());
@@ -156,10 +156,10 @@ void PartReader::read_inertia(const Reader& r) {
       r.number("mass") * (c.squaredNorm() * Mat3<double>::Identity() - c * c.transpose());
   const Vec3<double> I = Eigen::SelfAdjointEigenSolver<Mat3<double>>(about_origin - offset).eigenvalues();
   if (!(I[0] > 0) || !(I[0] + I[1] >= I[2] * (1 - 1e-12)))
-    return faults_.value(moments,
-                         "about the centre of mass its principal moments are " + shortest(I[0]) + ", " +
-                             shortest(I[1]) + " and " + shortest(I[2]) +
-                             " kg m^2; expected each > 0 and none larger than the other two together");
+    return faults_.value(
+        moments, "about the centre of mass its principal moments are " + brief(I[0]) + ", " + brief(I[1]) +
+                     " and " + brief(I[2]) +
+                     " kg m^2; expected each > 0 and none larger than the other two together");
   part_->inertia(r.number("mass"), about_origin, c);
 }
 
@@ -180,7 +180,7 @@ Eigen::Quaterniond PartReader::orientation() {
       hint += (hint.empty() ? "; did you mean [" : ", ") + shortest(std::round(x * 1e6) / 1e6);
     hint += "]?";
   }
-  faults_.value(value, "its length is " + shortest(length) + "; expected a quaternion of length 1" + hint);
+  faults_.value(value, "its length is " + brief(length) + "; expected a quaternion of length 1" + hint);
   return Eigen::Quaterniond::Identity();
 }
 
@@ -192,26 +192,33 @@ void PartReader::check_rigid() {
     if (r_.boolean("fixed"))
       faults_.value(r_.at("fixed"), because + "only frozen parameters in a part that does not move");
     if (r_.given("inertia"))
-      faults_.value(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
+      faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
   }
   if (!r_.boolean("fixed")) return;
   for (const char* key : {"velocity", "angular_velocity"})
     if (!r_.vector3(key).isZero(0)) faults_.warn(r_.at(key), "it has no effect, because the part is fixed");
 }
 
+/// What shows only when all parameters come together: too many that are dynamic, a shape that folds.
+void PartReader::refused(const std::invalid_argument& e) {
+  std::string message = e.what();
+  const std::string who = "part '" + part_->name() + "': ";
+  if (message.compare(0, who.size(), who) == 0) message.erase(0, who.size());
+  faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), message);
+}
+
 void PartReader::prepare() {
-  const JsonValue& about = r_.given("parameters") ? r_.at("parameters") : r_.json();
   try {
     part_->prepare();
-  } catch (const std::invalid_argument& e) {  // folds
-    return faults_.place(about, e.what());
+  } catch (const std::invalid_argument& e) {
+    return refused(e);
   }
   const Inertia<double>& inertia = part_->rest_inertia();
   for (int i = 0; i < 3; ++i) {
     const double moment = inertia.M(3 + i, 3 + i);
     if (is_workable(inertia.mass) && is_workable(moment)) continue;
-    return faults_.place(r_.json(), "size and density make a mass of " + shortest(inertia.mass) +
-                                        " kg with a moment of inertia of " + shortest(moment) +
+    return faults_.place(r_.json(), "size and density make a mass of " + brief(inertia.mass) +
+                                        " kg with a moment of inertia of " + brief(moment) +
                                         " kg m^2; expected both from 1e-100 to 1e100");
   }
   prepared_ = true;

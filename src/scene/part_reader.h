@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ class PartReader {
   void read_inertia(const Reader& r);
   Eigen::Quaterniond orientation();
   void check_rigid();
+  void refused(const std::invalid_argument& e);
   void prepare();
 
   const Reader& r_;

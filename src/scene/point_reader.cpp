@@ -43,10 +43,9 @@ std::optional<Point> PointReader::on_part(const Reader& r) const {
 
 std::optional<Point> PointReader::anywhere(const Reader& r) const {
   if (r.record().find("world") == nullptr) return on_part(r);
-  if (!r.given("world")) return {};
-  const TimeVector world = r.time_vector("world");
-  if (!faults_.finite(r.at("world"), world, end_)) return {};
-  return pliant::world(world);
+  const std::optional<TimeVector> moving = times_.vector(r, "world", Needs::value_and_rate);
+  if (!moving) return {};
+  return world(*moving);
 }
 
 /// Resolved at the rest shape.

@@ -9,6 +9,7 @@
 #include <pliant/scene/reader.h>
 
 #include "scene_faults.h"
+#include "time_reader.h"
 
 namespace pliant {
 
@@ -23,7 +24,7 @@ class PointReader {
  public:
   /// parts: by name. end: of the run, s.
   PointReader(const std::map<std::string, NamedPart>& parts, double end, SceneFaults& faults)
-      : parts_(parts), end_(end), faults_(faults) {}
+      : parts_(parts), times_(end, faults), faults_(faults) {}
 
   /// The part that a key "part" names; null, with a fault if nobody is called so.
   Part* part(const Reader& r) const;
@@ -37,7 +38,7 @@ class PointReader {
   std::optional<Material<double>> material(const Part& part, const JsonValue& at) const;
 
   const std::map<std::string, NamedPart>& parts_;
-  double end_;
+  TimeReader times_;
   SceneFaults& faults_;
 };
 

@@ -12,10 +12,10 @@
 #include <pliant/scene/scene_schema.h>
 #include <pliant/scene/validate.h>
 
-#include "json_write.h"
 #include "part_reader.h"
 #include "point_reader.h"
 #include "scene_faults.h"
+#include "time_reader.h"
 
 namespace pliant {
 
@@ -78,12 +78,12 @@ class SceneReader {
     constexpr double kMost = 1e12;
     if (scene_->end / scene_->step > kMost)
       faults_.value(time.at(time.given("step") ? "step" : "end"),
-                    "it makes " + shortest(scene_->end / scene_->step) + " steps to the end at " +
-                        shortest(scene_->end) + " s; expected at most 1e12");
+                    "it makes " + brief(scene_->end / scene_->step) + " steps to the end at " +
+                        brief(scene_->end) + " s; expected at most 1e12");
     if (scene_->end * scene_->frame_rate > kMost)
       faults_.value(output.given("frame_rate") ? output.at("frame_rate") : time.at("end"),
-                    "it makes " + shortest(scene_->end * scene_->frame_rate) + " frames to the end at " +
-                        shortest(scene_->end) + " s; expected at most 1e12");
+                    "it makes " + brief(scene_->end * scene_->frame_rate) + " frames to the end at " +
+                        brief(scene_->end) + " s; expected at most 1e12");
     const std::vector<double> size = output.numbers("size");
     scene_->width = static_cast<int>(size[0]);
     scene_->height = static_cast<int>(size[1]);
@@ -170,7 +170,7 @@ class SceneReader {
     if (length > 0 && (position_at_start(*from) - position_at_start(*to)).norm() <= 1e-9 * length)
       return faults_.value(
           r.at("rest_length"),
-          "both ends are at the same place at time 0, where a spring with a length has no direction; "
+          "both ends are at the same place at time 0, where a spring with a rest length has no direction; "
           "expected 0, or ends apart");
     scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
                         r.number("stiffness"), r.number("damping"), length);
@@ -179,23 +179,17 @@ class SceneReader {
     return a.cu.x == b.cu.x && a.su.x == b.su.x && a.cv.x == b.cv.x && a.sv.x == b.sv.x && a.w == b.w;
   }
 
+  TimeReader times() { return {scene_->end, faults_}; }
   static Frame frame(const Reader& r) { return r.text("frame") == "body" ? Frame::body : Frame::world; }
-  /// A force or a torque that varies in time.
-  std::optional<TimeVector> load(const Reader& r, const char* key) {
-    if (!r.given(key)) return {};
-    const TimeVector f = r.time_vector(key);
-    if (!faults_.finite(r.at(key), f, scene_->end)) return {};
-    return f;
-  }
   void read_force(const Reader& r, const PointReader& points) {
     const std::optional<Point> at = points.on_part(r);
-    const std::optional<TimeVector> force = load(r, "force");
+    const std::optional<TimeVector> force = times().vector(r, "force", Needs::value);
     if (at && force)
       scene_->body.force(name_of(r, "force", scene_->body.forces().size()), *at, *force, frame(r));
   }
   void read_torque(const Reader& r, const PointReader& points) {
     const Part* part = points.part(r);
-    const std::optional<TimeVector> torque = load(r, "torque");
+    const std::optional<TimeVector> torque = times().vector(r, "torque", Needs::value);
     if (part != nullptr && torque)
       scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, *torque, frame(r));
   }

@@ -1,6 +1,7 @@
 #include "scene_faults.h"
 
-#include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include <pliant/math/nearest_name.h>
 
@@ -44,34 +45,10 @@ void SceneFaults::unknown(const JsonValue& name, const std::string& kind,
                   (names.empty() ? "; the scene has no " + kind + "s" : among(name.string(), names)));
 }
 
-bool SceneFaults::finite(const JsonValue& at, const TimeFunction& f, double end) {
-  constexpr int kIntervals = 256;
-  if (f.is_constant()) return true;
-  for (int i = 0; i <= kIntervals; ++i) {
-    const double t = end * i / kIntervals;
-    const Taylor2<double> x = f.at(t);
-    if (std::isfinite(x.v) && std::isfinite(x.d)) continue;
-    const std::string what = std::isnan(x.v)       ? "its value is not a real number"
-                             : !std::isfinite(x.v) ? "its value is not finite"
-                                                   : "its rate of change is not finite";
-    const std::string of = at.is_object() ? "the key frames are too far apart for numbers: " : "";
-    value(at,
-          of + what + " at t = " + shortest(t) + " s; expected a finite value and rate all through the run");
-    return false;
-  }
-  return true;
-}
-
-bool SceneFaults::finite(const JsonValue& at, const TimeVector& f, double end) {
-  bool all = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (at.is_array()) {
-      all = finite(at.array()[i], f.component[i], end) && all;
-    } else if (!finite(at, f.component[i], end)) {
-      return false;
-    }
-  }
-  return all;
+std::string brief(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", x);
+  return shortest(std::strtod(text, nullptr));
 }
 
 std::string among(std::string_view word, const std::vector<std::string>& names) {

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include <pliant/math/time_function.h>
 #include <pliant/scene/diagnostics.h>
 #include <pliant/scene/json_document.h>
 
@@ -34,18 +33,15 @@ class SceneFaults {
   /// A name that is none of `names`, which are called `kind` ("part").
   void unknown(const JsonValue& name, const std::string& kind, const std::vector<std::string>& names);
 
-  /// Reports a function of time that is not finite, or changes at no finite rate, at one of many times from 0
-  /// to the end of the run (s). True when there is nothing to report.
-  bool finite(const JsonValue& at, const TimeFunction& f, double end);
-  /// The same for each component; those written for themselves are reported for themselves.
-  bool finite(const JsonValue& at, const TimeVector& f, double end);
-
  private:
   void add(const JsonValue& at, std::string message, Severity severity);
 
   const JsonDocument& document_;
   Diagnostics& diagnostics_;
 };
+
+/// A computed number with the digits that a reader wants.
+std::string brief(double x);
 
 /// "; did you mean "NAME"?", or where no name is near "; expected one of "A", "B"".
 std::string among(std::string_view word, const std::vector<std::string>& names);

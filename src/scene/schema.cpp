@@ -50,6 +50,8 @@ std::string array_words(const Type& type) {
   if (type.min_count == type.max_count)
     return "an array of " + std::to_string(type.min_count) + " " + elements;
   const bool bounded = type.max_count != std::numeric_limits<std::size_t>::max();
+  if (bounded && type.min_count == 0)
+    return "an array of at most " + std::to_string(type.max_count) + " " + elements;
   if (bounded) {
     return "an array of " + std::to_string(type.min_count) + " to " + std::to_string(type.max_count) + " " +
            elements;

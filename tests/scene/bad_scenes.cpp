@@ -1,6 +1,6 @@
-// Scenes that must be refused, each beside the text that says why: bad/NAME.json and bad/NAME.txt, which is all that
-// the exception says. When a wording is changed on purpose, PLIANT_REWRITE_GOLDENS=1 in the environment of this
-// test writes the texts anew; read what git diff then shows as a user would.
+// Scenes that must be refused, each beside the text that says why: bad/NAME.json and bad/NAME.txt, which is
+// all that the exception says. When a wording is changed on purpose, PLIANT_REWRITE_GOLDENS=1 in the
+// environment of this test writes the texts anew; read what git diff then shows as a user would.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
