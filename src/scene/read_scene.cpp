@@ -222,11 +222,8 @@ std::uint64_t hash_of(const std::string& text) {
   return hash;
 }
 
-}  // namespace
-
-std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
-                                  Diagnostics& diagnostics) {
-  JsonDocument document = JsonDocument::read(file, diagnostics);
+std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::string>& overrides,
+                                Diagnostics& diagnostics) {
   for (const std::string& assignment : overrides) document.set(assignment, diagnostics);
   validate(document, scene_record(), diagnostics);
   if (!document.root().is_object() || diagnostics.full()) diagnostics.throw_if_errors();
@@ -238,6 +235,18 @@ std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std
   scene->document = document.text();
   scene->overrides = overrides;
   return scene;
+}
+
+}  // namespace
+
+std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
+                                  Diagnostics& diagnostics) {
+  return scene_of(JsonDocument::read(file, diagnostics), overrides, diagnostics);
+}
+
+std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
+                                   const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
+  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, diagnostics);
 }
 
 }  // namespace pliant
