@@ -35,6 +35,7 @@ Type color() {
                        s.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
                      report(value, "expected \"#rrggbb\" with hexadecimal digits", kWholeValue);
                  })
+                 .matching("^#[0-9a-fA-F]{6}$")
                  .expecting("\"#rrggbb\" or [red, green, blue] from 0 to 1");
   return one_of({hex, array(number(between(0, 1), "1"), 3, 3)})
       .expecting("a colour \"#rrggbb\" or [red, green, blue] from 0 to 1 (sRGB)")

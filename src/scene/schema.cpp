@@ -138,6 +138,11 @@ Type Type::defined_as(std::string name) const {
   t.definition = std::move(name);
   return t;
 }
+Type Type::matching(std::string regular_expression) const {
+  Type t = *this;
+  t.pattern = std::move(regular_expression);
+  return t;
+}
 Type Type::checked(Check rule) const {
   Type t = *this;
   t.check = std::move(rule);

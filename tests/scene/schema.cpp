@@ -7,10 +7,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include <pliant/scene/json_document.h>
 #include <pliant/scene/point_value.h>
@@ -19,6 +15,7 @@
 #include <pliant/scene/validate.h>
 
 #include "catch.h"
+#include "schema_judge.h"
 
 using pliant::Diagnostics;
 using pliant::JsonDocument;
@@ -461,19 +458,10 @@ TEST_CASE("bad declarations are errors of the program") {
 
 namespace {
 
-/// Sound by the JSON Schema, judged by valijson.
+/// Sound by the JSON Schema.
 bool valid(const std::string& text) {
-  static const nlohmann::json schema_text = nlohmann::json::parse(schema_json(scene()));
-  static valijson::Schema schema;
-  static const bool populated = [] {
-    valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
-    valijson::adapters::NlohmannJsonAdapter adapter(schema_text);
-    parser.populateSchema(adapter, schema);
-    return true;
-  }();
-  const nlohmann::json value = nlohmann::json::parse(text);
-  return populated &&
-         valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(value), nullptr);
+  static const pliant::test::SchemaJudge judge(schema_json(scene()));
+  return judge.accepts(nlohmann::json::parse(text));
 }
 
 /// Every property in a schema has a description, every number in it a unit and every optional one a default
