@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -28,6 +29,8 @@ struct Levels {
   int u = 0, w = 0, v = 0;  // sections use u for zeta
 };
 constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
+/// A rule beyond is of no use: a step would take a tenth of a second.
+constexpr int kMostPoints = 2'000'000;
 constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 int size_at(int level) {
   return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))];
@@ -67,6 +70,14 @@ bool has_dynamic_exponent(const Part& part) {
       "part '" + part.name() +
       "': its rest shape folds over (the deformation turns some of the solid inside out); "
       "reduce the bend or the taper, or make the body slimmer");
+}
+
+[[noreturn]] void too_many_points(const Part& part) {
+  std::string names;
+  for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
+  throw std::invalid_argument("part '" + part.name() + "': its mass matrix needs more than " +
+                              std::to_string(kMostPoints) + " mass points to be exact for all of " + names +
+                              "; narrow the limits of some of them (min, max), or freeze them");
 }
 
 /// Refuses a rest shape of which some of the surface is turned inside out: sections and rings do not see
@@ -440,7 +451,8 @@ MassPoints lay_mass_points(const Part& part, int extra_level) {
   const ParameterValues<double> rest = part.parameters().rest();
   const Request request{part, rest, rest.b.data(), follows(part), has_dynamic_exponent(part)};
   const Judge judge{part, probes(part)};
-  constexpr double tolerance = 1e-13;
+  double tolerance = 1e-13;
+  constexpr double most_rounding = 1e-12;
   refuse_folds(request);
 
   Levels levels;
@@ -452,11 +464,17 @@ MassPoints lay_mass_points(const Part& part, int extra_level) {
     for (int Levels::*direction : {&Levels::u, &Levels::w, &Levels::v}) {
       if (direction != &Levels::u && sections) continue;
       if (direction == &Levels::w && part.shell()) continue;
+      double last = kInfinity;
       while (levels.*direction < kLastLevel) {
         Levels finer = levels;
         finer.*direction += 2;
-        const std::vector<Inertia<double>> then = judge.measure(lay(request, finer));
-        if (Judge::difference(now, then) <= tolerance) break;
+        const double difference = Judge::difference(now, judge.measure(lay(request, finer)));
+        // Sums over many points keep a rounding of their own, which no finer rule takes away.
+        if (difference <= most_rounding && difference >= last)
+          tolerance = std::max(tolerance, 2 * difference);
+        if (difference <= tolerance) break;
+        if (points.n_points > kMostPoints) too_many_points(part);
+        last = difference;
         ++(levels.*direction);
         points = lay(request, levels);
         now = judge.measure(points);
