@@ -383,7 +383,8 @@ TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass][lo
       }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom", "[mass][long]") {
+TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom",
+          "[mass][long]") {
   for (bool shell : {false, true})
     for (double eps : {0.1, 0.7, 1.9}) {
       const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {"taper"}, 1000);
