@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <stdexcept>
+#include <string>
 
 #include <Eigen/Cholesky>
 
@@ -88,11 +90,13 @@ class Integrands {
       const double rest = p.rest_value();
       // Lengths scale the body: from half to twice their rest value tells all; offsets up to twice its size.
       const bool offset = !p.spec->relative && p.spec->unit[0] == 'm';
-      const double scale = p.spec->relative ? rest : (offset ? shape.part.size() : 1.0);
+      const double scale =
+          p.spec->relative ? rest : (offset ? shape.part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;
-      ranges_.push_back({std::max({p.limits.min, p.spec->relative ? 0.5 * rest : -kInfinity, -reach}),
-                         std::min({p.limits.max, p.spec->relative ? 2 * rest : kInfinity, reach}), rest,
-                         scale});
+      // So do numbers that range over orders of magnitude.
+      const bool wide = p.spec->relative || p.limits.max > 100 * scale;
+      ranges_.push_back({std::max({p.limits.min, wide ? 0.5 * rest : -kInfinity, -reach}),
+                         std::min({p.limits.max, wide ? 2 * rest : kInfinity, reach}), rest, scale});
     }
   }
   int n() const { return static_cast<int>(ranges_.size()); }
@@ -185,6 +189,8 @@ class Integrands {
 };
 
 constexpr double kTolerance = 2e-14;
+/// What is promised of every rule (design 1.3).
+constexpr double kPromised = 1e-12;
 
 /// The smallest level at which doubling changes no integral; columns(level) lays the nodes. Notes the change
 /// that is left if the last level does not suffice.
@@ -202,16 +208,25 @@ int settle(const Integrands& integrands, double& left, const MakeColumns& column
     }
     return known[static_cast<std::size_t>(level)];
   };
-  double change = 0;
+  double least_change = kInfinity;
+  int best = 0;
   for (int level = 0; level <= kLastLevel; ++level) {
     at(level + 2);
     const Integrals &now = at(level), &finer = at(level + 2);
     // A place of little mass matters little.
     const double least = 0.1 * finer.size.mean();
-    change = ((now.value - finer.value).array().abs() / finer.size.array().max(least)).maxCoeff();
-    if (change <= kTolerance || least == 0) return level;
+    if (least == 0) return level;
+    const double change =
+        ((now.value - finer.value).array().abs() / finer.size.array().max(least)).maxCoeff();
+    if (change <= kTolerance) return level;
+    if (change < 0.5 * least_change) {
+      least_change = change;
+      best = level;
+    }
+    // Sums of terms that cancel keep a rounding of their own, which no finer rule takes away.
+    if (least_change <= kPromised && level >= best + 2) return best;
   }
-  left = std::max(left, change);
+  left = std::max(left, least_change);
   return kLastLevel;
 }
 
@@ -232,6 +247,16 @@ void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& 
     kept.back().weight *= factor;
   }
   nodes = std::move(kept);
+}
+
+/// A rule beyond is of no use: a step would take a good part of a second.
+constexpr std::size_t kMostPoints = 2'000'000;
+[[noreturn]] void too_many_points(const Part& part) {
+  std::string names;
+  for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
+  throw std::invalid_argument("part '" + part.name() + "': its mass matrix needs more than " +
+                              std::to_string(kMostPoints) + " mass points to be exact for all of " + names +
+                              "; narrow the limits of some of them (min, max), or freeze them");
 }
 
 struct Laid {
@@ -329,6 +354,8 @@ Laid lay_rings(const RestShape& shape, const Integrands& integrands, int extra) 
   u = profile_nodes(shape, size_at(laid.level + extra));
   if (thinned) thin(integrands, along_u(u), u);
 
+  const std::size_t n_points = u.size() * w.size() * (shape.points_apart ? v.size() : 3);
+  if (n_points > kMostPoints) too_many_points(shape.part);
   for (const AngleNode& at : u)
     for (const QuadratureNode& depth : w) add_ring(shape, at, depth, v, laid.points);
   return laid;

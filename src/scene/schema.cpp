@@ -50,6 +50,8 @@ std::string array_words(const Type& type) {
   if (type.min_count == type.max_count)
     return "an array of " + std::to_string(type.min_count) + " " + elements;
   const bool bounded = type.max_count != std::numeric_limits<std::size_t>::max();
+  if (bounded && type.min_count == 0)
+    return "an array of at most " + std::to_string(type.max_count) + " " + elements;
   if (bounded) {
     return "an array of " + std::to_string(type.min_count) + " to " + std::to_string(type.max_count) + " " +
            elements;
@@ -134,6 +136,11 @@ Type Type::expecting(std::string words) const {
 Type Type::defined_as(std::string name) const {
   Type t = *this;
   t.definition = std::move(name);
+  return t;
+}
+Type Type::matching(std::string regular_expression) const {
+  Type t = *this;
+  t.pattern = std::move(regular_expression);
   return t;
 }
 Type Type::checked(Check rule) const {

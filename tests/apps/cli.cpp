@@ -201,6 +201,22 @@ TEST_CASE("faults of the input end with code 3 before a folder is made") {
   CHECK(place.pliant("render nowhere").code == 3);
 }
 
+TEST_CASE("bad scenes: code 3, the golden text on standard error, and nothing else") {
+  const Place place;
+  for (const std::string name :
+       {"empty", "not_utf8", "gzip", "faults_of_all_kinds", "folded_bend", "frame_rate_absurd"}) {
+    fs::copy_file(fs::path(PLIANT_BAD_SCENES) / (name + ".json"), place.folder / (name + ".json"));
+    for (const std::string command : {"check ", "run ", "info "}) {
+      INFO(command << name);
+      const Result result = place.pliant(command + name + ".json");
+      CHECK(result.code == 3);
+      CHECK(result.out.empty());
+      CHECK(result.err == bytes_of(fs::path(PLIANT_BAD_SCENES) / (name + ".txt")));
+    }
+  }
+  CHECK_FALSE(fs::exists(place.folder / "out"));
+}
+
 TEST_CASE("a step that is too large: warned before, code 5, the good part kept") {
   const Place place;
   const Result result = place.pliant("run top.json --step 2 --end 4000 -o r");
