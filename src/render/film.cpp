@@ -8,6 +8,8 @@
 namespace pliant {
 namespace {
 
+constexpr double kVertical = 1e-5;  // sine of the angle between view and z
+
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
 }
@@ -57,6 +59,9 @@ void Film::choose_view() {
     camera.target = *asked.target;
   }
   if (asked.eye) camera.eye = *asked.eye;
+  // Straight down or up the picture's top is y.
+  const Eigen::Vector3d view = camera.target - camera.eye;
+  if (camera.up.cross(view).norm() <= kVertical * view.norm()) camera.up = Eigen::Vector3d::UnitY();
 }
 
 const Picture& Film::at(double time) {
