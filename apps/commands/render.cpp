@@ -23,7 +23,7 @@ struct RenderCommand {
   FrameOptions frames;
   std::vector<double> eye, target;
   std::optional<double> field_of_view;
-  bool quiet = false, force = false, no_ground = false, no_shadows = false;
+  bool quiet = false, force = false, no_ground = false, no_springs = false, no_shadows = false;
   pliant::GlBackend backend = pliant::GlBackend::automatic;
 };
 
@@ -39,6 +39,7 @@ void change_view(const RenderCommand& command, pliant::Scene& scene) {
     scene.camera.target = pliant::Vec3<double>(command.target[0], command.target[1], command.target[2]);
   scene.camera.field_of_view = command.field_of_view.value_or(scene.camera.field_of_view);
   if (command.no_ground) scene.ground.visible = false;
+  if (command.no_springs) scene.show_springs = false;
   if (command.no_shadows) scene.light.shadows = false;
 }
 
@@ -79,6 +80,7 @@ void add_render(CLI::App& app, Action& action) {
       ->check(number_between(5, 120))
       ->type_name("DEGREES");
   command->add_flag("--no-ground", options->no_ground, "Without the ground");
+  command->add_flag("--no-springs", options->no_springs, "Without the lines of springs");
   command->add_flag("--no-shadows", options->no_shadows, "Without shadows");
   add_graphics_option(*command, options->backend);
   command->add_flag("--force", options->force, "Replace pictures that exist");
