@@ -39,7 +39,8 @@ Record by_direction() {
 
 Record by_place() {
   return {"point_near",
-          "The surface point nearest to a place, in the rest shape.",
+          "The material point at a place of the rest shape; for a place outside, the surface point with the "
+          "same u and v.",
           {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
 }
 

@@ -222,7 +222,7 @@ Type array(Type element, std::size_t min_count, std::size_t max_count) {
   t.max_count = max_count;
   return t;
 }
-Type vector3(std::string unit, Range range) {
+Type vector3(const std::string& unit, Range range) {
   Type t = array(number(range, unit), 3, 3);
   return t.expecting("3 numbers [x, y, z]" + words(range) +
                      (unit.empty() || unit == "1" ? "" : " (" + unit + ")"));

@@ -244,8 +244,8 @@ TEST_CASE("a repeated link is two links", "[part]") {
 
 TEST_CASE("faults of a part name it, the parameter, the value and what is allowed", "[part]") {
   using test::has_text;
-  CHECK_THROWS_WITH(make_part("p", "egg", {}, 1),
-                    has_text("part 'p': no shape 'egg'") && has_text("supertoroid"));
+  CHECK_THROWS_WITH(make_part("p", "pebble", {}, 1),
+                    has_text("part 'p': no shape 'pebble'") && has_text("supertoroid"));
   CHECK_THROWS_WITH(make_part("p", "box", {"squash"}, 1),
                     has_text("no deformation 'squash'") && has_text("bend_offset"));
   CHECK_THROWS_WITH(make_part("p", "box", {}, 0), has_text("density 0"));
