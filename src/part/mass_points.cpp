@@ -259,6 +259,14 @@ constexpr std::size_t kMostPoints = 2'000'000;
                               "; narrow the limits of some of them (min, max), or freeze them");
 }
 
+ParameterValues<double> initial_values(const Part& part) {
+  const Parameters& all = part.parameters();
+  VecMax<double> q_s(all.n_dynamic());
+  for (int k = 0; k < all.n_dynamic(); ++k)
+    q_s[k] = all[all.dynamic()[static_cast<std::size_t>(k)]].initial;
+  return all.expand<double>(q_s, VecMax<double>::Zero(all.n_dynamic()));
+}
+
 struct Laid {
   std::vector<RestPoint> points;
   int level = 0;
@@ -387,7 +395,8 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
 
 MassPoints lay_mass_points(const Part& part, int doublings) {
   const RestShape shape(part);
-  refuse_folds(shape);
+  refuse_folds(part, shape.rest, "rest");
+  if (part.n_s() > 0) refuse_folds(part, initial_values(part), "initial");
   const Integrands integrands(shape);
   Laid laid = shape.by_sections ? lay_slices(shape, integrands, 2 * doublings)
                                 : lay_rings(shape, integrands, 2 * doublings);

@@ -32,11 +32,10 @@ bool has_dynamic_exponent(const Part& part) {
   return false;
 }
 
-[[noreturn]] void folds(const Part& part) {
-  throw std::invalid_argument(
-      "part '" + part.name() +
-      "': its rest shape folds over (the deformation turns some of the solid inside out); "
-      "reduce the bend or the taper, or make the body slimmer");
+[[noreturn]] void folds(const Part& part, const char* which = "rest") {
+  throw std::invalid_argument("part '" + part.name() + "': its " + which +
+                              " shape folds over (the deformation turns some of the solid inside out); "
+                              "reduce the bend or the taper, or make the body slimmer");
 }
 
 /// Centre and spread of masses in a plane, as three points of equal mass.
@@ -177,17 +176,17 @@ RestShape::RestShape(const Part& of)
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
 }
 
-void refuse_folds(const RestShape& r) {
-  if (r.part.parameters().links().empty()) return;
+void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which) {
+  if (part.parameters().links().empty()) return;
   constexpr int round = 32;
-  const int tall = r.part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
+  const int tall = part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
   Eigen::Matrix3Xd e(3, (2 * tall + 1) * round);
   Eigen::Index column = 0;
   for (int i = -tall; i <= tall; ++i)
     for (int j = 0; j < round; ++j)
-      e.col(column++) = r.part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), r.a);
-  for (const Mat3<double>& F : r.part.chain_gradient(e, r.rest))
-    if (F.determinant() < -1e-12) folds(r.part);
+      e.col(column++) = part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
+  for (const Mat3<double>& F : part.chain_gradient(e, values))
+    if (F.determinant() < -1e-12) folds(part, which);
 }
 
 std::vector<SliceNode> slice_nodes(const RestShape& r, int n) {

@@ -28,9 +28,9 @@ struct RestShape {
   bool points_apart;  ///< every point of a ring moves by itself, else three points stand for it
 };
 
-/// Refuses a rest shape of which some of the surface is turned inside out: sections and rings do not see
-/// their own rims. Throws std::invalid_argument.
-void refuse_folds(const RestShape& shape);
+/// Refuses a shape of which some of the surface is turned inside out: sections and rings do not see their own
+/// rims. which: "rest" or "initial", for the message. Throws std::invalid_argument.
+void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which);
 
 /// Nodes along one direction of refinement n: those of a panel, times the panels.
 

@@ -36,7 +36,13 @@ struct Taper {
   template <class T>
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
     const T zeta = p[2] / h;
-    return {p[0] / (b[0] * zeta + 1.0), p[1] / (b[1] * zeta + 1.0), p[2]};
+    const T wide = b[0] * zeta + 1.0, deep = b[1] * zeta + 1.0;
+    // The tip of a full taper is the pole itself.
+    auto back = [](const T& x, const T& by) {
+      const T open = math::abs(by) - T(1e-300);
+      return math::where_positive(open, T(x / math::where_positive(open, by, T(1))), T(0));
+    };
+    return {back(p[0], wide), back(p[1], deep), p[2]};
   }
 };
 
