@@ -114,7 +114,8 @@ double largest_stable_step(const Simulation& simulation) {
       first[i] = size;
       size += 6 + model.parts()[i].n_s;
     }
-    Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size), MatX<double>::Zero(size, size)};
+    Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
+                  MatX<double>::Zero(size, size)};
     std::vector<std::size_t> ours;
     for (const std::size_t i : parts) {
       const PartModel& m = model.parts()[i];

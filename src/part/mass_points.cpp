@@ -124,8 +124,9 @@ class Integrands {
     VecMax<double> q(n()), rate(n());
     for (int i = 0; i < n(); ++i) {
       const RangeOf& range = ranges_[static_cast<std::size_t>(i)];
-      // As often at an end as between the ends.
-      const double mix = std::clamp(2 * draw.uniform() - 0.5, 0.0, 1.0);
+      // Every third state at a corner of the ranges, where the integrands are at their worst.
+      const double inside = draw.uniform();
+      const double mix = state % 3 == 1 ? std::round(inside) : inside;
       q[i] = state == 0 ? range.rest : range.low + mix * (range.high - range.low);
       rate[i] = range.scale * draw.either_way();
     }
@@ -234,10 +235,11 @@ int settle(const Integrands& integrands, double& left, const MakeColumns& column
 template <class Node>
 void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& nodes) {
   Eigen::VectorXd factors;
-  for (int n_states = 40;; n_states *= 2) {
+  for (int n_states = 80;; n_states *= 2) {
     Eigen::Index rank = 0;
     factors = thin_rule(integrands.shares(line, n_states), &rank);
-    if (rank < Integrands::kEach * n_states * 3 / 4 || rank >= line.n_nodes) break;
+    // Functions enough to span what they are drawn from, or no node to spare.
+    if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -261,10 +263,9 @@ constexpr std::size_t kMostPoints = 2'000'000;
 
 ParameterValues<double> initial_values(const Part& part) {
   const Parameters& all = part.parameters();
-  VecMax<double> q_s(all.n_dynamic());
-  for (int k = 0; k < all.n_dynamic(); ++k)
-    q_s[k] = all[all.dynamic()[static_cast<std::size_t>(k)]].initial;
-  return all.expand<double>(q_s, VecMax<double>::Zero(all.n_dynamic()));
+  VecMax<double> q_s(all.n_dynamic()), still = VecMax<double>::Zero(all.n_dynamic());
+  for (int k = 0; k < all.n_dynamic(); ++k) q_s[k] = all[all.dynamic()[static_cast<std::size_t>(k)]].initial;
+  return all.expand<double>(q_s, still);
 }
 
 struct Laid {

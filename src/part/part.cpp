@@ -354,7 +354,8 @@ std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
     const Mat3<double>& F = gradients[i];
     Mat3<double> cofactors;
     cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-    const Vec3<double> gradient = shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
+    const Vec3<double> gradient =
+        shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
     const Vec3<double> n = cofactors * gradient;
     // At the tip of a full taper only the axis is left.
     all.push_back(n.isZero(0) ? Vec3<double>((F * gradient).normalized()) : Vec3<double>(n.normalized()));

@@ -184,7 +184,8 @@ void refuse_folds(const Part& part, const ParameterValues<double>& values, const
   Eigen::Index column = 0;
   for (int i = -tall; i <= tall; ++i)
     for (int j = 0; j < round; ++j)
-      e.col(column++) = part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
+      e.col(column++) =
+          part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
   for (const Mat3<double>& F : part.chain_gradient(e, values))
     if (F.determinant() < -1e-12) folds(part, which);
 }

@@ -96,12 +96,7 @@ class SceneReader {
     if (camera.given("target")) scene_->camera.target = camera.vector3("target");
     if (camera.given("eye") && camera.given("target")) {
       const Vec3<double> look = *scene_->camera.target - *scene_->camera.eye;
-      if (look.isZero(0))
-        faults_.value(camera.at("target"), "the eye is there too; expected another point");
-      else if (std::hypot(look[0], look[1]) <= 1e-5 * std::abs(look[2]))
-        faults_.value(camera.at("target"),
-                      "it is straight above or below the eye, and up in pictures is z; "
-                      "expected a point a little aside");
+      if (look.isZero(0)) faults_.value(camera.at("target"), "the eye is there too; expected another point");
     }
     scene_->camera.field_of_view = camera.number("field_of_view");
     if (light.given("direction")) scene_->light.direction = read_direction(light.at("direction"), faults_);

@@ -280,3 +280,44 @@ TEST_CASE("N11: a rest shape that folds over is refused, a slim one may bend by 
   slim->rest({{"a1", 0.1}, {"a2", 0.1}, {"bend.angle", kPi}});
   CHECK_NOTHROW(slim->prepare());
 }
+
+TEST_CASE("N10: the tips of full tapers and of half-turn bends are ordinary points", "[part]") {
+  for (const char* shape : {"superellipsoid", "ellipsoid", "capsule"})
+    for (double sign : {-1.0, 1.0}) {
+      const std::unique_ptr<Part> part = make_part("part", shape, {"taper"}, 1000);
+      part->rest({{"taper.tx", sign}, {"taper.ty", sign}}).prepare();
+      const ParameterValues<double> rest = part->parameters().rest();
+      const Material<double> tip = material_at(-sign * kPi / 2, 0);
+      const Vec3<double> at = part->s({tip}, rest).col(0);
+      INFO(shape << " " << sign);
+      CHECK(std::abs(part->inside_outside(at, rest)) <= 1e-10);
+      CHECK((part->normal(tip, rest) - Vec3<double>(0, 0, -sign)).norm() <= 1e-12);
+    }
+  const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {"bend"}, 1000);
+  part->rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 1}, {"bend.angle", kPi}}).prepare();
+  const ParameterValues<double> rest = part->parameters().rest();
+  for (int i = -8; i <= 8; ++i)
+    for (int j = 0; j < 16; ++j) {
+      const Vec3<double> at = part->s({material_at(i * kPi / 16, j * kPi / 8)}, rest).col(0);
+      INFO(i << " " << j);
+      CHECK(std::abs(part->inside_outside(at, rest)) <= 1e-10);
+    }
+}
+
+TEST_CASE("the gauge has no slope at the centre of a body", "[part]") {
+  for (const auto& face : all_shapes()) {
+    if (face->mesh() == MeshPattern::torus) continue;
+    const std::unique_ptr<Part> part = make_part("part", face->name(), {}, 1000);
+    part->prepare();
+    const ParameterValues<double> rest = part->parameters().rest();
+    INFO(face->name());
+    CHECK(std::isfinite(part->inside_outside({0, 0, 0}, rest)));
+    CHECK(part->inside_outside_gradient({0, 0, 0}, rest).allFinite());
+  }
+}
+
+TEST_CASE("N11: an initial shape that folds over is refused", "[part]") {
+  const std::unique_ptr<Part> part = make_part("fat", "cylinder", {"bend"}, 1000);
+  part->initial({{"bend.angle", 2.5}});
+  REQUIRE_THROWS_WITH(part->prepare(), test::has_text("part 'fat': its initial shape folds over"));
+}

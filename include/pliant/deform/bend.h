@@ -16,7 +16,7 @@ struct Bend {
   static constexpr std::array<ParameterSpec, 2> parameters{{
       {"angle",
        0,
-       {-3.14159, 3.14159},
+       {-kPi, kPi},
        {-3.1, 3.1},
        false,
        "rad",
@@ -58,8 +58,8 @@ struct Bend {
     const T half_tan = math::where_positive(d, T(q / (rho + d)), T((rho - d) / q));
     const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
     const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
-    const T z = atan_over(half_tan) * 2.0 *
-                math::where_positive(d, T(p[2] / (rho + d)), T(half_tan / k));  // g / k
+    const T z =
+        atan_over(half_tan) * 2.0 * math::where_positive(d, T(p[2] / (rho + d)), T(half_tan / k));  // g / k
     const T shift = r - r_bent;
     return {p[0] + c * shift, p[1] + s * shift, z};
   }

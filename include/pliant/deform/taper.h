@@ -37,10 +37,10 @@ struct Taper {
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
     const T zeta = p[2] / h;
     const T wide = b[0] * zeta + 1.0, deep = b[1] * zeta + 1.0;
-    // The tip of a full taper is the pole itself.
+    // The tip of a full taper is the pole itself; beside it no place leads back.
     auto back = [](const T& x, const T& by) {
-      const T open = math::abs(by) - T(1e-300);
-      return math::where_positive(open, T(x / math::where_positive(open, by, T(1))), T(0));
+      const T any = math::max(T(math::abs(by) - T(1e-300)), T(math::abs(x) - T(1e-300)));
+      return math::where_positive(any, T(x / math::where_positive(any, by, T(1))), T(0));
     };
     return {back(p[0], wide), back(p[1], deep), p[2]};
   }
