@@ -40,7 +40,7 @@ void print_parameters(const pliant::Part& part) {
 void print_part(const pliant::PartModel& model) {
   const pliant::Part& part = *model.part;
   std::cout << "part " << part.name() << ": " << part.shape().name();
-  for (const pliant::LinkInfo& link : part.parameters().links()) std::cout << " > " << link.type;
+  for (const pliant::LinkInfo& link : part.parameters().all_links()) std::cout << " > " << link.type;
   std::cout << (part.shell() ? ", shell" : "") << "\n";
   print_parameters(part);
   const int frozen = part.parameters().size() - part.parameters().n_dynamic();

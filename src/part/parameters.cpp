@@ -62,6 +62,17 @@ void Parameters::update() {
       p.limits = {p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
     }
   }
+  acting_.clear();
+  int first = n_shape_;
+  for (const LinkInfo& link : links_) {
+    bool acts = false;
+    for (int k = 0; k < link.n_parameters; ++k) {
+      const Parameter& p = (*this)[first + k];
+      acts = acts || p.dynamic || (k < link.amplitudes && p.rest_value() != p.spec->standard);
+    }
+    if (acts) acting_.push_back(link);
+    first += link.n_parameters;
+  }
   if (n_dynamic() > kMaxGlobal)
     throw std::invalid_argument("a part may have at most " + std::to_string(kMaxGlobal) +
                                 " dynamic parameters; this one has " + std::to_string(n_dynamic()));

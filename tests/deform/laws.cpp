@@ -75,6 +75,23 @@ TEMPLATE_LIST_TEST_CASE("the defaults are the identity, bit for bit", "[deform]"
   }
 }
 
+TEMPLATE_LIST_TEST_CASE("amplitudes at their defaults are the identity, whatever the other parameters",
+                        "[deform]", AllDeforms) {
+  Draws draws(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    Parameters<TestType> b = draw<TestType>(draws);
+    b.template head<deform_amplitudes<TestType>>() =
+        defaults<TestType>().template head<deform_amplitudes<TestType>>();
+    REQUIRE(is_identity<TestType>(b.data()));
+    const Vec3<double> p = draws.vector(3);
+    const double h = draws.uniform(0.1, 4);
+    CHECK((TestType::template apply<double>(p, h, b) - p).norm() <= 1e-15 * p.norm());
+    CHECK((gradient<TestType>(p, h, b) - Mat3<double>::Identity()).norm() <= 1e-15);
+    b[0] += 1e-300;
+    CHECK_FALSE(is_identity<TestType>(b.data()));
+  }
+}
+
 TEMPLATE_LIST_TEST_CASE("inverse undoes apply", "[deform]", AllDeforms) {
   Draws draws(2);
   for (int trial = 0; trial < 1000; ++trial) {

@@ -59,7 +59,7 @@ inline Vec3<Long> reference_point(const Part& part, const Material<Long>& m,
   Vec3<Long> s;
   Long h = 0;
   detail::shape_of(static_cast<AllShapes*>(nullptr), part.shape().name(), m, b, s, h);
-  for (const LinkInfo& link : part.parameters().links())
+  for (const LinkInfo& link : part.parameters().all_links())
     detail::link_of(static_cast<AllDeforms*>(nullptr), link.type, b, s, h);
   return s;
 }

@@ -16,6 +16,8 @@ class AnyLink {
  public:
   virtual ~AnyLink() = default;
   virtual LinkInfo info() const = 0;
+  virtual bool acts(const LinkParameters<double>&) const = 0;
+  virtual bool acts(const LinkParameters<Dual<1>>&) const = 0;
   virtual void apply(const HalfHeight<double>&, const LinkParameters<double>&, JetBatch<Pack>&) const = 0;
   virtual void apply(const HalfHeight<Dual<1>>&, const LinkParameters<Dual<1>>&,
                      JetBatch<Dual<1, Pack>>&) const = 0;
@@ -26,6 +28,10 @@ template <class Deform>
 class AnyLinkOf final : public AnyLink {
  public:
   LinkInfo info() const override { return link_info<Deform>(); }
+  bool acts(const LinkParameters<double>& parameters) const override { return link_acts<Deform>(parameters); }
+  bool acts(const LinkParameters<Dual<1>>& parameters) const override {
+    return link_acts<Deform>(parameters);
+  }
   void apply(const HalfHeight<double>& half, const LinkParameters<double>& parameters,
              JetBatch<Pack>& batch) const override {
     apply_link<Deform>(half, parameters, batch);
@@ -48,6 +54,18 @@ class AnyChain {
     std::vector<LinkInfo> all;
     for (const auto& link : links_) all.push_back(link->info());
     return all;
+  }
+
+  template <class P>
+  bool acts(LinkParameters<P> all) const {
+    for (const auto& link : links_) {
+      if (link->acts(all)) return true;
+      const int n = link->info().n_parameters;
+      all.b += n;
+      all.b_dot += n;
+      all.dynamic += n;
+    }
+    return false;
   }
 
   template <class P, class S>

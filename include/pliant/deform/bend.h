@@ -32,6 +32,7 @@ struct Bend {
        Follows::section},
   }};
   static constexpr Sections sections = Sections::tilt;
+  static constexpr int amplitudes = 1;
 
   template <class T>
   static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {

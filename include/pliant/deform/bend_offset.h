@@ -16,6 +16,7 @@ struct BendOffset {
       {"b3", 1, {1e-3, 1}, {1e-3, 1}, false, "1", "how much of the axis it spans", Follows::section},
   }};
   static constexpr Sections sections = Sections::stay_plane;
+  static constexpr int amplitudes = 1;
 
   template <class T>
   static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 3>& b) {

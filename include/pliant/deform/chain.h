@@ -14,17 +14,20 @@ struct LinkInfo {
   const char* type;
   const ParameterSpec* parameters;
   int n_parameters;
+  int amplitudes;  ///< parameters, from the first, that make it the identity while at their defaults
   Sections sections;
 };
 
 template <class Deform>
 LinkInfo link_info() {
-  return {Deform::name, Deform::parameters.data(), deform_size<Deform>, Deform::sections};
+  return {Deform::name, Deform::parameters.data(), deform_size<Deform>, deform_amplitudes<Deform>,
+          Deform::sections};
 }
 
 /// The point that one link takes to p.
 template <class Deform>
 Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
+  if (is_identity<Deform>(b)) return p;
   const Eigen::Map<const Vec<double, deform_size<Deform>>> parameters(b);
   return Deform::template inverse<double>(p, h, parameters);
 }
@@ -34,6 +37,11 @@ class Chain {
  public:
   std::vector<LinkInfo> links() const { return {link_info<Links>()...}; }
 
+  /// Whether any link does anything.
+  template <class P>
+  bool acts([[maybe_unused]] LinkParameters<P> all) const {
+    return (one_acts<Links>(all) || ...);
+  }
   /// All links in order. all: the parameters of all links, one after the other.
   template <class P, class S>
   void apply([[maybe_unused]] const HalfHeight<P>& half, [[maybe_unused]] LinkParameters<P> all,
@@ -49,6 +57,14 @@ class Chain {
   }
 
  private:
+  template <class Link, class P>
+  static bool one_acts(LinkParameters<P>& next) {
+    const LinkParameters<P> own = next;
+    next.b += deform_size<Link>;
+    next.b_dot += deform_size<Link>;
+    next.dynamic += deform_size<Link>;
+    return link_acts<Link>(own);
+  }
   template <class Link, class P, class S>
   static void apply_one(const HalfHeight<P>& half, LinkParameters<P>& next, JetBatch<S>& batch) {
     apply_link<Link>(half, next, batch);

@@ -7,10 +7,14 @@
 //   sections           what becomes of the planes z = const, which decides the quadrature of the mass
 //   apply(p, h, b)     T(p, h; b); the identity when all parameters are at their defaults
 //   inverse(p, h, b)   the point that apply takes to p
+//   amplitudes         optional: how many parameters, from the first, make it the identity while at their
+//                      defaults, whatever the others are; all of them unless it says
 #pragma once
 
 #include <array>
+#include <type_traits>
 
+#include <pliant/math/dual.h>
 #include <pliant/math/functions.h>
 #include <pliant/math/parameter_spec.h>
 #include <pliant/math/types.h>
@@ -25,5 +29,24 @@ enum class Sections {
 
 template <class Deform>
 inline constexpr int deform_size = static_cast<int>(Deform::parameters.size());
+
+namespace detail {
+template <class Deform, class = void>
+inline constexpr int amplitudes_of = deform_size<Deform>;
+template <class Deform>
+inline constexpr int amplitudes_of<Deform, std::void_t<decltype(Deform::amplitudes)>> = Deform::amplitudes;
+}  // namespace detail
+
+/// How many parameters of a deformation, from the first, make it the identity while at their defaults.
+template <class Deform>
+inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
+
+/// Whether a deformation with parameters b is the identity, to the last bit.
+template <class Deform, class P>
+bool is_identity(const P* b) {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(deform_amplitudes<Deform>); ++k)
+    if (!is_constant(b[k], Deform::parameters[k].standard)) return false;
+  return true;
+}
 
 }  // namespace pliant

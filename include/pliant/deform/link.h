@@ -25,8 +25,17 @@ struct LinkParameters {
   const bool* dynamic;
 };
 
+/// Whether a link does anything: one that is the identity and cannot move is passed by.
+template <class Deform, class P>
+bool link_acts(const LinkParameters<P>& parameters) {
+  for (int k = 0; k < deform_size<Deform>; ++k)
+    if (parameters.dynamic[k]) return true;
+  return !is_identity<Deform>(parameters.b);
+}
+
 template <class Deform, class P, class S>
 void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
+  if (!link_acts<Deform>(parameters)) return;
   constexpr int K = deform_size<Deform>;
   const S h(half.h.v);
   Vec<S, K> b;

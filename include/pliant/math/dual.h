@@ -146,6 +146,17 @@ struct Dual {
   }
 };
 
+/// Whether x is the number c and nothing else: no derivative of it differs from zero.
+inline bool is_constant(double x, double c) {
+  return x == c;
+}
+template <int N>
+bool is_constant(const Dual<N>& x, double c) {
+  for (const double d : x.d)
+    if (d != 0) return false;
+  return x.v == c;
+}
+
 }  // namespace pliant
 
 template <int N, class T>

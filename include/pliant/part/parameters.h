@@ -42,7 +42,11 @@ class Parameters {
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }
   int n_dynamic() const { return static_cast<int>(dynamic_.size()); }
-  const std::vector<LinkInfo>& links() const { return links_; }
+  /// The links of the chain that act, in order: those with a dynamic parameter, and those that are not frozen
+  /// as the identity. The kernels pass by the others, and nothing has to be laid out for them.
+  const std::vector<LinkInfo>& links() const { return acting_; }
+  /// Every link of the chain, in order.
+  const std::vector<LinkInfo>& all_links() const { return links_; }
   const Parameter& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
   Parameter& operator[](int i) { return all_[static_cast<std::size_t>(i)]; }
   /// Number of the parameter called name, or -1.
@@ -50,7 +54,8 @@ class Parameters {
   /// All names, separated by blanks.
   std::string names() const;
 
-  /// Numbers of the dynamic parameters, in the order of q_s. Call update() after changing which are dynamic.
+  /// Numbers of the dynamic parameters, in the order of q_s. Call update() after changing which are dynamic,
+  /// or rest values.
   const std::vector<int>& dynamic() const { return dynamic_; }
   const bool* dynamic_flags() const { return flags_.data(); }
   void update();
@@ -75,7 +80,7 @@ class Parameters {
 
  private:
   std::vector<Parameter> all_;
-  std::vector<LinkInfo> links_;
+  std::vector<LinkInfo> links_, acting_;
   std::vector<int> dynamic_;
   std::array<bool, kMaxParameters> flags_{};
   std::array<double, kMaxParameters> frozen_{};

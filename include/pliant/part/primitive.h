@@ -30,7 +30,7 @@ class Primitive final : public Part {
   void evaluate(const ParameterValues<P>& values, const Material<Pack>* at, JetBatch<S>& batch) const {
     const LinkParameters<P> all{values.b.data(), values.b_dot.data(), parameters().dynamic_flags()};
     shape_jets<Shape>(all, at, batch);
-    chain_.apply(half_height_jet<Shape>(all), after_shape(all), batch);
+    if (chain_.acts(after_shape(all))) chain_.apply(half_height_jet<Shape>(all), after_shape(all), batch);
   }
   template <class P>
   static LinkParameters<P> after_shape(const LinkParameters<P>& all) {
