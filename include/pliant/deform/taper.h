@@ -36,7 +36,16 @@ struct Taper {
   template <class T>
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
     const T zeta = p[2] / h;
-    return {p[0] / (b[0] * zeta + 1.0), p[1] / (b[1] * zeta + 1.0), p[2]};
+    return {p[0] / open(T(b[0] * zeta + 1.0)), p[1] / open(T(b[1] * zeta + 1.0)), p[2]};
+  }
+
+ private:
+  /// The width of a section relative to the middle, which at the tip of a full taper is nothing: from 1e-10
+  /// of the height before it on as wide as there, so that the tip is taken back to the axis.
+  template <class T>
+  static T open(const T& width) {
+    const T least(1e-10);
+    return math::where_positive(T(math::abs(width) - least), width, least);
   }
 };
 

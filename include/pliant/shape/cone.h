@@ -39,9 +39,7 @@ struct Cone {
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 4>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
-    const T off_axis = ring2 - T(1e-300);
-    const T ring =
-        math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
+    const T ring = math::sqrt_from_zero(ring2);
     const T zeta = x[2] / a[2];
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }

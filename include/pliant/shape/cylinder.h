@@ -36,9 +36,7 @@ struct Cylinder {
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
-    const T on_axis = ring2 - T(1e-300);
-    const T ring =
-        math::where_positive(on_axis, T(math::sqrt(math::where_positive(on_axis, ring2, T(1)))), T(0));
+    const T ring = math::sqrt_from_zero(ring2);
     return math::max(ring, T(math::abs(x[2]) / a[2]));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);

@@ -25,7 +25,7 @@ struct Ellipsoid {
   }
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
-    return math::sqrt(
+    return math::sqrt_from_zero(
         T(math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1])) + math::square(T(x[2] / a[2]))));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
