@@ -9,22 +9,8 @@ struct Taper {
   static constexpr const char* name = "taper";
   static constexpr const char* formula = "(x (1 + tx zeta), y (1 + ty zeta), z)";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      {"tx",
-       0,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "relative growth of x from the middle to zeta = 1",
-       Follows::section},
-      {"ty",
-       0,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "relative growth of y from the middle to zeta = 1",
-       Follows::section},
+      ratio("tx", 0, {-1, 1}, {-1, 1}, "relative growth of x from the middle to zeta = 1", Follows::section),
+      ratio("ty", 0, {-1, 1}, {-1, 1}, "relative growth of y from the middle to zeta = 1", Follows::section),
   }};
   static constexpr Sections sections = Sections::stay_plane;
 

@@ -15,14 +15,8 @@ struct Cone {
       length("a1", 1, "semi-axis along x at mid height"),
       length("a2", 1, "semi-axis along y at mid height"),
       length("a3", 1, "half height along z"),
-      {"t",
-       -1,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "slope of the side: -1 a cone with its tip up, 0 a cylinder",
-       Follows::ring},
+      ratio("t", -1, {-1, 1}, {-1, 1}, "slope of the side: -1 a cone with its tip up, 0 a cylinder",
+            Follows::ring),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
 
