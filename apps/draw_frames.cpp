@@ -1,20 +1,25 @@
 #include "draw_frames.h"
 
-#include <system_error>
+#include <stdexcept>
 
 #include "failure.h"
 
 namespace pliant_cli {
 
+std::string require_graphics(pliant::GlBackend backend) {
+  try {
+    const pliant::GlContext probe(backend);
+    return probe.backend() + ": " + probe.renderer() + ", OpenGL " + probe.version();
+  } catch (const std::runtime_error& error) {
+    throw ResourceFailure(error.what());
+  }
+}
+
 void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,
                  const pliant::Recording& recording, double frame_rate,
                  const std::vector<std::int64_t>& frames, pliant::Progress& progress,
                  pliant::GlBackend backend) {
-  try {
-    const pliant::GlContext probe(backend);
-  } catch (const std::runtime_error& error) {
-    throw ResourceFailure(error.what());
-  }
+  require_graphics(backend);
   pliant::render_frames(folder, scene, model, recording, frame_rate, frames, progress, backend);
 }
 

@@ -3,11 +3,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <pliant/render/film.h>
 
 namespace pliant_cli {
+
+/// Opens a graphics library and closes it again. Throws ResourceFailure when none opens; returns the words
+/// for run.json, as "OSMesa: llvmpipe".
+std::string require_graphics(pliant::GlBackend backend);
 
 /// As pliant::render_frames; throws ResourceFailure when no graphics library opens.
 void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,

@@ -55,8 +55,8 @@ std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
       text += "there is no command \"" + pliant::escaped(word) + "\"" +
               pliant::did_you_mean(name, command_names(app));
     else if (word.compare(0, 1, "-") == 0)
-      text +=
-          "there is no option " + pliant::escaped(name) + pliant::did_you_mean(name, option_names(command));
+      text += "there is no option " + pliant::escaped(name) +
+              (name.compare(0, 2, "--") == 0 ? pliant::did_you_mean(name, option_names(command)) : "");
     else
       text += "unexpected argument \"" + pliant::escaped(word) + "\"";
   }
@@ -86,6 +86,10 @@ int reporting_failures(const std::function<int()>& task) {
     return tell(error.what(), kResources);
   } catch (const std::bad_alloc&) {
     return tell("out of memory", kResources);
+  } catch (const std::filesystem::filesystem_error& error) {
+    const std::string what = error.what(), label = "filesystem error: ";
+    return tell(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),
+                kFileSystem);
   } catch (const std::system_error& error) {
     return tell(error.what(), kFileSystem);
   } catch (const std::invalid_argument& error) {

@@ -1,6 +1,7 @@
 #include "open_run.h"
 
 #include <pliant/io/frame_schedule.h>
+#include <pliant/io/number_text.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/run_folder.h>
 #include <pliant/scene/read_scene.h>
@@ -24,6 +25,12 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
   run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
+  // A run that was killed may have lost what it had not yet sent to the disk; one that ended has not.
+  if (run.record.status != pliant::RunRecord::Status::running && run.recording->rows() < run.record.states)
+    throw pliant::RecordingMismatch("the recording in " + folder.string() + " is damaged: its tables hold " +
+                                    pliant::count_text(run.recording->rows(), "whole state") +
+                                    ", the run had recorded " + std::to_string(run.record.states) +
+                                    "; pliant run --resume simulates the rest again");
   if (run.recording->rows() == 0)
     throw pliant::RecordingMismatch("the recording in " + folder.string() + " is empty");
   return run;

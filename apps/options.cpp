@@ -5,9 +5,25 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <stdexcept>
+
+#include <pliant/io/number_text.h>
 
 namespace pliant_cli {
 namespace {
+
+// Accepts what `parse` takes without throwing std::invalid_argument, whose message is shown otherwise.
+CLI::Validator parsed_by(const std::function<void(const std::string&)>& parse) {
+  return {[parse](std::string& text) -> std::string {
+            try {
+              parse(text);
+            } catch (const std::invalid_argument& error) {
+              return error.what();
+            }
+            return {};
+          },
+          ""};
+}
 
 constexpr int kMostPixels = 8192;
 
@@ -39,6 +55,11 @@ CLI::Validator number_from_zero() {
   return number_that("a number >= 0", [](double x) { return x >= 0; });
 }
 
+CLI::Validator number_between(double least, double most) {
+  return number_that("a number from " + pliant::number_text(least) + " to " + pliant::number_text(most),
+                     [least, most](double x) { return x >= least && x <= most; });
+}
+
 CLI::Validator any_number() {
   return number_that("a finite number", [](double) { return true; });
 }
@@ -68,6 +89,23 @@ CLI::Validator picture_size() {
                    std::to_string(kMostPixels) + ")";
           },
           ""};
+}
+
+void add_frame_options(CLI::App& command, FrameOptions& options) {
+  command
+      .add_option("--frames", options.frames,
+                  "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
+      ->check(parsed_by([](const std::string& text) { pliant::FrameRange::parse(text); }))
+      ->type_name("A:B:S");
+  command.add_option("--shard", options.shard, "Only the i-th of n equal shares, for several processes")
+      ->check(parsed_by([](const std::string& text) { pliant::FrameRange().parse_shard(text); }))
+      ->type_name("I/N");
+}
+
+pliant::FrameRange parse_frames(const FrameOptions& options) {
+  pliant::FrameRange range = pliant::FrameRange::parse(options.frames);
+  if (!options.shard.empty()) range.parse_shard(options.shard);
+  return range;
 }
 
 }  // namespace pliant_cli

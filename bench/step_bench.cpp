@@ -52,6 +52,13 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
+/// The exponents too, over all of their ranges: no ring keeps its shape, the full rule is needed.
+void exponents(MultiBody& body, const std::string& name) {
+  auto& part = body.add<Primitive<Soft>>(name);
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).move({0, 0, 0}, {1, 2, 3});
+  part.stiffness({{"a1", 1e5}, {"eps1", 1e3}, {"eps2", 1e3}});
+}
+
 void measure(const char* kind, void (*add)(MultiBody&, const std::string&), int parts, double peak) {
   MultiBody body;
   for (int i = 0; i < parts; ++i) add(body, "part" + std::to_string(i));
@@ -84,4 +91,5 @@ int main() {
     measure("3 parameters with a null taper and bend", three_null, parts, peak);
     measure("11 parameters", eleven, parts, peak);
   }
+  measure("3 parameters, exponents among them", exponents, 1, peak);
 }

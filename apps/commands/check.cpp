@@ -6,6 +6,7 @@
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/frame_schedule.h>
+#include <pliant/io/number_text.h>
 #include <pliant/scene/read_scene.h>
 
 #include "command.h"
@@ -42,16 +43,19 @@ void print_estimate(pliant::Scene& scene) {
   const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
                          simulation.model().n_limits() + 1;
   const auto frames = static_cast<double>(schedule.frames());
-  std::cout << "ok: " << scene.body.parts().size() << " parts, " << simulation.model().n_v()
-            << " degrees of freedom\n"
+  std::cout << "ok: " << pliant::count_text(static_cast<std::int64_t>(scene.body.parts().size()), "part")
+            << ", " << simulation.model().n_v() << " degrees of freedom\n"
             << "estimate: " << schedule.steps() << " steps of " << schedule.step() << " s";
   if (schedule.step() > stable)
-    std::cout << "\nwarning: the step is above the largest stable one, about " << stable << " s";
+    std::cout << "\nwarning: the step is above the largest stable one, about " << pliant::rounded_text(stable)
+              << " s";
   else
-    std::cout << ", " << seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps())
+    std::cout << ", about "
+              << pliant::rounded_text(
+                     seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps()), 2)
               << " s of computing";
-  std::cout << "; " << schedule.frames() << " frames, a recording of " << frames * numbers * 8 / 1e6
-            << " MB\n";
+  std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
+            << pliant::rounded_text(frames * numbers * 8 / 1e6, 2) << " MB\n";
 }
 
 int check(const CheckCommand& command) {

@@ -79,7 +79,9 @@ void add_doctor(CLI::App& app, Action& action) {
   const auto folder = std::make_shared<std::string>(".");
   CLI::App* command = app.add_subcommand(
       "doctor", "Tell what works here: graphics libraries, processor, ffmpeg, speed of the disk");
-  command->add_option("-o,--out", *folder, "Folder whose speed is measured [.]")->type_name("DIR");
+  command->add_option("-o,--out", *folder, "Folder whose speed is measured [.]")
+      ->check(CLI::ExistingDirectory)
+      ->option_text("DIR");
   command->callback([folder, &action] { action = [folder] { return examine(*folder); }; });
 }
 

@@ -2,13 +2,13 @@
 #include <map>
 #include <memory>
 
-#include <pliant/io/frame_range.h>
 #include <pliant/io/mesh_frames.h>
 #include <pliant/io/run_files.h>
 
 #include "command.h"
 #include "exit_codes.h"
 #include "open_run.h"
+#include "options.h"
 #include "show_progress.h"
 #include "stop_signal.h"
 
@@ -18,17 +18,15 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportCommand {
-  std::string run, folder, shard;
-  std::string frames = ":";
+  std::string run, folder;
+  FrameOptions frames;
   std::string format;
   bool quiet = false, force = false;
 };
 
 int export_meshes(const ExportCommand& command) {
   const OpenRun run = open_run(command.run);
-  pliant::FrameRange range = pliant::FrameRange::parse(command.frames);
-  if (!command.shard.empty()) range.parse_shard(command.shard);
-  const std::vector<std::int64_t> frames = range.frames(run.frames());
+  const std::vector<std::int64_t> frames = parse_frames(command.frames).frames(run.frames());
   const fs::path folder =
       command.folder.empty() ? fs::path(command.run) / pliant::kMeshFolder : fs::path(command.folder);
   prepare_frame_folder(folder, frames, command.format, command.force);
@@ -52,12 +50,7 @@ void add_export(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"obj", "ply"}))
       ->option_text("obj|ply");
   command->add_option("-o,--out", options->folder, "Folder for the files [RUN/meshes]")->type_name("DIR");
-  command
-      ->add_option("--frames", options->frames,
-                   "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
-      ->type_name("A:B:S");
-  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")
-      ->type_name("I/N");
+  add_frame_options(*command, options->frames);
   command->add_flag("--force", options->force, "Replace files that exist");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   command->footer(

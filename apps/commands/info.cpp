@@ -5,6 +5,7 @@
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/frame_schedule.h>
+#include <pliant/io/number_text.h>
 #include <pliant/io/skipped.h>
 
 #include "command.h"
@@ -16,8 +17,14 @@ namespace {
 
 using pliant::Vec3;
 
-void print_vector(const Vec3<double>& x) {
-  std::cout << "(" << x[0] << ", " << x[1] << ", " << x[2] << ")";
+// What is rounding beside `scale` is shown as the zero that it stands for.
+double rounded(double x, double scale) {
+  return std::abs(x) <= 1e-12 * scale ? 0 : x;
+}
+
+void print_vector(const Vec3<double>& x, double scale = 0) {
+  std::cout << "(" << rounded(x[0], scale) << ", " << rounded(x[1], scale) << ", " << rounded(x[2], scale)
+            << ")";
 }
 
 void print_parameters(const pliant::Part& part) {
@@ -46,7 +53,7 @@ void print_part(const pliant::PartModel& model) {
   const Vec3<double> centre =
       inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);
   std::cout << "  mass " << inertia.mass << " kg, centre of mass ";
-  print_vector(centre);
+  print_vector(centre, part.size());
   std::cout << " m in its frame, size " << part.size() << " m\n";
   if (inertia.M.rows() >= 6) {
     // About the centre of mass: I_c = I_o - m (|r|^2 1 - r r^T).
@@ -54,9 +61,10 @@ void print_part(const pliant::PartModel& model) {
     const pliant::Mat3<double> about_centre =
         about_origin - inertia.mass * (centre.squaredNorm() * pliant::Mat3<double>::Identity() -
                                        centre * centre.transpose());
+    const double scale = about_centre.diagonal().maxCoeff();
     std::cout << "  inertia about it (kg m^2): xx " << about_centre(0, 0) << ", yy " << about_centre(1, 1)
-              << ", zz " << about_centre(2, 2) << ", xy " << about_centre(0, 1) << ", xz "
-              << about_centre(0, 2) << ", yz " << about_centre(1, 2) << "\n";
+              << ", zz " << about_centre(2, 2) << ", xy " << rounded(about_centre(0, 1), scale) << ", xz "
+              << rounded(about_centre(0, 2), scale) << ", yz " << rounded(about_centre(1, 2), scale) << "\n";
   }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
@@ -73,7 +81,9 @@ void print_point(const pliant::Simulation& simulation, const pliant::Point& poin
   const pliant::MaterialAngles at = pliant::angles(point.material);
   std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
   const pliant::Model& model = simulation.model();
-  print_vector(model.world_point(simulation.state(), model.body().index(*point.part), point.material));
+  const Vec3<double> x =
+      model.world_point(simulation.state(), model.body().index(*point.part), point.material);
+  print_vector(x, point.part->size());
 }
 
 void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {
@@ -109,19 +119,20 @@ int info(const SceneOptions& options) {
     frozen += part.part->parameters().size() - part.n_s;
     if (part.q0 >= 0) mass += part.part->total_mass();
   }
-  std::cout << model.parts().size() << " parts, " << model.n_v() << " degrees of freedom ("
-            << model.n_limits() << " dynamic parameters, " << frozen << " frozen), " << mass
-            << " kg in motion\n";
+  std::cout << pliant::count_text(static_cast<std::int64_t>(model.parts().size()), "part") << ", "
+            << model.n_v() << " degrees of freedom (" << model.n_limits() << " dynamic parameters, " << frozen
+            << " frozen), " << mass << " kg in motion\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
   print_forces(*scene, simulation);
   std::cout << "skipped:\n";
   for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";
   const pliant::FrameSchedule schedule(scene->end, scene->step, scene->frame_rate);
   std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end()
-            << " s by " << scene->integrator << ", " << schedule.frames() << " frames\n";
+            << " s by " << scene->integrator << ", " << pliant::count_text(schedule.frames(), "frame")
+            << "\n";
   const double stable = pliant::largest_stable_step(simulation);
   if (std::isfinite(stable))
-    std::cout << "largest stable step: about " << stable << " s\n";
+    std::cout << "largest stable step: about " << pliant::rounded_text(stable) << " s\n";
   else
     std::cout << "largest stable step: no bound, nothing is stiff\n";
   if (schedule.step() > stable)

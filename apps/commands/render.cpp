@@ -2,7 +2,6 @@
 #include <memory>
 #include <optional>
 
-#include <pliant/io/frame_range.h>
 #include <pliant/io/run_files.h>
 
 #include "command.h"
@@ -20,11 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderCommand {
-  std::string run, folder, size, shard;
-  std::string frames = ":";
+  std::string run, folder, size;
+  FrameOptions frames;
   std::vector<double> eye, target;
   std::optional<double> field_of_view;
-  bool quiet = false, force = false, no_ground = false, no_shadows = false;
+  bool quiet = false, force = false, no_ground = false, no_springs = false, no_shadows = false;
   pliant::GlBackend backend = pliant::GlBackend::automatic;
 };
 
@@ -40,15 +39,14 @@ void change_view(const RenderCommand& command, pliant::Scene& scene) {
     scene.camera.target = pliant::Vec3<double>(command.target[0], command.target[1], command.target[2]);
   scene.camera.field_of_view = command.field_of_view.value_or(scene.camera.field_of_view);
   if (command.no_ground) scene.ground.visible = false;
+  if (command.no_springs) scene.show_springs = false;
   if (command.no_shadows) scene.light.shadows = false;
 }
 
 int render(const RenderCommand& command) {
   const OpenRun run = open_run(command.run);
   change_view(command, *run.scene);
-  pliant::FrameRange range = pliant::FrameRange::parse(command.frames);
-  if (!command.shard.empty()) range.parse_shard(command.shard);
-  const std::vector<std::int64_t> frames = range.frames(run.frames());
+  const std::vector<std::int64_t> frames = parse_frames(command.frames).frames(run.frames());
   const fs::path folder =
       command.folder.empty() ? fs::path(command.run) / pliant::kFrameFolder : fs::path(command.folder);
   prepare_frame_folder(folder, frames, "png", command.force);
@@ -66,27 +64,23 @@ void add_render(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("render", "Draw the frames of a run again, from its recording");
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_option("-o,--out", options->folder, "Folder for the pictures [RUN/frames]")->type_name("DIR");
-  command
-      ->add_option("--frames", options->frames,
-                   "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
-      ->type_name("A:B:S");
-  command->add_option("--shard", options->shard, "Only the i-th of n equal shares, for several processes")
-      ->type_name("I/N");
+  add_frame_options(*command, options->frames);
   command->add_option("--size", options->size, "Size in pixels [that of the run]")
       ->check(picture_size())
       ->type_name("WxH");
   command->add_option("--camera-eye", options->eye, "Position of the camera, m")
       ->expected(3)
       ->check(any_number())
-      ->type_name("X Y Z");
+      ->option_text("X Y Z");
   command->add_option("--camera-target", options->target, "Point that the camera looks at, m")
       ->expected(3)
       ->check(any_number())
-      ->type_name("X Y Z");
-  command->add_option("--fov", options->field_of_view, "Vertical field of view, degrees")
-      ->check(CLI::Range(5.0, 120.0))
+      ->option_text("X Y Z");
+  command->add_option("--fov", options->field_of_view, "Vertical field of view, degrees, 5 to 120")
+      ->check(number_between(5, 120))
       ->type_name("DEGREES");
   command->add_flag("--no-ground", options->no_ground, "Without the ground");
+  command->add_flag("--no-springs", options->no_springs, "Without the lines of springs");
   command->add_flag("--no-shadows", options->no_shadows, "Without shadows");
   add_graphics_option(*command, options->backend);
   command->add_flag("--force", options->force, "Replace pictures that exist");

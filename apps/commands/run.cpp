@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <numeric>
 #include <optional>
 
+#include <pliant/io/frame_range.h>
 #include <pliant/io/mesh_frames.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/run.h>
@@ -61,8 +61,9 @@ void apply_options(const RunCommand& command, const std::optional<pliant::RunRec
 }
 
 void write_frames(const RunCommand& command, pliant::Run& run, pliant::Progress& progress) {
-  std::vector<std::int64_t> frames(static_cast<std::size_t>(run.schedule().frames(run.simulation().time())));
-  std::iota(frames.begin(), frames.end(), 0);
+  if (!command.obj && !command.png) return;
+  const std::vector<std::int64_t> frames =
+      pliant::FrameRange().frames(run.schedule().frames(run.simulation().time()));
   const pliant::Scene& scene = run.scene();
   const pliant::Model& model = run.simulation().model();
   const auto series = [](const char* folder, const char* ending) {
@@ -98,9 +99,14 @@ int run_scene(const RunCommand& command) {
   const std::unique_ptr<pliant::Scene> scene = read(asked);
   apply_options(command, begun, *scene);
 
+  // What would fail after the simulation fails before it.
+  if (command.obj || command.png)
+    pliant::FrameRange().size(pliant::FrameSchedule(scene->end, scene->step, scene->frame_rate).frames());
+  pliant::RunOptions options;
+  if (command.png) options.graphics = require_graphics(command.backend);
+
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
-  pliant::RunOptions options;
   options.folder = folder;
   options.existing = command.resume  ? pliant::Existing::resume
                      : command.force ? pliant::Existing::force
@@ -118,12 +124,18 @@ int run_scene(const RunCommand& command) {
     std::cerr << "pliant: stopped at t = " << run.simulation().time() << " s; go on with --resume\n";
     return kSignal + stop_signal();
   }
-  write_frames(command, run, *progress);
+  try {
+    write_frames(command, run, *progress);
+  } catch (const pliant::Interrupted&) {
+    std::cerr << "pliant: stopped while writing files; the motion is recorded: go on with --resume\n";
+    return kSignal + stop_signal();
+  }
   run.finish(pliant::RunRecord::Status::complete);
   if (!command.quiet)
     std::cout << folder.string() << ": t = " << run.record().time << " s, "
-              << run.record().step_counters.steps << " steps, " << run.record().states
-              << " states recorded; largest balance error " << run.record().max_balance_error << " J\n";
+              << pliant::count_text(run.record().steps_done, "step") << ", "
+              << pliant::count_text(run.record().states, "state") << " recorded; largest balance error "
+              << pliant::rounded_text(run.record().max_balance_error) << " J\n";
   return kDone;
 }
 

@@ -1,4 +1,5 @@
-# Checks that README.md quotes the examples word for word.
+# Checks that README.md quotes the examples word for word, and that its scene and the faults it shows are the program's.
+# SOURCE: the project; PROGRAM: pliant, where it is built; FOLDER: where scenes may be written.
 file(READ ${SOURCE}/README.md readme)
 foreach(name two_parts add_a_shape add_a_deformation)
   file(READ ${SOURCE}/apps/examples/${name}.cpp code)
@@ -7,3 +8,34 @@ foreach(name two_parts add_a_shape add_a_deformation)
     message(FATAL_ERROR "README.md does not quote apps/examples/${name}.cpp as it is")
   endif()
 endforeach()
+
+# What README.md shows between the line that opens a block after `place` and the line that closes it.
+function(readme_block place opening result)
+  string(FIND "${readme}" "${place}" at)
+  string(SUBSTRING "${readme}" ${at} -1 rest)
+  string(FIND "${rest}" "${opening}\n" at)
+  string(LENGTH "${opening}\n" length)
+  math(EXPR at "${at} + ${length}")
+  string(SUBSTRING "${rest}" ${at} -1 rest)
+  string(FIND "${rest}" "```" end)
+  string(SUBSTRING "${rest}" 0 ${end} text)
+  set(${result} "${text}" PARENT_SCOPE)
+endfunction()
+readme_block("## Scenes" "```json" scene)
+readme_block("`pliant check scene.json` says" "```" faults)
+
+file(MAKE_DIRECTORY ${FOLDER})
+file(WRITE ${FOLDER}/scene.json "${scene}")
+execute_process(COMMAND ${PROGRAM} check scene.json WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code OUTPUT_QUIET)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "the scene of README.md is not accepted: pliant check ends with ${code}")
+endif()
+string(REPLACE "\"step\": 0.001" "\"step\": -0.001" scene "${scene}")
+string(REPLACE "\"rk4\"" "\"rk5\"" scene "${scene}")
+string(REPLACE "[2, 3, 1]" "[2, 3, 1], \"densty\": 500" scene "${scene}")
+file(WRITE ${FOLDER}/scene.json "${scene}")
+execute_process(COMMAND ${PROGRAM} check scene.json WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE code
+                ERROR_VARIABLE printed OUTPUT_QUIET)
+if(NOT code EQUAL 3 OR NOT printed STREQUAL faults)
+  message(FATAL_ERROR "README.md shows\n${faults}but pliant check prints (exit code ${code})\n${printed}")
+endif()

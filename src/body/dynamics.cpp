@@ -285,7 +285,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
       damping = scaled<S>(d_dot, S(s.spring->damping));
     } else {
       const S length2 = dot<S>(d, d);
-      if (!(plain(length2) > 0)) continue;
+      if (plain(length2) == 0) continue;  // no direction; what is not a number goes on to be found
       const S length = math::sqrt(length2);
       const Vec3<S> along = scaled<S>(d, S(S(1.0) / length));
       pull = scaled<S>(along, S((length - s.spring->rest_length) * s.spring->stiffness));

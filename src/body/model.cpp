@@ -7,6 +7,7 @@
 namespace pliant {
 
 Model::Model(MultiBody& body) : body_(&body) {
+  if (!body.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
   for (const auto& part : body.parts()) {
     part->prepare();
     PartModel m;

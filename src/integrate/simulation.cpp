@@ -12,7 +12,8 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
       dynamics_(model_, pool_.get()),
       integrator_(make_integrator(integrator)),
-      state_(model_.initial_state()) {
+      state_(model_.initial_state()),
+      held_(static_cast<std::size_t>(model_.n_v())) {
   start_energy_ = dynamics_.ledger(state_, output_work_).energy();
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
 }
@@ -67,12 +68,20 @@ void Simulation::note_held() {
     const PartModel& m = model_.parts()[i];
     if (m.q0 < 0 || !work_.parts[i].factor.any_held()) continue;
     for (int k = 0; k < 6 + m.n_s; ++k)
-      if (work_.parts[i].factor.held(k)) {
+      if (work_.parts[i].factor.held(k)) held_[static_cast<std::size_t>(m.v0 + k)] = true;
+  }
+}
+
+std::set<std::string> Simulation::held() const {
+  std::set<std::string> names;
+  for (const PartModel& m : model_.parts())
+    for (int k = 0; m.q0 >= 0 && k < 6 + m.n_s; ++k)
+      if (held_[static_cast<std::size_t>(m.v0 + k)]) {
         std::string name = model_.velocity_name(m.v0 + k);
         if (k >= 6) name.resize(name.size() - 4);  // without _dot
-        held_.insert(name);
+        names.insert(name);
       }
-  }
+  return names;
 }
 
 void Simulation::set_state(State state) {

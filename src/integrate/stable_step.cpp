@@ -17,6 +17,8 @@ namespace {
 
 /// Above this many velocities in a group the parts are bounded one by one.
 constexpr int kLargestGroup = 120;
+/// Turn in a step, rad, beyond which no method follows the rotation.
+constexpr double kMostTurn = 0.5;
 
 /// L of a port on v_r of its part: 3 x n_v, world.
 MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
@@ -84,33 +86,38 @@ double largest_stable_step(const Simulation& simulation) {
   const std::size_t n = model.parts().size();
 
   // Groups of parts tied by springs.
-  std::vector<std::size_t> group(n);
-  std::iota(group.begin(), group.end(), std::size_t{0});
+  std::vector<std::size_t> joined(n);
+  std::iota(joined.begin(), joined.end(), std::size_t{0});
   auto root = [&](std::size_t i) {
-    while (group[i] != i) i = group[i] = group[group[i]];
+    while (joined[i] != i) i = joined[i] = joined[joined[i]];
     return i;
   };
   auto moves = [&](int part) { return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0; };
   for (const SpringModel& s : model.springs())
     if (moves(s.a.part) && moves(s.b.part))
-      group[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
+      joined[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
 
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t g = 0; g < n; ++g) {
-    if (root(g) != g || model.parts()[g].q0 < 0) continue;
-    std::vector<std::size_t> members;
-    std::vector<int> first(n, -1);
+  // Members of each group, and the springs at each of their parts.
+  std::vector<std::vector<std::size_t>> members(n), springs_at(n);
+  for (std::size_t i = 0; i < n; ++i)
+    if (model.parts()[i].q0 >= 0) members[root(i)].push_back(i);
+  const std::vector<SpringModel>& springs = model.springs();
+  for (std::size_t k = 0; k < springs.size(); ++k)
+    for (const int end : {springs[k].a.part, springs[k].b.part})
+      if (moves(end)) springs_at[static_cast<std::size_t>(end)].push_back(k);
+
+  std::vector<int> first(n, -1);  // of each part in its system
+  /// The system of some parts, with their springs; weight of those with an end in no part of it.
+  auto system_of = [&](const std::vector<std::size_t>& parts, double open_weight) {
     int size = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (root(i) != g || model.parts()[i].q0 < 0) continue;
+    for (const std::size_t i : parts) {
       first[i] = size;
-      members.push_back(i);
       size += 6 + model.parts()[i].n_s;
     }
-    const bool together = size <= kLargestGroup;
     Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
                   MatX<double>::Zero(size, size)};
-    for (const std::size_t i : members) {
+    std::vector<std::size_t> ours;
+    for (const std::size_t i : parts) {
       const PartModel& m = model.parts()[i];
       const Part& part = *m.part;
       const int at = first[i], n_v = 6 + m.n_s;
@@ -120,34 +127,48 @@ double largest_stable_step(const Simulation& simulation) {
       system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
           part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
       system.D.block(at, at, n_v, n_v) += part.drag() * M;
+      ours.insert(ours.end(), springs_at[i].begin(), springs_at[i].end());
     }
-    for (const SpringModel& s : model.springs()) {
+    std::sort(ours.begin(), ours.end());
+    ours.erase(std::unique(ours.begin(), ours.end()), ours.end());
+    for (const std::size_t k : ours) {
       // d = x_b - x_a; an axial spring is bounded by the isotropic one of its stiffness.
+      const SpringModel& s = springs[k];
+      const bool closed = (!moves(s.a.part) || first[static_cast<std::size_t>(s.a.part)] >= 0) &&
+                          (!moves(s.b.part) || first[static_cast<std::size_t>(s.b.part)] >= 0);
       MatX<double> L = MatX<double>::Zero(3, size);
-      bool ours = false;
       for (const auto& [ref, sign] : {std::pair{s.a, -1.0}, std::pair{s.b, 1.0}}) {
         if (!moves(ref.part) || first[static_cast<std::size_t>(ref.part)] < 0) continue;
         const auto i = static_cast<std::size_t>(ref.part);
-        // Bounded one by one, an end sees the spring at up to twice its stiffness.
-        const double weight = together || !moves(s.a.part) || !moves(s.b.part) ? 1.0 : std::sqrt(2.0);
         L.middleCols(first[i], 6 + model.parts()[i].n_s) +=
-            sign * weight * port_jacobian(model.parts()[i], work.parts[i], ref.port);
-        ours = true;
+            sign * port_jacobian(model.parts()[i], work.parts[i], ref.port);
       }
-      if (!ours) continue;
-      system.K += s.spring->stiffness * L.transpose() * L;
-      system.D += s.spring->damping * L.transpose() * L;
+      const double weight = closed ? 1.0 : open_weight;
+      system.K += weight * s.spring->stiffness * L.transpose() * L;
+      system.D += weight * s.spring->damping * L.transpose() * L;
     }
-    if (together) {
-      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system));
+    for (const std::size_t i : parts) first[i] = -1;
+    return system;
+  };
+
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < n; ++i) {
+    const PartModel& m = model.parts()[i];
+    if (m.q0 < 0) continue;
+    const double turning = state.v.segment<3>(m.v0 + 3).norm();
+    if (turning > 0) smallest = std::min(smallest, kMostTurn / turning);
+  }
+  for (const std::vector<std::size_t>& group : members) {
+    int size = 0;
+    for (const std::size_t i : group) size += 6 + model.parts()[i].n_s;
+    if (size == 0) continue;
+    if (size <= kLargestGroup) {
+      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system_of(group, 1)));
       continue;
     }
-    for (const std::size_t i : members) {
-      const int at = first[i], n_v = 6 + model.parts()[i].n_s;
-      const Linear one{system.M.block(at, at, n_v, n_v), system.K.block(at, at, n_v, n_v),
-                       system.D.block(at, at, n_v, n_v)};
-      smallest = std::min(smallest, stable_step_of(simulation.integrator(), one));
-    }
+    // One by one, an end sees the spring at up to twice its stiffness.
+    for (const std::size_t i : group)
+      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system_of({i}, 2)));
   }
   return smallest;
 }

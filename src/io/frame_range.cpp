@@ -1,5 +1,6 @@
 #include <pliant/io/frame_range.h>
 
+#include <algorithm>
 #include <charconv>
 #include <stdexcept>
 
@@ -50,6 +51,8 @@ FrameRange FrameRange::parse(const std::string& text) {
   if (!pieces[1].empty()) range.end = piece(1, 0);
   range.stride = piece(2, 1);
   if (range.stride < 1) refuse();
+  if (range.end && *range.end <= range.first)
+    throw std::invalid_argument("frames \"" + text + "\" are none: END must be above FIRST");
   return range;
 }
 
@@ -63,16 +66,28 @@ void FrameRange::parse_shard(const std::string& text) {
   shards = *n;
 }
 
-std::vector<std::int64_t> FrameRange::frames(std::int64_t count) const {
+std::int64_t FrameRange::size(std::int64_t count) const {
   if (first > 0 && first >= count)
     throw std::invalid_argument("there is no frame " + std::to_string(first) + ": the recording has " +
                                 std::to_string(count) + " frames");
   if (end && *end > count)
     throw std::invalid_argument("there is no frame " + std::to_string(*end - 1) + ": the recording has " +
                                 std::to_string(count) + " frames");
+  const std::int64_t chosen = std::max<std::int64_t>(0, end.value_or(count) - first);
+  const std::int64_t strided = chosen > 0 ? (chosen - 1) / stride + 1 : 0;
+  const std::int64_t most = shard < strided ? (strided - 1 - shard) / shards + 1 : 0;
+  if (most > kMostFrames)
+    throw std::invalid_argument(std::to_string(most) + " frames are asked for as files; at most " +
+                                std::to_string(kMostFrames) + " can be written at once");
+  return most;
+}
+
+std::vector<std::int64_t> FrameRange::frames(std::int64_t count) const {
   std::vector<std::int64_t> numbers;
+  numbers.reserve(static_cast<std::size_t>(size(count)));
   std::int64_t position = 0;
-  for (std::int64_t frame = first; frame < end.value_or(count); frame += stride)
+  const std::int64_t beyond = end.value_or(count);
+  for (std::int64_t frame = first; frame < beyond; frame += std::min(stride, beyond))
     if (position++ % shards == shard) numbers.push_back(frame);
   return numbers;
 }

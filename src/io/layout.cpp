@@ -13,57 +13,42 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json column(const std::string& name, const std::string& unit, const std::string& meaning = "") {
-  Json entry{{"name", name}, {"unit", unit}};
-  if (!meaning.empty()) entry["meaning"] = meaning;
+Json json_of(const Column& column) {
+  Json entry{{"name", column.name}, {"unit", column.unit}};
+  if (!column.meaning.empty()) entry["meaning"] = column.meaning;
   return entry;
 }
 
-// "m" -> "m/s", "1" -> "1/s".
-std::string rate_of(const std::string& unit) {
-  return unit + "/s";
-}
-
-const Parameter& dynamic_parameter(const PartModel& part, int k) {
-  const Parameters& all = part.part->parameters();
-  return all[all.dynamic()[static_cast<std::size_t>(k)]];
+Json json_of(const std::vector<Column>& columns) {
+  Json list = Json::array();
+  for (const Column& column : columns) list.push_back(json_of(column));
+  return list;
 }
 
 Json part_columns(const Model& model, bool velocities) {
   Json columns = Json::array();
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
-    const int first = velocities ? part.v0 : part.q0, rigid = velocities ? 6 : 7;
-    for (int k = 0; k < rigid + part.n_s; ++k) {
-      const std::string unit = k >= rigid   ? dynamic_parameter(part, k - rigid).spec->unit
-                               : k < 3      ? "m"
-                               : velocities ? "rad"
-                                            : "1";
-      const std::string name = velocities ? model.velocity_name(first + k) : model.coordinate_name(first + k);
-      Json entry = column(name, velocities ? rate_of(unit) : unit);
+    for (const Column& column :
+         velocities ? velocity_columns(model, part) : coordinate_columns(model, part)) {
+      Json entry = json_of(column);
       entry["part"] = part.part->name();
-      entry["coordinate"] = name.substr(part.part->name().size() + 1);
+      entry["coordinate"] = column.name.substr(part.part->name().size() + 1);
       columns.push_back(entry);
     }
   }
   return columns;
 }
 
-Json mode_columns(const Model& model) {
-  Json columns = Json::array();
-  for (const ModeColumn& mode : mode_columns_of(model))
-    columns.push_back(column(mode.name, mode.unit, mode.meaning));
-  return columns;
-}
-
 }  // namespace
 
-void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule) {
+void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
+                  const std::vector<Column>& trajectory) {
   Json layout;
   layout["format"] = "pliant recording";
   layout["version"] = 1;
   layout["rows"] =
-      "one state a row, the same row in every table; the number of states is that of the shortest table";
+      "one state a row, the same row in every table; the number of states is that of the shortest .npy table";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},
@@ -71,10 +56,11 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
        "frame k is taken at k / rate seconds: a recorded state, or interpolated between the two states "
        "of the step around it"}};
   Json& tables = layout["tables"];
-  tables[kTimesFile] = Json::array({column("t", "s", "time: start + step * step_size")});
+  tables[kTimesFile] = json_of(std::vector<Column>{{"t", "s", "time: start + step * step_size"}});
   tables[kCoordinatesFile] = part_columns(model, false);
   tables[kVelocitiesFile] = part_columns(model, true);
-  tables[kModesFile] = mode_columns(model);
+  tables[kModesFile] = json_of(mode_columns_of(model));
+  tables[kTrajectoryFile] = json_of(trajectory);
   const std::string text = layout.dump(1) + "\n";
   write_whole_file(folder / kLayoutFile, text.data(), text.size(), Durable::yes);
 }

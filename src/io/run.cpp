@@ -87,6 +87,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.overrides = scene.overrides;
   record_.end = scene.end;
   record_.threads = options_.threads;
+  if (!options_.graphics.empty()) record_.graphics = options_.graphics;
   record_.width = scene.width;
   record_.height = scene.height;
   record_.steps = schedule_.steps();
@@ -97,7 +98,8 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
     note("warning: the step of " + number_text(schedule_.step()) +
          " s is above the largest stable one, about " + rounded_text(stable_step) + " s");
   }
-  write_layout(folder_->path(), simulation_->model(), schedule_);
+  write_layout(folder_->path(), simulation_->model(), schedule_,
+               TrajectoryTable(scene, *simulation_).columns());
   for (const char* file :
        {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
     if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
@@ -208,6 +210,7 @@ void Run::write_record() {
 }
 
 void Run::step_to_end() {
+  if (first_step_ >= schedule_.steps()) return;
   Clock::time_point flushed = Clock::now();
   const double first_time = simulation_->time();
   progress_->begin("simulate", schedule_.end() - first_time, "s");

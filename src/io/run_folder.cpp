@@ -65,6 +65,7 @@ class RunFolder::Lock {
     const std::string owner = std::to_string(::getpid());
     if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, owner.data(), owner.size(), 0) < 0) {
       const int error = errno;
+      ::unlink(path_.c_str());
       ::close(descriptor_);
       throw_file_fault(error, "write", path_, owner.size());
     }

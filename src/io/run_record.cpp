@@ -26,6 +26,12 @@ Json bound(double x) {
   return std::isfinite(x) ? Json(x) : Json(nullptr);
 }
 
+// "[json.exception.parse_error.101] parse error ..." without its first word.
+std::string without_tag(const std::string& message) {
+  const std::size_t end = message.find("] ");
+  return end == std::string::npos ? message : message.substr(end + 2);
+}
+
 std::string hex(std::uint64_t hash) {
   char text[20];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
@@ -81,6 +87,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                      {"threads", r.threads},
                      {"width", r.width},
                      {"height", r.height},
+                     {"graphics", r.graphics},
                      {"command", r.command}};
   json["build"] = pairs(r.build);
   json["wall_seconds"] = pairs(r.seconds);
@@ -138,6 +145,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     options.at("threads").get_to(r.threads);
     options.at("width").get_to(r.width);
     options.at("height").get_to(r.height);
+    options.at("graphics").get_to(r.graphics);
     options.at("command").get_to(r.command);
     r.build = read_pairs<std::string>(json.at("build"));
     r.seconds = read_pairs<double>(json.at("wall_seconds"));
@@ -163,7 +171,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     json.at("files").get_to(r.files);
     return r;
   } catch (const nlohmann::json::exception& fault) {
-    throw RecordingMismatch(file.string() + " is damaged: " + fault.what());
+    throw RecordingMismatch(file.string() + " is damaged: " + without_tag(fault.what()));
   } catch (const std::logic_error&) {
     throw RecordingMismatch(file.string() + " is damaged: its scene hash is no number");
   }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <utility>
 
 namespace pliant {
 namespace {
@@ -33,10 +34,46 @@ double hash_of(const State& state, const double* modes, std::size_t count) {
   return hash.value();
 }
 
+const ParameterSpec& dynamic_parameter(const PartModel& part, int k) {
+  const Parameters& all = part.part->parameters();
+  return *all[all.dynamic()[static_cast<std::size_t>(k)]].spec;
+}
+
 }  // namespace
 
-std::vector<ModeColumn> mode_columns_of(const Model& model) {
-  std::vector<ModeColumn> columns{
+std::vector<Column> coordinate_columns(const Model& model, const PartModel& part) {
+  std::vector<Column> columns;
+  for (int k = 0; k < 7 + part.n_s; ++k) {
+    Column column{model.coordinate_name(part.q0 + k), "", ""};
+    if (k < 3)
+      column.unit = "m", column.meaning = "position of the frame, world";
+    else if (k < 7)
+      column.unit = "1", column.meaning = "orientation, body to world";
+    else
+      column.unit = dynamic_parameter(part, k - 7).unit,
+      column.meaning = dynamic_parameter(part, k - 7).meaning;
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::vector<Column> velocity_columns(const Model& model, const PartModel& part) {
+  std::vector<Column> columns;
+  for (int k = 0; k < 6 + part.n_s; ++k) {
+    Column column{model.velocity_name(part.v0 + k), "", ""};
+    if (k < 3)
+      column.unit = "m/s", column.meaning = "velocity of the frame, world";
+    else if (k < 6)
+      column.unit = "rad/s", column.meaning = "angular velocity, body frame";
+    else
+      column.unit = std::string(dynamic_parameter(part, k - 6).unit) + "/s";
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+std::vector<Column> mode_columns_of(const Model& model) {
+  std::vector<Column> columns{
       {"start", "s", "time of step 0"}, {"step_size", "s", "step"}, {"step", "1", "steps since start"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {

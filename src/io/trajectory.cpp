@@ -1,6 +1,7 @@
 #include <pliant/io/trajectory.h>
 
 #include <pliant/io/number_text.h>
+#include <pliant/io/state_row.h>
 #include <pliant/io/whole_file.h>
 
 namespace pliant {
@@ -8,8 +9,12 @@ namespace {
 
 constexpr const char* kAxes[3] = {".x", ".y", ".z"};
 
-void add_axes(std::vector<std::string>& names, const std::string& stem) {
-  for (const char* axis : kAxes) names.push_back(stem + axis);
+void add_axes(std::vector<Column>& columns, const std::string& stem, const char* unit, const char* meaning) {
+  for (const char* axis : kAxes) columns.push_back({stem + axis, unit, meaning});
+}
+
+void add_all(std::vector<Column>& columns, const std::vector<Column>& more) {
+  columns.insert(columns.end(), more.begin(), more.end());
 }
 
 void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
@@ -44,24 +49,27 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
   }
 }
 
-std::vector<std::string> TrajectoryTable::columns() const {
+std::vector<Column> TrajectoryTable::columns() const {
   const Model& model = simulation_->model();
-  std::vector<std::string> names{"t"};
+  std::vector<Column> columns{{"t", "s", "time"}};
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
     const PartModel& part = model.parts()[i];
     if (part.q0 < 0) continue;
-    for (int k = 0; k < 7 + part.n_s; ++k) names.push_back(model.coordinate_name(part.q0 + k));
-    for (int k = 0; k < 6 + part.n_s; ++k) names.push_back(model.velocity_name(part.v0 + k));
-    if (centre_shown_[i]) add_axes(names, part.part->name() + ".com");
+    add_all(columns, coordinate_columns(model, part));
+    add_all(columns, velocity_columns(model, part));
+    if (centre_shown_[i]) add_axes(columns, part.part->name() + ".com", "m", "centre of mass, world");
   }
-  for (const Track& track : scene_->tracks) add_axes(names, "track." + track.name);
-  for (const char* energy : {"kinetic", "gravity", "elastic", "springs", "total"})
-    names.push_back(std::string("energy.") + energy);
-  for (const char* work : kWorkNames) names.push_back(std::string("work.") + work);
-  names.push_back("balance");
-  add_axes(names, "momentum");
-  add_axes(names, "angular_momentum");
-  return names;
+  for (const Track& track : scene_->tracks)
+    add_axes(columns, "track." + track.name, "m", "tracked point, world");
+  for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
+    columns.push_back({std::string("energy.") + energy, "J", ""});
+  columns.push_back({"energy.total", "J", "kinetic + gravity + elastic + springs"});
+  for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
+  columns.push_back(
+      {"balance", "J", "energy.total - its value at time 0 - all works: the error of the method"});
+  add_axes(columns, "momentum", "kg m/s", "of all moving parts, world");
+  add_axes(columns, "angular_momentum", "kg m^2/s", "of all moving parts about the world's origin");
+  return columns;
 }
 
 void TrajectoryTable::add_part(const State& state, std::size_t i, std::vector<double>& numbers) const {
@@ -97,7 +105,7 @@ void write_trajectory(const std::filesystem::path& path, const Scene& scene, con
   TrajectoryTable table(scene, simulation);
   WholeFile file(path);
   std::string text;
-  for (const std::string& name : table.columns()) text += (text.empty() ? "" : ",") + cell(name);
+  for (const Column& column : table.columns()) text += (text.empty() ? "" : ",") + cell(column.name);
   text += '\n';
   std::vector<double> numbers;
   for (std::int64_t i = 0; i < recording.rows(); ++i) {

@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <mutex>
 
 #include <pliant/math/functions.h>
 
 namespace pliant {
 
-std::vector<QuadratureNode> gauss_rule(int n) {
+namespace {
+
+std::vector<QuadratureNode> make_gauss_rule(int n) {
   std::vector<QuadratureNode> rule(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
     // Newton on the Legendre polynomial P_n from the Chebyshev-like first guess.
@@ -27,6 +31,18 @@ std::vector<QuadratureNode> gauss_rule(int n) {
     // Ascending in [0, 1].
     rule[static_cast<std::size_t>(i)] = {(1 - x) / 2, (1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
   }
+  return rule;
+}
+
+}  // namespace
+
+std::vector<QuadratureNode> gauss_rule(int n) {
+  // Parts ask for the same few rules again and again while they are loaded.
+  static std::mutex busy;
+  static std::map<int, std::vector<QuadratureNode>> made;
+  const std::lock_guard<std::mutex> lock(busy);
+  std::vector<QuadratureNode>& rule = made[n];
+  if (rule.empty()) rule = make_gauss_rule(n);
   return rule;
 }
 

@@ -26,7 +26,10 @@ bool folds(const Part& part, const ParameterValues<double>& values) {
 }
 
 void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which) {
-  if (!folds(part, values)) return;
+  if (folds(part, values)) throw_folded(part, which);
+}
+
+void throw_folded(const Part& part, const char* which) {
   throw std::invalid_argument("part '" + part.name() + "': its " + which +
                               " shape folds over (the deformation turns some of the solid inside out); "
                               "reduce the bend or the taper, or make the body slimmer");

@@ -78,12 +78,6 @@ void Parameters::update() {
                                 " dynamic parameters; this one has " + std::to_string(n_dynamic()));
 }
 
-ParameterValues<double> Parameters::initial() const {
-  ParameterValues<double> values = rest();
-  for (const int i : dynamic_) values.b[static_cast<std::size_t>(i)] = (*this)[i].initial;
-  return values;
-}
-
 ParameterValues<double> Parameters::rest() const {
   ParameterValues<double> values;
   for (int i = 0; i < size(); ++i) {

@@ -63,6 +63,7 @@ Part& Part::move(const Vec3<double>& c_dot, const Vec3<double>& omega) {
 }
 
 Part& Part::rest(const Named& values) {
+  prepared_ = false;
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!p.spec->frozen.contains(value))
@@ -74,6 +75,7 @@ Part& Part::rest(const Named& values) {
 }
 
 Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
+  prepared_ = false;
   const int i = require(parameter);
   if (!parameters_[i].spec->frozen.contains(of_time.value(0)))
     refuse(parameter + " = " + text(of_time.value(0)) +
@@ -84,6 +86,7 @@ Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
 }
 
 Part& Part::initial(const Named& values) {
+  prepared_ = false;
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!std::isfinite(value)) refuse("initial " + parameter + " is not finite");
@@ -96,6 +99,7 @@ Part& Part::initial(const Named& values) {
 }
 
 Part& Part::initial_rate(const Named& values) {
+  prepared_ = false;
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!std::isfinite(value)) refuse("initial rate of " + parameter + " is not finite");
@@ -107,6 +111,7 @@ Part& Part::initial_rate(const Named& values) {
 }
 
 Part& Part::stiffness(const Named& values) {
+  prepared_ = false;
   for (const auto& [parameter, value] : values) {
     const int i = require(parameter);
     if (!(value >= 0) || !std::isfinite(value))
@@ -119,6 +124,7 @@ Part& Part::stiffness(const Named& values) {
 }
 
 Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<double>& K) {
+  prepared_ = false;
   const auto n = static_cast<Eigen::Index>(parameters.size());
   if (K.rows() != n || K.cols() != n)
     refuse("the stiffness matrix must be " + std::to_string(n) + " x " + std::to_string(n));
@@ -138,6 +144,7 @@ Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<dou
 }
 
 Part& Part::limits(const std::string& parameter, Range range) {
+  prepared_ = false;
   Parameter& p = parameters_[require(parameter)];
   const double scale = p.spec->relative ? p.rest_value() : 1.0;
   const Range allowed{p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
@@ -149,12 +156,14 @@ Part& Part::limits(const std::string& parameter, Range range) {
 }
 
 Part& Part::make_dynamic(const std::vector<std::string>& parameters) {
+  prepared_ = false;
   for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = true;
   parameters_.update();
   return *this;
 }
 
 Part& Part::freeze(const std::vector<std::string>& parameters) {
+  prepared_ = false;
   for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = false;
   parameters_.update();
   return *this;
@@ -170,17 +179,20 @@ Part& Part::damping(double alpha, double beta, double nu) {
 }
 
 Part& Part::make_shell() {
+  prepared_ = false;
   shell_ = true;
   return *this;
 }
 
 Part& Part::mass(double total) {
+  prepared_ = false;
   if (!(total > 0) || !std::isfinite(total)) refuse("mass " + text(total) + " is not a positive number");
   total_mass_ = total;
   return *this;
 }
 
 Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<double>& centre) {
+  prepared_ = false;
   if (!(mass > 0) || !std::isfinite(mass)) refuse("mass " + text(mass) + " is not a positive number");
   const Mat3<double> about_centre =
       about_origin - mass * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
@@ -207,11 +219,13 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
 }
 
 Part& Part::fix() {
+  prepared_ = false;
   fixed_ = true;
   return *this;
 }
 
 void Part::prepare() {
+  if (prepared_) return;
   parameters_.update();
   const int n = parameters_.n_dynamic();
   for (int k = 0; k < parameters_.size(); ++k) {
@@ -238,15 +252,15 @@ void Part::prepare() {
                               parameters_.dynamic()[static_cast<std::size_t>(j)]);
 
   const ParameterValues<double> rest = parameters_.rest();
-  refuse_folds(*this, rest, "rest");
-  refuse_folds(*this, parameters_.initial(), "initial");
   std::vector<Material<double>> surface;
   for (int i = 0; i < 16; ++i)
     for (int j = -4; j <= 4; ++j) surface.push_back(material_at(j * kPi / 8, i * kPi / 8));
   size_ = s(surface, rest).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
 
   if (given_inertia_) {
+    refuse_folds(*this, rest, "rest");
     rest_inertia_ = *given_inertia_;
+    prepared_ = true;
     return;
   }
   mass_points_ = lay_mass_points(*this);
@@ -265,6 +279,7 @@ void Part::prepare() {
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
+  prepared_ = true;
 }
 
 Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,

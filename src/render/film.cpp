@@ -8,6 +8,10 @@
 namespace pliant {
 namespace {
 
+const Eigen::Vector3f kSpringColor(0.25f, 0.27f, 0.3f);
+constexpr float kSpringWidth = 1.5f, kAnchorWidth = 6;  // pixels
+constexpr double kVertical = 1e-5;                      // sine of the angle between view and z
+
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
 }
@@ -30,9 +34,29 @@ void Film::lay_tracks() {
     const State state = recording_->state(row);
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       const Point& point = scene_->tracks[i].point;
-      tracks_[i].push_back(model_->world_point(state, model_->body().index(*point.part), point.material));
+      tracks_[i].push_back(place(point, state));
     }
   }
+}
+
+Eigen::Vector3d Film::place(const Point& point, const State& state) const {
+  if (point.part == nullptr) return point.world.value(state.time());
+  return model_->world_point(state, model_->body().index(*point.part), point.material);
+}
+
+// Where springs hold on to the world, as far as that is beside the bodies and not somewhere far away.
+Eigen::AlignedBox3d Film::anchors(const Eigen::AlignedBox3d& bodies) const {
+  Eigen::AlignedBox3d box;
+  if (!scene_->show_springs || bodies.isEmpty()) return box;
+  const double reach = bodies.diagonal().norm();
+  for (std::int64_t row = 0; row < recording_->rows(); ++row)
+    for (const auto& spring : scene_->body.springs())
+      for (const Point* end : {&spring->a, &spring->b}) {
+        if (end->part != nullptr) continue;
+        const Eigen::Vector3d x = end->world.value(recording_->time(row));
+        if (bodies.exteriorDistance(x) <= reach) box.extend(x);
+      }
+  return box;
 }
 
 void Film::choose_view() {
@@ -48,6 +72,7 @@ void Film::choose_view() {
   Eigen::AlignedBox3d all = bodies;
   for (const auto& track : tracks_)
     for (const Eigen::Vector3d& x : track) all.extend(x);
+  all.extend(anchors(bodies));
   const CameraSetting& asked = scene_->camera;
   const double aspect = static_cast<double>(scene_->width) / scene_->height;
   Camera& camera = picture_.camera;
@@ -57,6 +82,28 @@ void Film::choose_view() {
     camera.target = *asked.target;
   }
   if (asked.eye) camera.eye = *asked.eye;
+  // Straight down or up the picture's top is y.
+  const Eigen::Vector3d view = camera.target - camera.eye;
+  if (camera.up.cross(view).norm() <= kVertical * view.norm()) camera.up = Eigen::Vector3d::UnitY();
+}
+
+void Film::draw_springs(const State& state) {
+  if (!scene_->show_springs) return;
+  for (const auto& spring : scene_->body.springs()) {
+    Picture::Track line;
+    line.points = {place(spring->a, state), place(spring->b, state)};
+    line.color = kSpringColor;
+    line.width = kSpringWidth;
+    picture_.tracks.push_back(line);
+    for (const Point* end : {&spring->a, &spring->b}) {
+      if (end->part != nullptr) continue;
+      Picture::Track dot;
+      dot.points = {place(*end, state)};
+      dot.color = kSpringColor;
+      dot.width = kAnchorWidth;
+      picture_.tracks.push_back(dot);
+    }
+  }
 }
 
 const Picture& Film::at(double time) {
@@ -71,10 +118,11 @@ const Picture& Film::at(double time) {
     const Point& point = scene_->tracks[i].point;
     Picture::Track track;
     track.points.assign(tracks_[i].begin(), tracks_[i].begin() + rows);
-    track.points.push_back(model_->world_point(state, model_->body().index(*point.part), point.material));
+    track.points.push_back(place(point, state));
     track.color = vector_of(scene_->tracks[i].color);
     picture_.tracks.push_back(std::move(track));
   }
+  draw_springs(state);
   return picture_;
 }
 

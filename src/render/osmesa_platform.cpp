@@ -49,7 +49,7 @@ class OsmesaPlatform : public GlContext::Platform {
   MakeCurrent make_current_ = nullptr;
   GetProcAddress get_proc_address_ = nullptr;
   Context context_ = nullptr;
-  std::array<unsigned char, 4 * kBufferSide * kBufferSide> buffer_{};
+  std::array<unsigned char, std::size_t{4} * kBufferSide * kBufferSide> buffer_{};
 };
 
 }  // namespace

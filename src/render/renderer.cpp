@@ -29,8 +29,8 @@ class Renderer::Impl {
       const GlContext::Current current(context);
       pipeline.reset();
     } catch (const std::runtime_error&) {
-      pipeline
-          .release();  // the context takes its objects with it; their names cannot be given back without it
+      // The context takes its objects with it; their names cannot be given back without it.
+      pipeline.release();  // NOLINT(bugprone-unused-return-value)
     }
   }
   Impl(const Impl&) = delete;

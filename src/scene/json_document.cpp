@@ -243,8 +243,24 @@ std::string JsonDocument::pointer_to(const JsonValue& value) const {
 
 std::string JsonDocument::shown(const JsonValue& value) const {
   constexpr std::size_t kMost = 60;
-  if (value.is_array()) return "an array of " + counted(value.array().size(), "value");
-  if (value.is_object()) return "an object";
+  if (value.is_array()) {
+    std::string list;
+    for (const JsonValue& element : value.array()) {
+      if (!element.is_object()) list += (list.empty() ? "" : ", ") + shown(element);
+      if (element.is_object() || list.size() > kMost)
+        return "an array of " + counted(value.array().size(), "value");
+    }
+    return "[" + list + "]";
+  }
+  if (value.is_object()) {
+    std::string keys;
+    for (const JsonValue::Member& member : value.members()) {
+      if (member.key == "//") continue;
+      keys += (keys.empty() ? "\"" : ", \"") + member.key + "\"";
+      if (keys.size() > kMost) return "an object";
+    }
+    return keys.empty() ? "an empty object" : "an object with " + keys;
+  }
   const std::string_view text = sources_[value.place().source].text;
   const std::size_t begin = value.place().offset;
   std::size_t end = value.is_string() ? json::string_end(text, begin) : json::word_end(text, begin);

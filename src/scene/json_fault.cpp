@@ -78,6 +78,7 @@ class Explainer {
     const bool cut = end - at > 30;
     if (cut) end = at + 30;
     while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80) ++end;
+    if (look(at) == '"' && !cut) return std::string(text_.substr(at, end - at));
     return "\"" + std::string(text_.substr(at, end - at)) + (cut ? "...\"" : "\"");
   }
 
@@ -104,6 +105,8 @@ class Explainer {
       if (look(next) == closing) {
         return fault(at, std::string("a comma before \"") + closing + "\"; remove it");
       }
+      if (object && at > 0 && is_digit(text_[at - 1]) && is_digit(look(at + 1)))
+        return fault(at, "a decimal point is written \".\", not \",\"");
       return object ? key(next, "a key in double quotes") : value(next, "a value");
     }
     if (look(at) == '}' || look(at) == ']') {
@@ -171,7 +174,9 @@ class Explainer {
       return fault(at, found(at) + "; a number has no leading zero");
     }
     if (whole) return fault(at, found(at) + "; a number has digits before and after its point");
-    return fault(at, found(at) + "; expected a number");
+    const bool unit = !token.empty() && is_digit(token[0]) && is_letter(token.back()) && small.back() != 'e';
+    return fault(at, found(at) + (unit ? "; expected a number alone; units are fixed and not written"
+                                       : "; expected a number"));
   }
 
   Fault string(std::size_t quote) const {

@@ -9,6 +9,9 @@ namespace schema {
 
 namespace {
 
+/// Pi, as people write it.
+constexpr double kMostAngle = 3.1416;
+
 Field radial() {
   return optional("w", number(between(0, 1), "1"), "Radial coordinate: 0 at the centre, 1 on the surface.",
                   "1");
@@ -17,8 +20,10 @@ Field radial() {
 Record by_coordinates() {
   return {"point_at_coordinates",
           "A material point by its coordinates.",
-          {required("u", number(between(-kPi, kPi), "rad"), "Latitude of the shape.", "0"),
-           required("v", number(between(-kPi, kPi), "rad"), "Longitude of the shape.", "0"), radial()}};
+          {required("u", number(between(-kMostAngle, kMostAngle), "rad"),
+                    "Latitude of the shape, from -pi/2 to pi/2; round the tube of a torus.", "0"),
+           required("v", number(between(-kMostAngle, kMostAngle), "rad"), "Longitude of the shape.", "0"),
+           radial()}};
 }
 
 Record by_direction() {
@@ -34,7 +39,8 @@ Record by_direction() {
 
 Record by_place() {
   return {"point_near",
-          "The surface point nearest to a place, in the rest shape.",
+          "The material point at a place of the rest shape; for a place outside, the surface point with the "
+          "same u and v.",
           {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
 }
 

@@ -1,5 +1,6 @@
 #include <pliant/scene/reader.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <pliant/scene/time_value.h>
@@ -36,14 +37,28 @@ const schema::Field& Reader::field(const std::string& key) const {
   return *f;
 }
 
+bool Reader::is_faulty(const JsonValue& value) const {
+  return faulty_ != nullptr && faulty_->count(&value) > 0;
+}
+
 bool Reader::given(std::string_view key) const {
-  return object_->find(key) != nullptr;
+  const JsonValue* value = object_->find(key);
+  return value != nullptr && !is_faulty(*value);
+}
+
+bool Reader::faulty(std::string_view key) const {
+  const JsonValue* value = object_->find(key);
+  return value != nullptr && is_faulty(*value);
+}
+
+bool Reader::complete() const {
+  return std::all_of(record_->fields.begin(), record_->fields.end(),
+                     [&](const schema::Field& f) { return !f.required || given(f.key); });
 }
 
 const JsonValue* Reader::find(const std::string& key) const {
   const schema::Field& f = field(key);
-  const JsonValue* value = object_->find(key);
-  return value != nullptr ? value : f.default_value.get();
+  return given(key) ? object_->find(key) : f.default_value.get();
 }
 
 const JsonValue& Reader::at(const std::string& key) const {
@@ -85,25 +100,36 @@ std::vector<double> Reader::numbers(const std::string& key) const {
 
 Reader Reader::object(const std::string& key) const {
   const schema::Type& type = field(key).type;
-  const JsonValue* value = find(key);
-  const bool defaults = value == nullptr && type.kind == schema::Type::Kind::kRecord;
-  const JsonValue& object = defaults ? empty_object() : at(key);
-  const schema::Record* record = chosen_record(type, object);
-  if (record == nullptr)
-    throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no record");
-  return {object, *record};
+  for (const JsonValue* value : {object_->find(key), field(key).default_value.get()}) {
+    if (value == nullptr || !value->is_object()) continue;
+    if (const schema::Record* record = chosen_record(type, *value)) return {*value, *record, faulty_};
+  }
+  if (type.kind == schema::Type::Kind::kRecord) return {empty_object(), *type.records[0], faulty_};
+  throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no record");
 }
 
 std::vector<Reader> Reader::objects(const std::string& key) const {
   const schema::Type& type = field(key).type;
   std::vector<Reader> all;
-  const JsonValue* value = find(key);
-  if (value == nullptr) return all;
+  const JsonValue* value = object_->find(key);
+  if (value == nullptr || !value->is_array()) return all;
   for (const JsonValue& element : value->array()) {
-    const schema::Record* record = chosen_record(type.inner[0], element);
-    if (record == nullptr)
-      throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no records");
-    all.emplace_back(element, *record);
+    if (!element.is_object()) continue;
+    if (const schema::Record* record = chosen_record(type.inner[0], element))
+      all.emplace_back(element, *record, faulty_);
+  }
+  return all;
+}
+
+std::vector<std::pair<std::string, Reader>> Reader::entries(const std::string& key) const {
+  const schema::Type& type = field(key).type;
+  std::vector<std::pair<std::string, Reader>> all;
+  const JsonValue* value = object_->find(key);
+  if (value == nullptr || !value->is_object()) return all;
+  for (const JsonValue::Member& member : value->members()) {
+    if (schema::is_ignored_key(member.key) || !member.value.is_object()) continue;
+    if (const schema::Record* record = chosen_record(type.inner[0], member.value))
+      all.emplace_back(member.key, Reader(member.value, *record, faulty_));
   }
   return all;
 }

@@ -33,9 +33,10 @@ Type color() {
                    const std::string& s = value.string();
                    if (s.size() != 7 || s[0] != '#' ||
                        s.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-                     report(value, "expected \"#rrggbb\" with hexadecimal digits", 0);
+                     report(value, "expected \"#rrggbb\" with hexadecimal digits", kWholeValue);
                  })
-                 .expecting("\"#rrggbb\"");
+                 .matching("^#[0-9a-fA-F]{6}$")
+                 .expecting("\"#rrggbb\" or [red, green, blue] from 0 to 1");
   return one_of({hex, array(number(between(0, 1), "1"), 3, 3)})
       .expecting("a colour \"#rrggbb\" or [red, green, blue] from 0 to 1 (sRGB)")
       .defined_as("color");
@@ -59,7 +60,8 @@ Type orientation() {
   const Record quaternion{
       "by_quaternion",
       "A unit quaternion, body to world.",
-      {required("quaternion", array(number(any(), "1"), 4, 4), "w, x, y, z.", "[1, 0, 0, 0]")}};
+      {required("quaternion", array(number(any(), "1"), 4, 4).expecting("4 numbers [w, x, y, z]"),
+                "w, x, y, z.", "[1, 0, 0, 0]")}};
   const Record axis{"by_axis",
                     "A turn about an axis of the world.",
                     {required("axis", vector3("1"), "The axis.", "[0, 1, 0]"),
@@ -126,7 +128,7 @@ Record part_record() {
 Record make_scene_record() {
   const Record time{"time",
                     "How long, and how to step.",
-                    {optional("end", number(above(0), "s"), "End of the run; it starts at 0.", "1"),
+                    {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
                      optional("step", number(above(0), "s"), "Time step.", "0.001"),
                      optional("integrator", choice(integrator_choices()), "Method of time integration.",
                               "\"semi_implicit_euler\"")}};
@@ -191,7 +193,8 @@ Record make_scene_record() {
            optional("gravity", vector3("m/s^2"), "Acceleration of gravity.", "[0, 0, -9.81]"),
            optional("time", record(time), "How long, and how to step.", "{}"),
            optional("materials", map(record(material)), "Materials by name.", "{}"),
-           required("parts", array(record(part_record())), "The bodies.", "[]"),
+           required("parts", array(record(part_record())), "The bodies.",
+                    "[{\"name\": \"ball\", \"shape\": \"sphere\"}]"),
            optional("springs", array(record(spring)), "Springs between parts or to the world.", "[]"),
            optional("forces", array(record(force)), "Forces at material points.", "[]"),
            optional("torques", array(record(torque)), "Torques on parts.", "[]"),
@@ -206,21 +209,22 @@ Record make_scene_record() {
 
 const Type& parameter_type() {
   static const Type type =
-      one_of({number(any(), "SI"),
-              record({"parameter",
-                      "A global parameter. It is dynamic, a degree of freedom, when it says so or has an "
-                      "initial value, a "
-                      "rate or a stiffness; else frozen at its rest value.",
-                      {optional("rest", time_function("SI"),
-                                "Rest value; of a dynamic parameter it may move in time."),
-                       optional("dynamic", boolean(), "Whether it is a degree of freedom.", "false"),
-                       optional("initial", number(any(), "SI"),
-                                "Value at time 0; the rest value when not given."),
-                       optional("initial_rate", number(any(), "SI/s"), "Rate at time 0.", "0"),
-                       optional("stiffness", number(at_least(0), "J/SI^2"),
-                                "K of the energy 1/2 K (q - rest)^2.", "0"),
-                       optional("min", number(any(), "SI"), "Lower limit of a dynamic parameter."),
-                       optional("max", number(any(), "SI"), "Upper limit of a dynamic parameter.")}})})
+      one_of(
+          {number(any(), "m, rad or 1"),
+           record({"parameter",
+                   "A global parameter. It is dynamic, a degree of freedom, when it says so or has an "
+                   "initial value, a "
+                   "rate or a stiffness; else frozen at its rest value.",
+                   {optional("rest", time_function("m, rad or 1"),
+                             "Rest value; of a dynamic parameter it may move in time."),
+                    optional("dynamic", boolean(), "Whether it is a degree of freedom.", "false"),
+                    optional("initial", number(any(), "m, rad or 1"),
+                             "Value at time 0; the rest value when not given."),
+                    optional("initial_rate", number(any(), "m/s, rad/s or 1/s"), "Rate at time 0.", "0"),
+                    optional("stiffness", number(at_least(0), "N/m for a length, else N m"),
+                             "K of the energy 1/2 K (q - rest)^2.", "0"),
+                    optional("min", number(any(), "m, rad or 1"), "Lower limit of a dynamic parameter."),
+                    optional("max", number(any(), "m, rad or 1"), "Upper limit of a dynamic parameter.")}})})
           .expecting(
               "a number, or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
               "\"max\"}")

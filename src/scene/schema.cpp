@@ -50,6 +50,8 @@ std::string array_words(const Type& type) {
   if (type.min_count == type.max_count)
     return "an array of " + std::to_string(type.min_count) + " " + elements;
   const bool bounded = type.max_count != std::numeric_limits<std::size_t>::max();
+  if (bounded && type.min_count == 0)
+    return "an array of at most " + std::to_string(type.max_count) + " " + elements;
   if (bounded) {
     return "an array of " + std::to_string(type.min_count) + " to " + std::to_string(type.max_count) + " " +
            elements;
@@ -136,6 +138,11 @@ Type Type::defined_as(std::string name) const {
   t.definition = std::move(name);
   return t;
 }
+Type Type::matching(std::string regular_expression) const {
+  Type t = *this;
+  t.pattern = std::move(regular_expression);
+  return t;
+}
 Type Type::checked(Check rule) const {
   Type t = *this;
   t.check = std::move(rule);
@@ -215,7 +222,7 @@ Type array(Type element, std::size_t min_count, std::size_t max_count) {
   t.max_count = max_count;
   return t;
 }
-Type vector3(std::string unit, Range range) {
+Type vector3(const std::string& unit, Range range) {
   Type t = array(number(range, unit), 3, 3);
   return t.expecting("3 numbers [x, y, z]" + words(range) +
                      (unit.empty() || unit == "1" ? "" : " (" + unit + ")"));

@@ -55,8 +55,7 @@ class Writer {
       case Type::Kind::kBoolean:
         return {{"type", "boolean"}};
       case Type::Kind::kText:
-        return t.min_count > 0 ? Json{{"type", "string"}, {"minLength", t.min_count}}
-                               : Json{{"type", "string"}};
+        return text(t);
       case Type::Kind::kName:
         return {{"type", "string"},
                 {"minLength", t.min_count},
@@ -87,6 +86,13 @@ class Writer {
     Json out = {{"type", name}};
     if (std::isfinite(range.min)) out[range.min_excluded ? "exclusiveMinimum" : "minimum"] = range.min;
     if (std::isfinite(range.max)) out[range.max_excluded ? "exclusiveMaximum" : "maximum"] = range.max;
+    return out;
+  }
+
+  static Json text(const Type& t) {
+    Json out = {{"type", "string"}};
+    if (t.min_count > 0) out["minLength"] = t.min_count;
+    if (!t.pattern.empty()) out["pattern"] = t.pattern;
     return out;
   }
 

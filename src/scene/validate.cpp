@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/math/nearest_name.h>
+#include <pliant/scene/faulty_values.h>
 
 #include "json_write.h"
 
@@ -19,7 +20,7 @@ using schema::Type;
 using TypeKind = Type::Kind;
 using ValueKind = JsonValue::Kind;
 
-/// Where each key belongs, as a pattern "/parts/*/".
+/// Where each key belongs, as a pattern "/parts/*".
 using Places = std::map<std::string, std::vector<std::string>>;
 
 void collect(const Type& type, const std::string& at, Places* places);
@@ -27,7 +28,7 @@ void collect(const Type& type, const std::string& at, Places* places);
 void collect(const Record& record, const std::string& at, const std::string& note, Places* places) {
   for (const Field& field : record.fields) {
     std::vector<std::string>& known = (*places)[field.key];
-    const std::string place = at + "/" + note;
+    const std::string place = at.empty() ? "the top of the scene" : at + note;
     if (std::find(known.begin(), known.end(), place) == known.end()) known.push_back(place);
     collect(field.type, pointer_join(at, field.key), places);
   }
@@ -37,19 +38,11 @@ void collect(const Type& type, const std::string& at, Places* places) {
   if (type.kind == TypeKind::kRecord) collect(*type.records[0], at, "", places);
   if (type.kind == TypeKind::kTagged) {
     for (const schema::RecordPtr& record : type.records) {
-      collect(*record, at, " with " + type.tag + " \"" + record->name + "\"", places);
+      collect(*record, at, " of " + type.tag + " \"" + record->name + "\"", places);
     }
   }
-  const auto is_record = [](const Type& t) { return t.kind == TypeKind::kRecord; };
-  const bool several = std::count_if(type.inner.begin(), type.inner.end(), is_record) > 1;
   const bool many = type.kind == TypeKind::kArray || type.kind == TypeKind::kMap;
-  for (const Type& inner : type.inner) {
-    if (several && is_record(inner)) {
-      collect(*inner.records[0], at, " for " + inner.words(), places);
-    } else {
-      collect(inner, many ? at + "/*" : at, places);
-    }
-  }
+  for (const Type& inner : type.inner) collect(inner, many ? at + "/*" : at, places);
 }
 
 bool accepts(const Type& type, ValueKind kind) {
@@ -82,7 +75,8 @@ bool has_control_byte(const std::string& text) {
 
 class Validator {
  public:
-  Validator(const JsonDocument& document, Diagnostics& faults) : document_(document), faults_(faults) {}
+  Validator(const JsonDocument& document, Diagnostics& faults)
+      : document_(document), faults_(faults), told_(faulty_values(document, faults)) {}
 
   void run(const JsonValue& value, const Type& type, std::string pointer, bool root) {
     whole_ = &type;
@@ -114,7 +108,7 @@ class Validator {
   }
 
   void check(const JsonValue& value, const Type& type) {
-    if (faults_.full()) return;
+    if (faults_.full() || is_told(value)) return;
     if (!accepts(type, value.kind())) return wrong_type(value, type);
     const std::size_t before = faults_.errors();
     switch (type.kind) {
@@ -158,12 +152,20 @@ class Validator {
     if (type.check && faults_.errors() == before) run_rule(value, type);
   }
 
+  /// A number or a text in which the parser has found a fault already.
+  bool is_told(const JsonValue& value) const {
+    return !value.is_array() && !value.is_object() && told_.count(&value) > 0;
+  }
+
   void wrong_type(const JsonValue& value, const Type& type) {
     std::string hint;
     const bool number_in_quotes = value.is_string() && accepts(type, ValueKind::kNumber);
     const bool word_in_quotes = value.is_string() && type.kind == TypeKind::kBoolean;
     if (number_in_quotes || word_in_quotes) hint = ", not in quotes";
     if (type.kind == TypeKind::kBoolean && value.is_number()) hint = ", not a number";
+    const bool alone = type.kind == TypeKind::kArray && type.min_count <= 1 && !value.is_object() &&
+                       accepts(type.inner[0], value.kind());
+    if (alone) hint = "; did you mean [" + document_.shown(value) + "]?";
     expected(value, type.words(), hint);
   }
 
@@ -180,8 +182,8 @@ class Validator {
   void check_integer(const JsonValue& value, const Type& type) {
     constexpr double kExact = 9007199254740992.0;  // 2^53: above it doubles skip integers
     const double x = value.number();
-    if (std::abs(x) > kExact) return expected(value, type.words(), " of at most 9007199254740992 in size");
-    if (x != std::floor(x) || !type.range.contains(x)) expected(value, type.words());
+    if (x != std::floor(x) || !type.range.contains(x)) return expected(value, type.words());
+    if (std::abs(x) > kExact) expected(value, type.words(), " of at most 9007199254740992 in size");
   }
 
   void check_name(const JsonValue& value, const Type& type) {
@@ -227,14 +229,21 @@ class Validator {
   }
 
   void check_record(const JsonValue& value, const Record& record, const std::string& tag) {
+    std::vector<std::string> misspelt;
+    const Type* alternatives = std::exchange(alternatives_, nullptr);
     for (const JsonValue::Member& member : value.members()) {
       if (faults_.full()) return;
       const bool ignored = schema::is_ignored_key(member.key) || member.key == tag ||
                            (&value == root_ && member.key == "$schema");
       if (ignored) continue;
       const Field* field = record.find(member.key);
+      if (field == nullptr && alternatives != nullptr && known_to(*alternatives, member.key)) {
+        fault(member.key_place, pointer_join(pointer_, member.key),
+              "given beside " + given_of(record, value) + "; expected " + alternatives->words());
+        continue;
+      }
       if (field == nullptr) {
-        unknown_key(member, record, tag);
+        misspelt.push_back(unknown_key(member, record, tag));
         continue;
       }
       const Step step(this, member.key);
@@ -242,11 +251,41 @@ class Validator {
     }
     for (const Field& field : record.fields) {
       if (!field.required || value.find(field.key) != nullptr) continue;
+      if (std::find(misspelt.begin(), misspelt.end(), field.key) != misspelt.end()) continue;
       fault(value.place(), pointer_,
             "missing key \"" + field.key + "\"; expected " + field.type.words() +
                 (field.example.empty() ? "" : ", for example \"" + field.key + "\": " + field.example));
     }
     for (const schema::KeyGroup& group : record.exclusive) check_group(value, group);
+  }
+
+  /// "; did you mean" for the first key of an object that is near one of an alternative.
+  static std::string nearest_key(const JsonValue& object, const Type& alternatives) {
+    std::vector<std::string> keys;
+    for (const Type& t : alternatives.inner) {
+      if (t.kind != TypeKind::kRecord) continue;
+      for (const Field& field : t.records[0]->fields) keys.push_back(field.key);
+    }
+    for (const JsonValue::Member& member : object.members()) {
+      if (schema::is_ignored_key(member.key)) continue;
+      const std::string hint = did_you_mean(member.key, keys);
+      if (!hint.empty()) return hint;
+    }
+    return "";
+  }
+  /// One of the records of an alternative has the key.
+  static bool known_to(const Type& alternatives, const std::string& key) {
+    return std::any_of(alternatives.inner.begin(), alternatives.inner.end(), [&](const Type& t) {
+      return t.kind == TypeKind::kRecord && t.records[0]->find(key) != nullptr;
+    });
+  }
+  /// The required keys of a record that an object has.
+  static std::string given_of(const Record& record, const JsonValue& object) {
+    std::string list;
+    for (const Field& field : record.fields)
+      if (field.required && object.find(field.key) != nullptr)
+        list += (list.empty() ? "\"" : ", \"") + field.key + "\"";
+    return list;
   }
 
   void check_group(const JsonValue& value, const schema::KeyGroup& group) {
@@ -266,19 +305,21 @@ class Validator {
     }
   }
 
-  void unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
+  /// Returns the key that is probably meant; empty when none is near.
+  std::string unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
     std::vector<std::string> keys;
     if (!tag.empty()) keys.push_back(tag);
     for (const Field& field : record.fields) keys.push_back(field.key);
     if (places_.empty()) collect(*whole_, whole_at_, &places_);
     std::string hint;
+    const std::string near = nearest_name(member.key, keys);
+    const bool slip = !near.empty() && edit_distance(member.key, near) == 1;
     const auto elsewhere = places_.find(member.key);
-    if (elsewhere != places_.end()) {
-      hint = "; known at ";
-      const std::size_t shown = std::min<std::size_t>(elsewhere->second.size(), 3);
-      for (std::size_t i = 0; i < shown; ++i) hint += (i == 0 ? "" : " or ") + elsewhere->second[i];
-      if (elsewhere->second.size() > shown) hint += " and elsewhere";
-      hint += "; not here";
+    if (elsewhere != places_.end() && !slip) {
+      const std::size_t shown = std::min<std::size_t>(elsewhere->second.size(), 2);
+      for (std::size_t i = 0; i < shown; ++i)
+        hint += (i == 0 ? "; it belongs to " : " or ") + elsewhere->second[i];
+      if (elsewhere->second.size() > shown) hint += " and others";
     }
     hint += did_you_mean(member.key, keys);
     if (hint.empty()) {
@@ -287,6 +328,7 @@ class Validator {
       hint = keys.empty() ? "; expected no keys" : "; expected one of " + list;
     }
     fault(member.key_place, pointer_join(pointer_, member.key), "unknown key" + hint);
+    return near;
   }
 
   void check_one_of(const JsonValue& value, const Type& type) {
@@ -297,7 +339,9 @@ class Validator {
     if (candidates.size() == 1) return check(value, *candidates[0]);
     if (value.is_object()) {
       const Type* chosen = schema::chosen_alternative(type, value);
-      return chosen == nullptr ? expected(value, type.words()) : check(value, *chosen);
+      if (chosen == nullptr) return expected(value, type.words(), nearest_key(value, type));
+      if (chosen->kind == TypeKind::kRecord) alternatives_ = &type;
+      return check(value, *chosen);
     }
     std::size_t least = 0;
     const Type* nearest = nullptr;
@@ -316,8 +360,10 @@ class Validator {
 
   const JsonDocument& document_;
   Diagnostics& faults_;
+  FaultyValues told_;
   Places places_;  ///< made when the first unknown key asks for it
   const Type* whole_ = nullptr;
+  const Type* alternatives_ = nullptr;  ///< of which the record to be checked next is one
   std::string whole_at_;
   std::string pointer_;
   const JsonValue* root_ = nullptr;

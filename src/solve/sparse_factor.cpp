@@ -40,6 +40,7 @@ bool SparseFactor::factor(const SparseMatrix& A) {
   return factored_ = do_factor(A);
 }
 
+// NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is passed by value to be written through
 void SparseFactor::solve(Eigen::Ref<Eigen::MatrixXd> x) {
   if (!factored_) throw std::logic_error("sparse factor: solve without a factorisation");
   if (x.rows() != size()) throw std::invalid_argument("sparse factor: the right-hand side has another size");

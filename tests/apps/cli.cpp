@@ -119,6 +119,8 @@ TEST_CASE("commands that tell") {
   for (const char* words :
        {"7 degrees of freedom", "mass ", "inertia", "rule \"", "skipped", "largest stable step: about"})
     CHECK(has(info.out, words));
+  CHECK(has(info.out, "1 part, "));
+  CHECK_FALSE(has(info.out, "e-1"));  // what is rounding is shown as zero
   CHECK(has(place.pliant("info top.json --set /time/step=10").out, "warning"));
   const Result check = place.pliant("check top.json");
   CHECK(check.code == 0);
@@ -162,6 +164,12 @@ TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
   mistake("list shape", "shapes");
   mistake("export out --to stl", "stl");
   mistake("render", "run");
+  mistake("run top.json -q", "there is no option -q\n");
+  mistake("render out --frames 5:2", "END must be above FIRST");
+  mistake("export out --to obj --frames 1:2:0", "FIRST:END:STRIDE");
+  mistake("render out --shard 3/2", "1 <= i <= n");
+  mistake("render out --fov 200", "is not a number from 5 to 120");
+  mistake("doctor -o nowhere", "nowhere");
 }
 
 TEST_CASE("I47: numbers do not follow the locale") {
@@ -199,6 +207,22 @@ TEST_CASE("faults of the input end with code 3 before a folder is made") {
   CHECK(Json::parse(machine.out).at("errors") == 1);
   CHECK_FALSE(fs::exists(place.folder / "out"));
   CHECK(place.pliant("render nowhere").code == 3);
+}
+
+TEST_CASE("bad scenes: code 3, the golden text on standard error, and nothing else") {
+  const Place place;
+  for (const std::string name :
+       {"empty", "not_utf8", "gzip", "faults_of_all_kinds", "folded_bend", "frame_rate_absurd"}) {
+    fs::copy_file(fs::path(PLIANT_BAD_SCENES) / (name + ".json"), place.folder / (name + ".json"));
+    for (const std::string command : {"check ", "run ", "info "}) {
+      INFO(command << name);
+      const Result result = place.pliant(command + name + ".json");
+      CHECK(result.code == 3);
+      CHECK(result.out.empty());
+      CHECK(result.err == bytes_of(fs::path(PLIANT_BAD_SCENES) / (name + ".txt")));
+    }
+  }
+  CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
 TEST_CASE("a step that is too large: warned before, code 5, the good part kept") {
@@ -306,6 +330,38 @@ TEST_CASE("I55: a run that does not fit is not resumed: code 10") {
   CHECK(has(flipped.err, "check number"));
 }
 
+TEST_CASE("a recording that lost states after its run ended is told, and can be completed") {
+  const Place place;
+  REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
+  const std::string motion = place.motion("r"), q = bytes_of(place.folder / "r/q.npy");
+  set_bytes(place.folder / "r/q.npy", q.substr(0, q.size() / 2));
+  const Result cut = place.pliant("export r --to obj --quiet");
+  CHECK(cut.code == 10);
+  CHECK(has(cut.err, "--resume"));
+  CHECK_FALSE(fs::exists(place.folder / "r/meshes"));
+  CHECK(place.pliant("run top.json -o r --quiet --resume").code == 0);
+  CHECK(place.motion("r") == motion);
+  set_bytes(place.folder / "r/run.json", "{");
+  const Result damaged = place.pliant("export r --to obj");
+  CHECK(damaged.code == 10);
+  CHECK_FALSE(has(damaged.err, "json.exception"));
+}
+
+TEST_CASE(
+    "more frames than can be files are refused before the simulation, and take no memory without files") {
+  const Place place;
+  const Result files = place.pliant("run top.json --fps 1e9 --obj");
+  CHECK(files.code == 3);
+  CHECK(has(files.err, "at most 1000000"));
+  CHECK_FALSE(fs::exists(place.folder / "out"));
+#ifdef __SANITIZE_ADDRESS__
+  const std::string little_memory;  // the sanitizer itself takes terabytes of addresses
+#else
+  const std::string little_memory = "ulimit -d 500000;";  // kB
+#endif
+  CHECK(place.pliant("run top.json --fps 1e9 --end 0.1 --quiet", little_memory).code == 0);
+}
+
 TEST_CASE("I57: a closed standard output is no crash") {
   const Place place;
   const Result piped = place.pliant("run top.json -o r 2>&1 | true; echo done");
@@ -368,4 +424,12 @@ TEST_CASE("pictures: drawn with the run, and again from the recording the same")
             .code == 0);
   CHECK(bytes_of(place.folder / "other/frame_000002.png") != picture);
   CHECK(place.record("r").at("files").dump().find("frames/frame_*.png") != std::string::npos);
+  CHECK(has(place.record("r").at("options").at("graphics"), "OpenGL"));
+  // From straight above, and without what can be left out.
+  CHECK(place
+            .pliant(
+                "render r --quiet -o above --frames 2 --camera-eye 0 0 3 --camera-target 0 0 0 --no-springs "
+                "--no-ground --no-shadows")
+            .code == 0);
+  CHECK(fs::exists(place.folder / "above/frame_000002.png"));
 }

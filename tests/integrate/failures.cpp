@@ -84,6 +84,10 @@ TEST_CASE("N72: a term that is not a number is named, and the last good state ke
          [bad](MultiBody& body, Part& part) {
            body.spring("hand", point(part, 0.3, 1), world({0, broken_at(0.0195, 1, bad), 0}), 100);
          }},
+        {"the anchor of spring 'stick'",
+         [bad](MultiBody& body, Part& part) {
+           body.spring("stick", point(part, 0.3, 1), world({0, broken_at(0.0195, 1, bad), 0}), 100, 0, 0.5);
+         }},
         {"the rest value of body.a1",
          [bad](MultiBody&, Part& part) {
            part.rest("a1", broken_at(0.0195, 1, bad)).stiffness({{"a1", 1000}});
@@ -182,4 +186,14 @@ TEST_CASE("a held parameter that is pulled stays, and the ledger balances", "[fa
     CHECK(std::abs(simulation.ledger().balance) <= 1e-2);
     CHECK(simulation.held() == std::set<std::string>{"body.bend.direction"});
   }
+}
+
+// A simulation's dynamics refer to its own model: it stays where it is.
+static_assert(!std::is_copy_constructible_v<Simulation> && !std::is_move_constructible_v<Simulation>);
+
+TEST_CASE("gravity that is not a number is refused before the first step", "[failure]") {
+  MultiBody body;
+  body.add<Primitive<Box>>("box", 1000);
+  body.gravity[1] = kNaN;
+  REQUIRE_THROWS_AS(Simulation(body), std::invalid_argument);
 }

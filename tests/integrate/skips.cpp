@@ -166,6 +166,23 @@ TEST_CASE("a step takes nothing from the heap", "[skip]") {
   }
 }
 
+TEST_CASE("a held parameter takes nothing from the heap", "[skip]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    Part& part = test::add(body, "part", "box", {"bend"}, 1000);
+    part.make_dynamic({"bend.direction"}).move({0, 0, 0}, {1, 2, 3});  // no bend: its direction moves nothing
+    Simulation simulation(body, method);
+    simulation.step(1e-3);
+    simulation.step(1e-3);
+    const long before = allocations;
+    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
+    const long taken = allocations - before;
+    INFO(method);
+    CHECK(taken == 0);
+    CHECK(simulation.held().count("part.bend.direction") == 1);
+  }
+}
+
 TEST_CASE("a parameter resting on its limit takes nothing from the heap", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;

@@ -75,10 +75,19 @@ TEST_CASE("ranges of frames") {
   CHECK(frames("7") == std::vector<std::int64_t>{7});
   CHECK(frames("::4") == std::vector<std::int64_t>{0, 4, 8});
   CHECK(frames("8:") == std::vector<std::int64_t>{8, 9});
-  CHECK(frames("5:3").empty());
-  for (const char* bad : {"", "a", "1:2:0", "-1", "1:2:3:4", "1.5", " 1", "0:5:-1"})
+  for (const char* bad : {"", "a", "1:2:0", "-1", "1:2:3:4", "1.5", " 1", "0:5:-1", "5:3", "5:5"})
     CHECK_THROWS_AS(FrameRange::parse(bad), std::invalid_argument);
   for (const char* beyond : {"10", "0:11", "12:"}) CHECK_THROWS_AS(frames(beyond), std::invalid_argument);
+  // Far more frames than files can be named for are refused before their numbers take memory.
+  constexpr std::int64_t most = FrameRange::kMostFrames, many = 1000000000000;
+  CHECK(FrameRange().size(most) == most);
+  CHECK_THROWS_AS(FrameRange().frames(most + 1), std::invalid_argument);
+  CHECK_THROWS_AS(FrameRange().frames(many), std::invalid_argument);
+  CHECK(FrameRange::parse("::9223372036854775807").frames(many) == std::vector<std::int64_t>{0});
+  FrameRange few = FrameRange::parse(":");
+  few.parse_shard("7/9223372036854775807");
+  CHECK(few.frames(10) == std::vector<std::int64_t>{6});
+  CHECK(few.frames(5).empty());
   std::set<std::int64_t> all;
   for (int i = 1; i <= 3; ++i) {
     FrameRange range = FrameRange::parse("1::2");

@@ -26,7 +26,7 @@ bool same_bits(const State& a, const State& b) {
 // Records every `stride`-th of the first steps; returns the recorded states.
 std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int stride) {
   Simulation simulation(scene.body, scene.integrator);
-  write_layout(folder, simulation.model(), FrameSchedule(scene.end, scene.step, scene.frame_rate));
+  write_layout(folder, simulation.model(), FrameSchedule(scene.end, scene.step, scene.frame_rate), {});
   RecordingWriter writer = RecordingWriter::create(folder, simulation.model());
   std::vector<State> states;
   for (int i = 0; i <= steps; ++i) {

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "catch.h"
 #include "new_folder.h"
 #include "test_scenes.h"
@@ -13,6 +15,7 @@
 #include <pliant/io/run_files.h>
 
 using namespace pliant;
+using Json = nlohmann::json;
 
 namespace {
 
@@ -49,6 +52,12 @@ TEST_CASE("the table holds the recorded numbers exactly, by name") {
   std::string line;
   std::getline(table, line);
   const std::vector<std::string> header = cells(line);
+  const Json described = Json::parse(bytes_of(folder / "r" / kLayoutFile)).at("tables").at(kTrajectoryFile);
+  REQUIRE(described.size() == header.size());
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    CHECK(described[i].at("name") == header[i]);
+    CHECK_FALSE(described[i].at("unit").get<std::string>().empty());
+  }
   const auto column = [&](const std::string& name) {
     const auto at = std::find(header.begin(), header.end(), name);
     REQUIRE(at != header.end());

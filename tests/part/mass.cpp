@@ -383,6 +383,37 @@ TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass][lo
       }
 }
 
+TEST_CASE("N16: doubling the rule changes nothing: exponents as degrees of freedom, repeated links",
+          "[mass][long]") {
+  struct Case {
+    const char* shape;
+    std::vector<std::string> chain, dynamic;
+  };
+  const Case cases[] = {
+      {"superellipsoid", {}, {"eps2"}},
+      {"superellipsoid", {}, {"eps1", "eps2"}},
+      {"superellipsoid", {"taper"}, {"a1", "eps2", "taper.tx"}},
+      {"superellipsoid", {"taper"}, {"a1", "a2", "a3", "eps1", "eps2", "taper.tx", "taper.ty"}},
+      {"supertoroid", {}, {"eps1", "eps2"}},
+      {"cylinder", {"bend", "twist"}, {"a1", "bend.angle", "twist.angle"}},
+      {"ellipsoid", {"taper", "taper"}, {"a1", "taper.tx", "taper2.tx"}},
+  };
+  for (const Case& c : cases)
+    for (bool shell : {false, true}) {
+      const std::unique_ptr<Part> part = make_part("part", c.shape, c.chain, 1000);
+      if (shell) part->make_shell();
+      part->make_dynamic(c.dynamic);
+      if (part->parameters().find("bend.angle") >= 0)  // as far as the body does not turn inside out
+        part->rest({{"a1", 0.2}, {"a2", 0.2}}).limits("bend.angle", {-2, 2});
+      part->prepare();
+      INFO(test::describe(c.shape, c.chain)
+           << " " << part->parameters().n_dynamic() << (shell ? " shell " : " solid ")
+           << part->mass_points().rule << " " << part->mass_points().n_points);
+      CHECK(part->mass_points().unsettled == 0);
+      CHECK(change_on_doubling(*part, 6) <= 1e-12);
+    }
+}
+
 TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom",
           "[mass][long]") {
   for (bool shell : {false, true})

@@ -47,7 +47,7 @@ TEST_CASE("camera and ground do not move, and hold the whole motion") {
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 3);
-    REQUIRE(picture.tracks.size() == 1);
+    REQUIRE(picture.tracks.size() == 1 + 3 + 1);  // a track, three springs, one of them held by the world
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
     const Eigen::Vector3d back = (camera.eye - camera.target).normalized();
@@ -92,4 +92,41 @@ TEST_CASE("what the scene says of camera, light and ground holds") {
   CHECK(picture.bodies[0].color == Eigen::Vector3f(0.25f, 0.5f, 1));
   scene.camera.target = Vec3<double>(0, 0, 1);
   CHECK(filmed.film().camera().target == Eigen::Vector3d(0, 0, 1));
+}
+
+TEST_CASE("springs are lines between their points, with a dot where the world holds them") {
+  const Filmed filmed;
+  Film film = filmed.film();
+  const Picture& picture = film.at(0.1);
+  const Picture::Track &line = picture.tracks[1], &dot = picture.tracks[2];
+  REQUIRE(line.points.size() == 2);
+  REQUIRE(dot.points.size() == 1);
+  CHECK(line.points[1] == dot.points[0]);
+  CHECK(dot.points[0] == Eigen::Vector3d(0.4 + 0.2 * std::sin(9 * 0.1), 0, 1));
+  CHECK(line.points[0] == picture.tracks[0].points.back());  // both at the point (0, 0) of the blob
+  filmed.scene->show_springs = false;
+  CHECK(filmed.film().at(0.1).tracks.size() == 1);
+}
+
+TEST_CASE("the camera holds where springs hang, unless that is far away") {
+  Filmed filmed;
+  Scene& scene = *filmed.scene;
+  scene.ground.visible = false;
+  const Camera near = filmed.film().camera();
+  scene.body.springs()[0]->b = world(0.4, 0, 3);
+  const Camera higher = filmed.film().camera();
+  CHECK(higher.target.z() > near.target.z());
+  scene.body.springs()[0]->b = world(0.4, 0, 2000);
+  const Camera without = filmed.film().camera();
+  scene.show_springs = false;
+  CHECK(same(filmed.film().camera(), without));
+}
+
+TEST_CASE("a camera that looks straight down has y at the top") {
+  const Filmed filmed;
+  filmed.scene->camera.eye = Vec3<double>(0, 0, 5);
+  filmed.scene->camera.target = Vec3<double>(0, 0, 1);
+  CHECK(filmed.film().camera().up == Eigen::Vector3d::UnitY());
+  filmed.scene->camera.eye = Vec3<double>(0, 1, 5);
+  CHECK(filmed.film().camera().up == Eigen::Vector3d::UnitZ());
 }

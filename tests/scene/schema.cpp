@@ -7,10 +7,6 @@
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
 
 #include <pliant/scene/json_document.h>
 #include <pliant/scene/point_value.h>
@@ -19,6 +15,7 @@
 #include <pliant/scene/validate.h>
 
 #include "catch.h"
+#include "schema_judge.h"
 
 using pliant::Diagnostics;
 using pliant::JsonDocument;
@@ -140,8 +137,7 @@ TEST_CASE("a good scene has no faults") {
 TEST_CASE("I08 I09 I10 counts") {
   const std::string range = "; expected an integer in [1, 1000]";
   CHECK(solver_faults("\"substeps\": 123456789012345678901234567890") ==
-        "s.json:2:13: error: /solver/substeps: 123456789012345678901234567890" + range +
-            " of at most 9007199254740992 in size\n");
+        "s.json:2:13: error: /solver/substeps: 123456789012345678901234567890" + range + "\n");
   CHECK(solver_faults("\"substeps\": -5") == "s.json:2:13: error: /solver/substeps: -5" + range + "\n");
   CHECK(solver_faults("\"substeps\": 3.9") == "s.json:2:13: error: /solver/substeps: 3.9" + range + "\n");
   CHECK(solver_faults("\"substeps\": 1001") == "s.json:2:13: error: /solver/substeps: 1001" + range + "\n");
@@ -165,14 +161,12 @@ TEST_CASE("I12 unknown keys have their nearest name") {
 
 TEST_CASE("I13 keys in the wrong place are told where they belong") {
   CHECK(faults("{\"parts\": [], \"density\": 3}") ==
-        "s.json:1:15: error: /density: unknown key; known at /parts/*/; not here\n");
+        "s.json:1:15: error: /density: unknown key; it belongs to /parts/*\n");
   CHECK(part_faults("\"radius\": 3") ==
-        "s.json:2:1: error: /parts/0/radius: unknown key; known at /parts/*/shape/ with type \"sphere\"; not "
-        "here\n");
+        "s.json:2:1: error: /parts/0/radius: unknown key; it belongs to /parts/*/shape of type \"sphere\"\n");
   CHECK(part_faults("\"deformations\": [{\"type\": \"taper\", \"angle\": 1}]") ==
-        "s.json:2:36: error: /parts/0/deformations/0/angle: unknown key; known at /parts/*/deformations/*/ "
-        "with type "
-        "\"twist\"; not here\n");
+        "s.json:2:36: error: /parts/0/deformations/0/angle: unknown key; it belongs to "
+        "/parts/*/deformations/* of type \"twist\"\n");
 }
 
 TEST_CASE("I14 wrong types") {
@@ -185,9 +179,10 @@ TEST_CASE("I14 wrong types") {
         "s.json:2:10: error: /parts/0/fixed: 1; expected true or false, not a number\n");
   CHECK(part_faults("\"fixed\": \"true\"") ==
         "s.json:2:10: error: /parts/0/fixed: \"true\"; expected true or false, not in quotes\n");
-  CHECK(faults("[]") == "s.json:1:1: error: an array of 0 values; expected an object with \"parts\"\n");
-  CHECK(faults("{\"parts\": {}}") ==
-        "s.json:1:11: error: /parts: an object; expected an array of objects with \"name\", \"shape\"\n");
+  CHECK(faults("[]") == "s.json:1:1: error: []; expected an object with \"parts\"\n");
+  CHECK(
+      faults("{\"parts\": {}}") ==
+      "s.json:1:11: error: /parts: an empty object; expected an array of objects with \"name\", \"shape\"\n");
   CHECK(faults("{\"parts\": [3]}") ==
         "s.json:1:12: error: /parts/0: 3; expected an object with \"name\", \"shape\"\n");
   CHECK(faults("{\"parts\": [], \"title\": \"\"}") ==
@@ -196,9 +191,9 @@ TEST_CASE("I14 wrong types") {
 
 TEST_CASE("I15 wrong array lengths") {
   CHECK(part_faults("\"position\": [0, 1]") ==
-        "s.json:2:13: error: /parts/0/position: an array of 2 values; expected 3 numbers [x, y, z] (m)\n");
+        "s.json:2:13: error: /parts/0/position: [0, 1]; expected 3 numbers [x, y, z] (m)\n");
   CHECK(part_faults("\"position\": [0, 1, 2, 3]") ==
-        "s.json:2:13: error: /parts/0/position: an array of 4 values; expected 3 numbers [x, y, z] (m)\n");
+        "s.json:2:13: error: /parts/0/position: [0, 1, 2, 3]; expected 3 numbers [x, y, z] (m)\n");
 }
 
 TEST_CASE("I16 unknown choices have the list and the nearest") {
@@ -278,23 +273,21 @@ TEST_CASE("alternatives: the type of the value chooses, and only its faults are 
         "quotes, or key "
         "frames {\"t\": [...], \"points\": [...]}\n");
   CHECK(spring_faults(at + "\"to\": [0, 0]") ==
-        "s.json:2:34: error: /springs/0/to: an array of 2 values; expected [x, y, z] of numbers (m) or "
+        "s.json:2:34: error: /springs/0/to: [0, 0]; expected [x, y, z] of numbers (m) or "
         "formulas of t in "
         "quotes, or key frames {\"t\": [...], \"points\": [...]}\n");
   CHECK(spring_faults("\"to\": [0, 0, 0], \"at\": {\"u\": 9, \"v\": 0}") ==
-        "s.json:2:30: error: /springs/0/at/u: 9; expected a number in [-3.141592653589793, "
-        "3.141592653589793] (rad)\n");
+        "s.json:2:30: error: /springs/0/at/u: 9; expected a number in [-3.1416, 3.1416] (rad)\n");
   CHECK(spring_faults("\"to\": [0, 0, 0], \"at\": {\"directon\": [0, 0, 1]}") ==
-        "s.json:2:24: error: /springs/0/at: an object; expected a material point {\"u\", \"v\", \"w\"}, "
-        "{\"direction\": [x, y, "
-        "z], \"w\"} or {\"near\": [x, y, z]}\n");
+        "s.json:2:24: error: /springs/0/at: an object with \"directon\"; expected a material point "
+        "{\"u\", \"v\", \"w\"}, {\"direction\": [x, y, z], \"w\"} or {\"near\": [x, y, z]}; did you mean "
+        "\"direction\"?\n");
   CHECK(spring_faults("\"to\": [0, 0, 0], \"at\": {\"direction\": [0, 0, 0]}") ==
-        "s.json:2:38: error: /springs/0/at/direction: an array of 3 values; expected a direction that is not "
+        "s.json:2:38: error: /springs/0/at/direction: [0, 0, 0]; expected a direction that is not "
         "zero\n");
   CHECK(spring_faults("\"to\": [0, 0, 0], \"at\": {\"near\": [0, 0, 0], \"w\": 1}") ==
-        "s.json:2:44: error: /springs/0/at/w: unknown key; known at /springs/*/at/ for an object with \"u\", "
-        "\"v\" "
-        "or /springs/*/at/ for an object with \"direction\"; not here\n");
+        "s.json:2:44: error: /springs/0/at/w: given beside \"near\"; expected a material point "
+        "{\"u\", \"v\", \"w\"}, {\"direction\": [x, y, z], \"w\"} or {\"near\": [x, y, z]}\n");
   CHECK(solver_faults("\"step\": \"fast\"") ==
         "s.json:2:9: error: /solver/step: \"fast\"; expected \"auto\"\n");
   CHECK(solver_faults("\"step\": -1") == "s.json:2:9: error: /solver/step: -1; expected a number > 0 (s)\n");
@@ -303,7 +296,7 @@ TEST_CASE("alternatives: the type of the value chooses, and only its faults are 
   CHECK(part_faults("\"parameters\": {\"a1\": {\"value\": \"x\"}}") ==
         "s.json:2:32: error: /parts/0/parameters/a1/value: \"x\"; expected a number, not in quotes\n");
   CHECK(part_faults("\"parameters\": {\"a1\": []}") ==
-        "s.json:2:22: error: /parts/0/parameters/a1: an array of 0 values; expected a number or {\"value\": "
+        "s.json:2:22: error: /parts/0/parameters/a1: []; expected a number or {\"value\": "
         "...}\n");
 }
 
@@ -324,10 +317,10 @@ TEST_CASE("faults of key frames") {
   CHECK(spring_faults(begin + "{\"t\": [0, 1, 1], \"y\": [0, 1, 2]}") ==
         "s.json:2:71: error: /springs/0/stiffness/t/2: 1; expected a time later than the one before it, 1\n");
   CHECK(spring_faults(begin + "{\"t\": [0, 1], \"y\": [0]}") ==
-        "s.json:2:77: error: /springs/0/stiffness/y: an array of 1 value; expected as many as there are "
+        "s.json:2:77: error: /springs/0/stiffness/y: [0]; expected as many as there are "
         "times, 2\n");
   CHECK(spring_faults("\"at\": {\"near\": [0, 0, 0]}, \"to\": {\"t\": [0, 1], \"points\": [[0, 0, 0]]}") ==
-        "s.json:2:58: error: /springs/0/to/points: an array of 1 value; expected as many as there are times, "
+        "s.json:2:58: error: /springs/0/to/points: [[0, 0, 0]]; expected as many as there are times, "
         "2\n");
 }
 
@@ -465,19 +458,10 @@ TEST_CASE("bad declarations are errors of the program") {
 
 namespace {
 
-/// Sound by the JSON Schema, judged by valijson.
+/// Sound by the JSON Schema.
 bool valid(const std::string& text) {
-  static const nlohmann::json schema_text = nlohmann::json::parse(schema_json(scene()));
-  static valijson::Schema schema;
-  static const bool populated = [] {
-    valijson::SchemaParser parser(valijson::SchemaParser::kDraft7);
-    valijson::adapters::NlohmannJsonAdapter adapter(schema_text);
-    parser.populateSchema(adapter, schema);
-    return true;
-  }();
-  const nlohmann::json value = nlohmann::json::parse(text);
-  return populated &&
-         valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(value), nullptr);
+  static const pliant::test::SchemaJudge judge(schema_json(scene()));
+  return judge.accepts(nlohmann::json::parse(text));
 }
 
 /// Every property in a schema has a description, every number in it a unit and every optional one a default

@@ -14,7 +14,7 @@ struct Bend {
   static constexpr const char* formula =
       "r -> r cos g + (1 - cos g)/k, z -> sin(g)/k - r sin g; g = k z, k = angle/h, r along direction";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      angle("angle", {-3.14, 3.14}, {-3.1, 3.1}, "turn of the axis between zeta = 0 and zeta = 1",
+      angle("angle", {-kPi, kPi}, {-3.1, 3.1}, "turn of the axis between zeta = 0 and zeta = 1",
             Follows::section),
       angle("direction", {-6.3, 6.3}, {-6.3, 6.3}, "azimuth towards which it bends", Follows::section),
   }};

@@ -91,7 +91,7 @@ void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, 
     for (int k = 0; k < K; ++k) {
       if (!parameters.dynamic[k]) continue;
       for (int r = 0; r < 3; ++r)
-        jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(4 + k)];
+        jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(k) + 4];
       ++next;
     }
     for (int r = 0; r < 3; ++r) jet.s[r] = moved[r].v;

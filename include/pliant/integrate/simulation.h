@@ -23,6 +23,8 @@ class Simulation {
   /// Prepares the body (which must outlive the simulation) and starts at time 0.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler",
                       int threads = 1);
+  Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
+  Simulation& operator=(const Simulation&) = delete;
 
   /// One step of h seconds (> 0 and finite). Throws NumericalFailure, std::invalid_argument.
   void step(double h);
@@ -45,7 +47,7 @@ class Simulation {
   /// Work of the kernels, summed over parts.
   Counters counters() const;
   /// Parameters that once had no inertia and were held: "part.parameter".
-  const std::set<std::string>& held() const { return held_; }
+  std::set<std::string> held() const;
 
  private:
   void check(const State& before);
@@ -58,13 +60,14 @@ class Simulation {
   State state_, last_good_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
-  std::set<std::string> held_;
+  std::vector<bool> held_;  ///< by velocity
   double start_energy_ = 0;
 };
 
 /// The largest step (s) for which the method keeps the motion about a state bounded, by the linearised
-/// elasticity and damping of global parameters and springs; infinite when nothing is stiff. Parts tied by
-/// springs are taken together.
+/// elasticity and damping of global parameters and springs, and by the turning of the parts (half a radian a
+/// step); infinite when nothing is stiff and nothing turns. Parts tied by springs are taken together, as far
+/// as that is cheap; beyond, one by one, each spring counted twice, which is on the safe side.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

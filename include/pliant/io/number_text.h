@@ -20,10 +20,17 @@ inline std::string number_text(double x) {
   append_number(text, x);
   return text;
 }
-/// Four significant digits, for people.
-inline std::string rounded_text(double x) {
+/// A few significant digits, for people.
+inline std::string rounded_text(double x, int significant = 4) {
   char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, 4).ptr};
+  return {digits,
+          std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, significant).ptr};
+}
+/// "1 frame", "2 frames".
+inline std::string count_text(std::int64_t n, const std::string& noun) {
+  std::string text;
+  append_number(text, n);
+  return text + " " + noun + (n == 1 ? "" : "s");
 }
 
 }  // namespace pliant

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pliant/body/model.h>
+#include <pliant/io/column.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/io/npy.h>
 
@@ -20,8 +21,10 @@ class RecordingMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes the names and units of all columns, and when frames are taken. Throws std::system_error.
-void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule);
+/// Writes the names and units of all columns, those of trajectory.csv (its TrajectoryTable's) too, and when
+/// frames are taken. Throws std::system_error.
+void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
+                  const std::vector<Column>& trajectory);
 
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {

@@ -23,6 +23,7 @@ struct RunOptions {
   int threads = 0;                   ///< 0: as many as the scene and the machine have a use for
   std::string scene_file;            ///< path it was read from, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
+  std::string graphics;              ///< what draws pictures, for run.json; empty without
   std::function<bool()> stop;        ///< asked after every step; true ends the run in good order
 };
 

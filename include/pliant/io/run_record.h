@@ -34,6 +34,7 @@ struct RunRecord {
   std::string integrator;
   int threads = 1;
   int width = 0, height = 0;  ///< of pictures
+  std::string graphics;       ///< library that drew them; empty without
 
   // How far it came.
   std::int64_t steps = 0, steps_done = 0;

@@ -5,14 +5,16 @@
 #include <vector>
 
 #include <pliant/body/model.h>
+#include <pliant/io/column.h>
 
 namespace pliant {
 
-struct ModeColumn {
-  std::string name, unit, meaning;
-};
+/// The columns of a moving part in q.npy, in order.
+std::vector<Column> coordinate_columns(const Model& model, const PartModel& part);
+/// The columns of a moving part in v.npy, in order.
+std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 /// The columns of modes.npy, in order.
-std::vector<ModeColumn> mode_columns_of(const Model& model);
+std::vector<Column> mode_columns_of(const Model& model);
 
 /// The row of a state. Its last number is a hash of all bits of the state.
 void write_modes(const State& state, std::vector<double>& row);

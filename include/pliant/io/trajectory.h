@@ -7,11 +7,12 @@
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s in the world, rad/s in the body frame
 //     NAME.PARAMETER_dot                     rates
-//     NAME.com.x y z                         true centre of mass (m, world), where it is not the frame's
-//     origin
+//     NAME.com.x y z                         true centre of mass (m, world), where not the frame's origin
 //   track.NAME.x y z                         points that the scene tracks, m
-//   energy.kinetic gravity elastic springs total, work.KIND, balance     J; balance = energy - energy at 0 -
-//   works momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
+//   energy.kinetic gravity elastic springs total, work.KIND   J
+//   balance                                  J: energy.total - its value at time 0 - all works
+//   momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
+// layout.json says the same of every single column.
 #pragma once
 
 #include <filesystem>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include <pliant/integrate/simulation.h>
+#include <pliant/io/column.h>
 #include <pliant/io/recording.h>
 #include <pliant/scene/scene.h>
 
@@ -32,7 +34,7 @@ class TrajectoryTable {
   /// must outlive the table.
   TrajectoryTable(const Scene& scene, const Simulation& simulation);
 
-  std::vector<std::string> columns() const;
+  std::vector<Column> columns() const;
   /// The numbers of a state, in the order of columns().
   void row(const State& state, std::vector<double>& numbers);
 

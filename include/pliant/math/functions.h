@@ -64,15 +64,15 @@ template <class T>
 inline T min(const T& x, const T& y) {
   return where_positive(T(x - y), y, x);
 }
-/// The root of x >= 0, zero with zero derivatives at x = 0.
-template <class T>
-inline T sqrt_from_zero(const T& x) {
-  const T above = x - T(1e-300);
-  return where_positive(above, T(sqrt(where_positive(above, x, T(1)))), T(0));
-}
 template <class T>
 inline T square(const T& x) {
   return x * x;
+}
+/// The root of x >= 0 whose slope at 0 is taken to be 0 (a length at its origin).
+template <class T>
+inline T sqrt_from_zero(const T& x) {
+  const T inside = x - T(1e-300);
+  return where_positive(inside, T(sqrt(where_positive(inside, x, T(1)))), T(0));
 }
 
 }  // namespace pliant::math

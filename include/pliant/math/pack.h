@@ -25,7 +25,8 @@ inline namespace baseline {
 
 struct Pack {
   static constexpr int kLanes = 4;
-  using Vector [[gnu::vector_size(kLanes * sizeof(double))]] = double;
+  // No more aligned than Eigen aligns its arrays.
+  using Vector [[gnu::vector_size(kLanes * sizeof(double)), gnu::aligned(16)]] = double;
 
   Vector lanes;
 

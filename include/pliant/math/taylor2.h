@@ -19,8 +19,7 @@ struct Taylor2 {
 
   Taylor2() = default;
   template <class C, IfConstant<C> = 0>
-  Taylor2(const C& value)
-      : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants mix in
+  Taylor2(const C& value) : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): they mix in
   Taylor2(const T& value, const T& first, const T& second) : v(value), d(first), dd(second) {}
 
   Taylor2& operator+=(const Taylor2& o) { return *this = *this + o; }
@@ -35,10 +34,9 @@ struct Taylor2 {
     return {a.v * b.v, a.d * b.v + a.v * b.d, a.dd * b.v + a.d * b.d * 2.0 + a.v * b.dd};
   }
   friend Taylor2 operator/(const Taylor2& a, const Taylor2& b) {
-    const T v = a.v / b.v;
-    const T d = (a.d - v * b.d) / b.v;
-    const T dd = (a.dd - d * b.d * 2.0 - v * b.dd) / b.v;
-    return {v, d, dd};
+    const T value = a.v / b.v;
+    const T first = (a.d - value * b.d) / b.v;
+    return {value, first, (a.dd - first * b.d * 2.0 - value * b.dd) / b.v};
   }
   template <class C, IfConstant<C> = 0>
   friend Taylor2 operator+(const Taylor2& a, const C& c) {

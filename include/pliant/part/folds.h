@@ -14,7 +14,10 @@ double least_volume_ratio(const Part& part, const ParameterValues<double>& value
 /// Whether some of the surface is turned inside out.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
-/// Throws std::invalid_argument where the part folds over at these values. which: "rest", "initial".
+/// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the
+/// message.
 void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which);
+/// What it throws.
+[[noreturn]] void throw_folded(const Part& part, const char* which);
 
 }  // namespace pliant

@@ -77,8 +77,6 @@ class Parameters {
   }
   /// All at their rest values (time 0).
   ParameterValues<double> rest() const;
-  /// All at their values at time 0, without rates.
-  ParameterValues<double> initial() const;
 
  private:
   std::vector<Parameter> all_;

@@ -90,8 +90,9 @@ class Part {
 
   // Prepared constants; valid after prepare().
 
-  /// Lays the mass points and takes the constants of a rigid part. Throws std::invalid_argument on a bad
-  /// model; rest and initial values at which the part folds over make one.
+  /// Lays the mass points and takes the constants of a rigid part; at once when nothing has changed since.
+  /// Throws std::invalid_argument on a bad model; rest and initial values at which the part folds over make
+  /// one.
   void prepare();
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
@@ -164,7 +165,7 @@ class Part {
   std::optional<Inertia<double>> given_inertia_;
   MatX<double> stiffness_;  // over all parameters
   double alpha_ = 0, beta_ = 0, drag_ = 0;
-  bool fixed_ = false, shell_ = false;
+  bool fixed_ = false, shell_ = false, prepared_ = false;
   Vec3<double> c0_ = Vec3<double>::Zero(), c0_dot_ = Vec3<double>::Zero(), omega0_ = Vec3<double>::Zero();
   Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
 

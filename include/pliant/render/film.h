@@ -14,8 +14,9 @@
 
 namespace pliant {
 
-/// Makes the picture of any frame. Camera and ground are the same in all frames of a run: where the scene
-/// leaves them open, they follow from the whole recorded motion.
+/// Makes the picture of any frame: the parts, the tracks up to then, and the springs as thin lines, which end
+/// in a dot where they hold on to the world. Camera and ground are the same in all frames of a run: where the
+/// scene leaves them open, they follow from the whole recorded motion.
 class Film {
  public:
   /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
@@ -27,6 +28,9 @@ class Film {
 
  private:
   void lay_tracks();
+  Eigen::Vector3d place(const Point& point, const State& state) const;
+  Eigen::AlignedBox3d anchors(const Eigen::AlignedBox3d& bodies) const;
+  void draw_springs(const State& state);
   void choose_view();
 
   const Scene* scene_;

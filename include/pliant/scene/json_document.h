@@ -48,7 +48,7 @@ class JsonDocument {
   const JsonValue* at(std::string_view pointer) const;
   /// The JSON pointer of a value of this document (by its address).
   std::string pointer_to(const JsonValue& value) const;
-  /// A value as it is written, shortened for a message; arrays and objects are only named.
+  /// A value as it is written, shortened for a message; objects and long arrays are only named.
   std::string shown(const JsonValue& value) const;
 
   /// A fault at a value, at a key of an object, or inside a string at a byte of its decoded text.

@@ -12,7 +12,8 @@ struct MaterialPointValue {
   enum class Form {
     kCoordinates,  ///< x = (u, v, w)
     kDirection,    ///< x = a direction from the centre, of any length but zero, and w
-    kNear          ///< x = a point of the body frame (m): the surface point nearest to it
+    kNear          ///< x = a place in the body frame (m): the point there; for a place outside, the surface
+                   ///< point with its u and v
   };
   Form form = Form::kCoordinates;
   Vec3<double> x = Vec3<double>::Zero();

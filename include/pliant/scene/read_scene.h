@@ -15,4 +15,8 @@ namespace pliant {
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
                                   Diagnostics& diagnostics);
 
+/// The same for a text, `name` standing for the file in messages.
+std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
+                                   const std::vector<std::string>& overrides, Diagnostics& diagnostics);
+
 }  // namespace pliant

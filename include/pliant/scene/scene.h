@@ -60,6 +60,7 @@ struct Scene {
   CameraSetting camera;
   LightSetting light;
   GroundSetting ground;
+  bool show_springs = true;  ///< in pictures, as lines between their points
 
   std::string document;                ///< the file as it was read; a run keeps it beside its recording
   std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to it

@@ -76,6 +76,7 @@ struct Type {
   std::vector<Type> inner{};  ///< kArray, kMap: the element; kOneOf: the alternatives
   std::vector<RecordPtr>
       records{};             ///< kRecord: one; kTagged: one for each value of the tag, which is its name
+  std::string pattern{};     ///< kText: a regular expression that says in the JSON Schema what `check` says
   std::string tag{};         ///< kTagged: the key that says which record it is
   std::string expected{};    ///< words for messages; made from the rest when empty
   std::string definition{};  ///< name under "definitions" of the JSON Schema; in place when empty
@@ -85,6 +86,8 @@ struct Type {
   Type expecting(std::string words) const;
   /// The same, written once in the JSON Schema under a name.
   Type defined_as(std::string name) const;
+  /// The same with a pattern for the JSON Schema; a further rule must check it.
+  Type matching(std::string pattern) const;
   /// The same with a further rule.
   Type checked(Check rule) const;
   /// What a message expects here: "a number in [0, 1] (m)".
@@ -102,7 +105,7 @@ Type choice(std::vector<Choice> choices);
 Type array(Type element, std::size_t min_count = 0,
            std::size_t max_count = std::numeric_limits<std::size_t>::max());
 /// [x, y, z].
-Type vector3(std::string unit, Range range = any());
+Type vector3(const std::string& unit, Range range = any());
 /// An object whose keys are free names.
 Type map(Type element);
 Type record(Record fields);

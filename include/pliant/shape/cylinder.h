@@ -36,8 +36,7 @@ struct Cylinder {
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 3>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
-    const T ring = math::sqrt_from_zero(ring2);
-    return math::max(ring, T(math::abs(x[2]) / a[2]));
+    return math::max(math::sqrt_from_zero(ring2), T(math::abs(x[2]) / a[2]));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {

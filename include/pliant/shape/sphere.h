@@ -21,7 +21,8 @@ struct Sphere {
   }
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 1>& a) {
-    return math::sqrt_from_zero(T(x[0] * x[0] + x[1] * x[1] + x[2] * x[2])) / a[0];
+    const Vec3<T> y{x[0] / a[0], x[1] / a[0], x[2] / a[0]};
+    return math::sqrt_from_zero(T(y[0] * y[0] + y[1] * y[1] + y[2] * y[2]));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 1>& a) {
     return Ellipsoid::label(x, Vec3<double>::Constant(a[0]));

@@ -1,0 +1,89 @@
+#include <pliant/math/thin_rule.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <Eigen/QR>
+
+namespace pliant {
+
+namespace {
+
+/// Takes x >= 0 along null vectors (the columns of Z) until as many of its entries are zero.
+void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
+  constexpr double far = std::numeric_limits<double>::infinity();
+  for (Eigen::Index left = Z.cols(); left > 0; --left) {
+    auto z = Z.col(left - 1);
+    // The first entry to vanish along z and along -z; the one with the larger pivot is the stabler.
+    Eigen::Index pivot[2] = {-1, -1};
+    double reach[2] = {far, far};
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      if (z[i] == 0) continue;
+      const int way = z[i] > 0 ? 0 : 1;
+      const double t = x[i] / std::abs(z[i]);
+      if (t < reach[way]) {
+        reach[way] = t;
+        pivot[way] = i;
+      }
+    }
+    int way = 0;
+    if (pivot[0] < 0 || (pivot[1] >= 0 && std::abs(z[pivot[1]]) > std::abs(z[pivot[0]]))) way = 1;
+    const Eigen::Index out = pivot[way];
+    if (out < 0) continue;
+    x -= (way == 0 ? reach[0] : -reach[1]) * z;
+    x = x.cwiseMax(0.0);
+    x[out] = 0;
+    const Eigen::RowVectorXd share = Z.row(out).head(left - 1) / z[out];
+    Z.leftCols(left - 1).noalias() -= z * share;
+    Z.row(out).head(left - 1).setZero();
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found) {
+  const Eigen::Index n = F.rows();
+  // Columns in units of their absolute sums; rows in units of the root of their size, which makes x = d c
+  // behave like the root of a weight.
+  Eigen::MatrixXd A = F;
+  for (Eigen::Index k = 0; k < A.cols(); ++k) {
+    const double sum = A.col(k).cwiseAbs().sum();
+    if (sum > 0) A.col(k) /= sum;
+  }
+  const Eigen::VectorXd d = A.rowwise().norm().cwiseSqrt();
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (d[i] > 0) A.row(i) /= d[i];
+
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
+  const auto R = qr.matrixQR().diagonal().cwiseAbs();
+  Eigen::Index rank = 0;
+  while (rank < R.size() && R[rank] > 1e-15 * R[0]) ++rank;
+  if (rank_found) *rank_found = rank;
+  if (rank >= n) return Eigen::VectorXd::Ones(n);
+
+  const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd Z = Q.rightCols(n - rank);
+  Eigen::VectorXd x = d;
+  eliminate(x, Z);
+
+  // What the eliminations lost to rounding: a correction on the nodes that are left.
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < n; ++i)
+    if (x[i] > 0) kept.push_back(i);
+  const auto U = Q.leftCols(rank);
+  const Eigen::VectorXd wanted = U.transpose() * d;
+  const Eigen::MatrixXd on_kept = U(kept, Eigen::all).transpose();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(on_kept);
+  for (int pass = 0; pass < 2; ++pass) {
+    const Eigen::VectorXd correction = solver.solve(wanted - U.transpose() * x);
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      x[kept[i]] = std::max(0.0, x[kept[i]] + correction[static_cast<Eigen::Index>(i)]);
+  }
+  Eigen::VectorXd c = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i : kept)
+    if (d[i] > 0) c[i] = x[i] / d[i];
+  return c;
+}
+
+}  // namespace pliant

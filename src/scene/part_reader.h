@@ -1,0 +1,53 @@
+// A part of a scene: from its record to a Part.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <pliant/part/part.h>
+#include <pliant/scene/reader.h>
+
+#include "scene_faults.h"
+
+namespace pliant {
+
+class PartReader {
+ public:
+  /// materials: those of the scene by name. end: of the run, s.
+  PartReader(const Reader& part, const std::map<std::string, Reader>& materials, double end,
+             SceneFaults& faults)
+      : r_(part), materials_(materials), end_(end), faults_(faults) {}
+
+  /// The part; null when its shape or its deformations are not known. Faults are reported.
+  std::unique_ptr<Part> read();
+  /// Its rest shape is known and its constants are taken: points on it can be resolved.
+  bool prepared() const { return prepared_; }
+
+ private:
+  double property(const char* key) const;
+  void read_stiffness(const Reader& r);
+  bool check_names(const JsonValue& names);
+  bool check_square(const JsonValue& K, std::size_t n);
+  /// Numbers across the diagonal of [[...], ...] that differ are reported.
+  bool check_symmetric(const JsonValue& rows);
+  void read_inertia(const Reader& r);
+  Eigen::Quaterniond orientation();
+  void check_rigid();
+  void refused(const std::invalid_argument& e);
+  void prepare();
+
+  const Reader& r_;
+  const std::map<std::string, Reader>& materials_;
+  double end_;
+  SceneFaults& faults_;
+  std::unique_ptr<Part> part_;
+  bool prepared_ = false;
+};
+
+/// A vector of any length but 0 as a unit vector; (0, 0, 1) with a fault when it has none.
+Vec3<double> read_direction(const JsonValue& value, SceneFaults& faults);
+
+}  // namespace pliant

@@ -1,0 +1,212 @@
+// Whatever a file holds, it gives a scene that a run can start with, or a SceneError: no other exception, no
+// crash, no hang. The scenes of scenes/ and bad/ are spoilt in thousands of ways, by bytes and by values, the
+// same each time.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/frame_schedule.h>
+#include <pliant/scene/read_scene.h>
+
+#include "catch.h"
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+struct Sample {
+  std::string name, text;
+};
+
+std::vector<Sample> samples(const fs::path& folder) {
+  std::vector<Sample> all;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (entry.path().extension() != ".json" || name == "pliant-scene.schema.json") continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    all.push_back({name, {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}});
+  }
+  std::sort(all.begin(), all.end(), [](const Sample& a, const Sample& b) { return a.name < b.name; });
+  return all;
+}
+
+class Spoiler {
+ public:
+  /// The accidents of a scene follow from its name alone: other scenes do not change them.
+  explicit Spoiler(const std::string& name) {
+    std::seed_seq seed(name.begin(), name.end());
+    random_.seed(seed);
+  }
+
+  /// A text with one to four accidents to its bytes.
+  std::string spoil_bytes(std::string text) {
+    for (std::size_t accidents = 1 + below(4); accidents > 0; --accidents) {
+      const std::size_t at = below(text.size() + 1), length = std::min(below(20), text.size() - at);
+      switch (below(5)) {
+        case 0:
+          if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << below(8)));
+          break;
+        case 1:
+          text.insert(at, 1, kBytes[below(kBytes.size())]);
+          break;
+        case 2:
+          text.erase(at, length);
+          break;
+        case 3:
+          text.insert(at, text.substr(below(text.size() + 1), below(20)));
+          break;
+        default:
+          text.resize(below(2) == 0 ? at : text.size());
+      }
+    }
+    return text;
+  }
+
+  /// A document with one to three of its values replaced, its keys taken away or misspelt.
+  std::string spoil_values(Json document) {
+    for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
+      std::vector<std::string> places;
+      const Json flat = document.flatten();
+      for (const auto& [pointer, value] : flat.items()) {
+        for (std::size_t end = pointer.size(); end != std::string::npos && end > 0;
+             end = pointer.rfind('/', end - 1))
+          places.push_back(pointer.substr(0, end));
+      }
+      if (places.empty()) break;
+      const Json::json_pointer place(places[below(places.size())]);
+      if (!document.contains(place)) continue;
+      Json& parent = document[place.parent_pointer()];
+      switch (below(8)) {
+        case 0:
+          if (parent.is_object()) parent.erase(place.back());
+          break;
+        case 1:
+          if (parent.is_object()) parent[place.back() + "x"] = parent[place.back()];
+          break;
+        case 2:
+          document[place] = Json(document[Json::json_pointer(places[below(places.size())])]);
+          break;
+        case 3:
+        case 4:
+          if (document[place].is_number())
+            document[place] =
+                document[place].get<double>() * std::pow(10.0, static_cast<int>(below(25)) - 12);
+          break;
+        default:
+          document[place] = Json::parse(odd_values()[below(odd_values().size())]);
+      }
+    }
+    return document.dump(1, ' ', false, Json::error_handler_t::replace);
+  }
+
+ private:
+  static const std::vector<std::string>& odd_values() {
+    static const std::vector<std::string> all = {"null",
+                                                 "true",
+                                                 "\"\"",
+                                                 "\"x\"",
+                                                 "\"ball\"",
+                                                 "\"t\"",
+                                                 "\"sqrt(-t)\"",
+                                                 "\"1/t\"",
+                                                 "\"1e300*exp(99*t)\"",
+                                                 "0",
+                                                 "-0.0",
+                                                 "-1",
+                                                 "1",
+                                                 "0.5",
+                                                 "2",
+                                                 "3.7",
+                                                 "100",
+                                                 "1e-12",
+                                                 "1e12",
+                                                 "1e-300",
+                                                 "5e-324",
+                                                 "1e100",
+                                                 "1e300",
+                                                 "1.7e308",
+                                                 "-1e308",
+                                                 "2147483648",
+                                                 "9007199254740993",
+                                                 "[]",
+                                                 "{}",
+                                                 "[0, 0, 0]",
+                                                 "[1, 2, 3]",
+                                                 "[1e300, -1e300, 1e300]",
+                                                 "[1e-200, 0, 0]",
+                                                 "[0, 0, 0, 1e200]",
+                                                 "[\"t\", 0, \"-t\"]",
+                                                 "{\"rest\": 1, \"stiffness\": 1e300}",
+                                                 "{\"dynamic\": true}",
+                                                 "{\"t\": [0, 1], \"y\": [1, 2]}",
+                                                 "[\"bend\", \"taper\", \"bend\"]",
+                                                 "\"superellipsoid\"",
+                                                 "\"supertoroid\"",
+                                                 "\"cone\""};
+    return all;
+  }
+  static constexpr std::string_view kBytes = "{}[]\",:0123456789.eE+-\\/ \n\t\x01\x7f\xc3\xff";
+  std::size_t below(std::size_t n) { return n == 0 ? 0 : random_() % n; }
+
+  std::mt19937 random_;
+};
+
+enum class Outcome { refused, ready };
+
+/// What `pliant check` does with a scene before it steps. Anything but SceneError goes through.
+Outcome load(const std::string& name, const std::string& text) {
+  pliant::Diagnostics diagnostics;
+  try {
+    const auto scene = pliant::parse_scene(name, text, {}, diagnostics);
+    const pliant::FrameSchedule schedule(scene->end, scene->step, scene->frame_rate);
+    const pliant::Simulation simulation(scene->body, scene->integrator);
+    return Outcome::ready;
+  } catch (const pliant::SceneError& error) {
+    CHECK(error.diagnostics().errors() > 0);
+    CHECK(std::string(error.what()).find(name + ":") == 0);
+    return Outcome::refused;
+  }
+}
+
+/// Loads a spoilt scene; tells which one fails in another way.
+void try_out(const Sample& sample, const std::string& text, int* ready) {
+  try {
+    *ready += load(sample.name, text) == Outcome::ready ? 1 : 0;
+  } catch (const std::exception& error) {
+    FAIL_CHECK(sample.name << ": " << error.what() << "\n" << text);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
+  struct Dose {
+    const char* folder;
+    int by_bytes, by_values;
+  };
+  int cases = 0, ready = 0;
+  for (const Dose& dose : {Dose{PLIANT_SCENES, 40, 80}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
+    for (const Sample& sample : samples(dose.folder)) {
+      if (sample.name == "mould.json") continue;  // exponents as degrees of freedom take a second to prepare
+      Spoiler spoiler(sample.name);
+      for (int i = 0; i < dose.by_bytes; ++i, ++cases)
+        try_out(sample, spoiler.spoil_bytes(sample.text), &ready);
+      const Json document = Json::parse(sample.text, nullptr, false);
+      if (document.is_discarded()) continue;
+      for (int i = 0; i < dose.by_values; ++i, ++cases)
+        try_out(sample, spoiler.spoil_values(document), &ready);
+    }
+  }
+  CHECK(cases > 3000);
+  CHECK(ready > 300);
+}

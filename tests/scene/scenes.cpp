@@ -1,0 +1,186 @@
+// The scenes that come with pliant are sound, for the program and for an editor that follows the JSON Schema;
+// and the schema alone already refuses every bad scene that types, keys and ranges can tell.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <pliant/integrate/simulation.h>
+#include <pliant/io/frame_schedule.h>
+#include <pliant/scene/read_scene.h>
+#include <pliant/scene/scene_schema.h>
+#include <pliant/scene/schema.h>
+
+#include "catch.h"
+#include "schema_judge.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<fs::path> scenes_in(const fs::path& folder) {
+  std::vector<fs::path> all;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".json" && entry.path().filename() != "pliant-scene.schema.json")
+      all.push_back(entry.path());
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The scene as a plain reader takes it; discarded when it is not JSON.
+nlohmann::json json_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return nlohmann::json::parse(file, nullptr, false);
+}
+
+const pliant::test::SchemaJudge& schema() {
+  static const pliant::test::SchemaJudge judge(pliant::schema::schema_json(pliant::scene_record()));
+  return judge;
+}
+
+}  // namespace
+
+TEST_CASE("every scene that comes with pliant reads without a warning, and a run can start") {
+  const std::vector<fs::path> scenes = scenes_in(PLIANT_SCENES);
+  CHECK(scenes.size() >= 19);
+  for (const fs::path& path : scenes) {
+    INFO(path.filename().string());
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::read_scene(path.string(), {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    CHECK_FALSE(scene->description.empty());
+    CHECK_FALSE(scene->body.parts().empty());
+    CHECK(pliant::FrameSchedule(scene->end, scene->step, scene->frame_rate).frames() > 1);
+    const pliant::Simulation simulation(scene->body, scene->integrator);
+    CHECK(simulation.model().parts().size() == scene->body.parts().size());
+    CHECK(schema().accepts(json_of(path)));
+  }
+}
+
+TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
+  for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    CHECK(pliant::FrameSchedule(scene->end, scene->step, scene->frame_rate).frames() >= 1);
+    const pliant::Simulation simulation(scene->body, scene->integrator);
+    CHECK(simulation.model().n_v() == 0);
+    CHECK(schema().accepts(nlohmann::json::parse(text)));
+  }
+}
+
+TEST_CASE("comments and extensions are allowed everywhere, and never read") {
+  const std::string text = R"json({
+    "//": "a ball", "//": ["twice"], "x-editor": {"zoom": 2},
+    "materials": {"//": "one", "x-m": 3, "rubber": {"density": 1100, "//": "dry"}},
+    "parts": [{"name": "ball", "shape": "sphere", "material": "rubber", "x-color": 7,
+               "parameters": {"//": "all", "x-p": [], "r": {"rest": 0.5, "//": "m"}}}],
+    "springs": [{"from": {"part": "ball", "at": {"u": 0, "v": 0, "//": 0}, "x-a": 1},
+                 "to": {"world": {"t": [0, 1], "points": [[2, 0, 0], [3, 0, 0]], "//": 0}}, "stiffness": 1}],
+    "camera": {"x-lens": null}
+  })json";
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
+  CHECK(diagnostics.text().empty());
+  CHECK(scene->body.parts()[0]->density() == 1100);
+  CHECK(schema().accepts(nlohmann::json::parse(text)));
+}
+
+TEST_CASE("what is allowed but has no effect is warned about") {
+  const auto warnings = [](const std::string& members) {
+    pliant::Diagnostics diagnostics;
+    pliant::parse_scene("s.json", "{\"parts\": [{\"name\": \"a\", \"shape\": \"sphere\",\n" + members + "}]}",
+                        {}, diagnostics);
+    return diagnostics.text();
+  };
+  CHECK(
+      warnings("\"parameters\": {\"r\": {\"rest\": 1, \"max\": 2}}") ==
+      "s.json:2:40: warning: /parts/0/parameters/r/max: 2; this limit has no effect, because r is frozen\n");
+  CHECK(warnings("\"fixed\": true, \"velocity\": [1, 0, 0]") ==
+        "s.json:2:28: warning: /parts/0/velocity: [1, 0, 0]; it has no effect, because the part is fixed\n");
+  CHECK(warnings("\"orientation\": {\"quaternion\": [0.7071, 0.7071, 0, 0]}").empty());
+}
+
+TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
+  // What needs more than types, keys and ranges: names and numbers that must fit others.
+  const std::vector<std::string> beyond{"anchor_not_finite",
+                                        "camera_at_its_target",
+                                        "density_too_large",
+                                        "duplicate_key",
+                                        "duplicate_part_name",
+                                        "dynamic_exponent_out_of_range",
+                                        "exponent_out_of_range",
+                                        "fixed_but_dynamic",
+                                        "folded_bend",
+                                        "force_on_unknown_part",
+                                        "formula_divides_by_zero",
+                                        "formula_double_star",
+                                        "formula_infinite",
+                                        "formula_missing_product",
+                                        "formula_not_closed",
+                                        "formula_of_a_negative_number",
+                                        "formula_unknown_name",
+                                        "formula_wrong_arguments",
+                                        "frame_rate_absurd",
+                                        "frozen_but_moving",
+                                        "frozen_but_stiff",
+                                        "inertia_impossible",
+                                        "inertia_not_symmetric",
+                                        "inertia_of_a_deforming_part",
+                                        "initial_outside_limits",
+                                        "key_frames_at_the_same_time",
+                                        "key_frames_of_different_number",
+                                        "key_frames_out_of_order",
+                                        "key_frames_too_far_apart",
+                                        "light_without_direction",
+                                        "limits_beyond_the_range",
+                                        "limits_crossed",
+                                        "material_called_by_an_extension",
+                                        "negative_size",
+                                        "nested_too_deep",
+                                        "no_materials",
+                                        "nul_in_text",
+                                        "parameter_as_text",
+                                        "parameter_of_no_deformation",
+                                        "parameter_out_of_a_second_link",
+                                        "parameter_without_its_deformation",
+                                        "point_in_a_direction_of_a_torus",
+                                        "point_in_no_direction",
+                                        "point_near_a_closed_end",
+                                        "point_outside_the_latitudes",
+                                        "quaternion_not_unit",
+                                        "rest_outside_limits",
+                                        "spring_names_twice",
+                                        "spring_to_itself",
+                                        "spring_to_unknown_part",
+                                        "spring_without_a_part",
+                                        "spring_without_direction",
+                                        "stiffness_given_twice",
+                                        "stiffness_not_definite",
+                                        "stiffness_not_square",
+                                        "stiffness_not_symmetric",
+                                        "stiffness_of_unknown_parameters",
+                                        "stiffness_row_too_short",
+                                        "taper_out_of_range",
+                                        "tiny_density",
+                                        "too_many_dynamic_parameters",
+                                        "too_many_steps",
+                                        "torus_closed",
+                                        "track_of_unknown_part",
+                                        "unknown_material",
+                                        "unknown_parameter",
+                                        "unknown_parameter_with_no_near_name",
+                                        "zero_axis",
+                                        "zero_quaternion",
+                                        "zero_size"};
+  std::vector<std::string> accepted;
+  for (const fs::path& path : scenes_in(PLIANT_BAD_SCENES)) {
+    const nlohmann::json scene = json_of(path);
+    if (!scene.is_discarded() && schema().accepts(scene)) accepted.push_back(path.stem().string());
+  }
+  CHECK(accepted == beyond);
+}
