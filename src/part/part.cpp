@@ -9,6 +9,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <pliant/part/folds.h>
 #include <pliant/part/sum_inertia.h>
 
 namespace pliant {
@@ -257,6 +258,7 @@ void Part::prepare() {
   size_ = s(surface, rest).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
 
   if (given_inertia_) {
+    refuse_folds(*this, rest, "rest");
     rest_inertia_ = *given_inertia_;
     prepared_ = true;
     return;
@@ -330,14 +332,53 @@ Mat3<double> Part::material_gradient(double u, double v, double w,
   return chain_gradient(at, values)[0] * E;
 }
 
+namespace {
+
+/// How far below a tip, relative to the height, limits along z are taken.
+constexpr double kBelowTip = 1e-9;
+
+/// det(F) F^-T, finite where F is singular.
+Mat3<double> cofactors(const Mat3<double>& F) {
+  Mat3<double> C;
+  C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+  return C;
+}
+bool is_singular(const Mat3<double>& F) {
+  return !(std::abs(F.determinant()) > 1e-13 * F.norm() * cofactors(F).norm());
+}
+Vec3<double> below_tip(const Vec3<double>& e) {
+  return {e[0], e[1], e[2] * (1 - kBelowTip)};
+}
+
+}  // namespace
+
+Vec3<double> Part::preimage(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  const Vec3<double> e = undeform(p, values);
+  const double* a = values.b.data();
+  const double h = shape_->half_height(a);
+  if (parameters_.all_links().empty() || std::abs(e[2]) < (1 - kBelowTip) * h) return e;
+  // At the end of the body: where a whole section is drawn into p, its point on the surface stands for it.
+  const Vec3<double> end = shape_->e(material_at(std::copysign(kPi / 2, e[2]), 0), a);
+  Jet<Pack> jet;
+  for (int r = 0; r < 3; ++r) jet.s[r] = Pack(end[r]);
+  JetBatch<Pack> batch{&jet, 1, 0, Level::position};
+  deform(values, batch);
+  const Vec3<double> deformed(jet.s[0][0], jet.s[1][0], jet.s[2][0]);
+  return (p - deformed).norm() <= std::min(1e-12 * h, 1e-6 * (e - end).norm()) ? end : e;
+}
+
 double Part::inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const {
-  return shape_->gauge(undeform(p, values), values.b.data()) - 1;
+  return shape_->gauge(preimage(p, values), values.b.data()) - 1;
 }
 
 Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p,
                                            const ParameterValues<double>& values) const {
-  const Vec3<double> e = undeform(p, values);
-  const Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  Vec3<double> e = preimage(p, values);
+  Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  if (is_singular(F)) {
+    e = below_tip(e);
+    F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  }
   return F.transpose().partialPivLu().solve(shape_->gauge_gradient(e, values.b.data()));
 }
 
@@ -347,18 +388,20 @@ std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
   for (std::size_t i = 0; i < at.size(); ++i)
     e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
   const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
+  // Barr 1984: n ~ det(F) F^-T n_e.
+  auto outward = [&](const Mat3<double>& F, const Vec3<double>& from) {
+    return Vec3<double>(cofactors(F) * shape_->gauge_gradient(from, values.b.data()));
+  };
   std::vector<Vec3<double>> all;
   all.reserve(at.size());
   for (std::size_t i = 0; i < at.size(); ++i) {
-    // Barr 1984: n ~ det(F) F^-T n_e, by cofactors, which stay finite where the chain is singular (a tip).
-    const Mat3<double>& F = gradients[i];
-    Mat3<double> cofactors;
-    cofactors << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
-    const Vec3<double> gradient =
-        shape_->gauge_gradient(e.col(static_cast<Eigen::Index>(i)), values.b.data());
-    const Vec3<double> n = cofactors * gradient;
-    // At the tip of a full taper only the axis is left.
-    all.push_back(n.isZero(0) ? Vec3<double>((F * gradient).normalized()) : Vec3<double>(n.normalized()));
+    const Vec3<double> from = e.col(static_cast<Eigen::Index>(i));
+    Vec3<double> n = outward(gradients[i], from);
+    if (n.isZero(0)) {
+      const Vec3<double> below = below_tip(from);
+      n = outward(chain_gradient(Eigen::Matrix3Xd(below), values)[0], below);
+    }
+    all.push_back(n.normalized());
   }
   return all;
 }
@@ -367,8 +410,13 @@ Vec3<double> Part::normal(const Material<double>& m, const ParameterValues<doubl
   return normals({m}, values)[0];
 }
 
+bool Part::folded(const VecMax<double>& q_s) const {
+  const VecMax<double> still = VecMax<double>::Zero(q_s.size());
+  return folds(*this, parameters_.expand<double>(q_s, still));
+}
+
 Material<double> Part::label(const Vec3<double>& p, const ParameterValues<double>& values) const {
-  return shape_->label(undeform(p, values), values.b.data());
+  return shape_->label(preimage(p, values), values.b.data());
 }
 
 }  // namespace pliant

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <stdexcept>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -28,14 +27,8 @@ Follows follows(const Part& part) {
 
 bool has_dynamic_exponent(const Part& part) {
   for (int i : part.parameters().dynamic())
-    if (part.parameters()[i].spec->name[0] == 'e') return true;
+    if (part.parameters()[i].spec->quantity == Quantity::exponent) return true;
   return false;
-}
-
-[[noreturn]] void folds(const Part& part, const char* which = "rest") {
-  throw std::invalid_argument("part '" + part.name() + "': its " + which +
-                              " shape folds over (the deformation turns some of the solid inside out); "
-                              "reduce the bend or the taper, or make the body slimmer");
 }
 
 /// Centre and spread of masses in a plane, as three points of equal mass.
@@ -176,20 +169,6 @@ RestShape::RestShape(const Part& of)
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
 }
 
-void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which) {
-  if (part.parameters().links().empty()) return;
-  constexpr int round = 32;
-  const int tall = part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
-  Eigen::Matrix3Xd e(3, (2 * tall + 1) * round);
-  Eigen::Index column = 0;
-  for (int i = -tall; i <= tall; ++i)
-    for (int j = 0; j < round; ++j)
-      e.col(column++) =
-          part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
-  for (const Mat3<double>& F : part.chain_gradient(e, values))
-    if (F.determinant() < -1e-12) folds(part, which);
-}
-
 std::vector<SliceNode> slice_nodes(const RestShape& r, int n) {
   std::vector<SliceNode> nodes;
   for (const SectionPanel& panel : r.part.shape().section_panels(r.a)) {
@@ -216,7 +195,7 @@ void add_slice(const RestShape& r, const SliceNode& node, std::vector<RestPoint>
   const double d0 = F[0].determinant(), dx = F[1].determinant() - d0, dy = F[2].determinant() - d0;
   if (!(d0 > 0)) {
     if (d0 == 0) return;  // the tip of a full taper carries nothing
-    folds(r.part);
+    throw_folded(r.part, "rest");
   }
   const double m = section.area * h * node.weight;
   PlaneMoments moments;
@@ -261,7 +240,7 @@ void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
   for (std::size_t k = 0; k < v_nodes.size(); ++k) {
     const AngleNode& v = v_nodes[k];
     const Mat3<double> now = F[k] * tangents[k];
-    if (F[k].determinant() < 0) folds(r.part);
+    if (F[k].determinant() < 0) throw_folded(r.part, "rest");
     const double measure = r.part.shell() ? now.col(0).cross(now.col(1)).norm() : std::abs(now.determinant());
     const double mass = measure * u.weight * v.weight * w.weight;
     const auto column = static_cast<Eigen::Index>(k);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <pliant/math/quadrature.h>
+#include <pliant/part/folds.h>
 #include <pliant/part/part.h>
 
 namespace pliant {
@@ -27,10 +28,6 @@ struct RestShape {
   bool by_sections;   ///< slices serve; else rings
   bool points_apart;  ///< every point of a ring moves by itself, else three points stand for it
 };
-
-/// Refuses a shape of which some of the surface is turned inside out: sections and rings do not see their own
-/// rims. which: "rest" or "initial", for the message. Throws std::invalid_argument.
-void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which);
 
 /// Nodes along one direction of refinement n: those of a panel, times the panels.
 

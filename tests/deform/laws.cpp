@@ -190,6 +190,22 @@ TEST_CASE("a bend turns its axis by its angle, and keeps its length", "[deform]"
     }
 }
 
+TEST_CASE("N11: the inverse of a bend holds to the end of its range, half a turn and past it", "[deform]") {
+  Draws draws(9);
+  for (double angle : {3.14, -3.14, kPi, -kPi, kPi / 2, -kPi / 2, 1.5707963, 3.1})
+    for (double zeta : {-1.0, -0.999, -0.5, 0.0, 0.5, 0.999, 1.0})
+      for (int trial = 0; trial < 40; ++trial) {
+        const Vec3<double> p(draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), zeta * kHalfHeight);
+        const Vec<double, 2> b(angle, draws.uniform(-6.3, 6.3));
+        const Vec3<double> moved = Bend::apply<double>(p, kHalfHeight, b);
+        Vec3<double> back = Bend::inverse<double>(moved, kHalfHeight, b);
+        INFO("angle " << angle << " zeta " << zeta << " p " << p.transpose());
+        // Bent by half a turn each way, the two ends meet.
+        if (std::abs(angle) == kPi && std::abs(zeta) == 1) back[2] = std::copysign(back[2], zeta);
+        CHECK((back - p).norm() <= 1e-14);
+      }
+}
+
 TEST_CASE("determinants of the deformations", "[deform]") {
   Draws draws(5);
   for (int trial = 0; trial < 300; ++trial) {

@@ -279,6 +279,107 @@ TEST_CASE("N11: a rest shape that folds over is refused, a slim one may bend by 
   const std::unique_ptr<Part> slim = make_part("slim", "cylinder", {"bend"}, 1000);
   slim->rest({{"a1", 0.1}, {"a2", 0.1}, {"bend.angle", kPi}});
   CHECK_NOTHROW(slim->prepare());
+  CHECK_THROWS_WITH(slim->rest({{"bend.angle", 3.15}}), test::has_text("bend.angle = 3.15 is out of range"));
+}
+
+TEST_CASE("N11: initial values at which a part folds over are refused, and folds are told at any values",
+          "[part]") {
+  const std::unique_ptr<Part> part = make_part("fat", "cylinder", {"bend"}, 1000);
+  part->stiffness({{"bend.angle", 100}, {"a1", 1000}}).initial({{"bend.angle", 1.5}});
+  CHECK_THROWS_WITH(part->prepare(), test::has_text("part 'fat': its initial shape folds over") &&
+                                         test::has_text("make the body slimmer"));
+  part->initial({{"bend.angle", 0.5}});
+  CHECK_NOTHROW(part->prepare());
+  // It folds where the curvature times the half width is one: angle a1 / a3 = 1.
+  auto at = [](double a1, double angle) { return VecMax<double>(Eigen::Vector2d(a1, angle)); };
+  CHECK_FALSE(part->folded(at(1, 0.99)));
+  CHECK(part->folded(at(1, 1.01)));
+  CHECK(part->folded(at(1, -1.01)));
+  CHECK_FALSE(part->folded(at(0.5, 1.9)));
+  CHECK(part->folded(at(0.5, 2.1)));
+  const std::unique_ptr<Part> given = make_part("given", "cylinder", {"bend"}, 1000);
+  given->rest({{"bend.angle", 1.5}}).inertia(1, Mat3<double>::Identity());
+  CHECK_THROWS_WITH(given->prepare(), test::has_text("its rest shape folds over"));
+  const std::unique_ptr<Part> tip = make_part("tip", "cylinder", {"taper"}, 1000);
+  tip->make_dynamic({"taper.tx", "taper.ty"});
+  CHECK_FALSE(tip->folded(at(-1, 1)));
+}
+
+namespace {
+
+/// All that is asked of points of the surface at these values, the ends of ranges among them.
+void check_surface(const Part& part, double tolerance) {
+  const ParameterValues<double> values = part.parameters().rest();
+  std::vector<Material<double>> at;
+  for (const Material<double>& m : test::special_points(part.shape().mesh()))
+    if (m.w == 1) at.push_back(m);
+  Draws draws(6);
+  for (int i = 0; i < 200; ++i) {
+    at.push_back(draws.material(part.shape().mesh()));
+    at.back().w = 1;
+  }
+  const Eigen::Matrix3Xd s = part.s(at, values);
+  const std::vector<Vec3<double>> normals = part.normals(at, values);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Vec3<double> p = s.col(static_cast<Eigen::Index>(i));
+    INFO("u, v " << angles(at[i]).u << " " << angles(at[i]).v << " p " << p.transpose());
+    CHECK(std::abs(part.inside_outside(p, values)) <= tolerance);
+    CHECK(part.inside_outside_gradient(p, values).allFinite());
+    CHECK((part.s({part.label(p, values)}, values).col(0) - p).norm() <= 1e-10);
+    CHECK(normals[i].norm() == Approx(1).epsilon(1e-14));
+    CHECK(normals[i] == part.normal(at[i], values));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("N10: at the tip of a full taper everything asked of the surface is finite and right", "[part]") {
+  for (const std::string& shape : shape_names())
+    for (const std::vector<std::string>& chain : std::vector<std::vector<std::string>>{
+             {"taper"}, {"taper", "twist", "shear"}, {"shear", "taper"}, {"taper", "bend"}})
+      for (const auto& [tx, ty] : {std::pair(-1.0, -1.0), {1.0, 1.0}, {-1.0, 0.0}, {1.0, -1.0}}) {
+        const std::unique_ptr<Part> part = make_part("part", shape, chain, 1000);
+        const bool torus = part->shape().mesh() == MeshPattern::torus;
+        // The edge of a blade is drawn from lines; which of their points lies on the surface the inverse
+        // tells where that is in the middle.
+        if (tx != ty && (torus || chain[0] == "shear")) continue;
+        if (torus) part->rest({{"a3", 2}});
+        for (const char* wide : {"a1", "a2", "r"})
+          if (!torus && part->parameters().find(wide) >= 0) part->rest({{wide, 0.4}});
+        part->rest({{"taper.tx", tx}, {"taper.ty", ty}});
+        if (chain.back() == "bend") part->rest({{"bend.angle", 0.6}});
+        if (part->parameters().find("shear.sx") >= 0) part->rest({{"shear.sx", 0.4}});
+        if (shape == "sphere" && chain.back() == "bend") part->rest({{"bend.angle", 0.2}});
+        if (part->parameters().find("twist.angle") >= 0) part->rest({{"twist.angle", 1.3}});
+        INFO(test::describe(shape, chain) << " " << tx << " " << ty);
+        check_surface(*part, 1e-9);
+      }
+  const std::unique_ptr<Part> cone = make_part("cone", "ellipsoid", {"taper"}, 1000);
+  cone->rest({{"taper.tx", -1}, {"taper.ty", -1}});
+  const ParameterValues<double> values = cone->parameters().rest();
+  CHECK(cone->inside_outside({0, 0, 1}, values) == 0);
+  CHECK(cone->inside_outside_gradient({0, 0, 1}, values) == Vec3<double>(0, 0, 1));
+  CHECK(cone->normal(material_at(kPi / 2, 0), values) == Vec3<double>(0, 0, 1));
+  CHECK(angles(cone->label({0, 0, 1}, values)).u == Approx(kPi / 2));
+  CHECK(cone->inside_outside({0.1, 0, 1}, values) > 0);
+}
+
+TEST_CASE("N11: at the ends of the range of a bend everything asked of the surface is finite and right",
+          "[part]") {
+  for (const std::string& shape : shape_names())
+    for (const double angle : {kPi, -kPi, 3.14, kPi / 2, -kPi / 2, 1.6})
+      for (const double direction : {0.0, 0.8, kPi, -6.3}) {
+        const std::unique_ptr<Part> part = make_part("part", shape, {"bend"}, 1000);
+        const bool torus = part->shape().mesh() == MeshPattern::torus;
+        part->rest({{"bend.angle", angle}, {"bend.direction", direction}});
+        // Slim enough not to fold.
+        if (torus) part->rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 1}});
+        for (const char* wide : {"a1", "a2", "r"})
+          if (!torus && part->parameters().find(wide) >= 0) part->rest({{wide, 0.14}});
+        if (shape == "sphere") continue;  // it cannot be slim
+        INFO(shape << " " << angle << " towards " << direction);
+        check_surface(*part, 1e-10);
+      }
 }
 
 TEST_CASE("N10: the tips of full tapers and of half-turn bends are ordinary points", "[part]") {

@@ -288,6 +288,20 @@ TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with differences", "[shape]
   }
 }
 
+TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and on the axis", "[shape]",
+                        AllShapes) {
+  using Shape = TestType;
+  const ShapeVec<Shape, double> a = defaults<Shape>();
+  const ShapeFaceOf<Shape> face;
+  const double size = size_of<Shape>(a);
+  for (const double z : {0.0, 1e-200, 0.3, 1.0, -1.0})
+    for (const Vec3<double>& x : {Vec3<double>(0, 0, z * size), Vec3<double>(z * size, 0, 0)}) {
+      INFO(Shape::name << " at " << x.transpose());
+      CHECK(std::isfinite(face.gauge(x, a.data())));
+      CHECK(face.gauge_gradient(x, a.data()).allFinite());
+    }
+}
+
 TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and grows along every ray", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(6);

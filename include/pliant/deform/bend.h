@@ -14,22 +14,9 @@ struct Bend {
   static constexpr const char* formula =
       "r -> r cos g + (1 - cos g)/k, z -> sin(g)/k - r sin g; g = k z, k = angle/h, r along direction";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      {"angle",
-       0,
-       {-kPi, kPi},
-       {-3.1, 3.1},
-       false,
-       "rad",
-       "turn of the axis between zeta = 0 and zeta = 1",
-       Follows::section},
-      {"direction",
-       0,
-       {-6.3, 6.3},
-       {-6.3, 6.3},
-       false,
-       "rad",
-       "azimuth towards which it bends",
-       Follows::section},
+      angle("angle", {-kPi, kPi}, {-3.1, 3.1}, "turn of the axis between zeta = 0 and zeta = 1",
+            Follows::section),
+      angle("direction", {-6.3, 6.3}, {-6.3, 6.3}, "azimuth towards which it bends", Follows::section),
   }};
   static constexpr Sections sections = Sections::tilt;
   static constexpr int amplitudes = 1;
@@ -55,12 +42,15 @@ struct Bend {
     // sqrt(q^2 + d^2) is 1 - k r.
     const T q = k * p[2], d = -(k * r_bent) + 1.0;
     const T rho = math::sqrt(T(q * q + d * d));
-    // tan(g/2), its two forms accurate on their own sides of a right angle.
-    const T half_tan = math::where_positive(d, T(q / (rho + d)), T((rho - d) / q));
     const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
     const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
-    const T z =
-        atan_over(half_tan) * 2.0 * math::where_positive(d, T(p[2] / (rho + d)), T(half_tan / k));  // g / k
+    // tan(g/2) = q / (rho + d); beyond a quarter of a turn, where d < 0, by the angle that is left to pi.
+    const T reach = rho + math::abs(d) + 1e-300;
+    const T half_tan = q / reach, half_angle = atan_over(half_tan);
+    const T turned = math::where_positive(q, T(kPi), T(-kPi));
+    const T back = math::where_positive(d, T(1), k);
+    const T z = math::where_positive(d, T(p[2] * half_angle * 2.0 / reach),
+                                     T((turned - half_tan * half_angle * 2.0) / back));  // g / k
     const T shift = r - r_bent;
     return {p[0] + c * shift, p[1] + s * shift, z};
   }

@@ -11,9 +11,9 @@ struct BendOffset {
   static constexpr const char* name = "bend_offset";
   static constexpr const char* formula = "(x + b1 cos(pi b3 (zeta + b2)), y, z)";
   static constexpr std::array<ParameterSpec, 3> parameters{{
-      {"b1", 0, {-1e12, 1e12}, {-1e12, 1e12}, false, "m", "size of the offset", Follows::section},
-      {"b2", 0, {-1, 1}, {-1, 1}, false, "1", "where along z the offset is largest", Follows::section},
-      {"b3", 1, {1e-3, 1}, {1e-3, 1}, false, "1", "how much of the axis it spans", Follows::section},
+      displacement("b1", "size of the offset", Follows::section),
+      ratio("b2", 0, {-1, 1}, {-1, 1}, "where along z the offset is largest", Follows::section),
+      ratio("b3", 1, {1e-3, 1}, {1e-3, 1}, "how much of the axis it spans", Follows::section),
   }};
   static constexpr Sections sections = Sections::stay_plane;
   static constexpr int amplitudes = 1;

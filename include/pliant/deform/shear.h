@@ -9,8 +9,8 @@ struct Shear {
   static constexpr const char* name = "shear";
   static constexpr const char* formula = "(x + sx h zeta, y + sy h zeta, z)";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      {"sx", 0, {-1e3, 1e3}, {-10, 10}, false, "1", "slope of the axis towards x", Follows::affine},
-      {"sy", 0, {-1e3, 1e3}, {-10, 10}, false, "1", "slope of the axis towards y", Follows::affine},
+      ratio("sx", 0, {-1e3, 1e3}, {-10, 10}, "slope of the axis towards x", Follows::affine),
+      ratio("sy", 0, {-1e3, 1e3}, {-10, 10}, "slope of the axis towards y", Follows::affine),
   }};
   static constexpr Sections sections = Sections::stay_affine;
 

@@ -9,22 +9,8 @@ struct Taper {
   static constexpr const char* name = "taper";
   static constexpr const char* formula = "(x (1 + tx zeta), y (1 + ty zeta), z)";
   static constexpr std::array<ParameterSpec, 2> parameters{{
-      {"tx",
-       0,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "relative growth of x from the middle to zeta = 1",
-       Follows::section},
-      {"ty",
-       0,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "relative growth of y from the middle to zeta = 1",
-       Follows::section},
+      ratio("tx", 0, {-1, 1}, {-1, 1}, "relative growth of x from the middle to zeta = 1", Follows::section),
+      ratio("ty", 0, {-1, 1}, {-1, 1}, "relative growth of y from the middle to zeta = 1", Follows::section),
   }};
   static constexpr Sections sections = Sections::stay_plane;
 
@@ -36,13 +22,16 @@ struct Taper {
   template <class T>
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
     const T zeta = p[2] / h;
-    const T wide = b[0] * zeta + 1.0, deep = b[1] * zeta + 1.0;
-    // The tip of a full taper is the pole itself; beside it no place leads back.
-    auto back = [](const T& x, const T& by) {
-      const T any = math::max(T(math::abs(by) - T(1e-300)), T(math::abs(x) - T(1e-300)));
-      return math::where_positive(any, T(x / math::where_positive(any, by, T(1))), T(0));
-    };
-    return {back(p[0], wide), back(p[1], deep), p[2]};
+    return {p[0] / open(T(b[0] * zeta + 1.0)), p[1] / open(T(b[1] * zeta + 1.0)), p[2]};
+  }
+
+ private:
+  /// The width of a section relative to the middle, which at the tip of a full taper is nothing: from 1e-10
+  /// of the height before it on as wide as there, so that the tip is taken back to the axis.
+  template <class T>
+  static T open(const T& width) {
+    const T least(1e-10);
+    return math::where_positive(T(math::abs(width) - least), width, least);
   }
 };
 

@@ -9,14 +9,7 @@ struct Twist {
   static constexpr const char* name = "twist";
   static constexpr const char* formula = "(x cos t - y sin t, x sin t + y cos t, z), t = angle zeta";
   static constexpr std::array<ParameterSpec, 1> parameters{{
-      {"angle",
-       0,
-       {-700, 700},
-       {-6.3, 6.3},
-       false,
-       "rad",
-       "turn of the section at zeta = 1",
-       Follows::section},
+      angle("angle", {-700, 700}, {-6.3, 6.3}, "turn of the section at zeta = 1", Follows::section),
   }};
   static constexpr Sections sections = Sections::stay_plane;
 

@@ -18,6 +18,14 @@ enum class Follows {
   free,     ///< none of these
 };
 
+/// What a parameter measures.
+enum class Quantity {
+  length,    ///< m: it scales with the body
+  angle,     ///< rad
+  exponent,  ///< squareness of a superquadric
+  ratio,     ///< any other number without a unit
+};
+
 struct ParameterSpec {
   const char* name;
   double standard;   ///< default value
@@ -27,6 +35,7 @@ struct ParameterSpec {
   const char* unit;  ///< "m", "rad", "1"
   const char* meaning;
   Follows follows;
+  Quantity quantity = Quantity::ratio;
 };
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -34,12 +43,29 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A positive length; as a degree of freedom it keeps above a thousandth of its rest value.
 constexpr ParameterSpec length(const char* name, double standard, const char* meaning,
                                Follows follows = Follows::affine) {
-  return {name, standard, {1e-12, 1e12}, {1e-3, 1e3}, true, "m", meaning, follows};
+  return {name, standard, {1e-12, 1e12}, {1e-3, 1e3}, true, "m", meaning, follows, Quantity::length};
+}
+
+/// A displacement: a length of either sign, zero unless given.
+constexpr ParameterSpec displacement(const char* name, const char* meaning, Follows follows) {
+  return {name, 0, {-1e12, 1e12}, {-1e12, 1e12}, false, "m", meaning, follows, Quantity::length};
+}
+
+/// An angle, zero unless given.
+constexpr ParameterSpec angle(const char* name, Range frozen, Range dynamic, const char* meaning,
+                              Follows follows) {
+  return {name, 0, frozen, dynamic, false, "rad", meaning, follows, Quantity::angle};
+}
+
+/// A number without a unit.
+constexpr ParameterSpec ratio(const char* name, double standard, Range frozen, Range dynamic,
+                              const char* meaning, Follows follows) {
+  return {name, standard, frozen, dynamic, false, "1", meaning, follows, Quantity::ratio};
 }
 
 /// A squareness exponent (design 6).
 constexpr ParameterSpec exponent(const char* name, const char* meaning, Follows follows) {
-  return {name, 1.0, {0.02, 5.0}, {0.1, 1.9}, false, "1", meaning, follows};
+  return {name, 1.0, {0.02, 5.0}, {0.1, 1.9}, false, "1", meaning, follows, Quantity::exponent};
 }
 
 }  // namespace pliant

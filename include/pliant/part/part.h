@@ -91,7 +91,8 @@ class Part {
   // Prepared constants; valid after prepare().
 
   /// Lays the mass points and takes the constants of a rigid part; at once when nothing has changed since.
-  /// Throws std::invalid_argument on a bad model.
+  /// Throws std::invalid_argument on a bad model; rest and initial values at which the part folds over make
+  /// one.
   void prepare();
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
@@ -123,13 +124,16 @@ class Part {
   /// ds/d(u, v, w) at a material point, 3x3; infinite entries where the trigonometric map has them (eps < 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
   /// Inside-outside function at a body-frame point: w - 1 of the point, zero on the surface, negative inside;
-  /// through the inverse deformations. And its gradient, 1/m.
+  /// through the inverse deformations. And its gradient, 1/m; at the tip of a full taper its limit along z.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
-  /// Unit outward normal at a material point of the surface, body frame.
+  /// Unit outward normal at a material point of the surface, body frame; where the deformation draws a
+  /// section into one point (the tip of a full taper), its limit along z.
   Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
   std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
                                     const ParameterValues<double>& values) const;
+  /// Whether some of the surface is turned inside out at these values of the dynamic parameters.
+  bool folded(const VecMax<double>& q_s) const;
   /// The material point at a body-frame point of the part at these values.
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
@@ -148,6 +152,8 @@ class Part {
   virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
  private:
+  /// The undeformed point that the chain takes to p.
+  Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
   int require(const std::string& parameter) const;
   [[noreturn]] void refuse(const std::string& what) const;
 

@@ -37,9 +37,7 @@ struct Capsule {
   static T gauge(const Vec3<T>& x, const Vec<T, 2>& a) {
     const T half = a[1] * 0.5, z = math::abs(x[2]);
     const T ring2 = x[0] * x[0] + x[1] * x[1];
-    const T off_axis = ring2 - T(1e-300);
-    const T ring =
-        math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
+    const T ring = math::sqrt_from_zero(ring2);
     const T side = ring / a[0];
     const T on_cap = z - half * side;
     // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0,

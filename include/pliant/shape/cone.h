@@ -15,14 +15,8 @@ struct Cone {
       length("a1", 1, "semi-axis along x at mid height"),
       length("a2", 1, "semi-axis along y at mid height"),
       length("a3", 1, "half height along z"),
-      {"t",
-       -1,
-       {-1, 1},
-       {-1, 1},
-       false,
-       "1",
-       "slope of the side: -1 a cone with its tip up, 0 a cylinder",
-       Follows::ring},
+      ratio("t", -1, {-1, 1}, {-1, 1}, "slope of the side: -1 a cone with its tip up, 0 a cylinder",
+            Follows::ring),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
 
@@ -39,9 +33,7 @@ struct Cone {
   template <class T>
   static T gauge(const Vec3<T>& x, const Vec<T, 4>& a) {
     const T ring2 = math::square(T(x[0] / a[0])) + math::square(T(x[1] / a[1]));
-    const T off_axis = ring2 - T(1e-300);
-    const T ring =
-        math::where_positive(off_axis, T(math::sqrt(math::where_positive(off_axis, ring2, T(1)))), T(0));
+    const T ring = math::sqrt_from_zero(ring2);
     const T zeta = x[2] / a[2];
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }

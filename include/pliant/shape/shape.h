@@ -1,19 +1,17 @@
 // What a shape is (design 1.1): one struct with its names, its parameters and its formula, e(u; a), Eq. (3).
-//
-//   name, formula          for people and scene files
-//   parameters             std::array<ParameterSpec, n>
-//   e(m, a)                the point of the solid at material point m, with parameters a; templated on its
-//   scalars half_height(a)         h: half the extent along z, by which deformations measure zeta = z / h
-//   mesh                   which grid covers its surface
-// That is all a shape needs. Those with closed forms for more say so, which is faster, and exact at the
-// poles:
-//   gauge(x, a), label(x, a)   w of the point x (0 at the centre, 1 on the surface, above 1 outside; never
-//   overflows),
-//                              and the whole material point: the inverse of e
-//   mesh_label(g, a)           the surface point in the direction g of the mesh pattern
-//   profile(a), ring(a)        panels along u and v between which e is smooth, for quadrature
-//   section(zeta, gap, a)      area and mean squares of the section at zeta = z / h, for solids, and
-//   section_panels(a)          panels along zeta between which it is smooth
+//   name, formula     for people and scene files
+//   parameters        std::array<ParameterSpec, n>
+//   e(m, a)           the point of the solid at material point m, parameters a; templated on its scalars
+//   half_height(a)    h, half the extent along z, by which deformations measure zeta = z / h
+//   mesh              which grid covers its surface
+// That is all a shape needs. Closed forms for more are faster, and exact at the poles:
+//   gauge(x, a)       w of the point x: 0 at the centre, 1 on the surface, above 1 outside; never overflows
+//   label(x, a)       the whole material point of x, the inverse of e; goes with gauge
+//   mesh_label(g, a)  the surface point in the direction g of the mesh pattern
+//   profile(a, moving), ring(a, moving)  panels along u and v between which e is smooth, for quadrature;
+//                     moving: its exponents are dynamic
+//   section(zeta, gap, a), section_panels(a)  area and mean squares of the section at zeta, gap = 1 - |zeta|,
+//                     of the solid, and panels along zeta between which it is smooth
 #pragma once
 
 #include <array>

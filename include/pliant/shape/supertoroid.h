@@ -16,7 +16,7 @@ struct Supertoroid {
       length("a1", 0.25, "semi-axis of the tube along x"),
       length("a2", 0.25, "semi-axis of the tube along y"),
       length("a3", 0.25, "semi-axis of the tube along z"),
-      {"a4", 3, {1, 1e6}, {1, 1e6}, false, "1", "radius of the core ring in units of a1, a2", Follows::ring},
+      ratio("a4", 3, {1, 1e6}, {1, 1e6}, "radius of the core ring in units of a1, a2", Follows::ring),
       exponent("eps1", "squareness of the tube", Follows::ring),
       exponent("eps2", "squareness of the ring", Follows::free),
   }};
