@@ -1,4 +1,4 @@
-// Derivatives by central differences of sixth order, for functions evaluated in long double: with a step of
+// Derivatives by central differences of tenth order, for functions evaluated in long double: with a step of
 // 1e-3 of the scale on which a function varies they carry some 15 digits.
 #pragma once
 
@@ -9,8 +9,8 @@ template <class F>
 auto first_derivative(F&& f, long double h) {
   using V = decltype(f(h));
   auto odd = [&](long double k) -> V { return f(k * h) - f(-k * h); };
-  const V one = odd(1), two = odd(2), three = odd(3);
-  return V((one * 45.0L - two * 9.0L + three) * (1 / (60 * h)));
+  const V one = odd(1), two = odd(2), three = odd(3), four = odd(4), five = odd(5);
+  return V((one * 2100.0L - two * 600.0L + three * 150.0L - four * 25.0L + five * 2.0L) * (1 / (2520 * h)));
 }
 
 /// d2f/dt2 at t = 0.
@@ -18,8 +18,10 @@ template <class F>
 auto second_derivative(F&& f, long double h) {
   using V = decltype(f(h));
   auto even = [&](long double k) -> V { return f(k * h) + f(-k * h); };
-  const V one = even(1), two = even(2), three = even(3), middle = f(0.0L);
-  return V((one * 270.0L - two * 27.0L + three * 2.0L - middle * 490.0L) * (1 / (180 * h * h)));
+  const V one = even(1), two = even(2), three = even(3), four = even(4), five = even(5), middle = f(0.0L);
+  return V(
+      (one * 42000.0L - two * 6000.0L + three * 1000.0L - four * 125.0L + five * 8.0L - middle * 73766.0L) *
+      (1 / (25200 * h * h)));
 }
 
 }  // namespace pliant::test

@@ -12,8 +12,23 @@ namespace {
 /// Angles are often written with few digits, 1.5708 for a pole.
 constexpr double kAngleRounding = 1e-4;
 
-bool is_finite(const Material<double>& m) {
-  return std::isfinite(m.cu.x + m.su.x + m.cv.x + m.sv.x + m.w);
+/// Places this far outside, as the inside-outside function tells it, lie near no point of the body.
+constexpr double kFarOutside = 1;
+
+/// Where the ray from the part's origin leaves its rest shape for good.
+std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
+  const Vec3<double> ray = direction.stableNormalized() * part.size();
+  auto inside = [&](double t) { return part.inside_outside(t * ray, part.parameters().rest()) < 0; };
+  constexpr int steps = 256;
+  constexpr double beyond = 1.75;  // more than sqrt(3) times the largest coordinate
+  for (int i = steps - 1; i >= 0; --i) {
+    double in = beyond * i / steps, out = beyond * (i + 1) / steps;
+    if (!inside(in)) continue;
+    for (double middle = 0.5 * (in + out); middle > in && middle < out; middle = 0.5 * (in + out))
+      (inside(middle) ? in : out) = middle;
+    return Vec3<double>(out * ray);
+  }
+  return {};
 }
 
 }  // namespace
@@ -68,14 +83,18 @@ std::optional<Material<double>> PointReader::material(const Part& part, const Js
         "a torus has several points in a direction; expected {\"u\", \"v\", \"w\"} or {\"near\": [x, y, z]}");
     return {};
   }
-  const Vec3<double> place =
-      value.form == Form::kDirection ? Vec3<double>(value.x.stableNormalized() * part.size()) : value.x;
-  Material<double> m = part.label(place, part.parameters().rest());
-  m.w = value.form == Form::kDirection ? value.w : std::min(m.w, 1.0);
-  if (is_finite(m)) return m;
-  faults_.value(*at.find(value.form == Form::kDirection ? "direction" : "near"),
-                "the deformations of part \"" + part.name() +
-                    "\" cannot be undone there; expected a place on its rest shape");
+  const bool by_direction = value.form == Form::kDirection;
+  const std::optional<Vec3<double>> place = by_direction ? surface_towards(part, value.x) : value.x;
+  if (place) {
+    Material<double> m = part.label(*place, part.parameters().rest());
+    if (by_direction || m.w - 1 < kFarOutside) {
+      m.w = by_direction ? value.w : std::min(m.w, 1.0);
+      return m;
+    }
+  }
+  faults_.value(
+      *at.find(by_direction ? "direction" : "near"),
+      "no material point of part \"" + part.name() + "\" lies there; expected a place on its rest shape");
   return {};
 }
 

@@ -30,18 +30,21 @@ Record by_direction() {
   const Check not_zero = [](const JsonValue& value, const ReportAt& report) {
     if (read_vector3(value).isZero(0)) report(value, "expected a direction that is not zero", kWholeValue);
   };
-  return {"point_in_direction",
-          "The material point that lies, seen from the centre of the shape, in a direction.",
-          {required("direction", vector3("1").checked(not_zero),
-                    "Direction in the part's frame, of any length.", "[0, 0, 1]"),
-           radial()}};
+  return {
+      "point_in_direction",
+      "The material point of the rest shape that lies in a direction from the origin of the part's frame: "
+      "the outermost one of the surface, and with w the point inside with the same u and v.",
+      {required("direction", vector3("1").checked(not_zero), "Direction in the part's frame, of any length.",
+                "[0, 0, 1]"),
+       radial()}};
 }
 
 Record by_place() {
-  return {"point_near",
-          "The material point at a place of the rest shape; for a place outside, the surface point with the "
-          "same u and v.",
-          {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
+  return {
+      "point_near",
+      "The material point at a place of the rest shape; for a place somewhat outside, the surface point with "
+      "the same u and v.",
+      {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
-// Parts at random values of all their parameters, short of where their deformations fold over.
+// Parts at random values of all their parameters.
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,17 +12,22 @@
 
 namespace pliant::test {
 
-/// Where a parameter of a part may be drawn from, with a body of unit size in mind.
+/// Where a parameter of a part is drawn from: its range as a degree of freedom, lengths from half to twice
+/// their rest value, and no further than a body of unit size has use for.
+inline Range range_of(const Parameter& p) {
+  if (p.spec->relative) return {0.5 * p.rest_value(), 2 * p.rest_value()};
+  const double reach = p.spec->quantity == Quantity::angle ? kInfinity : std::max(2.0, 2 * p.rest_value());
+  return {std::max(p.limits.min, -reach), std::min(p.limits.max, reach)};
+}
+
+/// Within the range, or at one of its ends.
 inline double draw_value(Draws& draws, const Parameter& p) {
-  const std::string name = p.spec->name;
-  if (p.spec->relative) return p.rest_value() * draws.uniform(0.8, 1.25);
-  if (name.substr(0, 3) == "eps") return draws.uniform(0.4, 1.6);
-  if (name == "a4") return draws.uniform(2.5, 4);
-  if (name == "direction") return draws.uniform(-3, 3);
-  if (name == "b2") return draws.uniform(-0.5, 0.5);
-  if (name == "b3") return draws.uniform(0.3, 0.9);
-  if (name == "t") return draws.uniform(-0.9, 0.5);
-  return draws.uniform(-0.4, 0.4);
+  const Range range = range_of(p);
+  return draws.uniform(range.min, range.max);
+}
+inline double draw_end(Draws& draws, const Parameter& p) {
+  const Range range = range_of(p);
+  return draws.uniform(0, 1) < 0.5 ? range.min : range.max;
 }
 
 struct RandomState {
@@ -29,15 +35,30 @@ struct RandomState {
   Vec3<double> omega;
 };
 
-inline RandomState draw_state(Draws& draws, const Part& part) {
+/// Values by value(draws, parameter), rates and a turn.
+template <class F>
+RandomState make_state(Draws& draws, const Part& part, F&& value) {
   const int n = part.parameters().n_dynamic();
   RandomState state{VecMax<double>(n), VecMax<double>(n), draws.vector(2)};
   for (int k = 0; k < n; ++k) {
     const Parameter& p = part.parameters()[part.parameters().dynamic()[static_cast<std::size_t>(k)]];
-    state.q_s[k] = draw_value(draws, p);
+    state.q_s[k] = value(draws, p);
     state.q_s_dot[k] = draws.uniform(-1, 1) * (p.spec->relative ? p.rest_value() : 1.0);
   }
   return state;
+}
+
+/// A state anywhere in the ranges at which the part does not fold over.
+inline RandomState draw_state(Draws& draws, const Part& part) {
+  for (int trial = 0; trial < 10000; ++trial) {
+    RandomState state = make_state(draws, part, draw_value);
+    if (!part.folded(state.q_s)) return state;
+  }
+  throw std::runtime_error("no state without folds found");
+}
+/// A state with every parameter at an end of its range, folded or not.
+inline RandomState draw_end_state(Draws& draws, const Part& part) {
+  return make_state(draws, part, draw_end);
 }
 
 /// Every parameter but those called in except becomes a degree of freedom.

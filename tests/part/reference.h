@@ -91,7 +91,7 @@ class Reference {
         moved[dynamic(k)] += t;
         return reference_point(part_, m, moved);
       };
-      r.J.col(k) = first_derivative(along, 5e-4L * std::max(std::abs(q_s_[k]), 0.2)).cast<double>();
+      r.J.col(k) = first_derivative(along, 3e-4L * std::max(std::abs(q_s_[k]), 0.2)).cast<double>();
     }
     auto path = [&](Long t) {
       std::vector<Long> moved = all_;

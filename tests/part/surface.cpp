@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include <pliant/part/folds.h>
 #include <pliant/part/surface.h>
 
 #include "random_state.h"
@@ -36,6 +37,18 @@ int count_different(const Eigen::Matrix3Xd& x) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});
   return static_cast<int>(all.size());
 }
+/// How far corner normals lean away from their triangles, one minus the cosine, weighed by area.
+double mean_normal_error(const TriangleMesh& mesh) {
+  double error = 0, areas = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
+                       c = mesh.x.col(mesh.triangles(2, t));
+    const Vec3<double> face = (b - a).cross(c - a);
+    for (int k = 0; k < 3; ++k) error += face.norm() - face.dot(mesh.normals.col(mesh.corners(k, t)));
+    areas += 3 * face.norm();
+  }
+  return error / areas;
+}
 double least_area(const TriangleMesh& mesh) {
   double least = kInfinity;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -50,10 +63,12 @@ std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vect
   if (part->shape().mesh() == MeshPattern::torus) part->rest({{"a3", 1}});
   if (shape == "cone") part->rest({{"t", -0.6}});
   Draws draws(7);
-  Part::Named values;
-  for (int i = part->parameters().n_shape(); i < part->parameters().size(); ++i)
-    values.emplace_back(part->parameters()[i].name, test::draw_value(draws, part->parameters()[i]));
-  part->rest(values);
+  do {
+    Part::Named values;
+    for (int i = part->parameters().n_shape(); i < part->parameters().size(); ++i)
+      values.emplace_back(part->parameters()[i].name, test::draw_value(draws, part->parameters()[i]));
+    part->rest(values);
+  } while (folds(*part, part->parameters().rest()));
   return part;
 }
 
@@ -98,7 +113,14 @@ TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an are
       CHECK(least_area(mesh) > 0);
       CHECK(mesh.normals.allFinite());
       part->prepare();
-      CHECK(enclosed_volume(mesh) == Approx(part->total_mass()).epsilon(eps > 2 ? 0.6 : 0.05));
+      auto error = [&](int resolution) {
+        return enclosed_volume(Surface(*part, resolution).body_mesh(*part, part->parameters().rest())) /
+                   part->total_mass() -
+               1;
+      };
+      // Thin spikes at 3 and 5 take many triangles; thin rims at 0.02 lie between two of them.
+      CHECK(std::abs(error(32)) < (eps > 3 ? 0.13 : eps > 2 ? 0.01 : 1e-3));
+      CHECK(std::abs(error(32)) < 0.5 * std::abs(error(16)));
     }
 }
 
@@ -115,7 +137,7 @@ TEST_CASE("the enclosed volume is positive and converges at second order", "[sur
       };
       const double coarse = error(16), fine = error(32);
       INFO(test::describe(face->name(), chain) << " " << coarse << " " << fine);
-      CHECK(std::abs(coarse) < 0.02);
+      CHECK(std::abs(4 * fine - coarse) / 3 < 2e-3);  // what is left without the second-order error
       if (std::abs(coarse) > 1e-13) CHECK(std::abs(fine / coarse) == Approx(0.25).margin(0.03));
     }
 }
@@ -128,15 +150,10 @@ TEST_CASE("vertex normals are those of the part, and agree with the triangles ar
       const Surface surface(*part, 16);
       const TriangleMesh mesh = surface.body_mesh(*part, rest);
       INFO(test::describe(face->name(), chain));
-      test::Worst off;
-      for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-        const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
-                           c = mesh.x.col(mesh.triangles(2, t));
-        const Vec3<double> n = (b - a).cross(c - a).normalized();
-        for (int k = 0; k < 3; ++k) off.note(1 - n.dot(mesh.normals.col(mesh.corners(k, t))));
-      }
-      // A corner whose vertex lies on a rim or an edge takes the normal of its face.
-      CHECK(off < 0.5);
+      const double coarse = mean_normal_error(mesh),
+                   fine = mean_normal_error(Surface(*part, 64).body_mesh(*part, rest));
+      CHECK(fine < 0.04);
+      CHECK(fine < 0.5 * coarse + 1e-14);
       for (std::size_t i = 0; i < surface.material().size(); i += 7) {
         const Vec3<double> n = part->normal(surface.material()[i], rest);
         CHECK((mesh.normals.col(static_cast<Eigen::Index>(i)) - n).norm() <= 1e-14);

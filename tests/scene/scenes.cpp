@@ -90,6 +90,30 @@ TEST_CASE("comments and extensions are allowed everywhere, and never read") {
   CHECK(schema().accepts(nlohmann::json::parse(text)));
 }
 
+TEST_CASE("points by direction and by place lie there on the rest shape") {
+  const std::string text = R"json({
+    "parts": [{"name": "horn", "shape": "superellipsoid", "deformations": ["taper", "bend"],
+               "parameters": {"a3": 2, "eps2": 0.4, "taper.tx": -0.5, "bend.angle": 1, "bend.direction": 0.3}}],
+    "tracks": [{"part": "horn", "at": {"direction": [3, 2, 5]}},
+               {"part": "horn", "at": {"near": [0.1, 0.2, 0.3]}},
+               {"part": "horn", "at": {"near": [0, 1.3, 0]}}]
+  })json";
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
+  CHECK(diagnostics.text().empty());
+  const auto place = [&](std::size_t i) {
+    const pliant::Point& point = scene->tracks[i].point;
+    const pliant::Part& horn = *point.part;
+    return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
+  };
+  const pliant::Vec3<double> direction = pliant::Vec3<double>(3, 2, 5).normalized();
+  CHECK(scene->tracks[0].point.material.w == 1);
+  CHECK((place(0).normalized() - direction).norm() < 1e-12);
+  CHECK((place(1) - pliant::Vec3<double>(0.1, 0.2, 0.3)).norm() < 1e-12);
+  CHECK(scene->tracks[2].point.material.w == 1);
+  CHECK((place(2) - pliant::Vec3<double>(0, 1, 0)).norm() < 0.1);
+}
+
 TEST_CASE("what is allowed but has no effect is warned about") {
   const auto warnings = [](const std::string& members) {
     pliant::Diagnostics diagnostics;
@@ -148,7 +172,9 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "parameter_of_no_deformation",
                                         "parameter_out_of_a_second_link",
                                         "parameter_without_its_deformation",
+                                        "point_far_outside",
                                         "point_in_a_direction_of_a_torus",
+                                        "point_in_an_empty_direction",
                                         "point_in_no_direction",
                                         "point_near_a_closed_end",
                                         "point_outside_the_latitudes",
