@@ -9,31 +9,6 @@ namespace pliant {
 
 namespace {
 
-template <class S>
-Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <class S>
-S dot(const Vec3<S>& a, const Vec3<S>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <class S>
-Vec3<S> scaled(const Vec3<S>& a, const S& k) {
-  return {a[0] * k, a[1] * k, a[2] * k};
-}
-template <class S>
-Vec3<S> times(const Mat3<S>& A, const Vec3<S>& x) {
-  Vec3<S> y;
-  for (int i = 0; i < 3; ++i) y[i] = A(i, 0) * x[0] + A(i, 1) * x[1] + A(i, 2) * x[2];
-  return y;
-}
-template <class S>
-Vec3<S> transposed_times(const Mat3<S>& A, const Vec3<S>& x) {
-  Vec3<S> y;
-  for (int i = 0; i < 3; ++i) y[i] = A(0, i) * x[0] + A(1, i) * x[1] + A(2, i) * x[2];
-  return y;
-}
-
 /// R of a quaternion (w, x, y, z), of any length.
 template <class S>
 Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
@@ -57,9 +32,8 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   const Part& part = *m.part;
   const auto n_ports = m.ports.size();
   if (m.q0 < 0) {
-    for (int r = 0; r < 3; ++r) w.c[r] = S(part.c0()[r]);
-    for (int r = 0; r < 3; ++r)
-      for (int k = 0; k < 3; ++k) w.R(r, k) = S(m.R0(r, k));
+    w.c = part.c0().template cast<S>();
+    w.R = m.R0.template cast<S>();
     w.q_s.resize(0);
     w.q_s_dot.resize(0);
     w.v_r.resize(0);
@@ -69,7 +43,7 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
     w.q_s = q.segment(m.q0 + 7, m.n_s);
     w.q_s_dot = v.segment(m.v0 + 6, m.n_s);
     w.v_r.resize(6 + m.n_s);
-    w.v_r.template head<3>() = transposed_times<S>(w.R, v.template segment<3>(m.v0));
+    w.v_r.template head<3>() = w.R.transpose() * v.template segment<3>(m.v0);
     w.v_r.tail(3 + m.n_s) = v.segment(m.v0 + 3, 3 + m.n_s);
   }
   if (n_ports == 0) return;
@@ -87,17 +61,13 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   w.port_x_dot.resize(n_ports);
   w.port_force.assign(n_ports, Vec3<S>::Constant(S(0.0)));
   for (std::size_t k = 0; k < n_ports; ++k) {
-    const Vec3<S> arm = times<S>(w.R, w.ports[k].p);
-    for (int r = 0; r < 3; ++r) w.port_x[k][r] = w.c[r] + arm[r];  // Eq. (1)
+    w.port_x[k] = w.c + w.R * w.ports[k].p;  // Eq. (1)
     if (m.q0 < 0) {
       w.port_x_dot[k].setConstant(S(0.0));
       continue;
     }
-    const Vec3<S> omega = w.v_r.template segment<3>(3);
-    const Vec3<S> turning = cross<S>(omega, w.ports[k].p);
-    Vec3<S> velocity;
-    for (int r = 0; r < 3; ++r) velocity[r] = w.v_r[r] + turning[r] + w.ports[k].p1[r];
-    w.port_x_dot[k] = times<S>(w.R, velocity);  // Eq. (9)
+    const Vec3<S> turning = w.v_r.template segment<3>(3).cross(w.ports[k].p);
+    w.port_x_dot[k] = w.R * (w.v_r.template head<3>() + turning + w.ports[k].p1);  // Eq. (9)
   }
 }
 
@@ -107,9 +77,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
   const Part& part = *m.part;
   const int n = m.n_s;
   w.f = w.inertia.g_q;
-  Vec3<S> g;
-  for (int r = 0; r < 3; ++r) g[r] = S(gravity[r]);
-  const Vec3<S> g_body = transposed_times<S>(w.R, g);
+  const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
   const MatMax<S>& M = w.inertia.M;
   // Gravity acts like an acceleration of the frame: f = M (g, 0, 0).
   for (int i = 0; i < 6 + n; ++i)
@@ -118,7 +86,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
   const bool damped = part.alpha() > 0 || part.beta() > 0;
   VecMax<S> stretch(n);
   for (int k = 0; k < n; ++k) {
-    const Parameter& p = part.parameters()[part.parameters().dynamic()[static_cast<std::size_t>(k)]];
+    const Parameter& p = part.parameters().moving(k);
     stretch[k] = w.q_s[k] - p.rest.value(t);
   }
   const auto& K = part.K_s();
@@ -130,7 +98,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
     }
     w.f[6 + i] -= elastic + damping;  // Eq. (11): -K (q - rest) - D qdot
     w.power[static_cast<int>(Work::damping)] -= damping * w.q_s_dot[i];
-    const Parameter& p = part.parameters()[part.parameters().dynamic()[static_cast<std::size_t>(i)]];
+    const Parameter& p = part.parameters().moving(i);
     if (!p.rest.is_constant()) w.power[static_cast<int>(Work::actuation)] -= elastic * p.rest.at(t).d;
   }
   if (part.drag() > 0) {
@@ -147,14 +115,10 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
 template <class S>
 void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
   for (std::size_t k = 0; k < m.ports.size(); ++k) {
-    const Vec3<S> f = transposed_times<S>(w.R, w.port_force[k]);
-    const Vec3<S> turn = cross<S>(w.ports[k].p, f);
-    for (int r = 0; r < 3; ++r) {
-      w.f[r] += f[r];
-      w.f[3 + r] += turn[r];
-    }
-    for (int c = 0; c < m.n_s; ++c)
-      w.f[6 + c] += w.ports[k].J(0, c) * f[0] + w.ports[k].J(1, c) * f[1] + w.ports[k].J(2, c) * f[2];
+    const Vec3<S> f = w.R.transpose() * w.port_force[k];
+    w.f.template head<3>() += f;
+    w.f.template segment<3>(3) += w.ports[k].p.cross(f);
+    w.f.tail(m.n_s) += w.ports[k].J.transpose().lazyProduct(f);
   }
 }
 
@@ -167,13 +131,15 @@ VecMax<S> inverse_column(const SymmetricFactor<S>& factor, int n, int i) {
   return x;
 }
 
-// limits: parameters at a limit are pressed onto it by forces >= 0, found on the small system W = C M^-1 C^T
+// limits: parameters that rest at a limit are pressed onto it by forces >= 0, found on the small system
+// W = C M^-1 C^T. These forces do no work; what moves at a limit is the integrator's to stop, by an impulse.
 void press(const PartModel& m, const std::int8_t* at_limit, PartWorkspace<double>& w) {
   w.pressed.clear();
   std::array<int, kMaxGlobal> rows{};
   int n = 0;
   for (int k = 0; k < m.n_s; ++k)
-    if (at_limit[k] != 0 && !w.factor.held(6 + k)) rows[static_cast<std::size_t>(n++)] = k;
+    if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.factor.held(6 + k))
+      rows[static_cast<std::size_t>(n++)] = k;
   if (n == 0) return;
   MatMax<double, kMaxLimitRows> W(n, n);
   VecMax<double, kMaxLimitRows> b(n);
@@ -258,47 +224,36 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
       const PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(ref.part)];
       return {w.port_x[static_cast<std::size_t>(ref.port)], w.port_x_dot[static_cast<std::size_t>(ref.port)]};
     }
-    WorldPoint<S> p;
     const Vec3<Taylor2<double>> x = point.world.at(t);
-    for (int r = 0; r < 3; ++r) {
-      p.x[r] = S(x[r].v);
-      p.x_dot[r] = S(x[r].d);
-    }
-    return p;
+    return {Vec3<S>(S(x[0].v), S(x[1].v), S(x[2].v)), Vec3<S>(S(x[0].d), S(x[1].d), S(x[2].d))};
   };
   auto push = [&](const PortRef& ref, const Vec3<S>& force, double sign) {
     if (ref.part < 0) return;
-    Vec3<S>& sum =
-        work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)];
-    for (int r = 0; r < 3; ++r) sum[r] += force[r] * sign;
+    work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)] +=
+        force * S(sign);
   };
   for (const SpringModel& s : model.springs()) {
     const WorldPoint<S> a = at_port(s.a, s.spring->a), b = at_port(s.b, s.spring->b);
-    Vec3<S> d, d_dot;
-    for (int r = 0; r < 3; ++r) {
-      d[r] = b.x[r] - a.x[r];
-      d_dot[r] = b.x_dot[r] - a.x_dot[r];
-    }
+    const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
     Vec3<S> pull, damping;  // on a, towards b
     if (s.spring->rest_length == 0) {
-      pull = scaled<S>(d, S(s.spring->stiffness));
-      damping = scaled<S>(d_dot, S(s.spring->damping));
+      pull = d * S(s.spring->stiffness);
+      damping = d_dot * S(s.spring->damping);
     } else {
-      const S length2 = dot<S>(d, d);
+      const S length2 = d.dot(d);
       if (plain(length2) == 0) continue;  // no direction; what is not a number goes on to be found
       const S length = math::sqrt(length2);
-      const Vec3<S> along = scaled<S>(d, S(S(1.0) / length));
-      pull = scaled<S>(along, S((length - s.spring->rest_length) * s.spring->stiffness));
-      damping = scaled<S>(along, S(dot<S>(along, d_dot) * s.spring->damping));
+      const Vec3<S> along = d / length;
+      pull = along * S((length - s.spring->rest_length) * s.spring->stiffness);
+      damping = along * S(along.dot(d_dot) * s.spring->damping);
     }
-    Vec3<S> force;
-    for (int r = 0; r < 3; ++r) force[r] = pull[r] + damping[r];
+    const Vec3<S> force = pull + damping;
     push(s.a, force, 1);
     push(s.b, force, -1);
-    work.power[static_cast<int>(Work::spring_damping)] -= dot<S>(damping, d_dot);
+    work.power[static_cast<int>(Work::spring_damping)] -= damping.dot(d_dot);
     // The hand that moves an anchor exerts the opposite of the spring's pull on it.
-    if (s.a.part < 0) work.power[static_cast<int>(Work::anchors)] -= dot<S>(force, a.x_dot);
-    if (s.b.part < 0) work.power[static_cast<int>(Work::anchors)] += dot<S>(force, b.x_dot);
+    if (s.a.part < 0) work.power[static_cast<int>(Work::anchors)] -= force.dot(a.x_dot);
+    if (s.b.part < 0) work.power[static_cast<int>(Work::anchors)] += force.dot(b.x_dot);
   }
   for (const ForceModel& f : model.forces()) {
     const WorldPoint<S> at = at_port(f.at, f.force->at);
@@ -313,20 +268,18 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
     } else {
       force = f.force->force.value(t).template cast<S>();
       if (f.force->frame == Frame::body)
-        force = times<S>(work.parts[static_cast<std::size_t>(f.at.part)].R, Vec3<S>(force));
+        force = (work.parts[static_cast<std::size_t>(f.at.part)].R * force).eval();
     }
     push(f.at, force, 1);
-    work.power[static_cast<int>(Work::forces)] += dot<S>(force, at.x_dot);
+    work.power[static_cast<int>(Work::forces)] += force.dot(at.x_dot);
   }
   for (const TorqueModel& m : model.torques()) {
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(m.part)];
     if (parts[static_cast<std::size_t>(m.part)].q0 < 0) continue;
     Vec3<S> torque = m.torque->torque.value(t).template cast<S>();
-    if (m.torque->frame == Frame::world) torque = transposed_times<S>(w.R, Vec3<S>(torque));
-    for (int r = 0; r < 3; ++r) {
-      w.f[3 + r] += torque[r];
-      work.power[static_cast<int>(Work::forces)] += torque[r] * w.v_r[3 + r];
-    }
+    if (m.torque->frame == Frame::world) torque = (w.R.transpose() * torque).eval();
+    w.f.template segment<3>(3) += torque;
+    work.power[static_cast<int>(Work::forces)] += torque.dot(w.v_r.template segment<3>(3));
   }
 
   each_part([&](int i) {
@@ -348,7 +301,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
       if (fixed_limits != nullptr)
         hold_pressed<S>(m, fixed_limits->parts[static_cast<std::size_t>(i)].pressed, w);
     }
-    work.v_dot.template segment<3>(m.v0) = times<S>(w.R, Vec3<S>(w.a_r.template head<3>()));
+    work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.tail(3 + m.n_s);
   });
   for (const PartWorkspace<S>& w : work.parts) work.power += w.power;
@@ -359,10 +312,11 @@ void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>
   evaluate<double>(t, q, v, &at_limit, nullptr, work);
 }
 
-VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v, const VecX<double>& dq,
-                           const VecX<double>& dv, const Workspace<double>& work) const {
+VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
+                           const StateDirection& along, const Workspace<double>& work,
+                           Workspace<Dual<1>>& dual_work) const {
   using D = Dual<1>;
-  auto along = [](const VecX<double>& x, const VecX<double>& dx) {
+  auto dual = [](const VecX<double>& x, const VecX<double>& dx) {
     VecX<D> r(x.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       r[i] = D(x[i]);
@@ -370,11 +324,17 @@ VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& 
     }
     return r;
   };
-  Workspace<D> dual;
-  evaluate<D>(t, along(q, dq), along(v, dv), nullptr, &work, dual);
-  VecX<double> d(dual.v_dot.size());
-  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = dual.v_dot[i].d[0];
+  evaluate<D>(t, dual(q, along.q), dual(v, along.v), nullptr, &work, dual_work);
+  VecX<double> d(dual_work.v_dot.size());
+  for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = dual_work.v_dot[i].d[0];
   return d;
+}
+
+VecX<double> Dynamics::jvp(const State& state, const StateDirection& along) const {
+  Workspace<double> work;
+  Workspace<Dual<1>> dual_work;
+  accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  return jvp(state.time(), state.q, state.v, along, work, dual_work);
 }
 
 void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const {
@@ -406,10 +366,7 @@ Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) c
     const Vec3<double> moment = w.R * w.inertia.moment;
     ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + moment);
     VecMax<double> stretch(m.n_s);
-    for (int k = 0; k < m.n_s; ++k)
-      stretch[k] =
-          w.q_s[k] -
-          m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].rest.value(t);
+    for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
     ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
     const Vec3<double> P = w.R * momentum.head<3>();
     ledger.momentum += P;
@@ -430,6 +387,22 @@ Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) c
 void Dynamics::apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse) {
   part.factor.solve(impulse);
 }
+
+namespace {
+/// Which of the forces of a part alone is not finite.
+std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& w) {
+  const Part& part = *m.part;
+  VecMax<double> stretch = w.q_s;
+  for (int k = 0; k < m.n_s; ++k) stretch[k] -= part.parameters().moving(k).rest.value(t);
+  const VecMax<double> elastic = part.K_s() * stretch, momentum = w.inertia.M * w.v_r;
+  const VecMax<double> damping =
+      (part.alpha() * w.inertia.M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
+  if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
+  if (!damping.allFinite()) return "the damping force D q_dot";
+  if (!(part.drag() * momentum).allFinite()) return "the drag";
+  return "the sum of the forces";
+}
+}  // namespace
 
 std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v,
                                Workspace<double>& work) const {
@@ -468,7 +441,7 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
     if (!m.torque->torque.value(t).allFinite()) return "the torque '" + m.torque->name + "'";
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
     if (model_->parts()[i].q0 < 0) continue;
-    if (!work.parts[i].f.allFinite()) return "the elastic, damping or drag force" + of_part(i);
+    if (!work.parts[i].f.allFinite()) return own_term(t, model_->parts()[i], work.parts[i]) + of_part(i);
     if (!work.parts[i].a_r.allFinite()) return "the acceleration" + of_part(i);
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 
 namespace pliant {
@@ -12,6 +13,7 @@ Model::Model(MultiBody& body) : body_(&body) {
     part->prepare();
     PartModel m;
     m.part = part.get();
+    m.use = part->use();
     m.n_s = part->n_s();
     m.q0 = part->fixed() ? -1 : n_q_;
     m.v0 = part->fixed() ? -1 : n_v_;
@@ -25,9 +27,8 @@ Model::Model(MultiBody& body) : body_(&body) {
     const double mass = part->total_mass(), size = part->size();
     m.inertia_floor = VecMax<double>::Zero(6 + m.n_s);
     for (int k = 0; k < m.n_s; ++k) {
-      const Parameter& p = part->parameters()[part->parameters().dynamic()[static_cast<std::size_t>(k)]];
-      const bool is_length = p.spec->unit[0] == 'm';
-      m.inertia_floor[6 + k] = 1e-24 * mass * (is_length ? 1.0 : size * size);
+      const Parameter& p = part->parameters().moving(k);
+      m.inertia_floor[6 + k] = 1e-24 * mass * (p.spec->quantity == Quantity::length ? 1.0 : size * size);
     }
     if (part->rigid()) m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
     parts_.push_back(std::move(m));
@@ -54,6 +55,11 @@ Model::Model(MultiBody& body) : body_(&body) {
 
 PortRef Model::attach(const Point& point) {
   if (point.part == nullptr) return {};
+  const Material<double>& m = point.material;
+  if (!(m.w >= 0 && m.w <= 1) || std::isnan(m.cu.x + m.su.x + m.cv.x + m.sv.x))
+    throw std::invalid_argument(
+        "a point of part '" + point.part->name() +
+        "' needs angles that are numbers, and w from 0 at the centre to 1 on the surface");
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
@@ -73,7 +79,7 @@ State Model::initial_state() const {
     state.v.segment<3>(m.v0) = part.c0_dot();
     state.v.segment<3>(m.v0 + 3) = part.omega0();
     for (int k = 0; k < m.n_s; ++k) {
-      const Parameter& p = part.parameters()[part.parameters().dynamic()[static_cast<std::size_t>(k)]];
+      const Parameter& p = part.parameters().moving(k);
       state.q[m.q0 + 7 + k] = p.initial;
       state.v[m.v0 + 6 + k] = p.initial_rate;
       std::int8_t& at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
@@ -116,8 +122,7 @@ std::string Model::velocity_name(int i) const {
     if (m.v0 < 0 || i < m.v0 || i >= m.v0 + 6 + m.n_s) continue;
     const int k = i - m.v0;
     if (k < 6) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    const Parameters& all = m.part->parameters();
-    return m.part->name() + "." + all[all.dynamic()[static_cast<std::size_t>(k - 6)]].name + "_dot";
+    return m.part->name() + "." + m.part->parameters().moving(k - 6).name + "_dot";
   }
   throw std::out_of_range("no velocity number " + std::to_string(i));
 }
@@ -129,8 +134,7 @@ std::string Model::coordinate_name(int i) const {
     if (m.q0 < 0 || i < m.q0 || i >= m.q0 + 7 + m.n_s) continue;
     const int k = i - m.q0;
     if (k < 7) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    const Parameters& all = m.part->parameters();
-    return m.part->name() + "." + all[all.dynamic()[static_cast<std::size_t>(k - 7)]].name;
+    return m.part->name() + "." + m.part->parameters().moving(k - 7).name;
   }
   throw std::out_of_range("no coordinate number " + std::to_string(i));
 }

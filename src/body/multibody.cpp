@@ -7,7 +7,7 @@ namespace pliant {
 
 Part& MultiBody::add(std::unique_ptr<Part> part) {
   if (part->name().empty()) throw std::invalid_argument("a part needs a name");
-  if (find(part->name()) != nullptr)
+  if (!number_of_.emplace(part->name(), static_cast<int>(parts_.size())).second)
     throw std::invalid_argument("there are two parts called '" + part->name() + "'");
   parts_.push_back(std::move(part));
   return *parts_.back();
@@ -44,15 +44,15 @@ Torque& MultiBody::torque(std::string name, const Part& part, TimeVector torque,
 }
 
 Part* MultiBody::find(const std::string& name) const {
-  for (const auto& part : parts_)
-    if (part->name() == name) return part.get();
-  return nullptr;
+  const auto found = number_of_.find(name);
+  return found == number_of_.end() ? nullptr : parts_[static_cast<std::size_t>(found->second)].get();
 }
 
 int MultiBody::index(const Part& part) const {
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    if (parts_[i].get() == &part) return static_cast<int>(i);
-  throw std::invalid_argument("part '" + part.name() + "' does not belong to this body");
+  const auto found = number_of_.find(part.name());
+  if (found == number_of_.end() || parts_[static_cast<std::size_t>(found->second)].get() != &part)
+    throw std::invalid_argument("part '" + part.name() + "' does not belong to this body");
+  return found->second;
 }
 
 }  // namespace pliant

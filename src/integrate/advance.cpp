@@ -46,7 +46,7 @@ void hold_inertialess(const Model& model, const Workspace<double>& work, VecX<do
 namespace {
 
 Range limits_of(const PartModel& m, int k) {
-  return m.part->parameters()[m.part->parameters().dynamic()[static_cast<std::size_t>(k)]].limits;
+  return m.part->parameters().moving(k).limits;
 }
 
 /// A one-sided row of a part: sign * x_k >= bound for parameter k, at its lower limit (sign 1) or its upper

@@ -25,8 +25,7 @@ MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, i
   const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
   MatX<double> L(3, 6 + m.n_s);
   L.leftCols<3>().setIdentity();
-  const Vec3<double>& p = jet.p;
-  L.middleCols<3>(3) << 0, p[2], -p[1], -p[2], 0, p[0], p[1], -p[0], 0;
+  L.middleCols<3>(3) = -skew(jet.p);
   L.rightCols(m.n_s) = jet.J;
   return w.R * L;
 }

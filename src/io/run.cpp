@@ -48,17 +48,14 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 }  // namespace
 
 int automatic_threads(const Scene& scene) {
-  // Microseconds of an evaluation at the least, as bench/step_bench measures them; sending work to the pool
-  // and waiting for it takes about 10.
-  constexpr double rigid = 0.1, affine = 1.5, other = 30, worth_a_thread = 50;
+  // Microseconds of an evaluation at the least, as bench/step_bench measures them: of a part, and of each of
+  // its mass points for each parameter. Sending work to the pool and waiting for it takes about 10.
+  constexpr double part_alone = 0.1, point_and_parameter = 0.01, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
     if (part->fixed()) continue;
-    const Parameters& parameters = part->parameters();
-    double part_cost = part->rigid() ? rigid : affine;
-    for (const int i : parameters.dynamic())
-      if (parameters[i].spec->follows != Follows::affine) part_cost = other;
-    cost += part_cost;
+    part->prepare();
+    cost += part_alone + point_and_parameter * part->mass_points().n_points * part->n_s();
   }
   const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);

@@ -1,42 +1,19 @@
 #include <pliant/io/state_row.h>
 
+#include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 
 namespace pliant {
 namespace {
 
-// FNV-1a over the bits of numbers, cut to 53 bits, which a double holds exactly.
-class BitHash {
- public:
-  void add(const double* numbers, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i) {
-      std::uint64_t bits;
-      std::memcpy(&bits, numbers + i, sizeof bits);
-      for (int byte = 0; byte < 8; ++byte) {
-        hash_ ^= bits >> (8 * byte) & 0xff;
-        hash_ *= 0x100000001b3u;
-      }
-    }
-  }
-  double value() const { return static_cast<double>(hash_ >> 11); }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
-double hash_of(const State& state, const double* modes, std::size_t count) {
-  BitHash hash;
-  hash.add(state.q.data(), static_cast<std::size_t>(state.q.size()));
-  hash.add(state.v.data(), static_cast<std::size_t>(state.v.size()));
-  hash.add(modes, count);
-  return hash.value();
+/// The hash of a state, cut to 53 bits, which a double holds exactly.
+double check_of(const State& state) {
+  return static_cast<double>(hash(state) >> 11);
 }
 
 const ParameterSpec& dynamic_parameter(const PartModel& part, int k) {
-  const Parameters& all = part.part->parameters();
-  return *all[all.dynamic()[static_cast<std::size_t>(k)]].spec;
+  return *part.part->parameters().moving(k).spec;
 }
 
 }  // namespace
@@ -93,21 +70,22 @@ void write_modes(const State& state, std::vector<double>& row) {
   row.push_back(static_cast<double>(state.step));
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
-  row.push_back(hash_of(state, row.data(), row.size()));
+  row.push_back(check_of(state));
 }
 
 bool read_modes(const std::vector<double>& row, State& state) {
   constexpr std::size_t first_limit = 3 + kWorks;
-  if (row.size() < first_limit + 1) return false;
-  if (!(hash_of(state, row.data(), row.size() - 1) == row.back())) return false;
+  if (row.size() < first_limit + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
   state.start = row[0];
   state.h = row[1];
   state.step = static_cast<std::int64_t>(row[2]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[3 + static_cast<std::size_t>(i)];
   state.at_limit.clear();
-  for (std::size_t i = first_limit; i + 1 < row.size(); ++i)
+  for (std::size_t i = first_limit; i + 1 < row.size(); ++i) {
+    if (!(row[i] == -1 || row[i] == 0 || row[i] == 1)) return false;
     state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
-  return true;
+  }
+  return check_of(state) == row.back();
 }
 
 }  // namespace pliant

@@ -50,15 +50,6 @@ bool all_zero(const V& x) {
   return true;
 }
 
-template <class S>
-Vec3<S> cross(const Vec3<S>& a, const Vec3<S>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-template <class S>
-S dot(const Vec3<S>& a, const Vec3<S>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /// Sums over mass points, four lanes wide.
 template <class S>
 struct Sums {
@@ -98,29 +89,29 @@ struct Sums {
       const auto k = static_cast<std::size_t>(c);
       const Vec3<S>& Jc = jet.J[k];
       const Vec3<S> mJ{Jc[0] * m, Jc[1] * m, Jc[2] * m};
-      const Vec3<S> turn = cross(s, mJ);
+      const Vec3<S> turn = s.cross(mJ);
       for (int r = 0; r < 3; ++r) {
         J[k][r] += mJ[r];
         pxJ[k][r] += turn[r];
       }
-      for (int d = 0; d <= c; ++d) JJ[at++] += dot(mJ, jet.J[static_cast<std::size_t>(d)]);
+      for (int d = 0; d <= c; ++d) JJ[at++] += mJ.dot(jet.J[static_cast<std::size_t>(d)]);
     }
   }
 
   void add_inertial_force(const Jet<S>& jet, const Pack& m, int n, const Vec3<S>& omega, bool rates) {
-    Vec3<S> acceleration = cross(omega, cross(omega, jet.s));
+    Vec3<S> acceleration = omega.cross(omega.cross(jet.s));
     if (rates) {
-      const Vec3<S> coriolis = cross(omega, jet.s1);
+      const Vec3<S> coriolis = omega.cross(jet.s1);
       for (int r = 0; r < 3; ++r) acceleration[r] += coriolis[r] * 2.0 + jet.s2[r];
     }
     const Vec3<S> force{acceleration[0] * m, acceleration[1] * m, acceleration[2] * m};
-    const Vec3<S> torque = cross(jet.s, force);
+    const Vec3<S> torque = jet.s.cross(force);
     for (int r = 0; r < 3; ++r) {
       b[r] += force[r];
       pxb[r] += torque[r];
     }
     for (int c = 0; c < n; ++c)
-      Jb[static_cast<std::size_t>(c)] += dot(jet.J[static_cast<std::size_t>(c)], force);
+      Jb[static_cast<std::size_t>(c)] += jet.J[static_cast<std::size_t>(c)].dot(force);
   }
 };
 
@@ -213,13 +204,13 @@ void rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, Inertia<P>
     return;
   }
   ++counters.inertial_forces;
-  const Vec3<P> centripetal = cross(omega, cross(omega, out.moment));
+  const Vec3<P> centripetal = omega.cross(omega.cross(out.moment));
   Vec3<P> L;
   for (int i = 0; i < 3; ++i) {
     L[i] = P(0.0);
     for (int j = 0; j < 3; ++j) L[i] += omega[j] * rest.M(3 + i, 3 + j);
   }
-  const Vec3<P> gyroscopic = cross(omega, L);
+  const Vec3<P> gyroscopic = omega.cross(L);
   for (int r = 0; r < 3; ++r) {
     out.g_q[r] = -centripetal[r];
     out.g_q[3 + r] = -gyroscopic[r];

@@ -89,7 +89,7 @@ class Integrands {
       const Parameter& p = all[i];
       const double rest = p.rest_value();
       // Lengths scale the body: from half to twice their rest value tells all; offsets up to twice its size.
-      const bool offset = !p.spec->relative && p.spec->unit[0] == 'm';
+      const bool offset = !p.spec->relative && p.spec->quantity == Quantity::length;
       const double scale =
           p.spec->relative ? rest : (offset ? shape.part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;
@@ -264,7 +264,7 @@ constexpr std::size_t kMostPoints = 2'000'000;
 ParameterValues<double> initial_values(const Part& part) {
   const Parameters& all = part.parameters();
   VecMax<double> q_s(all.n_dynamic()), still = VecMax<double>::Zero(all.n_dynamic());
-  for (int k = 0; k < all.n_dynamic(); ++k) q_s[k] = all[all.dynamic()[static_cast<std::size_t>(k)]].initial;
+  for (int k = 0; k < all.n_dynamic(); ++k) q_s[k] = all.moving(k).initial;
   return all.expand<double>(q_s, still);
 }
 

@@ -40,6 +40,12 @@ void Part::refuse(const std::string& what) const {
   throw std::invalid_argument("part '" + name_ + "': " + what);
 }
 
+void Part::change() {
+  if (use_.use_count() > 1)
+    throw std::logic_error("part '" + name_ + "' is in a simulation, and cannot be changed before that ends");
+  prepared_ = false;
+}
+
 int Part::require(const std::string& parameter) const {
   const int i = parameters_.find(parameter);
   if (i < 0) refuse("no parameter '" + parameter + "'; it has: " + parameters_.names());
@@ -47,6 +53,7 @@ int Part::require(const std::string& parameter) const {
 }
 
 Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
+  change();
   if (!c.allFinite()) refuse("its position is not finite");
   if (!(R.norm() > 0) || !std::isfinite(R.norm()))
     refuse("its orientation is not a rotation (quaternion of length 0)");
@@ -56,6 +63,7 @@ Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
 }
 
 Part& Part::move(const Vec3<double>& c_dot, const Vec3<double>& omega) {
+  change();
   if (!c_dot.allFinite() || !omega.allFinite()) refuse("its initial velocity is not finite");
   c0_dot_ = c_dot;
   omega0_ = omega;
@@ -63,7 +71,7 @@ Part& Part::move(const Vec3<double>& c_dot, const Vec3<double>& omega) {
 }
 
 Part& Part::rest(const Named& values) {
-  prepared_ = false;
+  change();
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!p.spec->frozen.contains(value))
@@ -75,7 +83,7 @@ Part& Part::rest(const Named& values) {
 }
 
 Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
-  prepared_ = false;
+  change();
   const int i = require(parameter);
   if (!parameters_[i].spec->frozen.contains(of_time.value(0)))
     refuse(parameter + " = " + text(of_time.value(0)) +
@@ -86,7 +94,7 @@ Part& Part::rest(const std::string& parameter, TimeFunction of_time) {
 }
 
 Part& Part::initial(const Named& values) {
-  prepared_ = false;
+  change();
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!std::isfinite(value)) refuse("initial " + parameter + " is not finite");
@@ -99,7 +107,7 @@ Part& Part::initial(const Named& values) {
 }
 
 Part& Part::initial_rate(const Named& values) {
-  prepared_ = false;
+  change();
   for (const auto& [parameter, value] : values) {
     Parameter& p = parameters_[require(parameter)];
     if (!std::isfinite(value)) refuse("initial rate of " + parameter + " is not finite");
@@ -111,7 +119,7 @@ Part& Part::initial_rate(const Named& values) {
 }
 
 Part& Part::stiffness(const Named& values) {
-  prepared_ = false;
+  change();
   for (const auto& [parameter, value] : values) {
     const int i = require(parameter);
     if (!(value >= 0) || !std::isfinite(value))
@@ -124,7 +132,7 @@ Part& Part::stiffness(const Named& values) {
 }
 
 Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<double>& K) {
-  prepared_ = false;
+  change();
   const auto n = static_cast<Eigen::Index>(parameters.size());
   if (K.rows() != n || K.cols() != n)
     refuse("the stiffness matrix must be " + std::to_string(n) + " x " + std::to_string(n));
@@ -144,32 +152,37 @@ Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<dou
 }
 
 Part& Part::limits(const std::string& parameter, Range range) {
-  prepared_ = false;
+  change();
   Parameter& p = parameters_[require(parameter)];
-  const double scale = p.spec->relative ? p.rest_value() : 1.0;
-  const Range allowed{p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
-  if (!(range.min < range.max) || range.min < allowed.min || range.max > allowed.max)
-    refuse("limits " + text(range) + " of " + parameter + " must be increasing and within " + text(allowed));
   p.limits = range;
   p.limits_given = true;
+  check_limits(p);
   return *this;
 }
 
+void Part::check_limits(const Parameter& p) const {
+  const double scale = p.spec->relative ? p.rest_value() : 1.0;
+  const Range allowed{p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
+  if (!(p.limits.min < p.limits.max) || p.limits.min < allowed.min || p.limits.max > allowed.max)
+    refuse("limits " + text(p.limits) + " of " + p.name + " must be increasing and within " + text(allowed));
+}
+
 Part& Part::make_dynamic(const std::vector<std::string>& parameters) {
-  prepared_ = false;
+  change();
   for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = true;
   parameters_.update();
   return *this;
 }
 
 Part& Part::freeze(const std::vector<std::string>& parameters) {
-  prepared_ = false;
+  change();
   for (const std::string& parameter : parameters) parameters_[require(parameter)].dynamic = false;
   parameters_.update();
   return *this;
 }
 
 Part& Part::damping(double alpha, double beta, double nu) {
+  change();
   if (!(alpha >= 0) || !(beta >= 0) || !(nu >= 0) || !std::isfinite(alpha + beta + nu))
     refuse("damping alpha, beta and drag must be numbers >= 0");
   alpha_ = alpha;
@@ -179,20 +192,20 @@ Part& Part::damping(double alpha, double beta, double nu) {
 }
 
 Part& Part::make_shell() {
-  prepared_ = false;
+  change();
   shell_ = true;
   return *this;
 }
 
 Part& Part::mass(double total) {
-  prepared_ = false;
+  change();
   if (!(total > 0) || !std::isfinite(total)) refuse("mass " + text(total) + " is not a positive number");
   total_mass_ = total;
   return *this;
 }
 
 Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<double>& centre) {
-  prepared_ = false;
+  change();
   if (!(mass > 0) || !std::isfinite(mass)) refuse("mass " + text(mass) + " is not a positive number");
   const Mat3<double> about_centre =
       about_origin - mass * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
@@ -207,11 +220,8 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
   given.moment = mass * centre;
   given.M = MatMax<double>::Zero(6, 6);
   given.M.topLeftCorner<3, 3>() = mass * Mat3<double>::Identity();
-  Mat3<double> cross;
-  const Vec3<double>& s = given.moment;
-  cross << 0, s[2], -s[1], -s[2], 0, s[0], s[1], -s[0], 0;
-  given.M.topRightCorner<3, 3>() = cross;
-  given.M.bottomLeftCorner<3, 3>() = cross.transpose();
+  given.M.topRightCorner<3, 3>() = -skew(given.moment);
+  given.M.bottomLeftCorner<3, 3>() = skew(given.moment);
   given.M.bottomRightCorner<3, 3>() = about_origin;
   given.g_q = VecMax<double>::Zero(6);
   given_inertia_ = given;
@@ -219,7 +229,7 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
 }
 
 Part& Part::fix() {
-  prepared_ = false;
+  change();
   fixed_ = true;
   return *this;
 }
@@ -235,6 +245,7 @@ void Part::prepare() {
         refuse("the rest value of " + p.name + " moves in time, so " + p.name + " must be dynamic");
       continue;
     }
+    if (p.limits_given) check_limits(p);  // the rest value may have come later
     if (!p.limits.contains(p.rest_value()))
       refuse("the rest value " + text(p.rest_value()) + " of " + p.name + " is outside its limits " +
              text(p.limits));
@@ -242,8 +253,7 @@ void Part::prepare() {
       refuse("the initial value " + text(p.initial) + " of " + p.name + " is outside its limits " +
              text(p.limits));
   }
-  if (fixed_ && n > 0)
-    refuse("a fixed part has no dynamic parameters; freeze " + parameters_[parameters_.dynamic()[0]].name);
+  if (fixed_ && n > 0) refuse("a fixed part has no dynamic parameters; freeze " + parameters_.moving(0).name);
   if (given_inertia_ && n > 0) refuse("an inertia can be given to a rigid part only; freeze its parameters");
   K_s_.resize(n, n);
   for (int i = 0; i < n; ++i)
@@ -265,8 +275,7 @@ void Part::prepare() {
   }
   mass_points_ = lay_mass_points(*this);
   VecMax<double> q_s(n);
-  for (int k = 0; k < n; ++k)
-    q_s[k] = parameters_[parameters_.dynamic()[static_cast<std::size_t>(k)]].rest_value();
+  for (int k = 0; k < n; ++k) q_s[k] = parameters_.moving(k).rest_value();
   Counters unused;
   auto take = [&] {
     Inertia<double> sum;

@@ -188,7 +188,7 @@ Eigen::Quaterniond PartReader::orientation() {
 void PartReader::check_rigid() {
   const Parameters& all = part_->parameters();
   if (all.n_dynamic() > 0) {
-    const std::string because = all[all.dynamic()[0]].name + " is dynamic; expected ";
+    const std::string because = all.moving(0).name + " is dynamic; expected ";
     if (r_.boolean("fixed"))
       faults_.value(r_.at("fixed"), because + "only frozen parameters in a part that does not move");
     if (r_.given("inertia"))

@@ -55,6 +55,7 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
   const State& state = simulation.state();
   Draws draws(1);
   Workspace<double> work, scratch;
+  Workspace<Dual<1>> dual;
   const double t = 0.3;
   dynamics.accelerations(t, state.q, state.v, state.at_limit, work);
   auto random = [&](Eigen::Index n, double size) {
@@ -64,7 +65,7 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
   };
   for (int trial = 0; trial < 10; ++trial) {
     const VecX<double> dq = random(state.q.size(), 0.1), dv = random(state.v.size(), 1);
-    const VecX<double> derivative = dynamics.jvp(t, state.q, state.v, dq, dv, work);
+    const VecX<double> derivative = dynamics.jvp(t, state.q, state.v, {dq, dv}, work, dual);
     const VecX<double> expected =
         test::first_derivative(
             [&](long double e) {
@@ -76,8 +77,9 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
             .cast<double>();
     CHECK((derivative - expected).norm() <= 1e-6 * expected.norm());
     const VecX<double> dq2 = random(state.q.size(), 0.1), dv2 = random(state.v.size(), 1);
-    const VecX<double> sum = dynamics.jvp(t, state.q, state.v, 2 * dq - 3 * dq2, 2 * dv - 3 * dv2, work);
-    const VecX<double> parts = 2 * derivative - 3 * dynamics.jvp(t, state.q, state.v, dq2, dv2, work);
+    const VecX<double> sum =
+        dynamics.jvp(t, state.q, state.v, {2 * dq - 3 * dq2, 2 * dv - 3 * dv2}, work, dual);
+    const VecX<double> parts = 2 * derivative - 3 * dynamics.jvp(t, state.q, state.v, {dq2, dv2}, work, dual);
     CHECK((sum - parts).norm() <= 1e-12 * (parts.norm() + derivative.norm()));
   }
 }
@@ -215,4 +217,43 @@ TEST_CASE("what cannot be a model is refused by name", "[dynamics]") {
   MultiBody loose;
   loose.spring("s", world(1, 0, 0), world(0, 0, 0), 1);
   CHECK_THROWS_WITH(Model(loose), has_text("spring 's' ties the world to itself"));
+}
+
+TEST_CASE("a part in a simulation cannot be changed, afterwards it can", "[dynamics]") {
+  MultiBody body;
+  Part& part = body.add(make_part("ball", "sphere", {}, 1000));
+  {
+    const Simulation simulation(body, "rk4");
+    CHECK_THROWS_WITH(part.make_dynamic({"r"}), test::has_text("'ball' is in a simulation"));
+    CHECK_THROWS_AS(part.place({0, 0, 1}), std::logic_error);
+    CHECK_THROWS_AS(part.damping(1, 0), std::logic_error);
+  }
+  part.make_dynamic({"r"});
+  CHECK(Simulation(body, "rk4").model().n_v() == 7);
+}
+
+TEST_CASE("points outside the solid are refused", "[dynamics]") {
+  for (const double w : {-0.1, 1.1, std::nan("")}) {
+    MultiBody body;
+    Part& part = body.add(make_part("ball", "sphere", {}, 1000));
+    body.force("push", point(part, 0, 0, w), TimeVector(1, 0, 0));
+    CHECK_THROWS_WITH(Model(body), test::has_text("a point of part 'ball' needs"));
+  }
+  MultiBody body;
+  Part& part = body.add(make_part("ball", "sphere", {}, 1000));
+  body.force("push", point(part, std::nan(""), 0), TimeVector(1, 0, 0));
+  CHECK_THROWS_AS(Model(body), std::invalid_argument);
+}
+
+TEST_CASE("states of the same bits have the same hash", "[dynamics]") {
+  MultiBody body;
+  busy_scene(body);
+  Simulation simulation(body, "rk4");
+  const State start = simulation.state();
+  simulation.step(1e-3);
+  State copy = simulation.state();
+  CHECK(hash(copy) == hash(simulation.state()));
+  CHECK(hash(copy) != hash(start));
+  copy.v[3] = std::nextafter(copy.v[3], 10.0);
+  CHECK(hash(copy) != hash(simulation.state()));
 }

@@ -314,7 +314,7 @@ test::RandomState anywhere(Draws& draws, const Part& part, int corner) {
   const int n = all.n_dynamic();
   test::RandomState state{VecMax<double>(n), VecMax<double>(n), draws.vector(2)};
   for (int k = 0; k < n; ++k) {
-    const Parameter& p = all[all.dynamic()[static_cast<std::size_t>(k)]];
+    const Parameter& p = all.moving(k);
     const double rest = p.rest_value();
     const double low = p.spec->relative ? 0.5 * rest : std::max(p.limits.min, -5.0);
     const double high = p.spec->relative ? 2 * rest : std::min(p.limits.max, 5.0);

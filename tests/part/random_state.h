@@ -41,7 +41,7 @@ RandomState make_state(Draws& draws, const Part& part, F&& value) {
   const int n = part.parameters().n_dynamic();
   RandomState state{VecMax<double>(n), VecMax<double>(n), draws.vector(2)};
   for (int k = 0; k < n; ++k) {
-    const Parameter& p = part.parameters()[part.parameters().dynamic()[static_cast<std::size_t>(k)]];
+    const Parameter& p = part.parameters().moving(k);
     state.q_s[k] = value(draws, p);
     state.q_s_dot[k] = draws.uniform(-1, 1) * (p.spec->relative ? p.rest_value() : 1.0);
   }

@@ -39,6 +39,11 @@ struct Workspace {
   Vec<S, kWorks> power;  ///< rates of the works of the ledger, W
 };
 
+/// A direction in the space of states: changes of q (of each quaternion its derivative) and of v.
+struct StateDirection {
+  VecX<double> q, v;
+};
+
 class Dynamics {
  public:
   explicit Dynamics(const Model& model, ThreadPool* pool = nullptr) : model_(&model), pool_(pool) {}
@@ -47,10 +52,12 @@ class Dynamics {
   /// Accelerations and powers at (t, q, v); parameters at a limit may only move away from it.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<std::int8_t>& at_limit, Workspace<double>& work) const;
-  /// Directional derivative of the accelerations along (dq, dv), the pressed limits staying as they are. dq
-  /// holds, for each quaternion, its derivative. work: as the evaluation at the state left it.
-  VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const VecX<double>& dq,
-                   const VecX<double>& dv, const Workspace<double>& work) const;
+  /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.
+  VecX<double> jvp(const State& state, const StateDirection& along) const;
+  /// The same without an evaluation of its own. work: as the evaluation at (t, q, v) left it; dual_work: any,
+  /// kept from call to call.
+  VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const StateDirection& along,
+                   const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
   /// q_dot of (q, v): quaternion rate theta_dot = 1/2 theta o (0, omega).
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
   /// Energies, works and momenta; balance is left to the caller.

@@ -22,6 +22,7 @@ struct PartModel {
   VecMax<double> inertia_floor;               ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix3d R0;                         ///< of a fixed part
+  Part::Use use;
 };
 
 /// Where an attachment is: a port of a part, or the world.

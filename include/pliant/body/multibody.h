@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -78,6 +79,7 @@ class MultiBody {
 
  private:
   std::vector<std::unique_ptr<Part>> parts_;
+  std::unordered_map<std::string, int> number_of_;  // by name
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;
   std::vector<std::unique_ptr<Torque>> torques_;

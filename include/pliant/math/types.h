@@ -23,6 +23,15 @@ using VecMax = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, Max, 1>;
 template <class T, int Max = kMaxVelocities>
 using MatMax = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, Max, Max>;
 
+/// [a]x, the matrix of the cross product: skew(a) b = a x b.
+template <class T>
+Mat3<T> skew(const Vec3<T>& a) {
+  const T zero(0.0);
+  Mat3<T> A;
+  A << zero, -a[2], a[1], a[2], zero, -a[0], -a[1], a[0], zero;
+  return A;
+}
+
 template <class T>
 using VecX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
 template <class T>

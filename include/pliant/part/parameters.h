@@ -49,6 +49,10 @@ class Parameters {
   const std::vector<LinkInfo>& all_links() const { return links_; }
   const Parameter& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
   Parameter& operator[](int i) { return all_[static_cast<std::size_t>(i)]; }
+  /// The k-th dynamic parameter, in the order of q_s.
+  const Parameter& moving(int k) const {
+    return all_[static_cast<std::size_t>(dynamic_[static_cast<std::size_t>(k)])];
+  }
   /// Number of the parameter called name, or -1.
   int find(const std::string& name) const;
   /// All names, separated by blanks.

@@ -37,7 +37,8 @@ class Part {
   Part(const Part&) = delete;
   Part& operator=(const Part&) = delete;
 
-  // Building. Each throws std::invalid_argument naming part, parameter, value and what is allowed.
+  // Building. Each throws std::invalid_argument naming part, parameter, value and what is allowed, and
+  // std::logic_error while a Model runs the part.
 
   /// Position of the frame (m, world) and orientation (body to world; normalised).
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
@@ -87,6 +88,10 @@ class Part {
   int n_v() const { return fixed_ ? 0 : 6 + n_s(); }
   int n_q() const { return fixed_ ? 0 : 7 + n_s(); }
   bool rigid() const { return parameters_.n_dynamic() == 0; }
+
+  /// Held by a Model for as long as it runs the part.
+  using Use = std::shared_ptr<const int>;
+  const Use& use() const { return use_; }
 
   // Prepared constants; valid after prepare().
 
@@ -154,9 +159,14 @@ class Part {
  private:
   /// The undeformed point that the chain takes to p.
   Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  /// Before every change: refuses while in use, and has prepare() do its work again.
+  void change();
+  /// Throws when limits are not within what the parameter allows at its rest value.
+  void check_limits(const Parameter& p) const;
   int require(const std::string& parameter) const;
   [[noreturn]] void refuse(const std::string& what) const;
 
+  Use use_ = std::make_shared<const int>(0);
   std::string name_;
   std::unique_ptr<ShapeFace> shape_;
   Parameters parameters_;

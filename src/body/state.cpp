@@ -1,0 +1,40 @@
+#include <pliant/body/state.h>
+
+#include <cstring>
+
+namespace pliant {
+
+namespace {
+
+/// FNV-1a.
+class BitHash {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const auto* byte = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) value_ = (value_ ^ byte[i]) * 0x100000001b3u;
+  }
+  template <class T>
+  void add_each(const T& numbers) {
+    add(numbers.data(), static_cast<std::size_t>(numbers.size()) * sizeof(*numbers.data()));
+  }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 0xcbf29ce484222325u;
+};
+
+}  // namespace
+
+std::uint64_t hash(const State& state) {
+  BitHash hash;
+  hash.add(&state.start, sizeof state.start);
+  hash.add(&state.h, sizeof state.h);
+  hash.add(&state.step, sizeof state.step);
+  hash.add_each(state.q);
+  hash.add_each(state.v);
+  hash.add_each(state.work);
+  hash.add_each(state.at_limit);
+  return hash.value();
+}
+
+}  // namespace pliant
