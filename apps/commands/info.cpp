@@ -69,7 +69,9 @@ void print_part(const pliant::PartModel& model) {
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
     std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
-              << points.level << "\n";
+              << points.level
+              << (points.unsettled > 0 ? ", settled to " + pliant::rounded_text(points.unsettled) : "")
+              << "\n";
 }
 
 void print_point(const pliant::Simulation& simulation, const pliant::Point& point) {

@@ -59,6 +59,7 @@ void Simulation::check(const State& before) {
     state_ = before;
     return largest_stable_step(*this);
   }();
+  message.precision(3);
   if (std::isfinite(stable)) message << "; the largest stable step here is about " << stable << " s";
   throw NumericalFailure(message.str(), before.time());
 }
