@@ -14,8 +14,9 @@ void advance_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, do
   q.segment<3>(m.q0) += h * v.segment<3>(m.v0);
   const Vec3<double> half = 0.5 * h * v.segment<3>(m.v0 + 3);
   const double angle = half.norm();
-  const Vec3<double> axis = sinc(angle) * half;
-  const Eigen::Quaterniond turn(std::cos(angle), axis[0], axis[1], axis[2]);
+  const math::SinCos<double> of_angle = math::sin_cos(angle);
+  const Vec3<double> axis = sinc(angle, of_angle) * half;
+  const Eigen::Quaterniond turn(of_angle.cos, axis[0], axis[1], axis[2]);
   auto theta = q.segment<4>(m.q0 + 3);
   const Eigen::Quaterniond now =
       (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * turn).normalized();

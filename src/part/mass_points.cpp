@@ -292,6 +292,22 @@ Laid lay_slices(const RestShape& shape, const Integrands& integrands, int extra)
   return laid;
 }
 
+/// Thinning takes time that grows with the cube of the nodes: more take longer than most runs would save.
+constexpr std::size_t kMostThinned = 600;
+
+/// A ring of material points.
+struct RingNode {
+  AngleNode u;
+  QuadratureNode w;
+  double weight = 1;  ///< on top of those of u and w
+};
+void add_ring(const RestShape& shape, const RingNode& ring, const std::vector<AngleNode>& v,
+              std::vector<RestPoint>& out) {
+  QuadratureNode w = ring.w;
+  w.weight *= ring.weight;
+  add_ring(shape, ring.u, w, v, out);
+}
+
 Laid lay_rings(const RestShape& shape, const Integrands& integrands, int extra) {
   constexpr int coarse = 5, n_places = 16;
   std::vector<AngleNode> u = profile_nodes(shape, coarse), v = ring_nodes(shape, coarse);
@@ -363,10 +379,30 @@ Laid lay_rings(const RestShape& shape, const Integrands& integrands, int extra) 
   u = profile_nodes(shape, size_at(laid.level + extra));
   if (thinned) thin(integrands, along_u(u), u);
 
-  const std::size_t n_points = u.size() * w.size() * (shape.points_apart ? v.size() : 3);
-  if (n_points > kMostPoints) too_many_points(shape.part);
+  // Rings that differ in u and w together need fewer than all pairs of the two.
+  std::vector<RingNode> rings;
   for (const AngleNode& at : u)
-    for (const QuadratureNode& depth : w) add_ring(shape, at, depth, v, laid.points);
+    for (const QuadratureNode& depth : w) rings.push_back({at, depth});
+  auto along_rings = [&](const std::vector<RingNode>& nodes) {
+    Columns line;
+    Draw draw;
+    for (int k = 0; k < (shape.points_apart ? n_places : 1); ++k) {
+      Column column;
+      const std::vector<AngleNode> ring = ring_at(shape.points_apart ? draw.below(v.size()) : no_place);
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        add_ring(shape, nodes[i], ring, column.points);
+        column.end_node(static_cast<Eigen::Index>(i));
+      }
+      line.columns.push_back(std::move(column));
+    }
+    line.n_nodes = static_cast<Eigen::Index>(nodes.size());
+    return line;
+  };
+  if (thinned && w.size() > 1 && rings.size() <= kMostThinned) thin(integrands, along_rings(rings), rings);
+
+  const std::size_t n_points = rings.size() * (shape.points_apart ? v.size() : 3);
+  if (n_points > kMostPoints) too_many_points(shape.part);
+  for (const RingNode& ring : rings) add_ring(shape, ring, v, laid.points);
   return laid;
 }
 
@@ -382,8 +418,16 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
     first += p.mass * e;
     second += p.mass * e * e.transpose();
   }
-  const Vec3<double> centre = first / m;
-  const Mat3<double> L = Mat3<double>(second / m - centre * centre.transpose()).llt().matrixL();
+  // What symmetry makes zero is zero, however long the body: else its rounding couples what it does not.
+  constexpr double noise = 1e-14;
+  Vec3<double> centre = first / m;
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(centre[i]) <= noise * std::sqrt(second(i, i) / m)) centre[i] = 0;
+  Mat3<double> spread = second / m - centre * centre.transpose();
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (std::abs(spread(i, j)) <= noise * std::sqrt(spread(i, i) * spread(j, j))) spread(i, j) = 0;
+  const Mat3<double> L = spread.llt().matrixL();
   std::vector<RestPoint> four;
   for (int k = 0; k < 4; ++k) {
     const Vec3<double> corner(k < 2 ? 1 : -1, k % 2 == 0 ? 1 : -1, k == 0 || k == 3 ? 1 : -1);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 
+#include <pliant/deform/twist.h>
 #include <pliant/scene/faulty_values.h>
 #include <pliant/scene/json_document.h>
 #include <pliant/scene/reader.h>
@@ -120,7 +121,24 @@ class SceneReader {
     look.color = r.given("color") ? color(r.at("color")) : palette(scene_->appearance.size());
     look.resolution = static_cast<int>(r.integer("resolution"));
     look.visible = r.boolean("visible");
+    check_mesh(r, *parts_[r.text("name")].part, look.resolution);
     scene_->appearance.push_back(look);
+  }
+
+  /// Warns of a mesh that is too coarse to show a twist.
+  void check_mesh(const Reader& r, const Part& part, int resolution) {
+    double turns = 0;  // from end to end
+    for (int i = 0; i < part.parameters().size(); ++i) {
+      const Parameter& p = part.parameters()[i];
+      if (p.spec == Twist::parameters.data())
+        turns += std::max(std::abs(p.rest_value()), p.dynamic ? std::abs(p.initial) : 0) / kPi;
+    }
+    constexpr double edges_a_turn = 8;
+    const double needed = std::ceil(turns * edges_a_turn / 2);  // a side has two edges for each of resolution
+    if (resolution < needed)
+      faults_.warn(r.given("resolution") ? r.at("resolution") : r.at("name"),
+                   "its mesh has fewer than 8 edges a turn of the twist; a resolution of " +
+                       std::to_string(static_cast<int>(std::min(needed, 128.0))) + " shows it");
   }
 
   void check_material(const JsonValue& name) {

@@ -224,6 +224,62 @@ TEST_CASE("the lanes of a pack have the bits of the scalar") {
   }
 }
 
+TEST_CASE("sine, cosine and exponential are within a unit in the last place, in every lane") {
+  std::mt19937 generator(5);
+  double worst_sine = 0, worst_cosine = 0, worst_exp = 0;
+  const auto off = [](double x, Real exact) {  // in units in the last place
+    const double nearest = static_cast<double>(exact);
+    const double unit = std::nextafter(std::abs(nearest), HUGE_VAL) - std::abs(nearest);
+    return static_cast<double>(std::abs(Real(x) - exact) / unit);
+  };
+  for (const double most : {1e-5, 0.5, 1.0, 7.0, 700.0, 1e6}) {
+    std::uniform_real_distribution<double> range(-most, most), exponents(-745, 709);
+    for (int trial = 0; trial < 20000; ++trial) {
+      Pack x, y;
+      for (int i = 0; i < Pack::kLanes; ++i) {
+        x.set(i, range(generator));
+        y.set(i, most < 2 ? range(generator) : exponents(generator));
+      }
+      const auto [s, c] = math::sin_cos(x);
+      const Pack e = math::exp(y);
+      for (int i = 0; i < Pack::kLanes; ++i) {
+        worst_sine = std::max(worst_sine, off(s[i], std::sin(Real(x[i]))));
+        worst_cosine = std::max(worst_cosine, off(c[i], std::cos(Real(x[i]))));
+        worst_exp = std::max(worst_exp, off(e[i], std::exp(Real(y[i]))));
+        if (trial % 16 != 0) continue;
+        CHECK((same_bits(s[i], math::sin(x[i])) && same_bits(c[i], math::cos(x[i]))));
+        CHECK(same_bits(e[i], math::exp(y[i])));
+      }
+    }
+  }
+  CHECK(worst_sine < 1);
+  CHECK(worst_cosine < 1);
+  CHECK(worst_exp < 1);
+  // Multiples of pi/2, as near as doubles come to them.
+  for (int k = -2000; k <= 2000; ++k) {
+    const double x = static_cast<double>(k * 1.57079632679489661923L);
+    CHECK(off(math::sin(x), std::sin(Real(x))) < 1);
+    CHECK(off(math::cos(x), std::cos(Real(x))) < 1);
+  }
+}
+
+TEST_CASE("sine, cosine and exponential at the ends of the numbers") {
+  CHECK((math::sin(0.0) == 0 && math::cos(0.0) == 1 && math::exp(0.0) == 1));
+  CHECK((math::exp(-1e6) == 0 && math::exp(-HUGE_VAL) == 0 && math::exp(-745.0) > 0));
+  CHECK((std::isinf(math::exp(710.0)) && std::isinf(math::exp(HUGE_VAL)) && std::isfinite(math::exp(709.7))));
+  CHECK(std::isnan(math::exp(std::nan(""))));
+  const Pack x = [] {
+    Pack lanes(0.5);
+    lanes.set(1, std::nan(""));
+    lanes.set(2, HUGE_VAL);
+    lanes.set(3, 1e17);
+    return lanes;
+  }();
+  const auto [s, c] = math::sin_cos(x);
+  CHECK((same_bits(s[0], math::sin(0.5)) && same_bits(c[0], math::cos(0.5))));
+  CHECK((std::isnan(s[1]) && std::isnan(c[2]) && s[3] == math::sin(1e17)));
+}
+
 TEST_CASE("a pack adds its lanes and broadcasts") {
   Pack p(2.5);
   CHECK(sum(p) == 10);

@@ -127,6 +127,14 @@ TEST_CASE("what is allowed but has no effect is warned about") {
   CHECK(warnings("\"fixed\": true, \"velocity\": [1, 0, 0]") ==
         "s.json:2:28: warning: /parts/0/velocity: [1, 0, 0]; it has no effect, because the part is fixed\n");
   CHECK(warnings("\"orientation\": {\"quaternion\": [0.7071, 0.7071, 0, 0]}").empty());
+  // N12: twists finer than the mesh.
+  const std::string twist =
+      "\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 31.5}, \"resolution\": ";
+  CHECK(
+      warnings(twist + "8") ==
+      "s.json:2:79: warning: /parts/0/resolution: 8; its mesh has fewer than 8 edges a turn of the twist; a "
+      "resolution of 41 shows it\n");
+  CHECK(warnings(twist + "41").empty());
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {

@@ -26,8 +26,9 @@ struct Bend {
     const auto [s, c] = math::sin_cos(b[1]);
     const T r = c * p[0] + s * p[1];
     const T half = b[0] * p[2] / h * 0.5;  // g / 2
-    const auto [sin_half, cos_half] = math::sin_cos(half);
-    const T sinc_half = sinc(half, sin_half);
+    const math::SinCos<T> of_half = math::sin_cos(half);
+    const auto& [sin_half, cos_half] = of_half;
+    const T sinc_half = sinc(half, of_half);
     // (1 - cos g)/k = z sinc(g/2) sin(g/2),  sin(g)/k = z sinc(g/2) cos(g/2),  1 - cos g = 2 sin^2(g/2)
     const T reach = p[2] * sinc_half;
     const T shift = reach * sin_half - r * sin_half * sin_half * 2.0;

@@ -3,6 +3,8 @@
 // G_T = dT/db.
 #pragma once
 
+#include <type_traits>
+
 #include <pliant/deform/deform.h>
 #include <pliant/deform/jet.h>
 #include <pliant/math/dual.h>
@@ -34,7 +36,8 @@ bool link_acts(const LinkParameters<P>& parameters) {
 }
 
 template <class Deform, class P, class S>
-void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, JetBatch<S>& batch) {
+[[gnu::flatten]] void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters,
+                                 JetBatch<S>& batch) {
   if (!link_acts<Deform>(parameters)) return;
   constexpr int K = deform_size<Deform>;
   const S h(half.h.v);
@@ -52,50 +55,57 @@ void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters, 
     return;
   }
 
-  if (batch.level == Level::rates) {
-    using T = Taylor2<S>;
-    const T h_t(S(half.h.v), S(half.h.d), S(half.h.dd));
-    Vec<T, K> b_t;
-    for (int k = 0; k < K; ++k)
-      b_t[k] = parameters.dynamic[k] ? T(b[k], S(parameters.b_dot[k]), S(0.0)) : T(b[k]);
+  using T = Taylor2<S>;
+  using D = Dual<4 + K, S>;
+  const T h_t(S(half.h.v), S(half.h.d), S(half.h.dd));
+  const D h_d = D::variable(h, 3);
+  Vec<T, K> b_t;
+  Vec<D, K> b_d;
+  for (int k = 0; k < K; ++k) {
+    b_t[k] = parameters.dynamic[k] ? T(b[k], S(parameters.b_dot[k]), S(0.0)) : T(b[k]);
+    b_d[k] = D::variable(b[k], 4 + k);
+  }
+  const int n_shape = static_cast<int>(half.slope.size());
+  // Both in one pass: what they have in common is computed once.
+  auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];
-      Vec3<T> p;
-      for (int r = 0; r < 3; ++r) p[r] = T(jet.s[r], jet.s1[r], jet.s2[r]);
-      const Vec3<T> moved = Deform::template apply<T>(p, h_t, b_t);
+      const Vec3<S> s = jet.s;
+      Vec3<T> along;
+      if constexpr (rates)
+        along = Deform::template apply<T>(
+            {T(s[0], jet.s1[0], jet.s2[0]), T(s[1], jet.s1[1], jet.s2[1]), T(s[2], jet.s1[2], jet.s2[2])},
+            h_t, b_t);
+      const Vec3<D> moved = Deform::template apply<D>(
+          {D::variable(s[0], 0), D::variable(s[1], 1), D::variable(s[2], 2)}, h_d, b_d);
       for (int r = 0; r < 3; ++r) {
-        jet.s1[r] = moved[r].d;
-        jet.s2[r] = moved[r].dd;
+        jet.s[r] = moved[r].v;
+        if constexpr (rates) {
+          jet.s1[r] = along[r].d;
+          jet.s2[r] = along[r].dd;
+        }
+      }
+      for (int c = 0; c < batch.n_columns; ++c) {
+        const Vec3<S> column = jet.J[static_cast<std::size_t>(c)];
+        for (int r = 0; r < 3; ++r) {
+          S sum = moved[r].d[0] * column[0] + moved[r].d[1] * column[1] + moved[r].d[2] * column[2];
+          if (c < n_shape) sum += moved[r].d[3] * S(half.slope[c]);
+          jet.J[static_cast<std::size_t>(c)][r] = sum;
+        }
+      }
+      int next = batch.n_columns;
+      for (int k = 0; k < K; ++k) {
+        if (!parameters.dynamic[k]) continue;
+        for (int r = 0; r < 3; ++r)
+          jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(k) + 4];
+        ++next;
       }
     }
-  }
-
-  using D = Dual<4 + K, S>;
-  const D h_d = D::variable(h, 3);
-  Vec<D, K> b_d;
-  for (int k = 0; k < K; ++k) b_d[k] = D::variable(b[k], 4 + k);
-  const int n_shape = static_cast<int>(half.slope.size());
-  for (int i = 0; i < batch.count; ++i) {
-    Jet<S>& jet = batch.jet[i];
-    const Vec3<D> p{D::variable(jet.s[0], 0), D::variable(jet.s[1], 1), D::variable(jet.s[2], 2)};
-    const Vec3<D> moved = Deform::template apply<D>(p, h_d, b_d);
-    for (int c = 0; c < batch.n_columns; ++c) {
-      const Vec3<S> column = jet.J[static_cast<std::size_t>(c)];
-      for (int r = 0; r < 3; ++r) {
-        S sum = moved[r].d[0] * column[0] + moved[r].d[1] * column[1] + moved[r].d[2] * column[2];
-        if (c < n_shape) sum += moved[r].d[3] * S(half.slope[c]);
-        jet.J[static_cast<std::size_t>(c)][r] = sum;
-      }
-    }
-    int next = batch.n_columns;
-    for (int k = 0; k < K; ++k) {
-      if (!parameters.dynamic[k]) continue;
-      for (int r = 0; r < 3; ++r)
-        jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(k) + 4];
-      ++next;
-    }
-    for (int r = 0; r < 3; ++r) jet.s[r] = moved[r].v;
-  }
+  };
+  if (batch.level == Level::rates)
+    each(std::true_type{});
+  else
+    each(std::false_type{});
   for (int k = 0; k < K; ++k) batch.n_columns += parameters.dynamic[k] ? 1 : 0;
 }
 

@@ -4,13 +4,14 @@
 
 #include <cmath>
 
+#include <pliant/math/elementary.h>
+
 namespace pliant {
 inline constexpr double kPi = 3.14159265358979323846;
 }  // namespace pliant
 
 namespace pliant::math {
 
-// A reproducible kernel can stand in for the C library here.
 #define PLIANT_MATH_FUNCTION(f) \
   template <class T>            \
   inline T f(const T& x) {      \
@@ -24,13 +25,20 @@ PLIANT_MATH_FUNCTION(log)
 PLIANT_MATH_FUNCTION(sqrt)
 #undef PLIANT_MATH_FUNCTION
 
-/// Sine and cosine of the same angle, at little more than the price of one.
+inline double exp(double x) {
+  return elementary::exp(x);
+}
+
+/// Sine and cosine of the same angle, at the price of one.
 template <class T>
 struct SinCos {
   T sin, cos;
 };
 inline SinCos<double> sin_cos_of(double x) {
-  return {std::sin(x), std::cos(x)};
+  SinCos<double> r;
+  if (!(std::abs(x) <= elementary::kLargestAngle)) return {std::sin(x), std::cos(x)};
+  elementary::sin_cos(x, r.sin, r.cos);
+  return r;
 }
 inline SinCos<long double> sin_cos_of(long double x) {
   return {std::sin(x), std::cos(x)};
@@ -39,23 +47,13 @@ template <class T>
 inline SinCos<T> sin_cos(const T& x) {
   return sin_cos_of(x);
 }
-
-/// x where c > 0, else y; for a pack lane by lane, for a derivative number along the branch taken.
-inline double select_positive(double c, double x, double y) {
-  return c > 0 ? x : y;
+inline double sin(double x) {
+  return sin_cos_of(x).sin;
 }
-inline long double select_positive(long double c, long double x, long double y) {
-  return c > 0 ? x : y;
+inline double cos(double x) {
+  return sin_cos_of(x).cos;
 }
 
-template <class T>
-inline T where_positive(const T& c, const T& x, const T& y) {
-  return select_positive(c, x, y);
-}
-template <class T>
-inline T abs(const T& x) {
-  return where_positive(x, x, T(-x));
-}
 template <class T>
 inline T max(const T& x, const T& y) {
   return where_positive(T(x - y), x, y);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include <Eigen/Core>
 
@@ -25,72 +27,99 @@ inline namespace baseline {
 
 struct Pack {
   static constexpr int kLanes = 4;
+  // As wide as a register: compilers break comparisons of wider ones up into single numbers.
+#ifdef __AVX__
+  static constexpr int kWidth = 4;
+#else
+  static constexpr int kWidth = 2;
+#endif
   // No more aligned than Eigen aligns its arrays.
-  using Vector [[gnu::vector_size(kLanes * sizeof(double)), gnu::aligned(16)]] = double;
+  using Vector [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = double;
+  using Bits [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = std::uint64_t;
+  static constexpr int kVectors = kLanes / kWidth;
 
-  Vector lanes;
+  Vector vectors[kVectors];
 
   Pack() = default;
-  Pack(double all) : lanes{all, all, all, all} {}  // NOLINT(google-explicit-constructor): scalars broadcast
-  explicit Pack(Vector v) : lanes(v) {}
+  Pack(double all) {  // NOLINT(google-explicit-constructor): scalars broadcast
+    for (Vector& v : vectors) v = all - Vector{};
+  }
 
-  double operator[](int i) const { return lanes[i]; }
-  void set(int i, double value) { lanes[i] = value; }
+  double operator[](int i) const {
+    return vectors[i / kWidth][i % kWidth];
+  }
+  void set(int i, double value) {
+    vectors[i / kWidth][i % kWidth] = value;
+  }
 
   Pack& operator+=(const Pack& o) {
-    lanes += o.lanes;
+    for (int k = 0; k < kVectors; ++k) vectors[k] += o.vectors[k];
     return *this;
   }
   Pack& operator-=(const Pack& o) {
-    lanes -= o.lanes;
+    for (int k = 0; k < kVectors; ++k) vectors[k] -= o.vectors[k];
     return *this;
   }
   Pack& operator*=(const Pack& o) {
-    lanes *= o.lanes;
+    for (int k = 0; k < kVectors; ++k) vectors[k] *= o.vectors[k];
     return *this;
   }
   Pack& operator/=(const Pack& o) {
-    lanes /= o.lanes;
+    for (int k = 0; k < kVectors; ++k) vectors[k] /= o.vectors[k];
     return *this;
   }
-  friend Pack operator+(Pack a, const Pack& b) { return a += b; }
-  friend Pack operator-(Pack a, const Pack& b) { return a -= b; }
-  friend Pack operator*(Pack a, const Pack& b) { return a *= b; }
-  friend Pack operator/(Pack a, const Pack& b) { return a /= b; }
-  friend Pack operator-(const Pack& a) { return Pack(-a.lanes); }
-
-  /// The same number in all lanes, as the parameters of a formula are.
-  bool uniform() const { return lanes[0] == lanes[1] && lanes[0] == lanes[2] && lanes[0] == lanes[3]; }
+  friend Pack operator+(Pack a, const Pack& b) {
+    return a += b;
+  }
+  friend Pack operator-(Pack a, const Pack& b) {
+    return a -= b;
+  }
+  friend Pack operator*(Pack a, const Pack& b) {
+    return a *= b;
+  }
+  friend Pack operator/(Pack a, const Pack& b) {
+    return a /= b;
+  }
+  friend Pack operator-(Pack a) {
+    for (Vector& v : a.vectors) v = -v;
+    return a;
+  }
 
   /// A function of one double, lane by lane.
   template <class F>
   Pack map(F&& f) const {
-    if (uniform()) return Pack(f(lanes[0]));
     Pack r;
-    for (int i = 0; i < kLanes; ++i) r.lanes[i] = f(lanes[i]);
+    for (int i = 0; i < kLanes; ++i) r.set(i, f((*this)[i]));
     return r;
-  }
-  friend Pack sin(const Pack& a) {
-    return a.map([](double x) { return std::sin(x); });
-  }
-  friend Pack cos(const Pack& a) {
-    return a.map([](double x) { return std::cos(x); });
   }
   friend math::SinCos<Pack> sin_cos_of(const Pack& a) {
     math::SinCos<Pack> r;
-    if (a.uniform()) {
-      const auto one = math::sin_cos(a.lanes[0]);
-      return {Pack(one.sin), Pack(one.cos)};
+    if (a.within(math::elementary::kLargestAngle)) {
+      math::elementary::sin_cos(a, r.sin, r.cos);
+      return r;
     }
-    for (int i = 0; i < kLanes; ++i) {
-      const auto one = math::sin_cos(a.lanes[i]);
-      r.sin.lanes[i] = one.sin;
-      r.cos.lanes[i] = one.cos;
+    return {a.map([](double x) { return math::sin(x); }), a.map([](double x) { return math::cos(x); })};
+  }
+  friend Pack sin(const Pack& a) {
+    return sin_cos_of(a).sin;
+  }
+  friend Pack cos(const Pack& a) {
+    return sin_cos_of(a).cos;
+  }
+  /// 2^n, for integers.
+  friend Pack power_of_two(const Pack& n) {
+    Pack power;
+    for (int k = 0; k < kVectors; ++k) {
+      const Vector shifted = n.vectors[k] + math::elementary::kRounder;
+      Bits bits;
+      std::memcpy(&bits, &shifted, sizeof bits);
+      bits = (bits + 1023) << 52;
+      std::memcpy(&power.vectors[k], &bits, sizeof bits);
     }
-    return r;
+    return power;
   }
   friend Pack exp(const Pack& a) {
-    return a.map([](double x) { return std::exp(x); });
+    return math::elementary::exp(a);
   }
   friend Pack log(const Pack& a) {
     return a.map([](double x) { return std::log(x); });
@@ -99,11 +128,22 @@ struct Pack {
     return a.map([](double x) { return std::sqrt(x); });
   }
   friend Pack select_positive(const Pack& c, const Pack& x, const Pack& y) {
-    return Pack(c.lanes > 0 ? x.lanes : y.lanes);
+    Pack r;
+    for (int k = 0; k < kVectors; ++k) r.vectors[k] = c.vectors[k] > 0 ? x.vectors[k] : y.vectors[k];
+    return r;
   }
 
   /// Sum of the lanes, in a fixed order.
-  friend double sum(const Pack& a) { return (a[0] + a[1]) + (a[2] + a[3]); }
+  friend double sum(const Pack& a) {
+    return (a[0] + a[1]) + (a[2] + a[3]);
+  }
+
+ private:
+  bool within(double most) const {
+    for (int i = 0; i < kLanes; ++i)
+      if (!(std::abs((*this)[i]) <= most)) return false;
+    return true;
+  }
 };
 
 }  // namespace

@@ -2,23 +2,60 @@
 // the quotient elsewhere.
 #pragma once
 
-#include <pliant/math/functions.h>
+#include <pliant/math/dual.h>
+#include <pliant/math/taylor2.h>
 
 namespace pliant {
 
-/// sin(x) / x, with the sine at hand.
+/// A function at a point, with its first two derivatives.
 template <class T>
-T sinc(const T& x, const T& sin_x) {
-  const T x2 = x * x;
-  T series(1);
-  for (int k = 10; k >= 1; --k) series = series * x2 * (-1.0 / (2 * k * (2 * k + 1))) + 1.0;
-  const T far = x2 - T(1.0);
-  const T safe = math::where_positive(far, x, T(1));
-  return math::where_positive(far, T(sin_x / safe), series);
+struct Derivatives {
+  T value, first, second;
+};
+
+/// sin(x) / x, with sine and cosine at hand.
+template <class T>
+Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& of_x) {
+  // c_k = (-1)^k / (2k+1)!; value S(y) at y = x^2, first 2 x S', second 2 S' + 4 y S''
+  constexpr double c[] = {1.,
+                          -1. / 6,
+                          1. / 120,
+                          -1. / 5040,
+                          1. / 362880,
+                          -1. / 39916800,
+                          1. / 6227020800,
+                          -1. / 1307674368000,
+                          1. / 355687428096000,
+                          -1. / 121645100408832000,
+                          1. / 51090942171709440000.};
+  const T y = x * x;
+  T S(c[10]), S1(0.0), half_S2(0.0);
+  for (int k = 9; k >= 0; --k) {
+    half_S2 = half_S2 * y + S1;
+    S1 = S1 * y + S;
+    S = S * y + c[k];
+  }
+  const T far = y - 1.0;
+  const T inverse = T(1.0) / math::where_positive(far, x, T(1.0));
+  const T value = of_x.sin * inverse;
+  const T first = (of_x.cos - value) * inverse;
+  return {math::where_positive(far, value, S), math::where_positive(far, first, T(x * S1 * 2.0)),
+          math::where_positive(far, T(-value - first * inverse * 2.0), T(S1 * 2.0 + y * half_S2 * 8.0))};
+}
+
+template <class T>
+T sinc(const T& x, const math::SinCos<T>& of_x) {
+  return sinc_derivatives(x, of_x).value;
+}
+template <int N, class T>
+Dual<N, T> sinc(const Dual<N, T>& x, const math::SinCos<Dual<N, T>>& of_x) {
+  const Derivatives<T> f = sinc_derivatives<T>(x.v, {of_x.sin.v, of_x.cos.v});
+  return chain_rule(x, f.value, f.first);
 }
 template <class T>
-T sinc(const T& x) {
-  return sinc(x, T(math::sin(x)));
+Taylor2<T> sinc(const Taylor2<T>& x, const math::SinCos<Taylor2<T>>& of_x) {
+  const Derivatives<T> f = sinc_derivatives<T>(x.v, {of_x.sin.v, of_x.cos.v});
+  return chain_rule(x, f.value, f.first, f.second);
 }
 
 /// atan(x) / x.

@@ -2,6 +2,8 @@
 // the dynamic parameters and its rates along a + t a_dot.
 #pragma once
 
+#include <type_traits>
+
 #include <pliant/deform/jet.h>
 #include <pliant/deform/link.h>
 #include <pliant/shape/shape.h>
@@ -10,7 +12,8 @@ namespace pliant {
 
 /// P: scalar of the parameters; S: scalar of the points; U: scalar of the material points.
 template <class Shape, class P, class S, class U>
-void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material, JetBatch<S>& batch) {
+[[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
+                                 JetBatch<S>& batch) {
   constexpr int K = shape_size<Shape>;
   Vec<S, K> a;
   int n_dynamic = 0;
@@ -28,33 +31,41 @@ void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material
     batch.n_columns = 0;
     return;
   }
-  if (batch.level == Level::rates) {
-    using T = Taylor2<S>;
-    Vec<T, K> a_t;
-    for (int k = 0; k < K; ++k)
-      a_t[k] = parameters.dynamic[k] ? T(a[k], S(parameters.b_dot[k]), S(0.0)) : T(a[k]);
+  using T = Taylor2<S>;
+  using D = Dual<K, S>;
+  Vec<T, K> a_t;
+  Vec<D, K> a_d;
+  for (int k = 0; k < K; ++k) {
+    a_t[k] = parameters.dynamic[k] ? T(a[k], S(parameters.b_dot[k]), S(0.0)) : T(a[k]);
+    a_d[k] = D::variable(a[k], k);
+  }
+  // Both in one pass: what they have in common is computed once.
+  auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
-      const Vec3<T> e = Shape::template e<T>(material[i], a_t);
+      const Material<U> m = material[i];
+      Vec3<T> e_t;
+      if constexpr (rates) e_t = Shape::template e<T>(m, a_t);
+      const Vec3<D> e_d = Shape::template e<D>(m, a_d);
+      Jet<S>& jet = batch.jet[i];
       for (int r = 0; r < 3; ++r) {
-        batch.jet[i].s1[r] = e[r].d;
-        batch.jet[i].s2[r] = e[r].dd;
+        jet.s[r] = e_d[r].v;
+        if constexpr (rates) {
+          jet.s1[r] = e_t[r].d;
+          jet.s2[r] = e_t[r].dd;
+        }
+      }
+      std::size_t column = 0;
+      for (int k = 0; k < K; ++k) {
+        if (!parameters.dynamic[k]) continue;
+        for (int r = 0; r < 3; ++r) jet.J[column][r] = e_d[r].d[static_cast<std::size_t>(k)];
+        ++column;
       }
     }
-  }
-  using D = Dual<K, S>;
-  Vec<D, K> a_d;
-  for (int k = 0; k < K; ++k) a_d[k] = D::variable(a[k], k);
-  for (int i = 0; i < batch.count; ++i) {
-    Jet<S>& jet = batch.jet[i];
-    const Vec3<D> e = Shape::template e<D>(material[i], a_d);
-    std::size_t column = 0;
-    for (int k = 0; k < K; ++k) {
-      if (!parameters.dynamic[k]) continue;
-      for (int r = 0; r < 3; ++r) jet.J[column][r] = e[r].d[static_cast<std::size_t>(k)];
-      ++column;
-    }
-    for (int r = 0; r < 3; ++r) jet.s[r] = e[r].v;
-  }
+  };
+  if (batch.level == Level::rates)
+    each(std::true_type{});
+  else
+    each(std::false_type{});
   batch.n_columns = n_dynamic;
 }
 
