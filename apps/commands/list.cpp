@@ -29,9 +29,9 @@ void print_parameters(const pliant::ParameterSpec* specs, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const pliant::ParameterSpec& p = specs[i];
     std::cout << "    " << std::left << std::setw(7) << p.name << " default " << std::setw(5)
-              << text_of(p.standard) << " " << std::setw(4) << (p.unit[0] == '1' ? "" : p.unit) << " frozen "
-              << range_text(p.frozen, false) << ", dynamic " << range_text(p.dynamic, p.relative)
-              << "\n            " << p.meaning << "\n";
+              << text_of(p.standard) << " " << std::setw(4) << (p.unit()[0] == '1' ? "" : p.unit())
+              << " frozen " << range_text(p.frozen, false) << ", dynamic "
+              << range_text(p.dynamic, p.relative) << "\n            " << p.meaning << "\n";
   }
 }
 

@@ -11,7 +11,7 @@ struct Egg {
   static constexpr const char* formula = "w r ((1 - k S_u) C_u C_v, (1 - k S_u) C_u S_v, S_u)";
   static constexpr std::array<ParameterSpec, 2> parameters{
       {length("r", 1, "half height"),
-       {"k", 0.2, {-0.9, 0.9}, {-0.9, 0.9}, false, "1", "pointedness", Follows::ring}}};
+       ratio("k", 0.2, {-0.9, 0.9}, {-0.9, 0.9}, "pointedness", Follows::ring)}};
   static constexpr MeshPattern mesh = MeshPattern::ball;
 
   template <class T, class U>

@@ -399,7 +399,7 @@ std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& 
       (part.alpha() * w.inertia.M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
   if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
   if (!damping.allFinite()) return "the damping force D q_dot";
-  if (!(part.drag() * momentum).allFinite()) return "the drag";
+  if (part.drag() > 0 && !(part.drag() * momentum).allFinite()) return "the drag";
   return "the sum of the forces";
 }
 }  // namespace

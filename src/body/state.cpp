@@ -1,6 +1,6 @@
 #include <pliant/body/state.h>
 
-#include <cstring>
+#include <cstddef>
 
 namespace pliant {
 

@@ -34,6 +34,12 @@ struct Linear {
   MatX<double> M, K, D;
 };
 
+MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
+  MatX<double> kept(A.rows(), static_cast<Eigen::Index>(which.size()));
+  for (std::size_t i = 0; i < which.size(); ++i) kept.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
+  return kept;
+}
+
 double stable_step_of(const Integrator& method, const Linear& system) {
   // Coordinates without inertia are held: drop them.
   std::vector<Eigen::Index> kept;
@@ -49,7 +55,7 @@ double stable_step_of(const Integrator& method, const Linear& system) {
     if (values[i] > 1e-10) solid.push_back(i);
   MatX<double> T = scale.asDiagonal() * modes.eigenvectors() *
                    values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
-  const MatX<double> all = T(Eigen::all, solid);
+  const MatX<double> all = columns_of(T, solid);
   // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would
   // only blur the growth of the others.
   const MatX<double> resistance = all.transpose() * (K + D) * all;
@@ -58,7 +64,7 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   for (Eigen::Index i = 0; i < resistance.rows(); ++i)
     if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff())
       stiff_modes.push_back(i);
-  const MatX<double> basis = all * resisted.eigenvectors()(Eigen::all, stiff_modes);
+  const MatX<double> basis = all * columns_of(resisted.eigenvectors(), stiff_modes);
   const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
   const double stiff = k.norm(), damped = d.norm();
   if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();

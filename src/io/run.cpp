@@ -47,10 +47,10 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 
 }  // namespace
 
-int automatic_threads(const Scene& scene) {
+int automatic_threads(Scene& scene) {
   // Microseconds of an evaluation at the least, as bench/step_bench measures them: of a part, and of each of
   // its mass points for each parameter. Sending work to the pool and waiting for it takes about 10.
-  constexpr double part_alone = 0.1, point_and_parameter = 0.01, worth_a_thread = 50;
+  constexpr double part_alone = 0.1, point_and_parameter = 0.008, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
     if (part->fixed()) continue;

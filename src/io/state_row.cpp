@@ -27,7 +27,7 @@ std::vector<Column> coordinate_columns(const Model& model, const PartModel& part
     else if (k < 7)
       column.unit = "1", column.meaning = "orientation, body to world";
     else
-      column.unit = dynamic_parameter(part, k - 7).unit,
+      column.unit = dynamic_parameter(part, k - 7).unit(),
       column.meaning = dynamic_parameter(part, k - 7).meaning;
     columns.push_back(std::move(column));
   }
@@ -43,7 +43,7 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
     else if (k < 6)
       column.unit = "rad/s", column.meaning = "angular velocity, body frame";
     else
-      column.unit = std::string(dynamic_parameter(part, k - 6).unit) + "/s";
+      column.unit = std::string(dynamic_parameter(part, k - 6).unit()) + "/s";
     columns.push_back(std::move(column));
   }
   return columns;

@@ -73,7 +73,9 @@ Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found) {
     if (x[i] > 0) kept.push_back(i);
   const auto U = Q.leftCols(rank);
   const Eigen::VectorXd wanted = U.transpose() * d;
-  const Eigen::MatrixXd on_kept = U(kept, Eigen::all).transpose();
+  Eigen::MatrixXd on_kept(rank, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    on_kept.col(static_cast<Eigen::Index>(i)) = U.row(kept[i]).transpose();
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(on_kept);
   for (int pass = 0; pass < 2; ++pass) {
     const Eigen::VectorXd correction = solver.solve(wanted - U.transpose() * x);

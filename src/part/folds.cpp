@@ -17,12 +17,15 @@ double least_volume_ratio(const Part& part, const ParameterValues<double>& value
       e.col(column++) =
           part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
   double least = kInfinity;
-  for (const Mat3<double>& F : part.chain_gradient(e, values)) least = std::min(least, F.determinant());
+  for (const Mat3<double>& F : part.chain_gradient(e, values)) {
+    const double ratio = F.determinant();
+    if (!(ratio >= least)) least = ratio;
+  }
   return least;
 }
 
 bool folds(const Part& part, const ParameterValues<double>& values) {
-  return least_volume_ratio(part, values) < -1e-12;
+  return !(least_volume_ratio(part, values) >= -1e-12);
 }
 
 void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which) {

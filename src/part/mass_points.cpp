@@ -418,7 +418,8 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
     first += p.mass * e;
     second += p.mass * e * e.transpose();
   }
-  // What symmetry makes zero is zero, however long the body: else its rounding couples what it does not.
+  // What symmetry makes zero is set to zero: in slender bodies its rounding would couple parameters that are
+  // not coupled.
   constexpr double noise = 1e-14;
   Vec3<double> centre = first / m;
   for (int i = 0; i < 3; ++i)

@@ -154,17 +154,17 @@ Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<dou
 Part& Part::limits(const std::string& parameter, Range range) {
   change();
   Parameter& p = parameters_[require(parameter)];
+  if (!(range.min < range.max)) refuse("limits " + text(range) + " of " + parameter + " must be increasing");
   p.limits = range;
   p.limits_given = true;
-  check_limits(p);
   return *this;
 }
 
 void Part::check_limits(const Parameter& p) const {
   const double scale = p.spec->relative ? p.rest_value() : 1.0;
   const Range allowed{p.spec->dynamic.min * scale, p.spec->dynamic.max * scale};
-  if (!(p.limits.min < p.limits.max) || p.limits.min < allowed.min || p.limits.max > allowed.max)
-    refuse("limits " + text(p.limits) + " of " + p.name + " must be increasing and within " + text(allowed));
+  if (p.limits.min < allowed.min || p.limits.max > allowed.max)
+    refuse("limits " + text(p.limits) + " of " + p.name + " must be within " + text(allowed));
 }
 
 Part& Part::make_dynamic(const std::vector<std::string>& parameters) {
@@ -245,7 +245,7 @@ void Part::prepare() {
         refuse("the rest value of " + p.name + " moves in time, so " + p.name + " must be dynamic");
       continue;
     }
-    if (p.limits_given) check_limits(p);  // the rest value may have come later
+    if (p.limits_given) check_limits(p);
     if (!p.limits.contains(p.rest_value()))
       refuse("the rest value " + text(p.rest_value()) + " of " + p.name + " is outside its limits " +
              text(p.limits));

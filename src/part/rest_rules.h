@@ -29,7 +29,7 @@ struct RestShape {
   bool points_apart;  ///< every point of a ring moves by itself, else three points stand for it
 };
 
-/// Nodes along one direction of refinement n: those of a panel, times the panels.
+// Nodes along one direction: n in each panel.
 
 /// A section at zeta = z / h, and its weight.
 struct SliceNode {

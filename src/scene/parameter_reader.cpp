@@ -113,7 +113,7 @@ bool ParameterReader::read_rest(const Entry& e) {
                                 ? " for a dynamic " + e.parameter.name + " (a frozen one may be in [" +
                                       shortest(spec.frozen.min) + ", " + shortest(spec.frozen.max) + "])"
                                 : "";
-    faults_.value(*e.rest, start + "expected " + words(allowed, spec.unit) + why);
+    faults_.value(*e.rest, start + "expected " + words(allowed, spec.unit()) + why);
     return false;
   }
   if (!e.dynamic && !f->is_constant()) {
@@ -132,7 +132,7 @@ bool ParameterReader::admissible(const Entry& e, const Range& allowed) {
     if (limit == nullptr || allowed.contains(limit->number())) continue;
     faults_.value(
         *limit,
-        "expected " + words(allowed, e.parameter.spec->unit) +
+        "expected " + words(allowed, e.parameter.spec->unit()) +
             (e.parameter.spec->relative ? ", from a thousandth to a thousand times the rest value" : ""));
   }
   if (faults_.errors() > before) return false;

@@ -1,7 +1,9 @@
 #include "point_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include <pliant/scene/point_value.h>
 
@@ -18,14 +20,37 @@ constexpr double kFarOutside = 1;
 /// Where the ray from the part's origin leaves its rest shape for good.
 std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
   const Vec3<double> ray = direction.stableNormalized() * part.size();
-  auto inside = [&](double t) { return part.inside_outside(t * ray, part.parameters().rest()) < 0; };
+  auto outside = [&](double t) {
+    try {
+      const double value = part.inside_outside(t * ray, part.parameters().rest());
+      return std::isnan(value) ? kInfinity : value;
+    } catch (const std::runtime_error&) {  // no material point leads there
+      return kInfinity;
+    }
+  };
   constexpr int steps = 256;
-  constexpr double beyond = 1.75;  // more than sqrt(3) times the largest coordinate
+  constexpr double spacing = 1.75 / steps;  // beyond sqrt(3) times the largest coordinate
+  std::array<double, steps + 1> sample{};
+  for (int i = 0; i <= steps; ++i) sample[static_cast<std::size_t>(i)] = outside(spacing * i);
   for (int i = steps - 1; i >= 0; --i) {
-    double in = beyond * i / steps, out = beyond * (i + 1) / steps;
-    if (!inside(in)) continue;
+    double in = spacing * i, out = spacing * (i + 1);
+    const auto at = static_cast<std::size_t>(i);
+    if (!(sample[at] < 0)) {
+      // A body thinner than the spacing lies at a minimum, if anywhere: golden section.
+      if (i == 0 || sample[at] > sample[at - 1] || sample[at] > sample[at + 1]) continue;
+      constexpr double golden = 0.6180339887498949;
+      double low = spacing * (i - 1), high = out;
+      while (high - low > 1e-12 && !(outside(in) < 0)) {
+        const double left = high - golden * (high - low), right = low + golden * (high - low);
+        if (outside(left) < outside(right))
+          high = right, in = left;
+        else
+          low = left, in = right;
+      }
+      if (!(outside(in) < 0)) continue;
+    }
     for (double middle = 0.5 * (in + out); middle > in && middle < out; middle = 0.5 * (in + out))
-      (inside(middle) ? in : out) = middle;
+      (outside(middle) < 0 ? in : out) = middle;
     return Vec3<double>(out * ray);
   }
   return {};

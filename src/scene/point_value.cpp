@@ -42,7 +42,8 @@ Record by_direction() {
 Record by_place() {
   return {
       "point_near",
-      "The material point at a place of the rest shape; for a place somewhat outside, the surface point with "
+      "The material point at a place of the rest shape; for a place outside, at most twice as far out as the "
+      "surface, the surface point with "
       "the same u and v.",
       {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
 }

@@ -121,7 +121,7 @@ class SceneReader {
     look.color = r.given("color") ? color(r.at("color")) : palette(scene_->appearance.size());
     look.resolution = static_cast<int>(r.integer("resolution"));
     look.visible = r.boolean("visible");
-    check_mesh(r, *parts_[r.text("name")].part, look.resolution);
+    if (look.visible) check_mesh(r, *parts_[r.text("name")].part, look.resolution);
     scene_->appearance.push_back(look);
   }
 
@@ -136,9 +136,11 @@ class SceneReader {
     constexpr double edges_a_turn = 8;
     const double needed = std::ceil(turns * edges_a_turn / 2);  // a side has two edges for each of resolution
     if (resolution < needed)
-      faults_.warn(r.given("resolution") ? r.at("resolution") : r.at("name"),
-                   "its mesh has fewer than 8 edges a turn of the twist; a resolution of " +
-                       std::to_string(static_cast<int>(std::min(needed, 128.0))) + " shows it");
+      faults_.warn(
+          r.given("resolution") ? r.at("resolution") : r.at("name"),
+          "its mesh has fewer than 8 edges a turn of the twist; " +
+              (needed <= 128 ? "a resolution of " + std::to_string(static_cast<int>(needed)) + " shows it"
+                             : std::string("no resolution shows it")));
   }
 
   void check_material(const JsonValue& name) {

@@ -251,9 +251,19 @@ TEST_CASE("states of the same bits have the same hash", "[dynamics]") {
   Simulation simulation(body, "rk4");
   const State start = simulation.state();
   simulation.step(1e-3);
-  State copy = simulation.state();
+  const State copy = simulation.state();
   CHECK(hash(copy) == hash(simulation.state()));
   CHECK(hash(copy) != hash(start));
-  copy.v[3] = std::nextafter(copy.v[3], 10.0);
-  CHECK(hash(copy) != hash(simulation.state()));
+  auto changed = [&](auto&& change) {
+    State other = copy;
+    change(other);
+    return hash(other) != hash(copy);
+  };
+  CHECK(changed([](State& s) { s.v[3] = std::nextafter(s.v[3], 10.0); }));
+  CHECK(changed([](State& s) { s.q[9] = std::nextafter(s.q[9], 10.0); }));
+  CHECK(changed([](State& s) { s.work[2] += 1; }));
+  CHECK(changed([](State& s) { s.at_limit.back() = 1; }));
+  CHECK(changed([](State& s) { s.start += 1; }));
+  CHECK(changed([](State& s) { s.h *= 2; }));
+  CHECK(changed([](State& s) { ++s.step; }));
 }

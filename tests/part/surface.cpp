@@ -63,13 +63,14 @@ std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vect
   if (part->shape().mesh() == MeshPattern::torus) part->rest({{"a3", 1}});
   if (shape == "cone") part->rest({{"t", -0.6}});
   Draws draws(7);
-  do {
+  for (int trial = 0; trial < 1000; ++trial) {
     Part::Named values;
     for (int i = part->parameters().n_shape(); i < part->parameters().size(); ++i)
       values.emplace_back(part->parameters()[i].name, test::draw_value(draws, part->parameters()[i]));
     part->rest(values);
-  } while (folds(*part, part->parameters().rest()));
-  return part;
+    if (!folds(*part, part->parameters().rest())) return part;
+  }
+  throw std::runtime_error("no shape without folds found");
 }
 
 }  // namespace

@@ -106,6 +106,18 @@ TEST_CASE("points by direction and by place lie there on the rest shape") {
     const pliant::Part& horn = *point.part;
     return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
   };
+  // A plate thinner than the ray is sampled, away from the origin.
+  pliant::Diagnostics none;
+  const auto plate = pliant::parse_scene("s.json", R"json({
+    "parts": [{"name": "plate", "shape": "cylinder", "deformations": ["shear", "bend_offset"],
+               "parameters": {"a1": 1e-4, "a2": 1, "bend_offset.b1": 0.5, "bend_offset.b3": 1}}],
+    "tracks": [{"part": "plate", "at": {"direction": [0.43, 0, 0.05]}}]
+  })json",
+                                         {}, none);
+  const pliant::Point& on_plate = plate->tracks[0].point;
+  const pliant::Vec3<double> found =
+      on_plate.part->s({on_plate.material}, on_plate.part->parameters().rest()).col(0);
+  CHECK((found.normalized() - pliant::Vec3<double>(0.43, 0, 0.05).normalized()).norm() < 1e-12);
   const pliant::Vec3<double> direction = pliant::Vec3<double>(3, 2, 5).normalized();
   CHECK(scene->tracks[0].point.material.w == 1);
   CHECK((place(0).normalized() - direction).norm() < 1e-12);
@@ -135,6 +147,8 @@ TEST_CASE("what is allowed but has no effect is warned about") {
       "s.json:2:79: warning: /parts/0/resolution: 8; its mesh has fewer than 8 edges a turn of the twist; a "
       "resolution of 41 shows it\n");
   CHECK(warnings(twist + "41").empty());
+  CHECK(warnings("\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 600}")
+            .find("no resolution shows it") != std::string::npos);
 }
 
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {

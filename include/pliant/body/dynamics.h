@@ -49,7 +49,8 @@ class Dynamics {
   explicit Dynamics(const Model& model, ThreadPool* pool = nullptr) : model_(&model), pool_(pool) {}
   const Model& model() const { return *model_; }
 
-  /// Accelerations and powers at (t, q, v); parameters at a limit may only move away from it.
+  /// Accelerations and powers at (t, q, v). Parameters that rest at a limit, with a rate of exactly 0, may
+  /// only leave it; those that move there are the integrator's to stop.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<std::int8_t>& at_limit, Workspace<double>& work) const;
   /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.

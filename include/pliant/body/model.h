@@ -22,7 +22,7 @@ struct PartModel {
   VecMax<double> inertia_floor;               ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix3d R0;                         ///< of a fixed part
-  Part::Use use;
+  Part::Use use;                              ///< keeps the part from being changed
 };
 
 /// Where an attachment is: a port of a part, or the world.

@@ -29,7 +29,7 @@ struct State {
   double time() const { return start + static_cast<double>(step) * h; }
 };
 
-/// Of all bits of a state: equal for states from which the same motion follows.
+/// Of all bits of a state.
 std::uint64_t hash(const State& state);
 
 }  // namespace pliant

@@ -26,8 +26,8 @@ struct Taper {
   }
 
  private:
-  /// The width of a section relative to the middle, which at the tip of a full taper is nothing: from 1e-10
-  /// of the height before it on as wide as there, so that the tip is taken back to the axis.
+  /// The width of a section relative to the middle, which at the tip of a full taper is nothing; never taken
+  /// as narrower than 1e-10, so that the tip is taken back to the axis.
   template <class T>
   static T open(const T& width) {
     const T least(1e-10);

@@ -87,7 +87,7 @@ class Run {
 };
 
 /// As many threads as the parts of a scene have a use for, at most what the machine has; results do not
-/// depend on it.
-int automatic_threads(const Scene& scene);
+/// depend on it. Prepares the parts, and throws what that throws.
+int automatic_threads(Scene& scene);
 
 }  // namespace pliant

@@ -41,8 +41,8 @@ struct Pack {
   Vector vectors[kVectors];
 
   Pack() = default;
-  Pack(double all) {  // NOLINT(google-explicit-constructor): scalars broadcast
-    for (Vector& v : vectors) v = all - Vector{};
+  Pack(double all) {                               // NOLINT(google-explicit-constructor): scalars broadcast
+    for (Vector& v : vectors) v = all - Vector{};  // minus 0 keeps the sign of a zero
   }
 
   double operator[](int i) const {

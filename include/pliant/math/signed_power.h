@@ -24,7 +24,7 @@ inline constexpr double kLogZero = -1e6;
 
 /// A value whose exact size is exp(log_abs), with a sign.
 inline Trig<double> trig_from_log(double log_abs, double sign) {
-  return {sign * std::exp(log_abs), sign, log_abs};
+  return {sign * math::exp(log_abs), sign, log_abs};
 }
 
 inline Trig<double> trig(double x) {

@@ -3,7 +3,7 @@
 // when the part is prepared:
 //   affine    4 points carrying mass, centroid and second moments
 //   sections  3 such points in each plane section of a solid, times a rule along z
-//   rings     3 such points in each material ring (u, w) = const, times rules along u and w
+//   rings     3 such points in each of some material rings (u, w) = const
 //   full      all of u, v and w
 #pragma once
 
@@ -31,7 +31,8 @@ struct MassPoints {
 /// rest. Along each direction nodes are doubled until no entry of the mass matrix and of the inertial forces
 /// changes by more than 2e-14 of its scale, at states spread over the ranges of the dynamic parameters; then
 /// thinned to those that the same integrals need. doublings: that many more, before thinning. Throws
-/// std::invalid_argument when the rest shape folds over.
+/// std::invalid_argument when the rest shape or the initial one folds over, or more than 2 million points
+/// were needed.
 MassPoints lay_mass_points(const Part& part, int doublings = 0);
 
 }  // namespace pliant

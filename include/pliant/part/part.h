@@ -54,7 +54,7 @@ class Part {
   Part& stiffness(const Named& values);
   /// Full symmetric K_s over the named parameters; they become dynamic.
   Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
-  /// One-sided limits of dynamic parameters.
+  /// One-sided limits of dynamic parameters; judged at the rest value when the part is prepared.
   Part& limits(const std::string& parameter, Range range);
   Part& make_dynamic(const std::vector<std::string>& parameters);
   Part& freeze(const std::vector<std::string>& parameters);
