@@ -34,14 +34,14 @@ Model::Model(MultiBody& body) : body_(&body) {
     parts_.push_back(std::move(m));
   }
   for (const auto& spring : body.springs()) {
-    SpringModel m{spring.get(), attach(spring->a), attach(spring->b)};
-    if (m.a.part < 0 && m.b.part < 0)
-      throw std::invalid_argument("spring '" + spring->name + "' ties the world to itself");
+    const std::string what = "spring '" + spring->name + "'";
+    SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
+    if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
     springs_.push_back(m);
   }
   for (const auto& force : body.forces()) {
     if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
-    forces_.push_back({force.get(), attach(force->at)});
+    forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
   }
   for (const auto& torque : body.torques()) {
     if (torque->part == nullptr) throw std::invalid_argument("torque '" + torque->name + "' acts on no part");
@@ -53,12 +53,12 @@ Model::Model(MultiBody& body) : body_(&body) {
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
 }
 
-PortRef Model::attach(const Point& point) {
+PortRef Model::attach(const Point& point, const std::string& what) {
   if (point.part == nullptr) return {};
   const Material<double>& m = point.material;
   if (!(m.w >= 0 && m.w <= 1) || std::isnan(m.cu.x + m.su.x + m.cv.x + m.sv.x))
     throw std::invalid_argument(
-        "a point of part '" + point.part->name() +
+        what + ": its point on part '" + point.part->name() +
         "' needs angles that are numbers, and w from 0 at the centre to 1 on the surface");
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;

@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 
-#include <pliant/deform/twist.h>
 #include <pliant/scene/faulty_values.h>
 #include <pliant/scene/json_document.h>
 #include <pliant/scene/reader.h>
@@ -130,7 +129,7 @@ class SceneReader {
     double turns = 0;  // from end to end
     for (int i = 0; i < part.parameters().size(); ++i) {
       const Parameter& p = part.parameters()[i];
-      if (p.spec == Twist::parameters.data())
+      if (p.name.rfind("twist", 0) == 0)  // "twist.angle", "twist2.angle"
         turns += std::max(std::abs(p.rest_value()), p.dynamic ? std::abs(p.initial) : 0) / kPi;
     }
     constexpr double edges_a_turn = 8;

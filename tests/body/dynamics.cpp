@@ -237,7 +237,7 @@ TEST_CASE("points outside the solid are refused", "[dynamics]") {
     MultiBody body;
     Part& part = body.add(make_part("ball", "sphere", {}, 1000));
     body.force("push", point(part, 0, 0, w), TimeVector(1, 0, 0));
-    CHECK_THROWS_WITH(Model(body), test::has_text("a point of part 'ball' needs"));
+    CHECK_THROWS_WITH(Model(body), test::has_text("force 'push': its point on part 'ball' needs"));
   }
   MultiBody body;
   Part& part = body.add(make_part("ball", "sphere", {}, 1000));

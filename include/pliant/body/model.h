@@ -2,6 +2,7 @@
 // it const.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <pliant/body/ledger.h>
@@ -71,7 +72,8 @@ class Model {
   std::string coordinate_name(int i) const;
 
  private:
-  PortRef attach(const Point& point);
+  /// what: the spring or force that acts there, for messages.
+  PortRef attach(const Point& point, const std::string& what);
 
   const MultiBody* body_;
   std::vector<PartModel> parts_;
