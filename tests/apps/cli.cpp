@@ -146,7 +146,8 @@ TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
     CHECK(result.out.empty());
     CHECK_FALSE(fs::exists(place.folder / "out"));
   };
-  mistake("", "Usage");
+  mistake("", "[OPTIONS] SUBCOMMAND");
+  mistake("", "pliant info scenes/pull.json                     what");
   mistake("rn top.json", "did you mean \"run\"");
   mistake("run top.json --obk", "did you mean \"--obj\"");
   mistake("run top.json --stp=0.1", "did you mean \"--step\"");
