@@ -206,8 +206,11 @@ void stop_at_limits_ahead(const Model& model, const Workspace<double>& work, Sta
                                           &state.work[static_cast<int>(Work::limits)]);
       take_velocity(m, work.parts[i], v_r, state.v);
     }
-    for (int k = 0; k < m.n_s; ++k)
+    for (int k = 0; k < m.n_s; ++k) {
       at(k) = then(k) <= limits_of(m, k).min ? -1 : (then(k) >= limits_of(m, k).max ? 1 : 0);
+      // A rate too small to leave the limit is rounding of the impulses of others: it rests.
+      if (at(k) != 0 && then(k) == state.q[m.q0 + 7 + k]) state.v[m.v0 + 6 + k] = 0;
+    }
     if (!rows.empty())
       counters.limit_impulses +=
           rows.for_each_pushed([&](const Row& row) { at(row.k) = row.sign > 0 ? -1 : 1; });
