@@ -57,47 +57,47 @@ void check_orders(const std::string& what, const Build& build) {
 
 }  // namespace
 
-TEST_CASE("N33: gravity", "[forced]") {
+TEST_CASE("N33: gravity", "[forced][long]") {
   check_orders("gravity", [](MultiBody& body, Part&, Part&) { body.gravity = {1, -2, -9.81}; });
 }
-TEST_CASE("N33: springs of no rest length, with damping, between parts and to the world", "[forced]") {
+TEST_CASE("N33: springs of no rest length, with damping, between parts and to the world", "[forced][long]") {
   check_orders("springs", [](MultiBody& body, Part& a, Part& b) {
     body.spring("tie", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7), 800, 30);
     body.spring("link", point(a, -0.2, 2), world(0.3, 1, 0), 500, 20);
   });
 }
-TEST_CASE("N33: springs with a rest length, with damping", "[forced]") {
+TEST_CASE("N33: springs with a rest length, with damping", "[forced][long]") {
   check_orders("springs", [](MultiBody& body, Part& a, Part& b) {
     body.spring("tie", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7), 800, 30, 0.5);
     body.spring("link", world(0.3, 1, 0), point(a, -0.2, 2), 500, 20, 0.4);
   });
 }
-TEST_CASE("N33: moving anchors of both kinds of spring", "[forced]") {
+TEST_CASE("N33: moving anchors of both kinds of spring", "[forced][long]") {
   check_orders("anchors", [](MultiBody& body, Part& a, Part& b) {
     body.spring("hand", world({test::wave(0.5, 0.3, 4), 0.2, test::wave(0.1, 0.2, 3, 1)}), point(b, 1.2, -2),
                 600, 10, 0.3);
     body.spring("other", point(a, 0.3, 1), world({0, test::wave(1, 0.5, 6), 0.4}), 300, 10);
   });
 }
-TEST_CASE("N33: actuation, a rest value that moves", "[forced]") {
+TEST_CASE("N33: actuation, a rest value that moves", "[forced][long]") {
   check_orders("actuation", [](MultiBody&, Part& a, Part& b) {
     a.rest("twist.angle", test::wave(0.3, 0.4, 9));
     b.rest("a1", test::wave(0.3, 0.05, 7, 1));
   });
 }
-TEST_CASE("N33: mass- and stiffness-proportional damping", "[forced]") {
+TEST_CASE("N33: mass- and stiffness-proportional damping", "[forced][long]") {
   check_orders("damping", [](MultiBody&, Part& a, Part& b) {
     a.damping(0.8, 0.004);
     b.damping(0.5, 0.002);
   });
 }
-TEST_CASE("N33: drag", "[forced]") {
+TEST_CASE("N33: drag", "[forced][long]") {
   check_orders("drag", [](MultiBody&, Part& a, Part& b) {
     a.damping(0, 0, 0.7);
     b.damping(0, 0, 0.3);
   });
 }
-TEST_CASE("N33: point forces and torques in both frames, and one's own", "[forced]") {
+TEST_CASE("N33: point forces and torques in both frames, and one's own", "[forced][long]") {
   check_orders("forces", [](MultiBody& body, Part& a, Part& b) {
     body.force("push", point(b, 0.3, 0.3), TimeVector(test::wave(10, 20, 6), 5, 0));
     body.force("jet", point(a, -0.7, 1), TimeVector(3, test::wave(0, 30, 5), 8), Frame::body);
