@@ -22,6 +22,10 @@ class Draws {
     state_ ^= state_ << 17;
     return from + (to - from) * (static_cast<double>(state_ >> 11) * 0x1.0p-53);
   }
+  /// One of from, ..., to.
+  int integer(int from, int to) {
+    return std::min(to, static_cast<int>(uniform(from, static_cast<double>(to) + 1)));
+  }
   Vec3<double> vector(double size) {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }

@@ -1,0 +1,72 @@
+// The pattern of a symmetric matrix of small blocks and of its factor L D L^T, found once: the order of
+// elimination, the blocks that fill in, and the list of block products that the elimination is.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+namespace pliant {
+
+/// Largest number of rows of a block.
+inline constexpr int kMaxBlock = 6;
+
+/// A fill-reducing order of the nodes of a graph: the node at each place. Neighbours of node i are
+/// neighbour[first[i]] ... neighbour[first[i + 1] - 1].
+using NodeOrder = std::vector<int> (*)(const std::vector<int>& first, const std::vector<int>& neighbour);
+/// Approximate minimum degree, by Eigen.
+std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::vector<int>& neighbour);
+/// Maximum cardinality search (Tarjan & Yannakakis 1984): nothing fills in where that is possible, as in the
+/// systems of chains and trees.
+std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
+
+class BlockPattern {
+ public:
+  BlockPattern() = default;
+  /// sizes: rows of each node, 1 to kMaxBlock. edges: pairs of nodes whose block is not zero, in any order.
+  BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges, NodeOrder order);
+  /// With the order, of those above, that costs the least.
+  static BlockPattern cheapest(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges);
+
+  /// Where a block of the matrix is stored, by columns: rows of `row`, columns of `column`, one of them u and
+  /// the other v. Throws std::out_of_range if it is not in the pattern.
+  struct Place {
+    int offset;
+    bool swapped;  ///< it holds the rows of v and the columns of u
+  };
+  Place place(int u, int v) const;
+
+  int nodes() const { return static_cast<int>(columns_.size()); }
+  int rows() const { return rows_; }
+  /// Numbers that the blocks of the factor hold: the storage that a factor needs.
+  int values() const { return values_; }
+  /// Multiplications of a factorisation.
+  long products() const { return products_; }
+
+  /// A block below the diagonal in a column.
+  struct Block {
+    int place;   ///< its row, as place in the order
+    int offset;  ///< of its first number
+  };
+  /// A node at its place in the order.
+  struct Column {
+    int size;
+    int row;           ///< its first row in the vectors, in the order of the nodes
+    int diagonal;      ///< offset of its diagonal block
+    int first, last;   ///< its blocks below
+    int first_update;  ///< of its updates: one for each pair (a, b) of its blocks, a from b on
+  };
+  const std::vector<Column>& columns() const { return columns_; }
+  const std::vector<Block>& blocks() const { return blocks_; }
+  /// Offsets of the blocks that the pairs of blocks of each column change.
+  const std::vector<int>& updates() const { return updates_; }
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<Block> blocks_;
+  std::vector<int> updates_;
+  std::vector<int> place_of_;  // of each node
+  int rows_ = 0, values_ = 0;
+  long products_ = 0;
+};
+
+}  // namespace pliant

@@ -1,0 +1,153 @@
+#include <pliant/solve/block_pattern.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+namespace pliant {
+
+std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::vector<int>& neighbour) {
+  const auto n = static_cast<Eigen::Index>(first.size()) - 1;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < n; ++i) {
+    entries.emplace_back(i, i, 1.0);
+    for (int k = first[static_cast<std::size_t>(i)]; k < first[static_cast<std::size_t>(i) + 1]; ++k)
+      entries.emplace_back(i, neighbour[static_cast<std::size_t>(k)], 1.0);
+  }
+  Eigen::SparseMatrix<double> graph(n, n);
+  graph.setFromTriplets(entries.begin(), entries.end());
+  Eigen::AMDOrdering<int>::PermutationType order(n);
+  Eigen::AMDOrdering<int>()(graph, order);
+  return {order.indices().data(), order.indices().data() + n};
+}
+
+std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour) {
+  const std::size_t n = first.size() - 1;
+  // Nodes that are not numbered yet, in stacks by their numbered neighbours; what has moved on stays below.
+  std::vector<std::vector<int>> stack(1);
+  std::vector<int> numbered(n, 0), order(n);
+  for (std::size_t i = n; i-- > 0;) stack[0].push_back(static_cast<int>(i));
+  for (std::size_t left = n; left > 0;) {
+    const int node = stack.back().back();
+    const auto most = static_cast<int>(stack.size()) - 1;
+    stack.back().pop_back();
+    const bool current = numbered[static_cast<std::size_t>(node)] == most;
+    if (current) {
+      order[--left] = node;
+      numbered[static_cast<std::size_t>(node)] = -1;
+      const auto begin = static_cast<std::size_t>(first[static_cast<std::size_t>(node)]),
+                 end = static_cast<std::size_t>(first[static_cast<std::size_t>(node) + 1]);
+      for (std::size_t k = begin; k < end; ++k) {
+        int& of = numbered[static_cast<std::size_t>(neighbour[k])];
+        if (of < 0) continue;
+        ++of;
+        if (stack.size() == static_cast<std::size_t>(of)) stack.emplace_back();
+        stack[static_cast<std::size_t>(of)].push_back(neighbour[k]);
+      }
+    }
+    while (stack.size() > 1 && stack.back().empty()) stack.pop_back();
+  }
+  return order;
+}
+
+BlockPattern BlockPattern::cheapest(const std::vector<int>& sizes,
+                                    const std::vector<std::pair<int, int>>& edges) {
+  BlockPattern best(sizes, edges, cardinality_order), other(sizes, edges, minimum_degree_order);
+  return other.products() < best.products() ? std::move(other) : std::move(best);
+}
+
+BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                           NodeOrder order) {
+  const std::size_t n = sizes.size();
+  // The graph, and the nodes in the order of elimination.
+  std::vector<std::vector<int>> next(n);
+  for (const auto& [u, v] : edges) {
+    if (u == v) continue;
+    next[static_cast<std::size_t>(u)].push_back(v);
+    next[static_cast<std::size_t>(v)].push_back(u);
+  }
+  std::vector<int> first(1, 0), neighbour;
+  for (std::vector<int>& of : next) {
+    std::sort(of.begin(), of.end());
+    of.erase(std::unique(of.begin(), of.end()), of.end());
+    neighbour.insert(neighbour.end(), of.begin(), of.end());
+    first.push_back(static_cast<int>(neighbour.size()));
+  }
+  const std::vector<int> node_at = n > 0 ? order(first, neighbour) : std::vector<int>{};
+  place_of_.assign(n, 0);
+  for (std::size_t j = 0; j < n; ++j) place_of_[static_cast<std::size_t>(node_at[j])] = static_cast<int>(j);
+  std::vector<int> row_of(n);
+  for (std::size_t u = 0; u < n; ++u) {
+    row_of[u] = rows_;
+    rows_ += sizes[u];
+  }
+
+  // Fill: what is below the diagonal of a column goes on to the column of its first block.
+  std::vector<std::vector<int>> below(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<int>& places = below[j];
+    for (const int v : next[static_cast<std::size_t>(node_at[j])])
+      if (place_of_[static_cast<std::size_t>(v)] > static_cast<int>(j))
+        places.push_back(place_of_[static_cast<std::size_t>(v)]);
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    if (places.empty()) continue;
+    std::vector<int>& parent = below[static_cast<std::size_t>(places.front())];
+    parent.insert(parent.end(), places.begin() + 1, places.end());
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    const int size = sizes[static_cast<std::size_t>(node_at[j])];
+    Column column{
+        size, row_of[static_cast<std::size_t>(node_at[j])], values_, static_cast<int>(blocks_.size()), 0, 0};
+    values_ += size * size;
+    for (const int i : below[j]) {
+      blocks_.push_back({i, values_});
+      values_ += size * sizes[static_cast<std::size_t>(node_at[static_cast<std::size_t>(i)])];
+    }
+    column.last = static_cast<int>(blocks_.size());
+    columns_.push_back(column);
+  }
+
+  auto size_at = [&](int place) { return columns_[static_cast<std::size_t>(place)].size; };
+  auto offset_at = [&](int row, int column) {
+    const Column& c = columns_[static_cast<std::size_t>(column)];
+    if (row == column) return c.diagonal;
+    const auto found = std::lower_bound(blocks_.begin() + c.first, blocks_.begin() + c.last, row,
+                                        [](const Block& b, int r) { return b.place < r; });
+    return found->offset;
+  };
+  for (Column& column : columns_) {
+    column.first_update = static_cast<int>(updates_.size());
+    const long s = column.size;
+    products_ += s * s * s / 6 + s;
+    for (int b = column.first; b < column.last; ++b) {
+      const Block& of_b = blocks_[static_cast<std::size_t>(b)];
+      products_ += s * s * size_at(of_b.place);
+      for (int a = b; a < column.last; ++a) {
+        const Block& of_a = blocks_[static_cast<std::size_t>(a)];
+        updates_.push_back(offset_at(of_a.place, of_b.place));
+        products_ += s * size_at(of_a.place) * size_at(of_b.place);
+      }
+    }
+  }
+}
+
+BlockPattern::Place BlockPattern::place(int u, int v) const {
+  const int at_u = place_of_.at(static_cast<std::size_t>(u)),
+            at_v = place_of_.at(static_cast<std::size_t>(v));
+  const Column& column = columns_[static_cast<std::size_t>(std::min(at_u, at_v))];
+  if (at_u == at_v) return {column.diagonal, false};
+  const int row = std::max(at_u, at_v);
+  const auto end = blocks_.begin() + column.last;
+  const auto found = std::lower_bound(blocks_.begin() + column.first, end, row,
+                                      [](const Block& b, int r) { return b.place < r; });
+  if (found == end || found->place != row)
+    throw std::out_of_range("block (" + std::to_string(u) + ", " + std::to_string(v) +
+                            ") is not in the pattern");
+  return {found->offset, at_u < at_v};
+}
+
+}  // namespace pliant

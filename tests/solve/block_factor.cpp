@@ -1,0 +1,168 @@
+// The block factorisation against dense algebra: random patterns, sizes, orders; rows that depend on others;
+// derivatives.
+#include "catch.h"
+
+#include <numeric>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+
+#include <pliant/solve/block_factor.h>
+
+#include "draws.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+std::vector<int> given_order(const std::vector<int>& first, const std::vector<int>&) {
+  std::vector<int> order(first.size() - 1);
+  std::iota(order.begin(), order.end(), 0);
+  return order;
+}
+
+/// A random matrix A = G G^T of blocks: G has a column of blocks for each edge and each node.
+struct Sample {
+  std::vector<int> sizes, row;
+  std::vector<std::pair<int, int>> edges;
+  MatX<double> A;
+
+  Sample(Draws& draws, int nodes, int more_edges, bool chain) {
+    int rows = 0;
+    for (int u = 0; u < nodes; ++u) {
+      sizes.push_back(chain ? 3 : draws.integer(1, 6));
+      row.push_back(rows);
+      rows += sizes.back();
+      if (u > 0) edges.emplace_back(chain ? u - 1 : draws.integer(0, u - 1), u);
+    }
+    for (int e = 0; e < more_edges; ++e)
+      edges.emplace_back(draws.integer(0, nodes - 1), draws.integer(0, nodes - 1));
+    A = MatX<double>::Zero(rows, rows);
+    auto add = [&](int u, int v) {
+      MatX<double> G = MatX<double>::Zero(rows, 6);
+      for (const int node : {u, v})
+        for (int i = 0; i < sizes[static_cast<std::size_t>(node)]; ++i)
+          for (int k = 0; k < 6; ++k) G(row[static_cast<std::size_t>(node)] + i, k) = draws.uniform(-1, 1);
+      A += G * G.transpose();
+    };
+    for (const auto& [u, v] : edges) add(u, v);
+    for (int u = 0; u < nodes; ++u) add(u, u);
+  }
+
+  template <class S, class Matrix>
+  void fill(const BlockPattern& pattern, const Matrix& of, BlockFactor<S>& factor) const {
+    factor.clear(pattern);
+    auto set = [&](int u, int v) {
+      const BlockPattern::Place place = pattern.place(u, v);
+      if (place.swapped) std::swap(u, v);
+      S* block = factor.block(place.offset);
+      const int n = sizes[static_cast<std::size_t>(u)], m = sizes[static_cast<std::size_t>(v)];
+      for (int k = 0; k < m; ++k)
+        for (int i = 0; i < n; ++i)
+          block[k * n + i] = of(row[static_cast<std::size_t>(u)] + i, row[static_cast<std::size_t>(v)] + k);
+    };
+    for (const auto& [u, v] : edges) set(u, v);
+    for (int u = 0; u < static_cast<int>(sizes.size()); ++u) set(u, u);
+  }
+};
+
+VecX<double> random(Draws& draws, Eigen::Index n) {
+  VecX<double> x(n);
+  for (Eigen::Index i = 0; i < n; ++i) x[i] = draws.uniform(-1, 1);
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("block factor: solves what dense algebra solves, in any order", "[block_factor]") {
+  Draws draws(1);
+  for (int trial = 0; trial < 200; ++trial) {
+    const bool chain = trial % 3 == 0;
+    const Sample sample(draws, draws.integer(1, 20), chain ? 0 : draws.integer(0, 15), chain);
+    const VecX<double> b = random(draws, sample.A.rows()), expected = sample.A.ldlt().solve(b);
+    for (const NodeOrder order : {minimum_degree_order, cardinality_order, given_order}) {
+      const BlockPattern pattern(sample.sizes, sample.edges, order);
+      BlockFactor<double> factor;
+      sample.fill(pattern, sample.A, factor);
+      factor.factor();
+      VecX<double> x = b;
+      factor.solve(x);
+      CHECK(factor.rank() == sample.A.rows());
+      CHECK((x - expected).norm() <= 1e-9 * expected.norm());
+    }
+  }
+}
+
+TEST_CASE("block factor: a chain and a tree fill nothing in", "[block_factor]") {
+  Draws draws(2);
+  for (const bool chain : {true, false}) {
+    const Sample sample(draws, 200, 0, chain);
+    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    int expected = 0;
+    for (const int size : sample.sizes) expected += size * size;
+    for (const auto& [u, v] : sample.edges)
+      expected += sample.sizes[static_cast<std::size_t>(u)] * sample.sizes[static_cast<std::size_t>(v)];
+    CHECK(pattern.values() == expected);
+  }
+}
+
+TEST_CASE("block factor: rows that depend on others are held, and the rest is solved without them",
+          "[block_factor]") {
+  Draws draws(3);
+  for (int trial = 0; trial < 100; ++trial) {
+    Sample sample(draws, draws.integer(2, 12), draws.integer(0, 5), false);
+    // A row becomes the same as another: the matrix loses a rank and the system stays solvable.
+    const auto n = static_cast<int>(sample.A.rows());
+    const int same = draws.integer(0, n - 1);
+    int as = draws.integer(0, n - 2);
+    if (as >= same) ++as;
+    // All pairs are neighbours, so that the pattern holds the copy.
+    for (int u = 0; u < static_cast<int>(sample.sizes.size()); ++u)
+      for (int v = 0; v < u; ++v) sample.edges.emplace_back(u, v);
+    sample.A.row(same) = sample.A.row(as);
+    sample.A.col(same) = sample.A.col(as);
+    const VecX<double> b = sample.A * random(draws, n);
+    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    BlockFactor<double> factor;
+    sample.fill(pattern, sample.A, factor);
+    factor.factor();
+    VecX<double> x = b;
+    factor.solve(x);
+    CHECK(factor.rank() == n - 1);
+    CHECK((factor.held(same) || factor.held(as)));
+    CHECK((sample.A * x - b).norm() <= 1e-9 * b.norm());
+  }
+}
+
+TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
+  Draws draws(4);
+  for (int trial = 0; trial < 30; ++trial) {
+    const Sample sample(draws, draws.integer(1, 10), draws.integer(0, 5), trial % 2 == 0);
+    const auto n = sample.A.rows();
+    const VecX<double> b = random(draws, n), db = random(draws, n);
+    // dA has the pattern of A.
+    const MatX<double> dA = (0.3 * sample.A.array() * sample.A.array()).matrix();
+    Eigen::Matrix<Dual<1>, Eigen::Dynamic, Eigen::Dynamic> A(n, n);
+    VecX<Dual<1>> x(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      x[i] = Dual<1>(b[i]);
+      x[i].d[0] = db[i];
+      for (Eigen::Index k = 0; k < n; ++k) {
+        A(i, k) = Dual<1>(sample.A(i, k));
+        A(i, k).d[0] = dA(i, k);
+      }
+    }
+    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    BlockFactor<Dual<1>> factor;
+    sample.fill(pattern, A, factor);
+    factor.factor();
+    factor.solve(x);
+    const Eigen::LDLT<MatX<double>> dense(sample.A);
+    const VecX<double> value = dense.solve(b), slope = dense.solve(db - dA * value);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      CHECK(std::abs(x[i].v - value[i]) <= 1e-9 * value.norm());
+      CHECK(std::abs(x[i].d[0] - slope[i]) <= 1e-8 * (slope.norm() + value.norm()));
+    }
+  }
+}
