@@ -8,6 +8,7 @@ enum ExitCode {
   kInternal = 1,
   kCommandLine = 2,
   kInput = 3,
+  kUnsatisfiable = 4,
   kNumerical = 5,
   kFileSystem = 7,
   kResources = 8,
@@ -17,8 +18,8 @@ enum ExitCode {
 };
 
 inline constexpr const char* kExitCodesHelp =
-    "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 5 numerical failure,\n"
-    "7 file system, 8 resources (memory, graphics), 9 would overwrite, 10 recording does not fit,\n"
-    "130/143 stopped by a signal (go on with --resume).";
+    "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 4 joints contradict each other,\n"
+    "5 numerical failure, 7 file system, 8 resources (memory, graphics), 9 would overwrite,\n"
+    "10 recording does not fit, 130/143 stopped by a signal (go on with --resume).";
 
 }  // namespace pliant_cli

@@ -77,6 +77,8 @@ int reporting_failures(const std::function<int()>& task) {
     return tell(error.what(), kWouldOverwrite);
   } catch (const pliant::RecordingMismatch& error) {
     return tell(error.what(), kDoesNotFit);
+  } catch (const pliant::UnsatisfiableModel& error) {
+    return tell(error.what(), kUnsatisfiable);
   } catch (const pliant::NumericalFailure& error) {
     return tell(error.what(), kNumerical);
   } catch (const pliant::Interrupted& error) {

@@ -68,7 +68,7 @@ void measure(const char* kind, void (*add)(MultiBody&, const std::string&), int 
   const double step = bench::seconds_per_call([&] { simulation.step(1e-9); }) / parts;
   Workspace<double> work;
   const double evaluation = bench::seconds_per_call([&] {
-                              simulation.dynamics().accelerations(0, start.q, start.v, start.at_limit, work);
+                              simulation.dynamics().accelerations(0, start.q, start.v, start, work);
                             }) /
                             parts;
   const Part& one = *body.parts()[0];

@@ -1,7 +1,7 @@
 # Checks that README.md quotes the examples word for word, and that its scene and the faults it shows are the program's.
 # SOURCE: the project; PROGRAM: pliant, where it is built; FOLDER: where scenes may be written.
 file(READ ${SOURCE}/README.md readme)
-foreach(name two_parts add_a_shape add_a_deformation)
+foreach(name two_parts add_a_shape add_a_deformation add_a_joint)
   file(READ ${SOURCE}/apps/examples/${name}.cpp code)
   string(FIND "${readme}" "${code}" at)
   if(at EQUAL -1)

@@ -1,7 +1,9 @@
-// Everything a user of the engine needs: shapes, deformations, parts, bodies, simulations. Meshes of surfaces
-// included; scenes, files and pictures are libraries of their own (pliant/scene, pliant/io, pliant/render).
+// Everything a user of the engine needs: shapes, deformations, parts, joints, bodies, simulations. Meshes of
+// surfaces included; scenes, files and pictures are libraries of their own (pliant/scene, pliant/io,
+// pliant/render).
 #pragma once
 
+#include <pliant/body/joints/all_joints.h>
 #include <pliant/deform/all_deforms.h>
 #include <pliant/integrate/simulation.h>
 #include <pliant/part/registry.h>

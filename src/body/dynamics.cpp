@@ -1,9 +1,9 @@
 #include <pliant/body/dynamics.h>
 
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 
-#include <pliant/solve/complementarity.h>
+#include <pliant/body/one_sided_rows.h>
 
 namespace pliant {
 
@@ -131,57 +131,51 @@ VecMax<S> inverse_column(const SymmetricFactor<S>& factor, int n, int i) {
   return x;
 }
 
-// limits: parameters that rest at a limit are pressed onto it by forces >= 0, found on the small system
-// W = C M^-1 C^T. These forces do no work; what moves at a limit is the integrator's to stop, by an impulse.
-void press(const PartModel& m, const std::int8_t* at_limit, PartWorkspace<double>& w) {
-  w.pressed.clear();
-  std::array<int, kMaxGlobal> rows{};
-  int n = 0;
+/// The rows of the limits that parameters of a group's part i rest at.
+template <class F>
+void for_each_rest(const PartModel& m, const std::int8_t* at_limit, const PartWorkspace<double>& w, int i,
+                   F&& act) {
   for (int k = 0; k < m.n_s; ++k)
     if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.factor.held(6 + k))
-      rows[static_cast<std::size_t>(n++)] = k;
-  if (n == 0) return;
-  MatMax<double, kMaxLimitRows> W(n, n);
-  VecMax<double, kMaxLimitRows> b(n);
-  std::array<VecMax<double>, kMaxGlobal> columns;
-  for (int j = 0; j < n; ++j) {
-    const auto c = static_cast<std::size_t>(j);
-    columns[c] = inverse_column<double>(w.factor, 6 + m.n_s, 6 + rows[c]);
-    for (int i = 0; i < n; ++i) {
-      const int k = rows[static_cast<std::size_t>(i)];
-      W(i, j) = at_limit[k] * at_limit[rows[c]] * columns[c][6 + k];
-    }
-    b[j] = -at_limit[rows[c]] * w.a_r[6 + rows[c]];  // along the admissible direction
-  }
-  const VecMax<double, kMaxLimitRows> lambda = solve_complementarity(W, b).lambda;
-  for (int i = 0; i < n; ++i) {
-    if (!(lambda[i] > 0)) continue;
-    const auto c = static_cast<std::size_t>(i);
-    w.a_r += columns[c] * (-at_limit[rows[c]] * lambda[i]);
-    w.pressed.push_back(rows[c]);
-  }
-  for (const int k : w.pressed) w.a_r[6 + k] = 0;  // to the last bit
+      act(OneSidedRow{i, k, at_limit[k] < 0 ? 1.0 : -1.0, 0});
+}
+
+// limits: parameters that rest at a limit are pressed onto it by forces >= 0. These forces do no work; what
+// moves at a limit is the integrator's to stop, by an impulse.
+void press(const Model& model, int part, const State& modes, Workspace<double>& work) {
+  const PartModel& m = model.parts()[static_cast<std::size_t>(part)];
+  PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
+  w.pressed.clear();
+  bool any = false;
+  for_each_rest(m, modes.at_limit.data() + m.limit0, w, 0, [&](const OneSidedRow&) { any = true; });
+  if (!any) return;
+  const Group<double, kMaxVelocities> group(model, work, part);
+  OneSidedRows<kMaxVelocities> rows(group);
+  for_each_rest(m, modes.at_limit.data() + m.limit0, w, 0, [&](const OneSidedRow& row) { rows.add(row); });
+  w.a_r = rows.meet(w.a_r, nullptr);
+  rows.for_each_pushed([&](const OneSidedRow& row, double) { w.pressed.push_back(row.k); });
 }
 
 /// The same for a derivative: the pressed parameters have no acceleration.
 template <class S>
-void hold_pressed(const PartModel& m, const std::vector<int>& pressed, PartWorkspace<S>& w) {
+void hold_pressed(const Model& model, int part, const std::vector<int>& pressed, Workspace<S>& work) {
   if (pressed.empty()) return;
+  VecMax<S>& a_r = work.parts[static_cast<std::size_t>(part)].a_r;
+  const Group<S, kMaxVelocities> group(model, work, part);
   const int n = static_cast<int>(pressed.size());
   MatMax<S> W(n, n);
   VecMax<S> lambda(n);
-  std::vector<VecMax<S>> columns;
-  for (const int k : pressed) columns.push_back(inverse_column<S>(w.factor, 6 + m.n_s, 6 + k));
+  std::vector<VecMax<S>> responses;
+  for (const int k : pressed) responses.push_back(group.response({0, k, 1, 0}));
   for (int i = 0; i < n; ++i) {
     const int k = pressed[static_cast<std::size_t>(i)];
-    lambda[i] = -w.a_r[6 + k];
-    for (int j = 0; j < n; ++j) W(i, j) = columns[static_cast<std::size_t>(j)][6 + k];
+    lambda[i] = -a_r[6 + k];
+    for (int j = 0; j < n; ++j) W(i, j) = responses[static_cast<std::size_t>(j)][6 + k];
   }
   SymmetricFactor<S> factor;
   factor.compute(W, VecMax<double>::Zero(n));
   factor.solve(lambda);
-  for (int i = 0; i < n; ++i)
-    for (int r = 0; r < 6 + m.n_s; ++r) w.a_r[r] += columns[static_cast<std::size_t>(i)][r] * lambda[i];
+  for (int i = 0; i < n; ++i) a_r += responses[static_cast<std::size_t>(i)] * lambda[i];
 }
 
 template <class S>
@@ -192,9 +186,8 @@ struct WorldPoint {
 }  // namespace
 
 template <class S>
-void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
-                        const std::vector<std::int8_t>* at_limit, const Workspace<double>* fixed_limits,
-                        Workspace<S>& work) const {
+void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const State* modes,
+                        const Workspace<double>* fixed_modes, Workspace<S>& work) const {
   const Model& model = *model_;
   const auto& parts = model.parts();
   work.parts.resize(parts.size());
@@ -294,22 +287,131 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v,
       else
         w.factor.compute(w.inertia.M, m.inertia_floor);
       w.factor.solve(w.a_r);
-      if (at_limit != nullptr) press(m, at_limit->data() + m.limit0, w);
+      if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
     } else {
       w.factor.compute(w.inertia.M, m.inertia_floor);
       w.factor.solve(w.a_r);
-      if (fixed_limits != nullptr)
-        hold_pressed<S>(m, fixed_limits->parts[static_cast<std::size_t>(i)].pressed, w);
+      if (fixed_modes != nullptr && m.island < 0)
+        hold_pressed<S>(model, i, fixed_modes->parts[static_cast<std::size_t>(i)].pressed, work);
     }
-    work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
-    work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.tail(3 + m.n_s);
   });
   for (const PartWorkspace<S>& w : work.parts) work.power += w.power;
+  if (!model.joints().empty()) join<S>(t, modes, fixed_modes, work);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const PartModel& m = parts[i];
+    if (m.q0 < 0) continue;
+    const PartWorkspace<S>& w = work.parts[i];
+    work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
+    work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.tail(3 + m.n_s);
+  }
 }
 
-void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>& v,
-                             const std::vector<std::int8_t>& at_limit, Workspace<double>& work) const {
-  evaluate<double>(t, q, v, &at_limit, nullptr, work);
+template <class S>
+void Dynamics::size_joints(Workspace<S>& work) const {
+  const Model& model = *model_;
+  ConstraintWorkspace<S>& joints = work.joints;
+  work.parts.resize(model.parts().size());
+  joints.modes.resize(model.joints().size(), JointMode::off);
+  for (VecX<S>* rows : {&joints.C, &joints.C_dot, &joints.bias, &joints.lambda})
+    if (rows->size() != model.n_rows()) rows->setConstant(model.n_rows(), S(0.0));
+  joints.Cq.resize(model.n_side_values());
+  joints.Y.resize(model.n_side_values());
+  joints.W_c.resize(model.islands().size());
+  joints.W_closed.resize(model.islands().size());
+  joints.pushed.resize(model.islands().size());
+}
+
+// joints: rows, W_c and its factor, forces; each island apart
+template <class S>
+void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed_modes,
+                    Workspace<S>& work) const {
+  const Model& model = *model_;
+  ConstraintWorkspace<S>& joints = work.joints;
+  size_joints(work);
+  joints.lambda.setConstant(S(0.0));
+  if (modes != nullptr) {
+    const Stabilization& rule = model.body().stabilization;
+    joints.modes = modes->joints;
+    joints.gains = rule.gains(modes->h, hold_.step_consistent);
+    joints.most_speed = rule.speed * rule.rate;
+  } else if (fixed_modes != nullptr) {
+    joints.modes = fixed_modes->joints.modes;
+    joints.gains = fixed_modes->joints.gains;
+    joints.most_speed = fixed_modes->joints.most_speed;
+    joints.pushed = fixed_modes->joints.pushed;
+  } else {
+    joints.modes.assign(model.joints().size(), JointMode::off);
+  }
+  joints.stabilise_closed = !hold_.projected;
+  auto solve = [&](int i) {
+    const Island& island = model.islands()[static_cast<std::size_t>(i)];
+    pliant::evaluate_joints<S>(model, island, t, work.parts, joints);
+    pliant::factor_joints<S>(model, island, work.parts, joints);
+    if constexpr (std::is_same_v<S, double>) {
+      std::vector<OneSidedRow> limits;
+      for (std::size_t k = 0; k < island.parts.size() && modes != nullptr; ++k) {
+        const auto p = static_cast<std::size_t>(island.parts[k]);
+        for_each_rest(model.parts()[p], modes->at_limit.data() + model.parts()[p].limit0, work.parts[p],
+                      static_cast<int>(k), [&](const OneSidedRow& row) { limits.push_back(row); });
+      }
+      solve_joints(model, island, std::move(limits), work);
+    } else {
+      solve_joints(model, island, work);
+    }
+  };
+  const int n = static_cast<int>(model.islands().size());
+  if (pool_ != nullptr)
+    pool_->run(n, solve);
+  else
+    for (int i = 0; i < n; ++i) solve(i);
+  work.power += joint_power<S>(model, work);
+}
+
+void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                               const Island& island, Workspace<double>& work) const {
+  size_joints(work);
+  for (const std::vector<int>* joints : {&island.joints, &island.strings})
+    for (const int j : *joints)
+      work.joints.modes[static_cast<std::size_t>(j)] = modes.joints[static_cast<std::size_t>(j)];
+  for (const int i : island.anchors)
+    if (work.parts[static_cast<std::size_t>(i)].port_x.empty())
+      positions<double>(model_->parts()[static_cast<std::size_t>(i)], q, v,
+                        work.parts[static_cast<std::size_t>(i)]);
+  for (const int i : island.parts)
+    positions<double>(model_->parts()[static_cast<std::size_t>(i)], q, v,
+                      work.parts[static_cast<std::size_t>(i)]);
+  pliant::evaluate_joints<double>(*model_, island, t, work.parts, work.joints);
+}
+
+void Dynamics::factor_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                             const Island& island, Workspace<double>& work) const {
+  evaluate_masses(q, v, island.parts, work);
+  evaluate_joints(t, q, v, modes, island, work);
+  pliant::factor_joints<double>(*model_, island, work.parts, work.joints);
+}
+
+Vec3<double> Dynamics::joint_force(double t, int joint, const Workspace<double>& work) const {
+  const JointModel& m = model_->joints()[static_cast<std::size_t>(joint)];
+  std::array<PointMotion<double>, kMaxJointPoints> motion;
+  for (std::size_t k = 0; k < m.at.size(); ++k) {
+    const PortRef& ref = m.at[k];
+    const Vec3<double> x =
+        ref.part < 0
+            ? m.joint->points()[k].world.value(t)
+            : work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)];
+    motion[k] = {x, Vec3<double>::Zero(), Vec3<double>::Zero()};
+  }
+  JointRows<double> rows;
+  m.joint->evaluate(t, motion.data(), rows);
+  Vec3<double> force = Vec3<double>::Zero();
+  for (int k = 0; k < m.joint->n_first(); ++k)
+    force += rows.C_x.middleCols(3 * k, 3).transpose() * work.joints.lambda.segment(m.row, m.rows);
+  return force;
+}
+
+void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                             Workspace<double>& work) const {
+  evaluate<double>(t, q, v, &modes, nullptr, work);
 }
 
 VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
@@ -333,7 +435,7 @@ VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& 
 VecX<double> Dynamics::jvp(const State& state, const StateDirection& along) const {
   Workspace<double> work;
   Workspace<Dual<1>> dual_work;
-  accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  accelerations(state.time(), state.q, state.v, state, work);
   return jvp(state.time(), state.q, state.v, along, work, dual_work);
 }
 
@@ -353,39 +455,78 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
   }
 }
 
+void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
+                          Ledger& ledger) const {
+  ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
+  ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
+  VecMax<double> stretch(m.n_s);
+  for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
+  ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
+}
+
+void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
+                          Ledger& ledger) const {
+  auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
+    return ref.part >= 0
+               ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
+               : point.world.value(t);
+  };
+  const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
+  ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
+}
+
 Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
-  accelerations(t, state.q, state.v, state.at_limit, work);
+  accelerations(t, state.q, state.v, state, work);
   Ledger ledger;
   ledger.work = state.work;
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
     const PartModel& m = model_->parts()[i];
     if (m.q0 < 0) continue;
     const PartWorkspace<double>& w = work.parts[i];
+    add_energy(t, m, w, ledger);
     const VecMax<double> momentum = w.inertia.M * w.v_r;
-    ledger.kinetic += 0.5 * w.v_r.dot(momentum);
-    const Vec3<double> moment = w.R * w.inertia.moment;
-    ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + moment);
-    VecMax<double> stretch(m.n_s);
-    for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
-    ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
     const Vec3<double> P = w.R * momentum.head<3>();
     ledger.momentum += P;
     ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);
   }
-  for (const SpringModel& s : model_->springs()) {
-    auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
-      return ref.part >= 0
-                 ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
-                 : point.world.value(t);
-    };
-    const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
-    ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
-  }
+  for (const SpringModel& spring : model_->springs()) add_energy(t, spring, work, ledger);
   return ledger;
 }
 
-void Dynamics::apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse) {
-  part.factor.solve(impulse);
+void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
+                               Workspace<double>& work) const {
+  work.parts.resize(model_->parts().size());
+  for (const int i : parts) {
+    const PartModel& m = model_->parts()[static_cast<std::size_t>(i)];
+    PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
+    positions<double>(m, q, v, w);
+    m.part->inertia(w.q_s, w.q_s_dot, Vec3<double>(w.v_r.segment<3>(3)), w.inertia, w.counters);
+    if (m.part->rigid())
+      w.factor = m.rigid_factor;
+    else
+      w.factor.compute(w.inertia.M, m.inertia_floor);
+  }
+}
+
+double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
+                        Workspace<double>& work) const {
+  evaluate_masses(q, v, parts, work);
+  Ledger ledger;
+  for (const int i : parts)
+    add_energy(t, model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)],
+               ledger);
+  auto ours = [&](const PortRef& ref) {
+    return std::find(parts.begin(), parts.end(), ref.part) != parts.end();
+  };
+  for (const SpringModel& spring : model_->springs()) {
+    if (!ours(spring.a) && !ours(spring.b)) continue;
+    for (const PortRef& ref : {spring.a, spring.b})
+      if (ref.part >= 0 && !ours(ref))
+        positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], q, v,
+                          work.parts[static_cast<std::size_t>(ref.part)]);
+    add_energy(t, spring, work, ledger);
+  }
+  return ledger.energy();
 }
 
 namespace {
@@ -404,13 +545,13 @@ std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& 
 }
 }  // namespace
 
-std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v,
+std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                                Workspace<double>& work) const {
   for (Eigen::Index i = 0; i < q.size(); ++i)
     if (!std::isfinite(q[i])) return "the coordinate " + model_->coordinate_name(static_cast<int>(i));
   for (Eigen::Index i = 0; i < v.size(); ++i)
     if (!std::isfinite(v[i])) return "the velocity " + model_->velocity_name(static_cast<int>(i));
-  evaluate<double>(t, q, v, nullptr, nullptr, work);
+  evaluate<double>(t, q, v, &modes, nullptr, work);
   auto of_part = [&](std::size_t i) { return " of part '" + model_->parts()[i].part->name() + "'"; };
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
     if (model_->parts()[i].q0 < 0) continue;
@@ -439,16 +580,26 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
       return "the force '" + f.force->name + "'";
   for (const TorqueModel& m : model_->torques())
     if (!m.torque->torque.value(t).allFinite()) return "the torque '" + m.torque->name + "'";
+  for (const JointModel& m : model_->joints()) {
+    const std::string what = std::string(" of ") + m.joint->type() + " '" + m.joint->name() + "'";
+    for (const Point& point : m.joint->points())
+      if (point.part == nullptr && !point.world.value(t).allFinite()) return "the anchor" + what;
+    if (!work.joints.C.segment(m.row, m.rows).allFinite()) return "the gap C" + what;
+    if (!work.joints.C_dot.segment(m.row, m.rows).allFinite()) return "the rate C_dot" + what;
+  }
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
     if (model_->parts()[i].q0 < 0) continue;
     if (!work.parts[i].f.allFinite()) return own_term(t, model_->parts()[i], work.parts[i]) + of_part(i);
-    if (!work.parts[i].a_r.allFinite()) return "the acceleration" + of_part(i);
+    if (!work.parts[i].a_r.allFinite() && model_->parts()[i].island < 0)
+      return "the acceleration" + of_part(i);
   }
+  for (const JointModel& m : model_->joints())
+    if (!work.joints.lambda.segment(m.row, m.rows).allFinite())
+      return std::string("the force of ") + m.joint->type() + " '" + m.joint->name() + "'";
   return {};
 }
 
-template void Dynamics::evaluate<double>(double, const VecX<double>&, const VecX<double>&,
-                                         const std::vector<std::int8_t>*, const Workspace<double>*,
-                                         Workspace<double>&) const;
+template void Dynamics::evaluate<double>(double, const VecX<double>&, const VecX<double>&, const State*,
+                                         const Workspace<double>*, Workspace<double>&) const;
 
 }  // namespace pliant

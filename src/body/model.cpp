@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace pliant {
 
@@ -30,7 +33,14 @@ Model::Model(MultiBody& body) : body_(&body) {
       const Parameter& p = part->parameters().moving(k);
       m.inertia_floor[6 + k] = 1e-24 * mass * (p.spec->quantity == Quantity::length ? 1.0 : size * size);
     }
-    if (part->rigid()) m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
+    if (part->rigid()) {
+      m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
+      for (int k = 0; k < 6; ++k) {
+        VecMax<double> column = VecMax<double>::Unit(6, k);
+        m.rigid_factor.solve(column);
+        m.rigid_inverse.col(k) = column;
+      }
+    }
     parts_.push_back(std::move(m));
   }
   for (const auto& spring : body.springs()) {
@@ -47,6 +57,9 @@ Model::Model(MultiBody& body) : body_(&body) {
     if (torque->part == nullptr) throw std::invalid_argument("torque '" + torque->name + "' acts on no part");
     torques_.push_back({torque.get(), body.index(*torque->part)});
   }
+  body.stabilization.check();
+  for (const auto& joint : body.joints()) add_joint(*joint);
+  lay_islands();
   Counters unused;
   for (PartModel& m : parts_)
     if (m.part->rigid() && !m.ports.empty())
@@ -66,11 +79,124 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   return {part, static_cast<int>(ports.size()) - 1};
 }
 
+void Model::add_joint(const Joint& joint) {
+  const std::string what = std::string(joint.type()) + " '" + joint.name() + "'";
+  JointModel m{&joint, joint.rows(), n_rows_, {}, {}, -1, -1, -1, 0, false};
+  double length = std::numeric_limits<double>::infinity();
+  for (const Point& point : joint.points()) {
+    m.at.push_back(attach(point, what));
+    if (point.part == nullptr) {
+      m.driven = m.driven || !point.world.is_constant();
+      continue;
+    }
+    const int part = m.at.back().part;
+    const PartModel& of = parts_[static_cast<std::size_t>(part)];
+    if (of.q0 < 0) continue;
+    length = std::min(length, of.part->size());
+    const bool known =
+        std::any_of(m.sides.begin(), m.sides.end(), [&](const JointSide& side) { return side.part == part; });
+    if (known) continue;
+    m.sides.push_back({part, -1, n_sides_});
+    n_sides_ += (6 + of.n_s) * m.rows;
+  }
+  if (m.sides.empty()) throw std::invalid_argument(what + " ties no part that moves");
+  m.length = length;
+  n_rows_ += m.rows;
+  joints_.push_back(std::move(m));
+}
+
+void Model::lay_islands() {
+  // Parts tied by joints get the same root.
+  std::vector<int> parent(parts_.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  auto root = [&](int i) {
+    for (auto at = static_cast<std::size_t>(i); parent[at] != i; at = static_cast<std::size_t>(i))
+      i = parent[at] = parent[static_cast<std::size_t>(parent[at])];
+    return i;
+  };
+  for (const JointModel& joint : joints_)
+    for (const JointSide& side : joint.sides) {
+      const int a = root(joint.sides.front().part), b = root(side.part);
+      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    }
+  std::vector<int> island_of(parts_.size(), -1);
+  std::vector<std::vector<std::pair<int, int>>> sides_of(parts_.size());  // joint, side
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    JointModel& joint = joints_[j];
+    int& island = island_of[static_cast<std::size_t>(root(joint.sides.front().part))];
+    if (island < 0) {
+      island = static_cast<int>(islands_.size());
+      islands_.emplace_back();
+    }
+    joint.island = island;
+    for (std::size_t s = 0; s < joint.sides.size(); ++s)
+      sides_of[static_cast<std::size_t>(joint.sides[s].part)].emplace_back(static_cast<int>(j),
+                                                                           static_cast<int>(s));
+    for (const PortRef& ref : joint.at)
+      if (ref.part >= 0 && parts_[static_cast<std::size_t>(ref.part)].q0 < 0)
+        islands_[static_cast<std::size_t>(island)].anchors.push_back(ref.part);
+    if (joint.joint->one_sided()) {
+      islands_[static_cast<std::size_t>(island)].strings.push_back(static_cast<int>(j));
+      continue;
+    }
+    std::vector<int>& joints = islands_[static_cast<std::size_t>(island)].joints;
+    joint.node = static_cast<int>(joints.size());
+    joint.island_row = islands_[static_cast<std::size_t>(island)].rows;
+    islands_[static_cast<std::size_t>(island)].rows += joint.rows;
+    joints.push_back(static_cast<int>(j));
+  }
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (sides_of[i].empty()) continue;
+    parts_[i].island = island_of[static_cast<std::size_t>(root(static_cast<int>(i)))];
+    Island& island = islands_[static_cast<std::size_t>(parts_[i].island)];
+    for (const auto& [joint, side] : sides_of[i])
+      joints_[static_cast<std::size_t>(joint)].sides[static_cast<std::size_t>(side)].place =
+          static_cast<int>(island.parts.size());
+    island.parts.push_back(static_cast<int>(i));
+    island.first.push_back(island.n_v);
+    island.n_v += 6 + parts_[i].n_s;
+  }
+  for (Island& island : islands_) {
+    std::vector<int> sizes;
+    for (const int j : island.joints) sizes.push_back(joints_[static_cast<std::size_t>(j)].rows);
+    std::vector<std::pair<int, int>> edges;
+    for (const int i : island.parts)
+      for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
+        for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)])
+          if (a < b && joints_[static_cast<std::size_t>(a)].node >= 0 &&
+              joints_[static_cast<std::size_t>(b)].node >= 0)
+            edges.emplace_back(joints_[static_cast<std::size_t>(a)].node,
+                               joints_[static_cast<std::size_t>(b)].node);
+    island.pattern = BlockPattern::cheapest(sizes, edges);
+    for (const int i : island.parts)
+      for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
+        for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)]) {
+          if (a > b || joints_[static_cast<std::size_t>(a)].node < 0 ||
+              joints_[static_cast<std::size_t>(b)].node < 0)
+            continue;
+          int row = a, column = b, row_side = side_a, column_side = side_b;
+          const JointModel &joint_a = joints_[static_cast<std::size_t>(a)],
+                           &joint_b = joints_[static_cast<std::size_t>(b)];
+          const BlockPattern::Place place = island.pattern.place(joint_a.node, joint_b.node);
+          if (place.swapped) {
+            std::swap(row, column);
+            std::swap(row_side, column_side);
+          }
+          const JointModel &of_row = joints_[static_cast<std::size_t>(row)],
+                           &of_column = joints_[static_cast<std::size_t>(column)];
+          island.couplings.push_back({i, of_row.sides[static_cast<std::size_t>(row_side)].offset,
+                                      of_column.sides[static_cast<std::size_t>(column_side)].offset,
+                                      of_row.rows, of_column.rows, row, column, place.offset});
+        }
+  }
+}
+
 State Model::initial_state() const {
   State state;
   state.q.setZero(n_q_);
   state.v.setZero(n_v_);
   state.at_limit.assign(static_cast<std::size_t>(n_limits_), 0);
+  state.joints.assign(joints_.size(), JointMode::closing);
   for (const PartModel& m : parts_) {
     if (m.q0 < 0) continue;
     const Part& part = *m.part;
@@ -113,6 +239,18 @@ Vec3<double> Model::world_point(const State& state, int part, const Material<dou
   const Part& p = *parts_[static_cast<std::size_t>(part)].part;
   const Vec3<double> s = p.s({material}, values(state, part)).col(0);
   return position(state, part) + orientation(state, part) * s;  // Eq. (1)
+}
+
+double Model::gap(const State& state, int joint) const {
+  const JointModel& m = joints_[static_cast<std::size_t>(joint)];
+  std::array<Vec3<double>, kMaxJointPoints> x;
+  for (std::size_t k = 0; k < m.at.size(); ++k) {
+    const Point& point = m.joint->points()[k];
+    x[k] = point.part == nullptr ? point.world.value(state.time())
+                                 : world_point(state, m.at[k].part, point.material);
+  }
+  const VecMax<double, kMaxJointRows> C = m.joint->gap(state.time(), x.data());
+  return m.joint->one_sided() ? std::max(0.0, -C[0]) : C.norm();
 }
 
 std::string Model::velocity_name(int i) const {

@@ -43,6 +43,24 @@ Torque& MultiBody::torque(std::string name, const Part& part, TimeVector torque,
   return *torques_.back();
 }
 
+Joint& MultiBody::join(std::unique_ptr<Joint> joint) {
+  const std::vector<Point>& points = joint->points();
+  const std::string what = std::string(joint->type()) + " '" + joint->name() + "'";
+  if (joint->name().empty()) throw std::invalid_argument("a joint needs a name");
+  for (const auto& other : joints_)
+    if (other->name() == joint->name())
+      throw std::invalid_argument("there are two joints called '" + joint->name() + "'");
+  if (static_cast<int>(points.size()) != joint->n_points())
+    throw std::invalid_argument(what + " ties " + std::to_string(joint->n_points()) + " points, not " +
+                                std::to_string(points.size()));
+  const auto first = static_cast<std::size_t>(joint->n_first());
+  for (std::size_t k = 1; k < points.size(); ++k)
+    if (k != first && points[k].part != points[k < first ? 0 : first].part)
+      throw std::invalid_argument(what + ": the points of a side are not on one part");
+  joints_.push_back(std::move(joint));
+  return *joints_.back();
+}
+
 Part* MultiBody::find(const std::string& name) const {
   const auto found = number_of_.find(name);
   return found == number_of_.end() ? nullptr : parts_[static_cast<std::size_t>(found->second)].get();

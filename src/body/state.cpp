@@ -34,6 +34,7 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.v);
   hash.add_each(state.work);
   hash.add_each(state.at_limit);
+  hash.add_each(state.joints);
   return hash.value();
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
 
 namespace pliant {
 
@@ -17,7 +18,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   v_ = state.v;
   constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
   for (int stage = 0; stage < 4; ++stage) {
-    dynamics.accelerations(t + node[stage] * h, q_, v_, state.at_limit, work);
+    dynamics.accelerations(t + node[stage] * h, q_, v_, state, work);
     ++counters.evaluations;
     hold_inertialess(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);
@@ -33,7 +34,8 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   state.work += h * work_sum;
   hold_inertialess(dynamics.model(), work, state.v);
   normalise_rotations(dynamics.model(), state.q);
-  stop_at_limits(dynamics, t + h, state, work, counters);
+  settle_limits(dynamics, t + h, state, work, counters);
+  settle_joints(dynamics, t + h, state, work, counters);
 }
 
 double Rk4::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

@@ -3,20 +3,22 @@
 #include <Eigen/Eigenvalues>
 
 #include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
 
 namespace pliant {
 
 void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
                              StepCounters& counters) {
   const double h = state.h;
-  dynamics.accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  dynamics.accelerations(state.time(), state.q, state.v, state, work);
   ++counters.evaluations;
   state.v += h * work.v_dot;
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
-  stop_at_limits_ahead(dynamics.model(), work, state, h, counters);
+  stop_ahead(dynamics, work, state, h, ahead_, counters);
   advance_coordinates(dynamics.model(), state.q, state.v, h);
   settle_on_limits(dynamics.model(), state);
+  settle_joints(dynamics, state.time() + h, state, work, counters);
 }
 
 double SemiImplicitEuler::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

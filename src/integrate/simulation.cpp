@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
 
 namespace pliant {
 
@@ -14,7 +15,9 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       integrator_(make_integrator(integrator)),
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
-  start_energy_ = dynamics_.ledger(state_, output_work_).energy();
+  dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
+  close_at_start(dynamics_, state_, output_work_, step_counters_);
+  start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
 }
 
@@ -30,7 +33,12 @@ void Simulation::step(double h) {
     state_.h = h;
   }
   last_good_ = state_;
-  integrator_->step(dynamics_, state_, work_, step_counters_);
+  try {
+    integrator_->step(dynamics_, state_, work_, step_counters_);
+  } catch (const UnsatisfiableModel& failure) {
+    state_ = last_good_;
+    throw UnsatisfiableModel(failure.what(), state_.time());
+  }
   ++state_.step;
   ++step_counters_.steps;
   check(last_good_);
@@ -46,8 +54,8 @@ void Simulation::check(const State& before) {
     if (!std::isfinite(state_.q[i])) where = model_.coordinate_name(static_cast<int>(i));
   if (where.empty()) where = "the work of the ledger";
   Workspace<double> scratch;
-  std::string term = dynamics_.diagnose(before.time(), before.q, before.v, scratch);
-  if (term.empty()) term = dynamics_.diagnose(before.time() + before.h, before.q, before.v, scratch);
+  std::string term = dynamics_.diagnose(before.time(), before.q, before.v, before, scratch);
+  if (term.empty()) term = dynamics_.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
   std::ostringstream message;
   message << "not a finite number in " << where << " after the step from t = " << before.time() << " s";
   if (!term.empty())
@@ -87,7 +95,8 @@ std::set<std::string> Simulation::held() const {
 
 void Simulation::set_state(State state) {
   if (state.q.size() != model_.n_q() || state.v.size() != model_.n_v() ||
-      static_cast<int>(state.at_limit.size()) != model_.n_limits())
+      static_cast<int>(state.at_limit.size()) != model_.n_limits() ||
+      state.joints.size() != model_.joints().size())
     throw std::invalid_argument("this state belongs to another model");
   state_ = std::move(state);
 }

@@ -87,7 +87,7 @@ double largest_stable_step(const Simulation& simulation) {
   const Model& model = simulation.model();
   const State& state = simulation.state();
   Workspace<double> work;
-  simulation.dynamics().accelerations(state.time(), state.q, state.v, state.at_limit, work);
+  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
   const std::size_t n = model.parts().size();
 
   // Groups of parts tied by springs.

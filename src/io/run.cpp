@@ -236,7 +236,7 @@ bool Run::simulate() {
   try {
     try {
       step_to_end();
-    } catch (const NumericalFailure&) {
+    } catch (const StepFailure&) {
       // The simulation holds the last good state: what led to the failure is in the recording.
       record_state();
       record_.add_seconds("simulate", seconds_since(start));

@@ -24,7 +24,9 @@ std::vector<std::string> skipped_work(const Model& model) {
     skipped.push_back("rows and columns of frozen parameters in parts that deform: " +
                       std::to_string(frozen));
   if (moving > 0) skipped.push_back("meshes and elements: no part deforms locally");
-  if (moving > 1 && model.springs().empty()) skipped.push_back("coupling: no spring ties the parts");
+  if (model.joints().empty()) skipped.push_back("C_q and lambda: there are no joints");
+  if (moving > 1 && model.springs().empty() && model.joints().empty())
+    skipped.push_back("coupling: no spring or joint ties the parts");
   if (model.springs().empty() && model.forces().empty() && model.torques().empty())
     skipped.push_back("springs, point forces and torques: there are none");
   if (model.body().gravity.isZero(0)) skipped.push_back("gravity: it is zero");

@@ -59,6 +59,8 @@ std::vector<Column> mode_columns_of(const Model& model) {
       columns.push_back({"limit." + model.coordinate_name(part.q0 + 7 + k), "1",
                          "-1 at its lower limit, 1 at its upper, 0 free"});
   }
+  for (const JointModel& joint : model.joints())
+    columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
   columns.push_back({"check", "1", "hash of the bits of the state"});
   return columns;
 }
@@ -70,20 +72,27 @@ void write_modes(const State& state, std::vector<double>& row) {
   row.push_back(static_cast<double>(state.step));
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
+  for (const JointMode mode : state.joints) row.push_back(static_cast<double>(mode));
   row.push_back(check_of(state));
 }
 
-bool read_modes(const std::vector<double>& row, State& state) {
+bool read_modes(const std::vector<double>& row, int n_limits, State& state) {
   constexpr std::size_t first_limit = 3 + kWorks;
-  if (row.size() < first_limit + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
+  const std::size_t first_joint = first_limit + static_cast<std::size_t>(n_limits);
+  if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
   state.start = row[0];
   state.h = row[1];
   state.step = static_cast<std::int64_t>(row[2]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[3 + static_cast<std::size_t>(i)];
   state.at_limit.clear();
-  for (std::size_t i = first_limit; i + 1 < row.size(); ++i) {
+  for (std::size_t i = first_limit; i < first_joint; ++i) {
     if (!(row[i] == -1 || row[i] == 0 || row[i] == 1)) return false;
     state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
+  }
+  state.joints.clear();
+  for (std::size_t i = first_joint; i + 1 < row.size(); ++i) {
+    if (!(row[i] == 0 || row[i] == 1 || row[i] == 2 || row[i] == 3)) return false;
+    state.joints.push_back(static_cast<JointMode>(row[i]));
   }
   return check_of(state) == row.back();
 }

@@ -61,6 +61,12 @@ std::vector<Column> TrajectoryTable::columns() const {
   }
   for (const Track& track : scene_->tracks)
     add_axes(columns, "track." + track.name, "m", "tracked point, world");
+  for (const JointModel& joint : simulation_->model().joints()) {
+    if (!parts_shown_) break;
+    const std::string name = "joint." + joint.joint->name();
+    add_axes(columns, name + ".force", "N", "on its first side, world");
+    columns.push_back({name + ".gap", "m", "how far it is open"});
+  }
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
     columns.push_back({std::string("energy.") + energy, "J", ""});
   columns.push_back({"energy.total", "J", "kinetic + gravity + elastic + springs"});
@@ -92,6 +98,10 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   for (const Track& track : scene_->tracks)
     add_vector(numbers,
                model.world_point(state, model.body().index(*track.point.part), track.point.material));
+  for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
+    add_vector(numbers, simulation_->dynamics().joint_force(state.time(), j, work_));
+    numbers.push_back(model.gap(state, j));
+  }
   numbers.insert(numbers.end(),
                  {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs, ledger.energy()});
   numbers.insert(numbers.end(), ledger.work.data(), ledger.work.data() + kWorks);

@@ -57,7 +57,7 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
   Workspace<double> work, scratch;
   Workspace<Dual<1>> dual;
   const double t = 0.3;
-  dynamics.accelerations(t, state.q, state.v, state.at_limit, work);
+  dynamics.accelerations(t, state.q, state.v, state, work);
   auto random = [&](Eigen::Index n, double size) {
     VecX<double> x(n);
     for (Eigen::Index i = 0; i < n; ++i) x[i] = draws.uniform(-size, size);
@@ -70,7 +70,7 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
         test::first_derivative(
             [&](long double e) {
               const double k = static_cast<double>(e);
-              dynamics.accelerations(t, state.q + k * dq, state.v + k * dv, state.at_limit, scratch);
+              dynamics.accelerations(t, state.q + k * dq, state.v + k * dv, state, scratch);
               return VecX<long double>(scratch.v_dot.cast<long double>());
             },
             1e-3L)
@@ -106,8 +106,8 @@ TEST_CASE("free fall: everything falls alike, however it is deformed, and nothin
   part.place({0, 0, 5}, Eigen::Quaterniond(0.6, 0.3, -0.4, 0.2));
   Simulation simulation(body, "rk4");
   Workspace<double> work;
-  simulation.dynamics().accelerations(0, simulation.state().q, simulation.state().v,
-                                      simulation.state().at_limit, work);
+  simulation.dynamics().accelerations(0, simulation.state().q, simulation.state().v, simulation.state(),
+                                      work);
   CHECK((work.v_dot.head<3>() - Vec3<double>(0, 0, -9.81)).norm() <= 1e-12);
   CHECK(work.v_dot.tail(work.v_dot.size() - 3).norm() <= 1e-11);
 }
@@ -124,8 +124,8 @@ TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it 
   body.force("F", point(part, where), TimeVector(F));
   Simulation simulation(body);
   Workspace<double> work;
-  simulation.dynamics().accelerations(0, simulation.state().q, simulation.state().v,
-                                      simulation.state().at_limit, work);
+  simulation.dynamics().accelerations(0, simulation.state().q, simulation.state().v, simulation.state(),
+                                      work);
   const Mat3<double> R = part.R0().toRotationMatrix();
   const Inertia<double>& I = part.rest_inertia();
   const Vec3<double> centre = I.moment / I.mass, alpha = work.v_dot.tail<3>();

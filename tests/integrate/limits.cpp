@@ -234,7 +234,7 @@ TEST_CASE("jvp holds the pressed parameters", "[limits]") {
   const State& state = simulation.state();
   REQUIRE(state.at_limit[1] == 1);  // spin presses a3 outwards
   Workspace<double> work;
-  simulation.dynamics().accelerations(0, state.q, state.v, state.at_limit, work);
+  simulation.dynamics().accelerations(0, state.q, state.v, state, work);
   REQUIRE(work.v_dot[7] == Approx(0).margin(1e-12));
   const VecX<double> dq = VecX<double>::Constant(state.q.size(), 0.01);
   VecX<double> dv = VecX<double>::Constant(state.v.size(), 0.1);
@@ -243,7 +243,7 @@ TEST_CASE("jvp holds the pressed parameters", "[limits]") {
   CHECK(std::abs(d[7]) <= 1e-12 * d.norm());
   Workspace<double> more;
   const double e = 1e-6;
-  simulation.dynamics().accelerations(0, state.q + e * dq, state.v + e * dv, state.at_limit, more);
-  simulation.dynamics().accelerations(0, state.q - e * dq, state.v - e * dv, state.at_limit, work);
+  simulation.dynamics().accelerations(0, state.q + e * dq, state.v + e * dv, state, more);
+  simulation.dynamics().accelerations(0, state.q - e * dq, state.v - e * dv, state, work);
   CHECK((d - (more.v_dot - work.v_dot) / (2 * e)).norm() <= 1e-6 * d.norm());
 }

@@ -63,7 +63,7 @@ TEST_CASE("an OBJ file reads back exactly") {
   FrameMeshes frame(*scene, simulation.model());
   const std::vector<NamedMesh>& meshes = frame.at(simulation.state());
   const ReadObj obj = read_obj(obj_text(meshes, "parts.mtl"));
-  CHECK(obj.groups == std::vector<std::string>{"blob", "rider,_\"heavy\"", "wall"});
+  CHECK(obj.groups == std::vector<std::string>{"blob", "rider,_\"heavy\"", "wall", "bob"});
   CHECK(obj.materials == obj.groups);
   std::size_t vertex = 0, normal = 0, triangle = 0;
   for (const NamedMesh& named : meshes) {

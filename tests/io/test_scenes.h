@@ -4,11 +4,13 @@
 
 #include <memory>
 
+#include <pliant/body/joints/string.h>
 #include <pliant/part/registry.h>
 #include <pliant/scene/scene.h>
 
-/// Three parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an
-/// actuated rest value; a rigid one on a spring; a fixed one.
+/// Four parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an
+/// actuated rest value; a rigid one on a spring, with another that hangs from it on a joint and a string; a
+/// fixed one.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();
@@ -35,7 +37,11 @@ inline std::unique_ptr<pliant::Scene> pulled_scene() {
   scene->body.spring("hold", point(rider, 0, 0), point(wall, 0, 0), 300, 1);
   scene->body.force("push", point(blob, 0.3, 0.2),
                     TimeVector(0, TimeFunction::formula("5 * cos(30 * t)"), 0));
-  scene->appearance.resize(3);
+  Part& bob = scene->body.add(make_part("bob", "sphere", {}, 1500));
+  bob.place({0.6, 0, 0.5}).rest({{"r", 0.1}});
+  scene->body.ball("hang", point(rider, -kPi / 2, 0), point(bob, kPi / 2, 0));
+  scene->body.join("leash", String{0.9}, {world(0.6, 0.6, 0.5), point(bob, 0, 0)});
+  scene->appearance.resize(4);
   for (Appearance& look : scene->appearance) look.resolution = 2;
   scene->tracks.push_back({"grip", point(blob, 0, 0), {}});
   scene->hash = 42;

@@ -46,7 +46,7 @@ TEST_CASE("camera and ground do not move, and hold the whole motion") {
     CHECK(same(picture.camera, camera));
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
-    CHECK(picture.bodies.size() == 3);
+    CHECK(picture.bodies.size() == 4);
     REQUIRE(picture.tracks.size() == 1 + 3 + 1);  // a track, three springs, one of them held by the world
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
@@ -88,7 +88,7 @@ TEST_CASE("what the scene says of camera, light and ground holds") {
   CHECK(picture.ground.height == -2.5);
   CHECK(picture.lights.to_key == Eigen::Vector3f(0, 0, 1));
   CHECK_FALSE(picture.lights.shadows);
-  REQUIRE(picture.bodies.size() == 2);
+  REQUIRE(picture.bodies.size() == 3);
   CHECK(picture.bodies[0].color == Eigen::Vector3f(0.25f, 0.5f, 1));
   scene.camera.target = Vec3<double>(0, 0, 1);
   CHECK(filmed.film().camera().target == Eigen::Vector3d(0, 0, 1));

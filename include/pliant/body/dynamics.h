@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
 #include <pliant/body/thread_pool.h>
 
@@ -35,6 +36,7 @@ struct PartWorkspace {
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
+  ConstraintWorkspace<S> joints;
   VecX<S> v_dot;         ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
   Vec<S, kWorks> power;  ///< rates of the works of the ledger, W
 };
@@ -49,10 +51,28 @@ class Dynamics {
   explicit Dynamics(const Model& model, ThreadPool* pool = nullptr) : model_(&model), pool_(pool) {}
   const Model& model() const { return *model_; }
 
-  /// Accelerations and powers at (t, q, v). Parameters that rest at a limit, with a rate of exactly 0, may
-  /// only leave it; those that move there are the integrator's to stop.
-  void accelerations(double t, const VecX<double>& q, const VecX<double>& v,
-                     const std::vector<std::int8_t>& at_limit, Workspace<double>& work) const;
+  /// What the method of integration means for the joints.
+  struct Hold {
+    bool step_consistent = true;  ///< what the rule `automatic` means for the method of integration
+    bool projected = false;       ///< closed joints are projected after each step: they need no Baumgarte
+  };
+  void set_hold(const Hold& hold) { hold_ = hold; }
+  const Hold& hold() const { return hold_; }
+
+  /// Accelerations and powers at (t, q, v), with the step and the modes of limits and joints of a state.
+  /// Parameters that rest at a limit, with a rate of exactly 0, may only leave it; those that move there are
+  /// the integrator's to stop.
+  void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                     Workspace<double>& work) const;
+  /// Frames and points of the parts of an island, and its joints' C, C_dot and C_q, at (t, q, v); nothing
+  /// else of work changes.
+  void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                       const Island& island, Workspace<double>& work) const;
+  /// The same, with the mass matrices, M^-1 C_q^T and the factor of W_c.
+  void factor_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                     const Island& island, Workspace<double>& work) const;
+  /// The force of a joint on its first side, N, world; work as accelerations(t, ...) left it.
+  Vec3<double> joint_force(double t, int joint, const Workspace<double>& work) const;
   /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// The same without an evaluation of its own. work: as the evaluation at (t, q, v) left it; dual_work: any,
@@ -61,24 +81,38 @@ class Dynamics {
                    const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
   /// q_dot of (q, v): quaternion rate theta_dot = 1/2 theta o (0, omega).
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
+  /// Frames, points, mass matrices and their factors of some parts.
+  void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
+                       Workspace<double>& work) const;
+  /// Energy of some parts and of the springs at them, J. work: any.
+  double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
+                Workspace<double>& work) const;
   /// Energies, works and momenta; balance is left to the caller.
   Ledger ledger(const State& state, Workspace<double>& work) const {
     return ledger(state.time(), state, work);
   }
   /// The same with the coordinates and velocities of the state taken at time t (s).
   Ledger ledger(double t, const State& state, Workspace<double>& work) const;
-  /// Velocity change M^-1 f of a part for a generalised impulse, by the factor that the last evaluation left.
-  static void apply_impulse(const PartWorkspace<double>& part, VecMax<double>& impulse);
   /// The first term that is not finite in an evaluation at this state, in words; empty if all are finite.
-  std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, Workspace<double>& work) const;
+  std::string diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                       Workspace<double>& work) const;
 
  private:
   template <class S>
-  void evaluate(double t, const VecX<S>& q, const VecX<S>& v, const std::vector<std::int8_t>* at_limit,
-                const Workspace<double>* fixed_limits, Workspace<S>& work) const;
+  void evaluate(double t, const VecX<S>& q, const VecX<S>& v, const State* modes,
+                const Workspace<double>* fixed_modes, Workspace<S>& work) const;
+  /// Adds the energies of a part that was evaluated, and of a spring.
+  void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
+  void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;
+  /// Gives the workspace of the joints its sizes.
+  template <class S>
+  void size_joints(Workspace<S>& work) const;
+  template <class S>
+  void join(double t, const State* modes, const Workspace<double>* fixed_modes, Workspace<S>& work) const;
 
   const Model* model_;
   ThreadPool* pool_;
+  Hold hold_;
 };
 
 }  // namespace pliant

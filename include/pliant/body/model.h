@@ -8,6 +8,7 @@
 #include <pliant/body/ledger.h>
 #include <pliant/body/multibody.h>
 #include <pliant/body/state.h>
+#include <pliant/solve/block_pattern.h>
 #include <pliant/solve/symmetric_factor.h>
 
 namespace pliant {
@@ -22,6 +23,8 @@ struct PartModel {
   std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
   VecMax<double> inertia_floor;               ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
+  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
+  int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone
   Eigen::Matrix3d R0;                         ///< of a fixed part
   Part::Use use;                              ///< keeps the part from being changed
 };
@@ -45,6 +48,47 @@ struct TorqueModel {
   int part;
 };
 
+/// A side of a joint that is on a moving part. A joint whose sides are on the same part has one.
+struct JointSide {
+  int part;
+  int place;   ///< of the part in its island
+  int offset;  ///< of its C_q^T and M^-1 C_q^T, n_v x rows, in the flat arrays of the workspace
+};
+struct JointModel {
+  const Joint* joint;
+  int rows;
+  int row;                  ///< first of its rows among those of all joints
+  std::vector<PortRef> at;  ///< of each of its points
+  std::vector<JointSide> sides;
+  int island, node;  ///< its node in the system of its island
+  int island_row;    ///< first of its rows there
+  double length;     ///< size of the smaller of its parts, m
+  bool driven;       ///< whether a point of it in the world moves
+};
+
+/// What two sides of joints that share a part add to W_c = C_q M^-1 C_q^T: the block of (row side, column
+/// side).
+struct Coupling {
+  int part;
+  int row_offset, column_offset;  ///< of the sides in the flat arrays
+  int rows, columns;
+  int row_joint, column_joint;
+  int target;  ///< offset of the block
+};
+
+/// Parts that joints tie together, and the system of their joints.
+struct Island {
+  std::vector<int> parts;
+  std::vector<int> anchors;  ///< fixed parts that its joints hold on to
+  std::vector<int> joints;   ///< those that are equations
+  std::vector<int> strings;  ///< those that are one-sided
+  std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
+  int n_v = 0;               ///< length of that vector
+  int rows = 0;              ///< of joints
+  BlockPattern pattern;
+  std::vector<Coupling> couplings;
+};
+
 class Model {
  public:
   /// Prepares all parts. Throws std::invalid_argument naming what is wrong. The body must outlive the model.
@@ -55,6 +99,10 @@ class Model {
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
   const std::vector<TorqueModel>& torques() const { return torques_; }
+  const std::vector<JointModel>& joints() const { return joints_; }
+  const std::vector<Island>& islands() const { return islands_; }
+  int n_rows() const { return n_rows_; }          ///< of all joints
+  int n_side_values() const { return n_sides_; }  ///< numbers in C_q^T of all joints
   int n_q() const { return n_q_; }
   int n_v() const { return n_v_; }
   int n_limits() const { return n_limits_; }
@@ -67,6 +115,8 @@ class Model {
   Eigen::Quaterniond orientation(const State& state, int part) const;
   /// A point of a part in the world.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
+  /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
+  double gap(const State& state, int joint) const;
   /// "upper.c.x", "upper.bend.angle": the name of an entry of v (or of q, where they differ).
   std::string velocity_name(int i) const;
   std::string coordinate_name(int i) const;
@@ -74,13 +124,17 @@ class Model {
  private:
   /// what: the spring or force that acts there, for messages.
   PortRef attach(const Point& point, const std::string& what);
+  void add_joint(const Joint& joint);
+  void lay_islands();
 
   const MultiBody* body_;
   std::vector<PartModel> parts_;
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
   std::vector<TorqueModel> torques_;
-  int n_q_ = 0, n_v_ = 0, n_limits_ = 0;
+  std::vector<JointModel> joints_;
+  std::vector<Island> islands_;
+  int n_q_ = 0, n_v_ = 0, n_limits_ = 0, n_rows_ = 0, n_sides_ = 0;
 };
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// MultiBody: parts and what acts on them. This is what a library user or a scene fills in; Model makes it
-// ready to run.
+// MultiBody: parts, the joints that tie them, and what acts on them. This is what a library user or a scene
+// fills in; Model makes it ready to run.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/joint.h>
+#include <pliant/body/joints/ball.h>
 #include <pliant/body/points.h>
+#include <pliant/body/stabilization.h>
 #include <pliant/part/primitive.h>
 
 namespace pliant {
@@ -49,6 +52,7 @@ struct Torque {
 class MultiBody {
  public:
   Vec3<double> gravity{0, 0, -9.81};  ///< m/s^2
+  Stabilization stabilization;
 
   /// Adds a part; the reference stays valid. Throws std::invalid_argument when the name is taken or empty.
   template <class P, class... Args>
@@ -68,10 +72,26 @@ class MultiBody {
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
   Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
 
+  /// A joint of a formula (body/joints/*.h) over the points of its first side, then those of its second.
+  /// Throws std::invalid_argument when the points of a side are not on one part.
+  template <class F>
+  JointOf<F>& join(std::string name, F formula, std::vector<Point> points) {
+    auto joint = std::make_unique<JointOf<F>>(std::move(name), std::move(points), std::move(formula));
+    JointOf<F>& reference = *joint;
+    join(std::move(joint));
+    return reference;
+  }
+  Joint& join(std::unique_ptr<Joint> joint);
+  /// The point-to-point joint: two points coincide.
+  Joint& ball(std::string name, Point a, Point b) {
+    return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
+  }
+
   const std::vector<std::unique_ptr<Part>>& parts() const { return parts_; }
   const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }
   const std::vector<std::unique_ptr<PointForce>>& forces() const { return forces_; }
   const std::vector<std::unique_ptr<Torque>>& torques() const { return torques_; }
+  const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   /// The part called name; nullptr if there is none.
   Part* find(const std::string& name) const;
   /// Number of a part of this body.
@@ -83,6 +103,7 @@ class MultiBody {
   std::vector<std::unique_ptr<Spring>> springs_;
   std::vector<std::unique_ptr<PointForce>> forces_;
   std::vector<std::unique_ptr<Torque>> torques_;
+  std::vector<std::unique_ptr<Joint>> joints_;
 };
 
 }  // namespace pliant

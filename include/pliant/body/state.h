@@ -11,10 +11,29 @@
 namespace pliant {
 
 /// Kinds of work in the energy ledger, J.
-enum class Work { damping, drag, spring_damping, anchors, actuation, forces, limits };
-inline constexpr int kWorks = 7;
-inline constexpr std::array<const char*, kWorks> kWorkNames{
-    "damping", "drag", "spring_damping", "anchors", "actuation", "forces", "limits"};
+enum class Work {
+  damping,
+  drag,
+  spring_damping,
+  anchors,  ///< of hands that move the ends of springs and joints
+  actuation,
+  forces,
+  limits,
+  baumgarte,  ///< of joints that close
+  projection  ///< of the impulses that close joints
+};
+inline constexpr int kWorks = 9;
+inline constexpr std::array<const char*, kWorks> kWorkNames{"damping", "drag",      "spring_damping",
+                                                            "anchors", "actuation", "forces",
+                                                            "limits",  "baumgarte", "projection"};
+
+/// What a joint does right now.
+enum class JointMode : std::int8_t {
+  off,      ///< nothing
+  closing,  ///< it is open, and Baumgarte's equation closes it
+  closed,   ///< it holds
+  slack     ///< one-sided, and open: it does nothing
+};
 
 struct State {
   double start = 0;       ///< time of step 0, s
@@ -24,7 +43,8 @@ struct State {
   VecX<double> v;         ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
   Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< done so far
   std::vector<std::int8_t>
-      at_limit;  ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
+      at_limit;                   ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
+  std::vector<JointMode> joints;  ///< of each joint
 
   double time() const { return start + static_cast<double>(step) * h; }
 };

@@ -12,6 +12,9 @@ class SemiImplicitEuler final : public Integrator {
   int order() const override { return 1; }
   void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
+
+ private:
+  Workspace<double> ahead_;  // kept between steps: no heap in a step
 };
 
 }  // namespace pliant

@@ -3,30 +3,25 @@
 
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <pliant/integrate/integrator.h>
+#include <pliant/integrate/step_failure.h>
 
 namespace pliant {
 
-/// A step gave a number that is not finite. The simulation still holds the last good state.
-class NumericalFailure : public std::runtime_error {
- public:
-  NumericalFailure(const std::string& what, double at) : std::runtime_error(what), time(at) {}
-  double time;  ///< of the last good state, s
-};
-
 class Simulation {
  public:
-  /// Prepares the body (which must outlive the simulation) and starts at time 0.
+  /// Prepares the body (which must outlive the simulation) and starts at time 0: joints with a small gap are
+  /// closed, and the velocities made to agree with them. Throws std::invalid_argument, UnsatisfiableModel.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler",
                       int threads = 1);
   Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step of h seconds (> 0 and finite). Throws NumericalFailure, std::invalid_argument.
+  /// One step of h seconds (> 0 and finite). Throws NumericalFailure, UnsatisfiableModel,
+  /// std::invalid_argument.
   void step(double h);
 
   const Model& model() const { return model_; }

@@ -40,7 +40,7 @@ class Run {
   Run& operator=(const Run&) = delete;
 
   /// Steps to the end and writes trajectory.csv. False when `stop` ended it: the last state is recorded and
-  /// the run can be resumed. Throws NumericalFailure (the last good state is then recorded),
+  /// the run can be resumed. Throws StepFailure (the last good state is then recorded),
   /// std::system_error.
   bool simulate();
 

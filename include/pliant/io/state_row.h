@@ -19,7 +19,8 @@ std::vector<Column> mode_columns_of(const Model& model);
 /// The row of a state. Its last number is a hash of all bits of the state.
 void write_modes(const State& state, std::vector<double>& row);
 
-/// Fills in the rest of a state whose q and v are set. False when the row's hash is not that of the state.
-[[nodiscard]] bool read_modes(const std::vector<double>& row, State& state);
+/// Fills in the rest of a state whose q and v are set, of a model with so many limits. False when the row's
+/// hash is not that of the state.
+[[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, State& state);
 
 }  // namespace pliant

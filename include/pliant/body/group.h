@@ -1,0 +1,135 @@
+// A group: parts whose velocities act on each other at once, the parts of an island or one part alone. Its
+// velocities v_r = (R^T c_dot, omega, q_s_dot) of part after part make one vector x. One-sided rows (limits
+// of parameters, strings) push on it while its joints hold.
+#pragma once
+
+#include <algorithm>
+
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+/// Max: most velocities; Eigen::Dynamic for an island.
+template <class S, int Max>
+class Group {
+ public:
+  using Vector = VecMax<S, Max>;
+  static constexpr int kMax = Max;
+
+  /// Of a part alone.
+  Group(const Model& model, const Workspace<S>& work, int part)
+      : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
+  /// Of an island; which of its joints hold against pushes and corrections: all that act, or the closed ones.
+  Group(const Model& model, const Workspace<S>& work, const Island& island, bool closed_only)
+      : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
+    closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
+                     return work.joints.modes[at(j)] == JointMode::closing;
+                   });
+  }
+
+  int size() const { return size_; }
+  int parts() const { return island_ == nullptr ? 1 : static_cast<int>(island_->parts.size()); }
+  int part(int i) const { return island_ == nullptr ? alone_ : island_->parts[at(i)]; }
+  /// Where its part i begins in x.
+  int first(int i) const { return island_ == nullptr ? 0 : island_->first[at(i)]; }
+  const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
+  const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
+  const Island* island() const { return island_; }
+
+  /// x of what `of` gives for each part's workspace.
+  template <class F>
+  Vector gather(F&& of) const {
+    Vector x(size_);
+    for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = of(i);
+    return x;
+  }
+  auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
+  auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
+
+  /// What a row bounds from below.
+  S value(const OneSidedRow& row, const Vector& x) const {
+    if (row.part >= 0) return x[first(row.part) + 6 + row.k] * S(row.sign);
+    const JointModel& string = model_->joints()[at(island_->strings[at(row.k)])];
+    S sum(0.0);
+    for (const JointSide& side : string.sides) {
+      const int start = island_->first[at(side.place)];
+      for (int i = 0; i < velocities(side.part); ++i) sum += work_->joints.Cq[side.offset + i] * x[start + i];
+    }
+    return sum * S(row.sign);
+  }
+  /// The change of x by a unit push of a row, as if there were no joints.
+  Vector push(const OneSidedRow& row) const {
+    Vector x = Vector::Constant(size_, S(0.0));
+    if (row.part >= 0) {
+      VecMax<S> force = VecMax<S>::Constant(velocities(part(row.part)), S(0.0));
+      force[6 + row.k] = S(row.sign);
+      workspace(row.part).factor.solve(force);
+      share(x, row.part) = force;
+      return x;
+    }
+    for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
+      VecMax<S> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
+      workspace(side.place).factor.solve(force);
+      share(x, side.place) += force;
+    }
+    return x;
+  }
+  /// The same while the joints hold.
+  Vector response(const OneSidedRow& row) const {
+    Vector x = push(row);
+    if (island_ != nullptr) correct(joint_rows(x), x);
+    return x;
+  }
+
+  /// C_q x of the joints of the island.
+  VecX<S> joint_rows(const Vector& x) const {
+    VecX<S> rows = VecX<S>::Constant(island_->rows, S(0.0));
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_->joints()[at(j)];
+      for (const JointSide& side : joint.sides) {
+        const int n = velocities(side.part), start = island_->first[at(side.place)];
+        for (int r = 0; r < joint.rows; ++r)
+          for (int i = 0; i < n; ++i)
+            rows[joint.island_row + r] += work_->joints.Cq[side.offset + r * n + i] * x[start + i];
+      }
+    }
+    return rows;
+  }
+  /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
+  /// -rows. Returns lambda. When W_c is that of an earlier configuration, lambda is near to it, and the
+  /// forces still pull with C_q^T as it is now: two ends of a joint are pushed by opposite forces.
+  VecX<S> correct(VecX<S> rows, Vector& x) const {
+    VecX<S> lambda = -rows;
+    const auto& factors = closed_only_ ? work_->joints.W_closed : work_->joints.W_c;
+    factors[at(static_cast<int>(island_ - model_->islands().data()))].solve(lambda);
+    Vector force = Vector::Constant(size_, S(0.0));
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_->joints()[at(j)];
+      for (const JointSide& side : joint.sides) {
+        const int n = velocities(side.part), start = island_->first[at(side.place)];
+        for (int r = 0; r < joint.rows; ++r)
+          for (int i = 0; i < n; ++i)
+            force[start + i] += work_->joints.Cq[side.offset + r * n + i] * lambda[joint.island_row + r];
+      }
+    }
+    for (int i = 0; i < parts(); ++i) {
+      VecMax<S> change = share(force, i);
+      workspace(i).factor.solve(change);
+      share(x, i) += change;
+    }
+    return lambda;
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  int velocities(int part) const { return 6 + model_->parts()[at(part)].n_s; }
+
+  const Model* model_;
+  const Workspace<S>* work_;
+  const Island* island_ = nullptr;
+  int alone_ = -1;
+  bool closed_only_ = false;
+  int size_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,144 @@
+// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it ties. Its formula is one struct
+// (body/joints/*.h), templated on its scalar; everything else follows from it:
+//   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q vdot + bias,   bias = -gamma of Eq. (13)
+// bias is what C_ddot is when no velocity changes: x moves along (x, x_dot, Ldot v), moving points of the
+// world along their path, and so C_tt and C_qt are in it.
+#pragma once
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/points.h>
+#include <pliant/math/dual.h>
+#include <pliant/math/taylor2.h>
+
+namespace pliant {
+
+/// Most rows of a joint, and most points that it ties.
+inline constexpr int kMaxJointRows = 6;
+inline constexpr int kMaxJointPoints = 8;
+
+/// The motion of a point in the world: position, velocity, and the acceleration it has when no generalised
+/// velocity changes.
+template <class S>
+struct PointMotion {
+  Vec3<S> x, x_dot, x_ddot;
+};
+
+/// A joint's formula at a motion of its points.
+template <class S>
+struct JointRows {
+  VecMax<S, kMaxJointRows> C;      ///< m
+  VecMax<S, kMaxJointRows> C_dot;  ///< m/s
+  VecMax<S, kMaxJointRows> bias;   ///< m/s^2
+  /// dC/dx, rows x 3 points.
+  Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJointRows, 3 * kMaxJointPoints> C_x;
+};
+
+/// What every joint has, whatever its formula.
+class Joint {
+ public:
+  Joint(std::string name, std::vector<Point> points, int n_first, int n_points)
+      : name_(std::move(name)), points_(std::move(points)), n_first_(n_first), n_points_(n_points) {}
+  virtual ~Joint() = default;
+
+  const std::string& name() const { return name_; }
+  virtual const char* type() const = 0;
+  virtual int rows() const = 0;
+  /// Whether it only holds one way: C >= 0 with a multiplier >= 0, instead of C = 0.
+  virtual bool one_sided() const = 0;
+
+  /// The points of its first side, then those of its second; all points of a side are on one part, or all of
+  /// the world.
+  const std::vector<Point>& points() const { return points_; }
+  int n_first() const { return n_first_; }
+  int n_points() const { return n_points_; }
+
+  /// x: one motion a point. The rows of out take the joint's sizes.
+  virtual void evaluate(double t, const PointMotion<double>* x, JointRows<double>& out) const = 0;
+  virtual void evaluate(double t, const PointMotion<Dual<1>>* x, JointRows<Dual<1>>& out) const = 0;
+  /// C alone, at positions.
+  virtual VecMax<double, kMaxJointRows> gap(double t, const Vec3<double>* x) const = 0;
+
+ private:
+  std::string name_;
+  std::vector<Point> points_;
+  int n_first_, n_points_;
+};
+
+template <class F, class = void>
+struct HasFault : std::false_type {};
+template <class F>
+struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
+
+/// The joint of a formula F:
+///   static constexpr const char *name, *formula;
+///   static constexpr int rows, first, second;  (first, second: points of each side; none: the world as it
+///   is) static constexpr bool one_sided; template <class T> Vec<T, rows> C(const std::array<Vec3<T>, first +
+///   second>& x, const T& t) const;
+template <class F>
+class JointOf final : public Joint {
+ public:
+  static constexpr int kRows = F::rows, kPoints = F::first + F::second;
+  static_assert(kRows >= 1 && kRows <= kMaxJointRows, "a joint has one to six rows");
+  static_assert(F::first >= 1 && kPoints <= kMaxJointPoints, "a joint ties up to four points a side");
+
+  JointOf(std::string name, std::vector<Point> points, F formula = {})
+      : Joint(std::move(name), std::move(points), F::first, kPoints), formula_(std::move(formula)) {
+    if constexpr (HasFault<F>::value)
+      if (const char* fault = formula_.fault())
+        throw std::invalid_argument(std::string(F::name) + " '" + this->name() + "' " + fault);
+  }
+
+  const char* type() const override { return F::name; }
+  int rows() const override { return kRows; }
+  bool one_sided() const override { return F::one_sided; }
+  const F& formula() const { return formula_; }
+
+  void evaluate(double t, const PointMotion<double>* x, JointRows<double>& out) const override {
+    evaluate_as<double>(t, x, out);
+  }
+  void evaluate(double t, const PointMotion<Dual<1>>* x, JointRows<Dual<1>>& out) const override {
+    evaluate_as<Dual<1>>(t, x, out);
+  }
+  VecMax<double, kMaxJointRows> gap(double t, const Vec3<double>* x) const override {
+    std::array<Vec3<double>, kPoints> at;
+    for (int k = 0; k < kPoints; ++k) at[static_cast<std::size_t>(k)] = x[k];
+    return formula_.template C<double>(at, t);
+  }
+
+ private:
+  template <class S>
+  void evaluate_as(double t, const PointMotion<S>* x, JointRows<S>& out) const {
+    using T = Taylor2<S>;
+    using D = Dual<3 * kPoints, S>;
+    std::array<Vec3<T>, kPoints> moving;
+    std::array<Vec3<D>, kPoints> varied;
+    for (int k = 0; k < kPoints; ++k)
+      for (int r = 0; r < 3; ++r) {
+        const auto p = static_cast<std::size_t>(k);
+        moving[p][r] = T(x[k].x[r], x[k].x_dot[r], x[k].x_ddot[r]);
+        varied[p][r] = D::variable(x[k].x[r], 3 * k + r);
+      }
+    const Vec<T, kRows> rates = formula_.template C<T>(moving, T(S(t), S(1.0), S(0.0)));
+    const Vec<D, kRows> slopes = formula_.template C<D>(varied, D(S(t)));
+    out.C.resize(kRows);
+    out.C_dot.resize(kRows);
+    out.bias.resize(kRows);
+    out.C_x.resize(kRows, 3 * kPoints);
+    for (int r = 0; r < kRows; ++r) {
+      out.C[r] = rates[r].v;
+      out.C_dot[r] = rates[r].d;
+      out.bias[r] = rates[r].dd;
+      for (int c = 0; c < 3 * kPoints; ++c) out.C_x(r, c) = slopes[r].d[static_cast<std::size_t>(c)];
+    }
+  }
+
+  F formula_;
+};
+
+}  // namespace pliant

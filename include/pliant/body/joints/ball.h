@@ -1,0 +1,24 @@
+// The point-to-point joint of the paper: two points coincide. With a moving point of the world it is a moving
+// anchor or a prescribed path.
+//   C = x_0 - x_1
+#pragma once
+
+#include <array>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+struct Ball {
+  static constexpr const char* name = "ball";
+  static constexpr const char* formula = "x_0 - x_1 = 0";
+  static constexpr int rows = 3, first = 1, second = 1;
+  static constexpr bool one_sided = false;
+
+  template <class T>
+  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+    return x[0] - x[1];
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,38 @@
+// What happens between steps: limits stop parameters, strings go taut, open joints become closed when their
+// gap has gone, and closed joints are projected back onto C = 0 and C_dot = 0 in the mass metric, which keeps
+// the order of the method (design 1.5).
+#pragma once
+
+#include <pliant/body/dynamics.h>
+#include <pliant/integrate/integrator.h>
+
+namespace pliant {
+
+/// Gap, in lengths of the joint's smaller part, up to which a projection closes an open joint; its rate must
+/// be at most kClosedRate lengths times the rate of the stabilization.
+inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
+
+/// At the start of a run: joints with a small enough gap are closed, and the velocities are made to agree
+/// with them by impulses.
+void close_at_start(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
+
+/// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
+/// within its length and every closed joint closed at the end of the step. ahead: any, kept from step to
+/// step.
+void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& state, double h,
+                Workspace<double>& ahead, StepCounters& counters);
+
+/// After the coordinates moved: parameters that came to a limit are on it to the last bit.
+void settle_on_limits(const Model& model, State& state);
+
+/// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
+/// projected back in the mass metric, and stopped by impulses.
+void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                   StepCounters& counters);
+
+/// The same for parts with joints: open joints close that may, closed ones are projected, and limits and
+/// strings with them.
+void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                   StepCounters& counters);
+
+}  // namespace pliant

@@ -1,0 +1,335 @@
+#include <pliant/body/constraints.h>
+
+#include <algorithm>
+
+#include <pliant/body/dynamics.h>
+#include <pliant/body/group.h>
+#include <pliant/body/one_sided_rows.h>
+
+namespace pliant {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// C_q^T or M^-1 C_q^T of a side: n_v x rows.
+template <class S>
+using SideMatrix = Eigen::Map<Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>>;
+template <class S, int Velocities, int Rows>
+using FixedSide = Eigen::Map<Eigen::Matrix<S, Velocities, Rows>>;
+template <class S, int Velocities, int Rows>
+using ConstSide = Eigen::Map<const Eigen::Matrix<S, Velocities, Rows>>;
+
+int velocities(const PartModel& part) {
+  return 6 + part.n_s;
+}
+
+/// The motion of a point of a part while no generalised velocity changes: x_ddot = R b of design 1.2.
+template <class S>
+PointMotion<S> port_motion(const PartModel& part, const PartWorkspace<S>& w, int port) {
+  PointMotion<S> motion{w.port_x[at(port)], w.port_x_dot[at(port)], Vec3<S>::Constant(S(0.0))};
+  if (part.q0 < 0) return motion;
+  const PointJet<S>& jet = w.ports[at(port)];
+  const Vec3<S> omega = w.v_r.template segment<3>(3);
+  Vec3<S> b = omega.cross(omega.cross(jet.p));
+  if (part.n_s > 0) b += S(2.0) * omega.cross(jet.p1) + jet.p2;
+  motion.x_ddot = w.R * b;
+  return motion;
+}
+
+/// Adds (C_x L)^T of a point to C_q^T of its side, L = R [I, -[p]x, J].
+template <class S, class Slope>
+void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, const Slope& C_x,
+               SideMatrix<S>& Cq) {
+  const PointJet<S>& jet = w.ports[at(port)];
+  for (int r = 0; r < C_x.rows(); ++r) {
+    const Vec3<S> push = w.R.transpose() * C_x.row(r).transpose();
+    const Vec3<S> turn = jet.p.cross(push);
+    for (int i = 0; i < 3; ++i) {
+      Cq(i, r) += push[i];
+      Cq(3 + i, r) += turn[i];
+    }
+    for (int k = 0; k < part.n_s; ++k) Cq(6 + k, r) += jet.J.col(k).dot(push);
+  }
+}
+
+}  // namespace
+
+template <class S>
+void evaluate_joints(const Model& model, const Island& island, double t,
+                     const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work) {
+  std::array<PointMotion<S>, kMaxJointPoints> motion;
+  JointRows<S> rows;
+  auto evaluate = [&](int j) {
+    const JointModel& joint = model.joints()[at(j)];
+    for (const JointSide& side : joint.sides)
+      work.Cq.segment(side.offset, velocities(model.parts()[at(side.part)]) * joint.rows).setConstant(S(0.0));
+    if (!acts(work.modes[at(j)]) && !(joint.joint->one_sided() && work.modes[at(j)] == JointMode::slack))
+      return;
+    const int n_points = joint.joint->n_points();
+    for (int k = 0; k < n_points; ++k) {
+      const PortRef& ref = joint.at[at(k)];
+      if (ref.part >= 0) {
+        motion[at(k)] = port_motion(model.parts()[at(ref.part)], parts[at(ref.part)], ref.port);
+        continue;
+      }
+      const Vec3<Taylor2<double>> x = joint.joint->points()[at(k)].world.at(t);
+      for (int i = 0; i < 3; ++i) {
+        motion[at(k)].x[i] = S(x[i].v);
+        motion[at(k)].x_dot[i] = S(x[i].d);
+        motion[at(k)].x_ddot[i] = S(x[i].dd);
+      }
+    }
+    joint.joint->evaluate(t, motion.data(), rows);
+    work.C.segment(joint.row, joint.rows) = rows.C;
+    work.C_dot.segment(joint.row, joint.rows) = rows.C_dot;
+    work.bias.segment(joint.row, joint.rows) = rows.bias;
+    for (int k = 0; k < n_points; ++k) {
+      const PortRef& ref = joint.at[at(k)];
+      for (const JointSide& side : joint.sides) {
+        if (side.part != ref.part) continue;
+        const PartModel& part = model.parts()[at(side.part)];
+        SideMatrix<S> Cq(work.Cq.data() + side.offset, velocities(part), joint.rows);
+        add_point(part, parts[at(side.part)], ref.port, rows.C_x.middleCols(3 * k, 3), Cq);
+      }
+    }
+  };
+  for (const int j : island.joints) evaluate(j);
+  for (const int j : island.strings) evaluate(j);
+}
+
+template <class S>
+void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
+                   ConstraintWorkspace<S>& work) {
+  for (const int j : island.joints) {
+    const JointModel& joint = model.joints()[at(j)];
+    for (const JointSide& side : joint.sides) {
+      const PartModel& part = model.parts()[at(side.part)];
+      const int n = velocities(part);
+      const S* Cq = work.Cq.data() + side.offset;
+      S* Y = work.Y.data() + side.offset;
+      if constexpr (std::is_same_v<S, double>) {
+        if (part.part->rigid() && joint.rows == 3) {
+          FixedSide<S, 6, 3>(Y).noalias() = part.rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
+          continue;
+        }
+      }
+      for (int r = 0; r < joint.rows; ++r) {
+        VecMax<S> column(n);
+        for (int i = 0; i < n; ++i) column[i] = Cq[r * n + i];
+        parts[at(side.part)].factor.solve(column);
+        for (int i = 0; i < n; ++i) Y[r * n + i] = column[i];
+      }
+    }
+  }
+  auto assemble = [&](BlockFactor<S>& W, auto&& counts) {
+    W.clear(island.pattern);
+    for (const Coupling& c : island.couplings) {
+      if (!counts(work.modes[at(c.row_joint)]) || !counts(work.modes[at(c.column_joint)])) continue;
+      const int n = velocities(model.parts()[at(c.part)]);
+      const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
+      S* block = W.block(c.target);
+      if (n == 6 && c.rows == 3 && c.columns == 3) {
+        FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
+        continue;
+      }
+      for (int k = 0; k < c.columns; ++k)
+        for (int r = 0; r < c.rows; ++r) {
+          S sum(0.0);
+          for (int i = 0; i < n; ++i) sum += Cq[r * n + i] * Y[k * n + i];
+          block[k * c.rows + r] += sum;
+        }
+    }
+    W.factor();
+  };
+  const auto number = static_cast<std::size_t>(&island - model.islands().data());
+  assemble(work.W_c[number], [](JointMode mode) { return acts(mode); });
+  const bool open = std::any_of(island.joints.begin(), island.joints.end(),
+                                [&](int j) { return work.modes[at(j)] == JointMode::closing; });
+  if (open) assemble(work.W_closed[number], [](JointMode mode) { return mode == JointMode::closed; });
+}
+
+namespace {
+
+/// The joints of an island, and the accelerations x of its parts that they shape.
+template <class S>
+class Holding {
+ public:
+  Holding(const Model& model, const Island& island, Workspace<S>& work)
+      : model_(model),
+        island_(island),
+        work_(work),
+        joints_(work.joints),
+        group_(model, work, island, false),
+        free_(group_.gather([&](int i) -> const VecMax<S>& { return group_.workspace(i).a_r; })),
+        x_(free_) {}
+
+  const Group<S, Eigen::Dynamic>& group() const { return group_; }
+  const VecX<S>& x() const { return x_; }
+
+  /// bias + 2 alpha C_dot + beta^2 C: C_ddot is to be minus this, but for what the accelerations give.
+  VecMax<S, kMaxJointRows> wanted(int j) const {
+    const JointModel& joint = model_.joints()[at(j)];
+    const JointMode mode = joints_.modes[at(j)];
+    auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
+    VecMax<S, kMaxJointRows> sum = rows(joints_.bias);
+    if (!acts(mode) || (mode == JointMode::closed && !joints_.stabilise_closed)) return sum;
+    const double alpha = joints_.gains.alpha, beta2 = joints_.gains.beta * joints_.gains.beta;
+    sum += S(2 * alpha) * rows(joints_.C_dot);
+    // Beyond the cap a gap counts as one that closes at the most allowed speed.
+    S factor(beta2);
+    if (mode == JointMode::closing) {
+      const S gap = math::sqrt_from_zero(S(rows(joints_.C).squaredNorm()));
+      const double most = 2 * alpha * joints_.most_speed * joint.length;
+      if (plain(gap) * beta2 > most) factor = S(most) / gap;
+    }
+    sum += factor * rows(joints_.C);
+    return sum;
+  }
+
+  /// x = free + what the joints add.
+  void hold() {
+    x_ = free_;
+    lambda_ = VecX<S>::Constant(island_.rows, S(0.0));
+    const BlockFactor<S>& W_c = joints_.W_c[number()];
+    const int refinements = W_c.smallest_pivot() < kRefineBelow ? 2 : 0;
+    for (int pass = 0; pass <= refinements; ++pass) {
+      VecX<S> rows = group_.joint_rows(x_);
+      for (const int j : island_.joints)
+        if (acts(joints_.modes[at(j)]))
+          rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) += wanted(j);
+      lambda_ += group_.correct(std::move(rows), x_);  // Eq. (14), with what M gives taken out
+    }
+  }
+  /// The same with pushes on one-sided rows.
+  template <class Lambda>
+  void hold(const std::vector<OneSidedRow>& pushed, const Lambda& lambda) {
+    for (std::size_t i = 0; i < pushed.size(); ++i)
+      free_ += group_.push(pushed[i]) * lambda[static_cast<Eigen::Index>(i)];
+    hold();
+    for (std::size_t i = 0; i < pushed.size(); ++i) {
+      const OneSidedRow& row = pushed[i];
+      if (row.part < 0)
+        joints_.lambda[model_.joints()[at(island_.strings[at(row.k)])].row] =
+            lambda[static_cast<Eigen::Index>(i)];
+      else
+        x_[group_.first(row.part) + 6 + row.k] = S(0.0);  // to the last bit
+    }
+  }
+
+  void finish() {
+    for (int i = 0; i < group_.parts(); ++i) work_.parts[at(group_.part(i))].a_r = group_.share(x_, i);
+    for (const int j : island_.joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      joints_.lambda.segment(joint.row, joint.rows) = lambda_.segment(joint.island_row, joint.rows);
+    }
+  }
+
+ private:
+  std::size_t number() const { return static_cast<std::size_t>(&island_ - model_.islands().data()); }
+
+  const Model& model_;
+  const Island& island_;
+  Workspace<S>& work_;
+  ConstraintWorkspace<S>& joints_;
+  Group<S, Eigen::Dynamic> group_;
+  VecX<S> free_, x_, lambda_;
+};
+
+}  // namespace
+
+void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
+                  Workspace<double>& work) {
+  Holding<double> holding(model, island, work);
+  holding.hold();
+  for (std::size_t k = 0; k < island.strings.size(); ++k)
+    if (acts(work.joints.modes[at(island.strings[k])]))
+      limits.push_back({-1, static_cast<int>(k), 1, -holding.wanted(island.strings[k])[0]});
+  std::vector<OneSidedRow>& pushed =
+      work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
+  pushed.clear();
+  if (!limits.empty()) {
+    OneSidedRows<Eigen::Dynamic> rows(holding.group());
+    for (const OneSidedRow& row : limits) rows.add(row);
+    rows.meet(holding.x(), nullptr);
+    std::vector<double> pushes;
+    rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
+      pushed.push_back(row);
+      pushes.push_back(lambda);
+    });
+    if (!pushed.empty())
+      holding.hold(pushed,
+                   Eigen::Map<const VecX<double>>(pushes.data(), static_cast<Eigen::Index>(pushes.size())));
+  }
+  holding.finish();
+}
+
+void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work) {
+  using S = Dual<1>;
+  Holding<S> holding(model, island, work);
+  holding.hold();
+  const std::vector<OneSidedRow>& pushed =
+      work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
+  if (!pushed.empty()) {
+    // The small dense system of the pushes, as blocks of one row.
+    const int n = static_cast<int>(pushed.size());
+    std::vector<std::pair<int, int>> all;
+    for (int i = 0; i < n; ++i)
+      for (int k = 0; k < i; ++k) all.emplace_back(i, k);
+    const BlockPattern pattern(std::vector<int>(pushed.size(), 1), all, cardinality_order);
+    BlockFactor<S> W;
+    W.clear(pattern);
+    VecX<S> lambda(n);
+    for (int k = 0; k < n; ++k) {
+      const OneSidedRow& row = pushed[at(k)];
+      const VecX<S> response = holding.group().response(row);
+      for (int i = k; i < n; ++i)
+        *W.block(pattern.place(i, k).offset) = holding.group().value(pushed[at(i)], response);
+      const S bound = row.part >= 0 ? S(0.0) : S(-holding.wanted(island.strings[at(row.k)])[0]);
+      lambda[k] = bound - holding.group().value(row, holding.x());
+    }
+    W.factor();
+    W.solve(lambda);
+    holding.hold(pushed, lambda);
+  }
+  holding.finish();
+}
+
+template <class S>
+Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
+  Vec<S, kWorks> power = Vec<S, kWorks>::Constant(S(0.0));
+  const ConstraintWorkspace<S>& joints = work.joints;
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const JointModel& joint = model.joints()[j];
+    if (!acts(joints.modes[j])) continue;
+    const auto lambda = joints.lambda.segment(joint.row, joint.rows);
+    const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
+    // Of a joint that is kept closed by projection this is an error of the method, not a work.
+    if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
+      power[static_cast<int>(Work::baumgarte)] += closing;
+    if (!joint.driven) continue;
+    S done(0.0);  // lambda C_q v, on the parts
+    for (const JointSide& side : joint.sides) {
+      const VecMax<S>& v_r = work.parts[at(side.part)].v_r;
+      for (int r = 0; r < joint.rows; ++r)
+        for (int i = 0; i < v_r.size(); ++i)
+          done += lambda[r] * joints.Cq[side.offset + r * v_r.size() + i] * v_r[i];
+    }
+    power[static_cast<int>(Work::anchors)] += done - closing;
+  }
+  return power;
+}
+
+#define PLIANT_INSTANCES(S)                                                                                \
+  template void evaluate_joints(const Model&, const Island&, double, const std::vector<PartWorkspace<S>>&, \
+                                ConstraintWorkspace<S>&);                                                  \
+  template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
+                              ConstraintWorkspace<S>&);                                                    \
+  template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);
+PLIANT_INSTANCES(double)
+PLIANT_INSTANCES(Dual<1>)
+#undef PLIANT_INSTANCES
+
+}  // namespace pliant

@@ -1,0 +1,210 @@
+// After a step: limits stop parameters, strings go taut, joints close and are projected.
+#include <pliant/integrate/settle.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "settling.h"
+
+namespace pliant {
+
+using namespace settling;
+
+namespace {
+
+/// The coordinates and velocities of a group in a state.
+template <int Max>
+class Snapshot {
+ public:
+  Snapshot(const Group<double, Max>& group, State& state) : group_(group) {
+    q_.resize(group.size() + group.parts());
+    v_.resize(group.size());
+    exchange(state, [](auto&& kept, auto&& now) { kept = now; });
+  }
+  /// The state takes these, and they become what it had.
+  void swap(State& state) {
+    exchange(state, [](auto&& kept, auto&& now) { kept.swap(now); });
+  }
+
+ private:
+  template <class F>
+  void exchange(State& state, F&& act) {
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      act(q_.segment(group_.first(i) + i, 7 + m.n_s), state.q.segment(m.q0, 7 + m.n_s));
+      act(v_.segment(group_.first(i), 6 + m.n_s), state.v.segment(m.v0, 6 + m.n_s));
+    }
+  }
+  static constexpr int kMaxQ = Max == Eigen::Dynamic ? Eigen::Dynamic : Max + 1;
+  const Group<double, Max>& group_;
+  VecMax<double, kMaxQ> q_;
+  VecMax<double, Max> v_;
+};
+
+/// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
+/// them P and L. before: evaluated at the coordinates before; now: at those now.
+template <int Max>
+void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
+                  const Workspace<double>& now, State& state) {
+  for (int i = 0; i < group.parts(); ++i) {
+    const PartModel& m = group.model(i);
+    const PartWorkspace<double>&from = before.parts[at(group.part(i))], &to = now.parts[at(group.part(i))];
+    VecMax<double> momentum = from.inertia.M * from.v_r;
+    const Vec3<double> P = from.R * momentum.head<3>();
+    const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
+    momentum.head<3>() = to.R.transpose() * P;
+    momentum.segment<3>(3) = to.R.transpose() * L;
+    to.factor.solve(momentum);
+    take_velocity(m, to, momentum, state.v);
+  }
+}
+
+std::vector<int> parts_of(const Group<double, kMaxVelocities>& group) {
+  return {group.part(0)};
+}
+const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
+  return group.island()->parts;
+}
+
+/// Brings a group onto its joints and within its limits. closed: some joints have closed just now. work:
+/// evaluated for the group.
+template <int Max>
+void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& group, bool closed,
+                  State& state, Workspace<double>& work, StepCounters& counters) {
+  Snapshot<Max> before(group, state);
+  Settling<Max> settling(dynamics, t, group, state, work);
+  const bool pushed = settling.coordinates();
+  // The impulses that close a joint do work; those that put right the error of a step are an error too, and
+  // show in the balance.
+  double joints = 0, rows = 0;
+  if (!pushed && !closed) {
+    counters.limit_impulses += settling.velocities(joints, rows);
+    state.work[static_cast<int>(Work::limits)] += rows;
+    return;
+  }
+  Workspace<double> scratch;
+  const auto& parts = parts_of(group);
+  before.swap(state);
+  const double energy = dynamics.energy(t, state.q, state.v, parts, scratch);
+  before.swap(state);
+  if (group.island() != nullptr)
+    dynamics.factor_joints(t, state.q, state.v, state, *group.island(), work);
+  else
+    dynamics.evaluate_masses(state.q, state.v, parts, work);
+  if (pushed) keep_momenta(group, scratch, work, state);
+  counters.limit_impulses += settling.velocities(joints, rows);
+  state.work[static_cast<int>(pushed ? Work::limits : Work::projection)] +=
+      dynamics.energy(t, state.q, state.v, parts, scratch) - energy;
+}
+
+/// Whether a parameter of a part alone has passed a limit, or moves at one.
+bool passes(const PartModel& m, State& state) {
+  for (int k = 0; k < m.n_s; ++k)
+    if ((limit_mode(state, m, k) != 0 && state.v[m.v0 + 6 + k] != 0) ||
+        !limits_of(m, k).contains(state.q[m.q0 + 7 + k]))
+      return true;
+  return false;
+}
+
+/// Open joints close whose gap is small, and whose rate is, unless any rate will do; what Baumgarte's
+/// equation cannot close on a turning joint, h |bias| alpha / beta^2 (stress 1.1), is small too. Returns
+/// whether any did.
+bool close_joints(const Model& model, const Island& island, bool any_rate, const Workspace<double>& work,
+                  State& state) {
+  const double rate = model.body().stabilization.rate;
+  const Gains gains = work.joints.gains;
+  bool any = false;
+  for (const int j : island.joints) {
+    if (state.joints[at(j)] != JointMode::closing) continue;
+    const JointModel& joint = model.joints()[at(j)];
+    auto size = [&](const VecX<double>& rows) { return rows.segment(joint.row, joint.rows).norm(); };
+    const double left =
+        gains.beta > 0 ? 2 * state.h * size(work.joints.bias) * gains.alpha / (gains.beta * gains.beta) : 0;
+    const double turning = std::sqrt(size(work.joints.bias) / joint.length);
+    const bool near =
+        size(work.joints.C) <= std::min(kClosedGap * joint.length + left, kWidest * joint.length);
+    const bool slow =
+        any_rate || size(work.joints.C_dot) <= kClosedRate * joint.length * rate + turning * left;
+    if (!near || !slow) continue;
+    state.joints[at(j)] = JointMode::closed;
+    any = true;
+  }
+  return any;
+}
+
+/// Strings that were too long have closed when they are short enough.
+void close_strings(const Model& model, const Island& island, const Workspace<double>& work, State& state) {
+  for (const int j : island.strings) {
+    const JointModel& string = model.joints()[at(j)];
+    if (state.joints[at(j)] == JointMode::closing && work.joints.C[string.row] > -kClosedGap * string.length)
+      state.joints[at(j)] = work.joints.C[string.row] > 0 ? JointMode::slack : JointMode::closed;
+  }
+}
+
+/// Strings are taut or slack as they are now.
+void note_strings(const Model& model, const Island& island, const Workspace<double>& work, State& state) {
+  const double rate = model.body().stabilization.rate;
+  for (const int j : island.strings) {
+    JointMode& mode = state.joints[at(j)];
+    if (mode != JointMode::closed && mode != JointMode::slack) continue;
+    const JointModel& string = model.joints()[at(j)];
+    const bool taut = work.joints.C[string.row] <= kTaut * string.length &&
+                      work.joints.C_dot[string.row] <= kTaut * string.length * rate;
+    mode = taut ? JointMode::closed : JointMode::slack;
+  }
+}
+
+}  // namespace
+
+void close_at_start(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) {
+  const Model& model = dynamics.model();
+  const double t = state.time();
+  for (const Island& island : model.islands()) {
+    dynamics.factor_joints(t, state.q, state.v, state, island, work);
+    if (dynamics.hold().projected) close_joints(model, island, true, work, state);
+    close_strings(model, island, work, state);
+  }
+  if (model.joints().empty()) return;
+  dynamics.accelerations(t, state.q, state.v, state, work);
+  for_each_island(model, work, [&](const Group<double, Eigen::Dynamic>& group) {
+    settle_group(dynamics, t, group, true, state, work, counters);
+    dynamics.evaluate_joints(t, state.q, state.v, state, *group.island(), work);
+    note_strings(model, *group.island(), work, state);
+  });
+}
+
+void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                   StepCounters& counters) {
+  const Model& model = dynamics.model();
+  if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
+  for (const Island& island : model.islands()) {
+    auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
+    bool closed = false;
+    if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||
+        std::any_of(island.strings.begin(), island.strings.end(), closing)) {
+      dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+      closed = dynamics.hold().projected && close_joints(model, island, false, work, state);
+      close_strings(model, island, work, state);
+      if (closed) dynamics.factor_joints(t, state.q, state.v, state, island, work);
+    }
+    settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), closed, state, work,
+                 counters);
+    if (island.strings.empty()) continue;
+    dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+    note_strings(model, island, work, state);
+  }
+}
+
+void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                   StepCounters& counters) {
+  const Model& model = dynamics.model();
+  if (!state.q.allFinite() || !state.v.allFinite()) return;
+  for_each_alone(model, work, [&](const Group<double, kMaxVelocities>& group) {
+    if (!passes(group.model(0), state)) return;
+    dynamics.evaluate_masses(state.q, state.v, parts_of(group), work);
+    settle_group(dynamics, t, group, false, state, work, counters);
+  });
+}
+
+}  // namespace pliant

@@ -1,0 +1,314 @@
+// What settling after a step and stopping ahead of it share: groups one by one, and the projection of a group
+// onto its joints and limits.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include <pliant/body/one_sided_rows.h>
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_failure.h>
+
+namespace pliant::settling {
+
+/// What a projection may leave, in lengths of the joint, and the rounding of coordinates of size 1.
+inline constexpr double kLeft = 1e-13, kRounding = 4e-15;
+/// An iteration that leaves more than this part of the error takes a new factor; one that leaves more than
+/// the other part with a new factor has come to the rounding of the rows.
+inline constexpr double kSlow = 0.1, kStalled = 0.5;
+inline constexpr int kMostIterations = 30;
+/// A closed joint that its projection leaves this many times what it may be cannot be closed.
+inline constexpr double kOpen = 1e3;
+/// Rows that make up a dependent one have at least this share of it.
+inline constexpr double kDepends = 1e-6;
+/// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
+inline constexpr double kWidest = 0.1;
+/// A string this near to its length, in lengths of its smaller part, is taut.
+inline constexpr double kTaut = 1e-9;
+
+inline std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+inline Range limits_of(const PartModel& m, int k) {
+  return m.part->parameters().moving(k).limits;
+}
+inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
+  return state.at_limit[at(m.limit0 + k)];
+}
+
+inline VecMax<double> body_velocity(const PartModel& m, const PartWorkspace<double>& w,
+                                    const VecX<double>& v) {
+  VecMax<double> v_r(6 + m.n_s);
+  v_r.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
+  v_r.tail(3 + m.n_s) = v.segment(m.v0 + 3, 3 + m.n_s);
+  return v_r;
+}
+
+/// Change of the kinetic energy from velocities x to y of a group.
+template <int Max>
+double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>& x,
+                      const VecMax<double, Max>& y) {
+  double sum = 0;
+  for (int i = 0; i < group.parts(); ++i) {
+    const VecMax<double> change = group.share(y, i) - group.share(x, i);
+    sum += change.dot(group.workspace(i).inertia.M * (group.share(x, i) + 0.5 * change));
+  }
+  return sum;
+}
+
+/// act(group) for every part alone that has parameters, and every island.
+template <class F>
+void for_each_alone(const Model& model, const Workspace<double>& work, F&& act) {
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
+    const PartModel& m = model.parts()[at(i)];
+    if (m.q0 >= 0 && m.island < 0 && m.n_s > 0) act(Group<double, kMaxVelocities>(model, work, i));
+  }
+}
+template <class F>
+void for_each_island(const Model& model, const Workspace<double>& work, F&& act) {
+  for (const Island& island : model.islands()) act(Group<double, Eigen::Dynamic>(model, work, island, true));
+}
+
+/// A group whose coordinates and velocities are brought onto its joints and within its limits.
+template <int Max>
+class Settling {
+ public:
+  using Vector = VecMax<double, Max>;
+
+  Settling(const Dynamics& dynamics, double t, const Group<double, Max>& group, State& state,
+           Workspace<double>& work)
+      : dynamics_(dynamics),
+        model_(dynamics.model()),
+        t_(t),
+        group_(group),
+        island_(group.island()),
+        state_(state),
+        work_(work) {}
+
+  /// Coordinates onto C = 0 and within the limits. Returns whether a limit or a string that was loose pushed.
+  bool coordinates() {
+    bool pushed = false;
+    for (int i = 0; i < kMostIterations; ++i) {
+      Vector x = Vector::Zero(group_.size());
+      const bool open = correct_joints(Rows::coordinates, i, x);
+      OneSidedRows<Max> rows(group_);
+      x = rows.meet_all(
+          x, [&](const OneSidedRow& row) { return distance(row); }, nullptr);
+      if (!open && rows.empty()) return pushed;
+      if (move_.size() == 0) move_.resize(state_.v.size());
+      for (int p = 0; p < group_.parts(); ++p) {
+        take_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), move_);
+        advance_part(group_.model(p), state_.q, move_, 1);
+      }
+      if (!rows.empty())
+        rows.for_each_pushed([&](const OneSidedRow& row, double) {
+          pushed = pushed || !stays(row);
+          if (row.part < 0) return;
+          const PartModel& m = group_.model(row.part);
+          double& q = state_.q[m.q0 + 7 + row.k];
+          const Range range = limits_of(m, row.k);
+          q = std::abs(q - range.min) < std::abs(q - range.max) ? range.min : range.max;
+        });
+      if (island_ == nullptr) return pushed;
+    }
+    fail_if_open();
+    return pushed;
+  }
+
+  /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
+  /// on one-sided rows. joints, rows: work of the impulses of each, J.
+  int velocities(double& joints, double& one_sided) {
+    int impulses = 0;
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      for (int k = 0; k < m.n_s; ++k) {
+        const Range range = limits_of(m, k);
+        double& q = state_.q[m.q0 + 7 + k];
+        const int mode = q <= range.min ? -1 : (q >= range.max ? 1 : 0);
+        limit_mode(state_, m, k) = static_cast<std::int8_t>(mode);
+        if (mode != 0) q = mode < 0 ? range.min : range.max;
+      }
+    }
+    for (int i = 0; i < kMostIterations; ++i) {
+      const Vector before =
+          group_.gather([&](int p) { return body_velocity(group_.model(p), group_.workspace(p), state_.v); });
+      Vector x = before;
+      const bool open = correct_joints(Rows::velocities, i, x);
+      const Vector joined = x;
+      OneSidedRows<Max> rows(group_);
+      x = rows.meet_all(
+          x, [&](const OneSidedRow& row) { return slowest(row, before); }, nullptr);
+      if (!open && rows.empty()) break;
+      joints += kinetic_change(group_, before, joined);
+      one_sided += kinetic_change(group_, joined, x);
+      for (int p = 0; p < group_.parts(); ++p)
+        take_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
+      if (!rows.empty())
+        rows.for_each_pushed([&](const OneSidedRow& row, double) { impulses += stays(row) ? 0 : 1; });
+      if (island_ == nullptr) break;
+    }
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      for (int k = 0; k < m.n_s; ++k)
+        if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0) limit_mode(state_, m, k) = 0;  // it leaves
+    }
+    return impulses;
+  }
+
+ private:
+  enum class Rows { coordinates, velocities };
+
+  /// What a row of a joint may be, by rounding.
+  double left(const JointModel& joint, Rows what) const {
+    double size = 0;
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartWorkspace<double>& w = group_.workspace(i);
+      size = std::max(size, what == Rows::velocities ? w.v_r.template lpNorm<Eigen::Infinity>()
+                                                     : w.c.template lpNorm<Eigen::Infinity>());
+    }
+    const double rate = what == Rows::velocities ? model_.body().stabilization.rate : 1.0;
+    return kLeft * rate * joint.length + kRounding * size;
+  }
+
+  /// Evaluates the joints and adds to x what takes the rows of the closed ones to zero. False when nothing is
+  /// left to do: they are there, or as near as rounding lets them come.
+  bool correct_joints(Rows what, int iteration, Vector& x) {
+    if (island_ == nullptr) return false;
+    dynamics_.evaluate_joints(t_, state_.q, state_.v, state_, *island_, work_);
+    if (!dynamics_.hold().projected) return false;
+    const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
+    double now = 0;
+    VecX<double> error = VecX<double>::Zero(island_->rows);
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (state_.joints[at(j)] != JointMode::closed) continue;
+      const auto row = rows.segment(joint.row, joint.rows);
+      error.segment(joint.island_row, joint.rows) = row;
+      now = std::max(now, row.norm() / left(joint, what));
+    }
+    if (!(now > 1)) return false;
+    if (iteration > 0 && now > kSlow * before_) {
+      if (fresh_ && now > kStalled * before_) {
+        if (what == Rows::coordinates) fail_if_open();
+        return false;
+      }
+      dynamics_.factor_joints(t_, state_.q, state_.v, state_, *island_, work_);
+      fresh_ = true;
+    }
+    before_ = now;
+    group_.correct(std::move(error), x);
+    return true;
+  }
+
+  /// Throws when a closed joint is further open than rounding explains: it is named with those that hold it
+  /// open.
+  void fail_if_open() const {
+    int open = -1;
+    double widest = 0;
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      const double gap = work_.joints.C.segment(joint.row, joint.rows).norm();
+      if (state_.joints[at(j)] != JointMode::closed || !(gap > kOpen * left(joint, Rows::coordinates)) ||
+          gap <= widest)
+        continue;
+      open = j;
+      widest = gap;
+    }
+    if (open < 0) return;
+    const JointModel& joint = model_.joints()[at(open)];
+    std::ostringstream message;
+    message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
+            << joint.joint->name() << "' stays open by " << widest << " m";
+    const char* word = ", held open by ";
+    for (const int j : island_->joints) {
+      if (j == open || !depends(joint, model_.joints()[at(j)])) continue;
+      message << word << model_.joints()[at(j)].joint->type() << " '" << model_.joints()[at(j)].joint->name()
+              << "'";
+      word = ", ";
+    }
+    throw UnsatisfiableModel(message.str(), t_);
+  }
+
+  /// Whether the rows of a joint that the factor holds are made of those of another, among the rest.
+  bool depends(const JointModel& joint, const JointModel& other) const {
+    for (int r = 0; r < joint.rows; ++r) {
+      Vector x = Vector::Zero(group_.size());
+      for (const JointSide& side : joint.sides) {
+        const int n = static_cast<int>(group_.share(x, side.place).size());
+        VecMax<double> force = work_.joints.Cq.segment(side.offset + r * n, n);
+        group_.workspace(side.place).factor.solve(force);
+        group_.share(x, side.place) += force;
+      }
+      Vector unused = x;
+      const VecX<double> share = group_.correct(group_.joint_rows(x), unused);
+      const auto of_other = share.segment(other.island_row, other.rows);
+      if (of_other.norm() > kDepends * share.norm()) return true;
+    }
+    return false;
+  }
+
+  /// Whether the last evaluation pushed on this row or its opposite: then it stays tight.
+  bool stays(const OneSidedRow& row) const {
+    if (island_ == nullptr) return false;
+    if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
+    const auto& pushed = work_.joints.pushed[static_cast<std::size_t>(island_ - model_.islands().data())];
+    return std::any_of(pushed.begin(), pushed.end(),
+                       [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
+  }
+
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+  /// The change that a row asks for at the least.
+  double distance(const OneSidedRow& row) const {
+    if (row.part < 0) {
+      const int j = island_->strings[at(row.k)];
+      const JointMode mode = state_.joints[at(j)];
+      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
+      const JointModel& string = model_.joints()[at(j)];
+      const double C = work_.joints.C[string.row], rounding = left(string, Rows::coordinates);
+      if (std::abs(C) <= rounding) return stays(row) ? 0 : (row.sign > 0 ? -rounding : kNever);
+      return row.sign > 0 || stays(row) ? -row.sign * C : kNever;
+    }
+    const PartModel& m = group_.model(row.part);
+    const double q = state_.q[m.q0 + 7 + row.k];
+    const Range range = limits_of(m, row.k);
+    if (stays(row) && limit_mode(state_, m, row.k) != 0)
+      return row.sign * ((limit_mode(state_, m, row.k) < 0 ? range.min : range.max) - q);
+    return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
+  }
+
+  /// The velocity that a row allows at the least.
+  double slowest(const OneSidedRow& row, const Vector& v) const {
+    if (row.part < 0) {
+      const int j = island_->strings[at(row.k)];
+      const JointModel& string = model_.joints()[at(j)];
+      const JointMode mode = state_.joints[at(j)];
+      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
+      if (work_.joints.C[string.row] > kTaut * string.length && !stays(row)) return kNever;
+      if (row.sign < 0 && !stays(row)) return kNever;
+      const double C_dot = work_.joints.C_dot[string.row];
+      if (std::abs(C_dot) <= left(string, Rows::velocities)) return kNever;
+      return group_.value(row, v) - row.sign * C_dot;
+    }
+    const int mode = limit_mode(state_, group_.model(row.part), row.k);
+    return mode != 0 && (mode * row.sign < 0 || stays(row)) ? 0 : kNever;
+  }
+
+  const Dynamics& dynamics_;
+  const Model& model_;
+  double t_;
+  const Group<double, Max>& group_;
+  const Island* island_;
+  State& state_;
+  Workspace<double>& work_;
+  VecX<double> move_;
+  double before_ = 0;
+  bool fresh_ = false;
+};
+
+}  // namespace pliant::settling

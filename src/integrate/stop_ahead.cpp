@@ -1,0 +1,145 @@
+// Before the coordinates move by h v: impulses that meet limits, strings and joints at the end of the step.
+#include <limits>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pliant/integrate/settle.h>
+
+#include "settling.h"
+
+namespace pliant {
+
+using namespace settling;
+
+namespace {
+
+/// What a gap may be, by rounding.
+template <int Max>
+double rounding(const JointModel& joint, const Group<double, Max>& group, const Workspace<double>& ahead) {
+  double size = 0;
+  for (int i = 0; i < group.parts(); ++i)
+    size = std::max(size, ahead.parts[at(group.part(i))].c.template lpNorm<Eigen::Infinity>());
+  return kLeft * joint.length + kRounding * size;
+}
+
+/// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
+/// closed joints. False when they are closed there.
+template <int Max>
+bool close_ahead(const Model& model, const Island& island, const Group<double, Max>& group,
+                 const State& state, const Workspace<double>& ahead, double h, VecMax<double, Max>& x) {
+  VecX<double> error = VecX<double>::Zero(island.rows);
+  bool open = false;
+  for (const int j : island.joints) {
+    const JointModel& joint = model.joints()[at(j)];
+    if (state.joints[at(j)] != JointMode::closed) continue;
+    const auto C = ahead.joints.C.segment(joint.row, joint.rows);
+    open = open || !(C.norm() <= rounding(joint, group, ahead));
+    error.segment(joint.island_row, joint.rows) = C / h;
+  }
+  if (open) group.correct(std::move(error), x);
+  return open;
+}
+
+/// Whether a parameter passes a limit when it moves on for a time h.
+template <int Max>
+bool crosses(const Group<double, Max>& group, double h, const State& state) {
+  for (int i = 0; i < group.parts(); ++i) {
+    const PartModel& m = group.model(i);
+    for (int k = 0; k < m.n_s; ++k)
+      if (!limits_of(m, k).contains(state.q[m.q0 + 7 + k] + h * state.v[m.v0 + 6 + k])) return true;
+  }
+  return false;
+}
+
+/// Which limits the parameters of a group are at when they have moved on.
+template <int Max>
+void note_limits(const Group<double, Max>& group, double h, State& state) {
+  for (int i = 0; i < group.parts(); ++i) {
+    const PartModel& m = group.model(i);
+    for (int k = 0; k < m.n_s; ++k) {
+      const double q = state.q[m.q0 + 7 + k], then = q + h * state.v[m.v0 + 6 + k];
+      const Range range = limits_of(m, k);
+      limit_mode(state, m, k) = then <= range.min ? -1 : (then >= range.max ? 1 : 0);
+      // A rate too small to leave the limit is rounding of the impulses of others: it rests.
+      if (limit_mode(state, m, k) != 0 && then == q) state.v[m.v0 + 6 + k] = 0;
+    }
+  }
+}
+
+}  // namespace
+
+void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& state, double h,
+                Workspace<double>& ahead, StepCounters& counters) {
+  const Model& model = dynamics.model();
+  VecX<double> q_end(
+      model.islands().empty() ? 0 : state.q.size());  // at the end of the step, of parts with joints
+  auto act = [&](const auto& group) {
+    using Rows = OneSidedRows<std::decay_t<decltype(group)>::kMax>;
+    const Island* island = group.island();
+    if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
+    auto x = group.gather([&](int i) { return body_velocity(group.model(i), group.workspace(i), state.v); });
+    auto take = [&] {
+      for (int i = 0; i < group.parts(); ++i)
+        take_velocity(group.model(i), group.workspace(i), group.share(x, i), state.v);
+    };
+    // The velocity that just reaches a limit, or the length of a string, at the end of the step.
+    auto now = x;
+    auto bound = [&](const OneSidedRow& row) {
+      if (row.part < 0) {
+        const int j = island->strings[at(row.k)];
+        const JointMode mode = state.joints[at(j)];
+        const double C = ahead.joints.C[model.joints()[at(j)].row];
+        if (mode == JointMode::off || mode == JointMode::closing || row.sign < 0 ||
+            C > -rounding(model.joints()[at(j)], group, ahead))
+          return -std::numeric_limits<double>::infinity();
+        return group.value(row, now) - C / h;
+      }
+      const Range range = limits_of(group.model(row.part), row.k);
+      const double q = state.q[group.model(row.part).q0 + 7 + row.k];
+      return row.sign * ((row.sign > 0 ? range.min : range.max) - q) / h;
+    };
+    std::vector<std::pair<std::int8_t*, std::int8_t>> stopped;
+    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+      // Impulses at the start of the step that close the joints at its end: h v is projected, not q alone,
+      // which keeps the energy of turning parts (the method SHAKE; Ryckaert, Ciccotti & Berendsen 1977).
+      bool open = false;
+      if (island != nullptr) {
+        for (int i = 0; i < group.parts(); ++i) {
+          const PartModel& m = group.model(i);
+          q_end.segment(m.q0, 7 + m.n_s) = state.q.segment(m.q0, 7 + m.n_s);
+          advance_part(m, q_end, state.v, h);
+        }
+        dynamics.evaluate_joints(state.time() + h, q_end, state.v, state, *island, ahead);
+        now = x;
+        open = dynamics.hold().projected && close_ahead(model, *island, group, state, ahead, h, x);
+      }
+      Rows rows(group);
+      const auto joined = x;
+      x = rows.meet_all(x, bound, nullptr);
+      if (!rows.empty()) state.work[static_cast<int>(Work::limits)] += kinetic_change(group, joined, x);
+      if (!open && rows.empty()) break;
+      take();
+      if (!rows.empty())
+        counters.limit_impulses += rows.for_each_pushed([&](const OneSidedRow& row, double) {
+          if (row.part >= 0)
+            stopped.emplace_back(&limit_mode(state, group.model(row.part), row.k), row.sign > 0 ? -1 : 1);
+        });
+      if (island == nullptr) break;
+    }
+    note_limits(group, h, state);
+    for (const auto& [mode, side] : stopped) *mode = side;
+  };
+  for_each_alone(model, work, act);
+  for_each_island(model, work, act);
+}
+
+void settle_on_limits(const Model& model, State& state) {
+  for (const PartModel& m : model.parts())
+    for (int k = 0; k < m.n_s; ++k) {
+      const std::int8_t mode = limit_mode(state, m, k);
+      if (mode != 0) state.q[m.q0 + 7 + k] = mode < 0 ? limits_of(m, k).min : limits_of(m, k).max;
+    }
+}
+
+}  // namespace pliant

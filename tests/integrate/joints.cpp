@@ -1,0 +1,640 @@
+// Joints in motion: closing laws of Baumgarte's equation, momenta, pendulums and chains with known solutions,
+// strings, limits under joints, orders of convergence.
+#include "catch.h"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <pliant/body/joints/rod.h>
+#include <pliant/body/joints/string.h>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+
+/// A sphere of radius 0.2 m; a ball joint at its centre turns nothing.
+Part& sphere(MultiBody& body, const std::string& name, const Vec3<double>& c, double density = 1000) {
+  Part& part = test::add(body, name, "sphere", {}, density);
+  part.rest({{"r", 0.2}}).place(c);
+  return part;
+}
+Point centre(const Part& part) {
+  return point(part, 0, 0, 0);
+}
+
+Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
+  const Joint& j = *simulation.model().joints()[joint].joint;
+  auto place = [&](const Point& p) -> Vec3<double> {
+    if (p.part == nullptr) return p.world.value(simulation.time());
+    return simulation.model().world_point(simulation.state(), simulation.model().body().index(*p.part),
+                                          p.material);
+  };
+  return place(j.points()[0]) - place(j.points()[1]);
+}
+
+/// A hanging chain of ellipsoids 0.6 m long, joined tip to tip along x from the origin on.
+void chain(MultiBody& body, int links, double turn = 0) {
+  for (int i = 0; i < links; ++i) {
+    const std::string name = "link" + std::to_string(i);
+    Part& link = test::add(body, name, "ellipsoid", {}, 1000);
+    link.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
+    link.place({0.3 + 0.6 * i, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(turn * i, Vec3<double>::UnitX())));
+    const Part* before = i > 0 ? body.find("link" + std::to_string(i - 1)) : nullptr;
+    body.ball("joint" + std::to_string(i), before == nullptr ? world(0, 0, 0) : point(*before, 0, 0),
+              point(link, 0, kPi));
+  }
+}
+
+/// K(sin^2(theta / 2)), by the arithmetic-geometric mean.
+double elliptic_K(double theta) {
+  double a = 1, b = std::cos(theta / 2);
+  while (std::abs(a - b) > 1e-15 * a) {
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return kPi / (2 * a);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "N37: from rest, translation only, a gap closes as C0 (1 + alpha t) e^(-alpha t), at the method's order",
+    "[joints]") {
+  std::vector<double> errors;
+  for (const int steps : {20, 40, 80, 160}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
+    body.ball("ab", centre(a), centre(b));
+    body.stabilization.rate = 4;
+    body.stabilization.projection = false;
+    Simulation simulation(body, "rk4");
+    double error = 0;
+    for (int i = 0; i < steps; ++i) {
+      simulation.step(1.0 / steps);
+      const double t = simulation.time();
+      error = std::max(
+          error, (gap(simulation) - Vec3<double>(-0.3, -0.1, 0.2) * (1 + 4 * t) * std::exp(-4 * t)).norm());
+    }
+    errors.push_back(error);
+    CHECK(simulation.ledger().momentum.norm() <= 1e-12);
+  }
+  CHECK(test::observed_order(errors) >= 3.9);
+}
+
+TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding and for any step",
+          "[joints]") {
+  for (const double rate_h : {0.01, 0.3, 1.0, 5.0, 1000.0}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
+    body.ball("ab", centre(a), centre(b));
+    body.stabilization.rate = 20;
+    body.stabilization.projection = false;
+    Simulation simulation(body, "semi_implicit_euler");
+    const double h = rate_h / 20, r = std::exp(-rate_h);
+    for (int n = 1; n <= 40; ++n) {
+      simulation.step(h);
+      const Vec3<double> expected = Vec3<double>(-0.3, -0.1, 0.2) * std::pow(r, n) * (1 + n * (1 - r));
+      INFO(rate_h << " " << n);
+      CHECK((gap(simulation) - expected).norm() <= 1e-14);
+    }
+  }
+}
+
+TEST_CASE("N34: the edges of stability of Baumgarte's equation", "[joints]") {
+  struct Case {
+    const char* method;
+    double edge;
+  };
+  for (const Case& c : {Case{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)}, Case{"rk4", 2.785}}) {
+    for (const double part : {0.99, 1.01}) {
+      MultiBody body;
+      body.gravity.setZero();
+      Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
+      body.ball("ab", centre(a), centre(b));
+      body.stabilization.rule = BaumgarteRule::critical;
+      body.stabilization.rate = 10;
+      body.stabilization.speed = 1e9;
+      body.stabilization.projection = false;
+      Simulation simulation(body, c.method);
+      for (int i = 0; i < 3000; ++i) {
+        simulation.step(part * c.edge / 10);
+        if (gap(simulation).norm() > 1e3) break;
+      }
+      INFO(c.method << " at " << part);
+      CHECK((gap(simulation).norm() < 0.3) == (part < 1));
+    }
+  }
+}
+
+TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its two forces", "[joints]") {
+  std::vector<double> errors;
+  for (const int steps : {50, 100, 200}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {1, 0.5, 0.3}, 400);
+    a.move({0, 0.3, 0}, {1, 2, 0});
+    b.move({0, 0, 0.4}, {0, -1, 3});
+    body.ball("ab", point(a, 0.3, 1), point(b, -0.5, 2));
+    body.stabilization.rate = 3;
+    body.stabilization.projection = false;
+    Simulation simulation(body, "rk4");
+    const Vec3<double> P = simulation.ledger().momentum, L = simulation.ledger().angular_momentum;
+    // The torque integrated by Simpson's rule over pairs of steps.
+    Vec3<double> turned = Vec3<double>::Zero();
+    auto torque = [&] {
+      Workspace<double> work;
+      const State& s = simulation.state();
+      simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+      return Vec3<double>(Vec3<double>(work.joints.C).cross(Vec3<double>(work.joints.lambda)));
+    };
+    const double h = 1.0 / steps;
+    Vec3<double> start = torque();
+    for (int i = 0; i < steps; i += 2) {
+      simulation.step(h);
+      const Vec3<double> middle = torque();
+      simulation.step(h);
+      const Vec3<double> end = torque();
+      turned += h / 3 * (start + 4 * middle + end);
+      start = end;
+    }
+    CHECK((simulation.ledger().momentum - P).norm() <= 1e-12 * P.norm());
+    errors.push_back((simulation.ledger().angular_momentum - L - turned).norm() / L.norm());
+  }
+  CHECK(errors.back() <= 1e-6);
+  CHECK(test::observed_order(errors) >= 3.8);
+}
+
+TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]") {
+  // An ellipsoid hung at the tip of its long axis: l = I_O / (m r).
+  const double r = 0.3, l = (0.09 + 0.01) / (5 * r) + r;
+  for (const double degrees : {30, 60, 90, 120, 150}) {
+    const double theta = degrees * kPi / 180, period = 4 * std::sqrt(l / 9.81) * elliptic_K(theta);
+    MultiBody body;
+    Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
+    part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
+    // Its long axis points down when theta is 0.
+    const Eigen::Quaterniond R(Eigen::AngleAxisd(kPi / 2 - theta, Vec3<double>::UnitY()));
+    part.place(R * Vec3<double>(0.3, 0, 0), R);
+    body.ball("pivot", world(0, 0, 0), point(part, 0, kPi));
+    Simulation simulation(body, "rk4");
+    test::run(simulation, period, 1000);
+    INFO(degrees);
+    CHECK((simulation.state().q.head<3>() - R * Vec3<double>(0.3, 0, 0)).norm() <= 1e-9);
+    CHECK(gap(simulation).norm() <= 1e-12);
+    CHECK(std::abs(simulation.ledger().balance) <= 1e-7);
+  }
+}
+
+TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and forces", "[joints]") {
+  struct Case {
+    const char* method;
+    std::vector<int> steps;
+    double order;
+  };
+  auto at_end = [](const char* method, int steps) {
+    MultiBody body;
+    chain(body, 8, 0.7);
+    Simulation simulation(body, method);
+    test::run(simulation, 0.5, steps);
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    return std::array<VecX<double>, 3>{s.q, s.v, work.joints.lambda};
+  };
+  const auto reference = at_end("rk4", 4000);
+  for (const Case& c :
+       {Case{"rk4", {125, 250, 500}, 3.9}, Case{"semi_implicit_euler", {1000, 2000, 4000}, 0.9}}) {
+    std::array<std::vector<double>, 3> errors;
+    for (const int steps : c.steps) {
+      const auto end = at_end(c.method, steps);
+      for (std::size_t i = 0; i < 3; ++i)
+        errors[i].push_back((end[i] - reference[i]).norm() / reference[i].norm());
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      INFO(c.method << " " << i << ": " << errors[i].front() << " to " << errors[i].back());
+      CHECK(test::observed_order(errors[i]) >= c.order);
+    }
+  }
+}
+
+TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomial", "[joints]") {
+  // Spheres of no size hardly turn: joints at their centres, rods of 1 m between them.
+  for (const auto& [n, roots] : {std::pair<int, std::vector<double>>{2, {0.585786437627, 3.414213562373}},
+                                 {3, {0.415774556783, 2.294280360279, 6.289945082937}}}) {
+    MultiBody body;
+    body.gravity = {0, 0, -1};
+    for (int i = 0; i < n; ++i) {
+      Part& mass = sphere(body, "mass" + std::to_string(i), {0, 0, -1.0 - i});
+      const Part* before = i > 0 ? body.find("mass" + std::to_string(i - 1)) : nullptr;
+      body.join("rod" + std::to_string(i), Rod{1},
+                {before == nullptr ? world(0, 0, 0) : centre(*before), centre(mass)});
+    }
+    const Simulation simulation(body, "rk4");
+    // x_ddot = -A x for sideways motions, by directional derivatives at rest.
+    MatX<double> A(n, n);
+    for (int k = 0; k < n; ++k) {
+      StateDirection along{VecX<double>::Zero(simulation.model().n_q()),
+                           VecX<double>::Zero(simulation.model().n_v())};
+      along.q[simulation.model().parts()[static_cast<std::size_t>(k)].q0] = 1;
+      const VecX<double> a = simulation.dynamics().jvp(simulation.state(), along);
+      for (int i = 0; i < n; ++i) A(i, k) = -a[simulation.model().parts()[static_cast<std::size_t>(i)].v0];
+    }
+    const VecX<double> values = A.eigenvalues().real();
+    std::vector<double> found(values.data(), values.data() + n);
+    std::sort(found.begin(), found.end());
+    for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(roots[i]).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("hung supersphere: it stretches by m g / k, and oscillates with k / 1.2 m", "[joints]") {
+  const double k = 2000;
+  MultiBody body;
+  Part& ball = test::add(body, "ball", "ellipsoid", {}, 1);
+  ball.rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}}).mass(3).stiffness({{"a3", k}}).place({0, 0, -0.5});
+  body.ball("string", world(0, 0, 0), point(ball, kPi / 2, 0));
+  Simulation simulation(body, "rk4");
+  const double stretch = 3 * 9.81 / k, omega = std::sqrt(k / 3.6);
+  for (int i = 1; i <= 400; ++i) {
+    simulation.step(1e-3);
+    const double expected = 0.5 + stretch * (1 - std::cos(omega * simulation.time()));
+    REQUIRE(simulation.state().q[7] == Approx(expected).margin(1e-8));
+    REQUIRE(gap(simulation).norm() <= 1e-13);
+  }
+}
+
+TEST_CASE("N39: a hanging chain carries its weight", "[joints]") {
+  for (const double end_mass : {1.0, 1e6}) {
+    MultiBody body;
+    const int n = 1000;
+    for (int i = 0; i < n; ++i) {
+      Part& link = test::add(body, "link" + std::to_string(i), "ellipsoid", {}, 1000);
+      link.rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.3}})
+          .mass(i + 1 == n ? end_mass : 1)
+          .place({0, 0, -0.3 - 0.6 * i});
+      const Part* before = i > 0 ? body.find("link" + std::to_string(i - 1)) : nullptr;
+      body.ball("joint" + std::to_string(i), before == nullptr ? world(0, 0, 0) : point(*before, -kPi / 2, 0),
+                point(link, kPi / 2, 0));
+    }
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.01, 10);
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    const double weight = 9.81 * (n - 1 + end_mass);
+    CHECK(std::abs(std::abs(work.joints.lambda[2]) / weight - 1) <= 1e-8);
+    CHECK(s.v.lpNorm<Eigen::Infinity>() <= 1e-6);
+  }
+}
+
+TEST_CASE("N41: doubled and tripled joints move as single ones", "[joints]") {
+  VecX<double> single;
+  for (const int copies : {1, 2, 3}) {
+    MultiBody body;
+    chain(body, 5, 0.4);
+    for (int copy = 1; copy < copies; ++copy)
+      for (int i = 1; i < 5; ++i)
+        body.ball("copy" + std::to_string(copy) + "-" + std::to_string(i),
+                  point(*body.find("link" + std::to_string(i - 1)), 0, 0),
+                  point(*body.find("link" + std::to_string(i)), 0, kPi));
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.5, 500);
+    if (copies == 1) single = simulation.state().q;
+    CHECK((simulation.state().q - single).norm() <= 1e-10);
+  }
+}
+
+TEST_CASE("N38: heavy on light and light on heavy", "[joints]") {
+  for (const double ratio : {1e-6, 1e6}) {
+    MultiBody body;
+    Part &a = sphere(body, "a", {0, 0, -1}), &b = sphere(body, "b", {0, 0, -2}, 1000 * ratio);
+    body.join("upper", Rod{1}, {world(0, 0, 0), centre(a)});
+    body.join("lower", Rod{1}, {centre(a), centre(b)});
+    b.move({1e-3, 0, 0}, {0, 0, 0});
+    Simulation simulation(body, "rk4");
+    // A light bead on a loaded rod is a fast pendulum: omega^2 = 2 g / l m_b / m_a.
+    for (int i = 0; i < 500; ++i) {
+      simulation.step(ratio > 1 ? 1e-4 : 1e-3);
+      REQUIRE(std::abs(gap(simulation, 0).norm() - 1) <= 1e-12);
+      REQUIRE(std::abs(gap(simulation, 1).norm() - 1) <= 1e-12);
+    }
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    CHECK(std::abs(work.joints.lambda[1]) == Approx(b.total_mass() * 9.81).epsilon(1e-4));
+    CHECK(std::abs(simulation.ledger().balance) <= 1e-9 * (a.total_mass() + b.total_mass()));
+  }
+}
+
+TEST_CASE("N35: a spinning rod, by Baumgarte alone and projected", "[joints]") {
+  for (const bool projected : {false, true}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& mass = sphere(body, "mass", {1, 0, 0});
+    mass.move({0, 2, 0}, {0, 0, 0});  // kappa = 4 m/s^2
+    body.join("rod", Rod{1}, {world(0, 0, 0), centre(mass)});
+    body.stabilization.rule = BaumgarteRule::critical;
+    body.stabilization.rate = 10;
+    body.stabilization.projection = projected;
+    Simulation simulation(body, "semi_implicit_euler");
+    const double h = 0.01;
+    for (int i = 0; i < 1000; ++i) simulation.step(h);
+    const double offset = gap(simulation).norm() - 1;
+    if (projected)
+      CHECK(std::abs(offset) <= 1e-13);
+    else {
+      const double kappa = simulation.state().v.head<3>().squaredNorm();
+      CHECK(std::abs(offset) == Approx(h * kappa / 10).epsilon(0.03));
+    }
+  }
+}
+
+TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order", "[joints]") {
+  std::vector<double> errors;
+  VecX<double> reference;
+  for (const int steps : {3200, 100, 200, 400}) {
+    MultiBody body;
+    Part& part = test::tumbling_solid(body);
+    body.gravity = {0, 0, -9.81};
+    const Vec3<double> x0 = Model(body).world_point(Model(body).initial_state(), 0, material_at(0.4, 1.0, 1));
+    body.ball("hand",
+              world({test::wave(x0[0], 0.3, 4), test::wave(x0[1], 0.2, 5), test::wave(x0[2], 0.1, 3)}),
+              point(part, 0.4, 1.0));
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.4, steps);
+    CHECK(gap(simulation).norm() <= 1e-12);
+    if (steps == 3200)
+      reference = simulation.state().q;
+    else
+      errors.push_back((simulation.state().q - reference).norm());
+    if (steps == 400) CHECK(std::abs(simulation.ledger().balance) <= 1e-5 * simulation.ledger().energy());
+  }
+  CHECK(test::observed_order(errors) >= 3.9);
+}
+
+TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings as a rod does", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0, 0, -0.5});
+    body.join("string", String{1}, {world(0, 0, 0), centre(mass)});
+    Simulation simulation(body, method);
+    INFO(method);
+    const double h = 1e-3, taut = std::sqrt(2 * 0.5 / 9.81);
+    for (int i = 1; i <= 1000; ++i) {
+      simulation.step(h);
+      const double t = simulation.time();
+      if (t < taut - 2 * h) {
+        REQUIRE(simulation.state().joints[0] == JointMode::slack);
+        REQUIRE(simulation.state().q[2] == Approx(-0.5 - 0.5 * 9.81 * t * t).margin(9.81 * h * t));
+      }
+      REQUIRE(gap(simulation).norm() <= 1 + 1e-9);
+    }
+    CHECK(simulation.state().joints[0] == JointMode::closed);
+    CHECK(simulation.state().v.norm() <= 1e-12);
+    const Ledger ledger = simulation.ledger();
+    CHECK(ledger.work[static_cast<int>(Work::limits)] ==
+          Approx(-mass.total_mass() * 9.81 * 0.5).epsilon(method[0] == 'r' ? 1e-9 : 0.01));
+  }
+  // Taut and swinging: the rod's motion.
+  VecX<double> q[2];
+  for (const bool rod : {true, false}) {
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0.6, 0, -0.8});
+    if (rod)
+      body.join("rod", Rod{1}, {world(0, 0, 0), centre(mass)});
+    else
+      body.join("string", String{1}, {world(0, 0, 0), centre(mass)});
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 1, 500);
+    q[rod ? 0 : 1] = simulation.state().q;
+    CHECK(std::abs(gap(simulation).norm() - 1) <= 1e-12);
+  }
+  CHECK((q[0] - q[1]).norm() <= 1e-9);
+}
+
+TEST_CASE("N46: joints act through the global parameters, limits and all", "[joints]") {
+  // Two points of the world 1.2 m apart hold the tips of an ellipsoid that rests at 1 m: it stretches. Then a
+  // limit that does not let it.
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
+    part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.5}}).stiffness({{"a3", 1000}}).damping(20, 0);
+    body.ball("up", world(0, 0, 0.6), point(part, kPi / 2, 0));
+    body.ball("down", world(0, 0, -0.6), point(part, -kPi / 2, 0));
+    Simulation simulation(body, method);
+    test::run(simulation, 2, 2000);
+    INFO(method);
+    CHECK(simulation.state().q[7] == Approx(0.6).epsilon(1e-12));
+    CHECK(gap(simulation, 0).norm() <= 1e-12);
+    CHECK(gap(simulation, 1).norm() <= 1e-12);
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    CHECK(std::abs(work.joints.lambda[2]) == Approx(1000 * 0.1 / 2).epsilon(1e-9));
+
+    // A weight hung from a soft ellipsoid pulls it down to its limit, and no further.
+    MultiBody hanging;
+    Part& soft = test::add(hanging, "soft", "ellipsoid", {}, 1000);
+    soft.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.5}}).stiffness({{"a3", 1000}}).limits("a3", {0.3, 0.55});
+    soft.place({0, 0, -0.5});
+    Part& weight = sphere(hanging, "weight", {0, 0, -1});
+    hanging.ball("pin", world(0, 0, 0), point(soft, kPi / 2, 0));
+    hanging.ball("tie", point(soft, -kPi / 2, 0), centre(weight));
+    Simulation pulled(hanging, method);
+    for (int i = 0; i < 2000; ++i) {
+      pulled.step(1e-3);
+      REQUIRE(pulled.state().q[7] <= 0.55);
+      REQUIRE(gap(pulled, 0).norm() <= 1e-12);
+      REQUIRE(gap(pulled, 1).norm() <= 1e-12);
+    }
+    CHECK(pulled.state().q[7] == 0.55);
+    CHECK(pulled.state().v.norm() <= 1e-9);
+    CHECK(pulled.step_counters().limit_impulses <= 5);
+  }
+}
+
+TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"})
+    for (const double apart : {3, 10, 100}) {
+      MultiBody body;
+      body.gravity.setZero();
+      Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.2 * apart, 0.1, 0});
+      body.ball("ab", point(a, 0.3, 2), point(b, 1, -1));
+      Simulation simulation(body, method);
+      double fastest = 0;
+      const int steps = 1000 + static_cast<int>(50 * apart);
+      for (int i = 0; i < steps; ++i) {
+        simulation.step(2e-3);
+        for (const Part* part : {&a, &b}) {
+          const PartModel& m =
+              simulation.model().parts()[static_cast<std::size_t>(simulation.model().body().index(*part))];
+          fastest = std::max(fastest, simulation.state().v.segment<3>(m.v0).norm());
+        }
+      }
+      INFO(method << " from " << apart);
+      CHECK(simulation.state().joints[0] == JointMode::closed);
+      CHECK(gap(simulation).norm() <= 1e-12);
+      CHECK(fastest <= 1.5 * 0.2 * body.stabilization.rate * body.stabilization.speed);
+      CHECK(simulation.ledger().momentum.norm() <= 1e-10);
+    }
+}
+
+TEST_CASE("joints to a fixed part hold as joints to the world do", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    VecX<double> q[2];
+    for (const bool fixed : {false, true}) {
+      MultiBody body;
+      Part& post = sphere(body, "post", {0, 0, 0});
+      post.fix();
+      Part& mass = sphere(body, "mass", {0.6, 0, -0.8});
+      Part& hung = sphere(body, "hung", {0.6, 0, -1.7});
+      const Point top = fixed ? centre(post) : world(0, 0, 0);
+      body.join("rod", Rod{1}, {top, centre(mass)});
+      body.join("string", String{1}, {centre(mass), centre(hung)});
+      body.join("leash", String{1.8}, {top, centre(hung)});
+      Simulation simulation(body, method);
+      test::run(simulation, 0.5, 500);
+      q[fixed ? 1 : 0] = simulation.state().q;
+      CHECK(std::abs(gap(simulation, 0).norm() - 1) <= 1e-12);
+    }
+    CHECK(q[0] == q[1]);
+  }
+}
+
+TEST_CASE("a slack string stays slack at time 0, and at rest counts no impulses when taut", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0, 0, -0.95});
+    body.join("string", String{1}, {world(0, 0, 0), centre(mass)});
+    Simulation simulation(body, method);
+    CHECK(simulation.state().q[2] == -0.95);
+    CHECK(simulation.state().joints[0] == JointMode::slack);
+    test::run(simulation, 1, 1000);
+    INFO(method);
+    CHECK(gap(simulation).norm() == Approx(1).epsilon(1e-12));
+    CHECK(simulation.step_counters().limit_impulses <= 3);
+  }
+}
+
+TEST_CASE("without projection a string that was too long closes, and does nothing once it is slack",
+          "[joints]") {
+  MultiBody body;
+  body.gravity.setZero();
+  Part& mass = sphere(body, "mass", {1.3, 0, 0});
+  body.join("string", String{1}, {world(0, 0, 0), centre(mass)});
+  body.stabilization.projection = false;
+  body.stabilization.speed = 1e9;
+  Simulation simulation(body, "rk4");
+  bool was_slack = false;
+  double speed = 0;
+  for (int i = 0; i < 2000; ++i) {
+    simulation.step(1e-3);
+    if (simulation.state().joints[0] == JointMode::slack) {
+      if (was_slack) REQUIRE(simulation.state().v[0] == Approx(speed).margin(1e-12));
+      was_slack = true;
+      speed = simulation.state().v[0];
+    }
+  }
+  CHECK(gap(simulation).norm() <= 1 + 1e-3);
+}
+
+TEST_CASE("what closing joints drive stops at a limit", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
+    part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.5}}).stiffness({{"a3", 1000}}).limits("a3", {0.3, 0.55});
+    body.ball("up", world(0, 0, 0.6), point(part, kPi / 2, 0));
+    body.ball("down", world(0, 0, -0.6), point(part, -kPi / 2, 0));
+    Simulation simulation(body, method);
+    for (int i = 0; i < 2000; ++i) {
+      simulation.step(1e-3);
+      REQUIRE(simulation.state().q[7] <= 0.55);
+    }
+    INFO(method);
+    CHECK(simulation.state().q[7] == Approx(0.55).epsilon(1e-6));
+    CHECK(simulation.state().v.norm() <= 1e-3);
+    CHECK(simulation.state().joints[0] == JointMode::closing);
+    CHECK(std::abs(simulation.ledger().balance) <= (method[0] == 'r' ? 0.005 : 0.5));  // of 1.25 J at stake
+  }
+}
+
+TEST_CASE("islands do not know of each other: alone and beside others the same bits", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    VecX<double> q;
+    for (const bool others : {false, true}) {
+      MultiBody body;
+      chain(body, 3, 0.7);
+      if (others) {
+        Part& mass = sphere(body, "mass", {5, 0, -0.5});
+        body.join("string", String{1}, {world(5, 0, 0), centre(mass)});
+        Part& soft = test::add(body, "soft", "ellipsoid", {}, 1000);
+        soft.place({9, 0, 0}).rest({{"a3", 0.5}}).initial_rate({{"a3", 3}}).limits("a3", {0.3, 0.55});
+        sphere(body, "far", {20, 3, 1});
+        body.ball("open", point(*body.find("far"), 0, 0), world(21, 0, 0));
+      }
+      Simulation simulation(body, method);
+      test::run(simulation, 1, 100);
+      const VecX<double> ours = simulation.state().q.head(21);
+      if (others)
+        CHECK(ours == q);
+      else
+        q = ours;
+    }
+  }
+}
+
+TEST_CASE("closing books its work: the balance does not jump", "[joints]") {
+  MultiBody body;
+  Part& mass = sphere(body, "mass", {0.2, 0, -1.1});
+  body.ball("pin", world(0, 0, 0), point(mass, kPi / 2, 0));
+  Simulation simulation(body, "rk4");
+  double before = 0;
+  for (int i = 0; i < 3000; ++i) {
+    simulation.step(1e-3);
+    const double now = simulation.ledger().balance;
+    REQUIRE(std::abs(now - before) <= 1e-4);
+    before = now;
+  }
+  CHECK(simulation.state().joints[0] == JointMode::closed);
+}
+
+TEST_CASE("N42: joints that contradict each other are named with their gap", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0, 0, 0});
+    body.ball("here", world(0, 0, 0), centre(mass));
+    body.ball("there", world(1e-4, 0, 0), centre(mass));
+    body.ball("else", point(mass, 0, 0), centre(sphere(body, "other", {0.2, 0, 0})));
+    try {
+      const Simulation simulation(body, method);
+      FAIL("not refused");
+    } catch (const UnsatisfiableModel& failure) {
+      const std::string what = failure.what();
+      CHECK(what.find("'here'") != std::string::npos);
+      CHECK(what.find("'there'") != std::string::npos);
+      CHECK(what.find("0.0001 m") != std::string::npos);
+      CHECK(what.find("'else'") == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("what is not a number in a joint is named", "[joints]") {
+  MultiBody body;
+  Part& mass = sphere(body, "mass", {0, 0, 0});
+  body.ball("hand", world({TimeFunction::formula("sqrt(0.01 - t)"), 0, 0}), centre(mass));
+  Simulation simulation(body, "rk4");
+  try {
+    for (int i = 0; i < 100; ++i) simulation.step(1e-3);
+    FAIL("went on");
+  } catch (const NumericalFailure& failure) {
+    CHECK(std::string(failure.what()).find("the anchor of ball 'hand'") != std::string::npos);
+  }
+}
