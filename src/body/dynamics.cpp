@@ -455,44 +455,6 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
   }
 }
 
-void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
-                          Ledger& ledger) const {
-  ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
-  ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
-  VecMax<double> stretch(m.n_s);
-  for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
-  ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
-}
-
-void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
-                          Ledger& ledger) const {
-  auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
-    return ref.part >= 0
-               ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
-               : point.world.value(t);
-  };
-  const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
-  ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
-}
-
-Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
-  accelerations(t, state.q, state.v, state, work);
-  Ledger ledger;
-  ledger.work = state.work;
-  for (std::size_t i = 0; i < work.parts.size(); ++i) {
-    const PartModel& m = model_->parts()[i];
-    if (m.q0 < 0) continue;
-    const PartWorkspace<double>& w = work.parts[i];
-    add_energy(t, m, w, ledger);
-    const VecMax<double> momentum = w.inertia.M * w.v_r;
-    const Vec3<double> P = w.R * momentum.head<3>();
-    ledger.momentum += P;
-    ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);
-  }
-  for (const SpringModel& spring : model_->springs()) add_energy(t, spring, work, ledger);
-  return ledger;
-}
-
 void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                                Workspace<double>& work) const {
   work.parts.resize(model_->parts().size());
@@ -528,78 +490,5 @@ double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v, 
   }
   return ledger.energy();
 }
-
-namespace {
-/// Which of the forces of a part alone is not finite.
-std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& w) {
-  const Part& part = *m.part;
-  VecMax<double> stretch = w.q_s;
-  for (int k = 0; k < m.n_s; ++k) stretch[k] -= part.parameters().moving(k).rest.value(t);
-  const VecMax<double> elastic = part.K_s() * stretch, momentum = w.inertia.M * w.v_r;
-  const VecMax<double> damping =
-      (part.alpha() * w.inertia.M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
-  if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
-  if (!damping.allFinite()) return "the damping force D q_dot";
-  if (part.drag() > 0 && !(part.drag() * momentum).allFinite()) return "the drag";
-  return "the sum of the forces";
-}
-}  // namespace
-
-std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                               Workspace<double>& work) const {
-  for (Eigen::Index i = 0; i < q.size(); ++i)
-    if (!std::isfinite(q[i])) return "the coordinate " + model_->coordinate_name(static_cast<int>(i));
-  for (Eigen::Index i = 0; i < v.size(); ++i)
-    if (!std::isfinite(v[i])) return "the velocity " + model_->velocity_name(static_cast<int>(i));
-  evaluate<double>(t, q, v, &modes, nullptr, work);
-  auto of_part = [&](std::size_t i) { return " of part '" + model_->parts()[i].part->name() + "'"; };
-  for (std::size_t i = 0; i < work.parts.size(); ++i) {
-    if (model_->parts()[i].q0 < 0) continue;
-    if (!work.parts[i].inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
-    if (!work.parts[i].inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
-  }
-  for (const PartModel& m : model_->parts())
-    for (const int k : m.part->parameters().dynamic()) {
-      const Parameter& p = m.part->parameters()[k];
-      if (!std::isfinite(p.rest.value(t))) return "the rest value of " + m.part->name() + "." + p.name;
-    }
-  for (const SpringModel& s : model_->springs())
-    for (const Point* end : {&s.spring->a, &s.spring->b})
-      if (end->part == nullptr && !end->world.value(t).allFinite())
-        return "the anchor of spring '" + s.spring->name + "'";
-  for (const SpringModel& s : model_->springs())
-    for (const PortRef& ref : {s.a, s.b})
-      if (ref.part >= 0 && !work.parts[static_cast<std::size_t>(ref.part)]
-                                .port_force[static_cast<std::size_t>(ref.port)]
-                                .allFinite())
-        return "the force of spring '" + s.spring->name + "'";
-  for (const ForceModel& f : model_->forces())
-    if (!work.parts[static_cast<std::size_t>(f.at.part)]
-             .port_force[static_cast<std::size_t>(f.at.port)]
-             .allFinite())
-      return "the force '" + f.force->name + "'";
-  for (const TorqueModel& m : model_->torques())
-    if (!m.torque->torque.value(t).allFinite()) return "the torque '" + m.torque->name + "'";
-  for (const JointModel& m : model_->joints()) {
-    const std::string what = std::string(" of ") + m.joint->type() + " '" + m.joint->name() + "'";
-    for (const Point& point : m.joint->points())
-      if (point.part == nullptr && !point.world.value(t).allFinite()) return "the anchor" + what;
-    if (!work.joints.C.segment(m.row, m.rows).allFinite()) return "the gap C" + what;
-    if (!work.joints.C_dot.segment(m.row, m.rows).allFinite()) return "the rate C_dot" + what;
-  }
-  for (std::size_t i = 0; i < work.parts.size(); ++i) {
-    if (model_->parts()[i].q0 < 0) continue;
-    if (!work.parts[i].f.allFinite()) return own_term(t, model_->parts()[i], work.parts[i]) + of_part(i);
-    if (!work.parts[i].a_r.allFinite() && model_->parts()[i].island < 0)
-      return "the acceleration" + of_part(i);
-  }
-  for (const JointModel& m : model_->joints())
-    if (!work.joints.lambda.segment(m.row, m.rows).allFinite())
-      return std::string("the force of ") + m.joint->type() + " '" + m.joint->name() + "'";
-  return {};
-}
-
-template void Dynamics::evaluate<double>(double, const VecX<double>&, const VecX<double>&, const State*,
-                                         const Workspace<double>*, Workspace<double>&) const;
 
 }  // namespace pliant

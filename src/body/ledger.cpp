@@ -1,0 +1,44 @@
+// Energies and momenta of a state.
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
+                          Ledger& ledger) const {
+  ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
+  ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
+  VecMax<double> stretch(m.n_s);
+  for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
+  ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
+}
+
+void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
+                          Ledger& ledger) const {
+  auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
+    return ref.part >= 0
+               ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
+               : point.world.value(t);
+  };
+  const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
+  ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
+}
+
+Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
+  accelerations(t, state.q, state.v, state, work);
+  Ledger ledger;
+  ledger.work = state.work;
+  for (std::size_t i = 0; i < work.parts.size(); ++i) {
+    const PartModel& m = model_->parts()[i];
+    if (m.q0 < 0) continue;
+    const PartWorkspace<double>& w = work.parts[i];
+    add_energy(t, m, w, ledger);
+    const VecMax<double> momentum = w.inertia.M * w.v_r;
+    const Vec3<double> P = w.R * momentum.head<3>();
+    ledger.momentum += P;
+    ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);
+  }
+  for (const SpringModel& spring : model_->springs()) add_energy(t, spring, work, ledger);
+  return ledger;
+}
+
+}  // namespace pliant
