@@ -26,6 +26,13 @@ Point centre(const Part& part) {
   return point(part, 0, 0, 0);
 }
 
+/// Two spheres in free space whose centres a joint is to bring together; nothing turns.
+void open_pair(MultiBody& body) {
+  body.gravity.setZero();
+  Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
+  body.ball("ab", centre(a), centre(b));
+}
+
 Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
   const Joint& j = *simulation.model().joints()[joint].joint;
   auto place = [&](const Point& p) -> Vec3<double> {
@@ -68,9 +75,7 @@ TEST_CASE(
   std::vector<double> errors;
   for (const int steps : {20, 40, 80, 160}) {
     MultiBody body;
-    body.gravity.setZero();
-    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
-    body.ball("ab", centre(a), centre(b));
+    open_pair(body);
     body.stabilization.rate = 4;
     body.stabilization.projection = false;
     Simulation simulation(body, "rk4");
@@ -91,9 +96,7 @@ TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding a
           "[joints]") {
   for (const double rate_h : {0.01, 0.3, 1.0, 5.0, 1000.0}) {
     MultiBody body;
-    body.gravity.setZero();
-    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
-    body.ball("ab", centre(a), centre(b));
+    open_pair(body);
     body.stabilization.rate = 20;
     body.stabilization.projection = false;
     Simulation simulation(body, "semi_implicit_euler");
@@ -115,9 +118,7 @@ TEST_CASE("N34: the edges of stability of Baumgarte's equation", "[joints]") {
   for (const Case& c : {Case{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)}, Case{"rk4", 2.785}}) {
     for (const double part : {0.99, 1.01}) {
       MultiBody body;
-      body.gravity.setZero();
-      Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
-      body.ball("ab", centre(a), centre(b));
+      open_pair(body);
       body.stabilization.rule = BaumgarteRule::critical;
       body.stabilization.rate = 10;
       body.stabilization.speed = 1e9;

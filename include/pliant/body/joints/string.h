@@ -4,10 +4,8 @@
 #pragma once
 
 #include <array>
-#include <limits>
 
-#include <pliant/math/functions.h>
-#include <pliant/math/types.h>
+#include <pliant/body/joints/rod.h>
 
 namespace pliant {
 
@@ -18,17 +16,11 @@ struct String {
   static constexpr bool one_sided = true;
   double length = 1;  ///< m
 
-  /// What is wrong with it, in words; nullptr if nothing is.
-  const char* fault() const {
-    return length > 0 && length < std::numeric_limits<double>::infinity() ? nullptr : "needs a length > 0";
-  }
+  const char* fault() const { return Rod{length}.fault(); }
 
   template <class T>
-  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
-    const Vec3<T> d = x[0] - x[1];
-    Vec<T, rows> C;
-    C[0] = T(length) - math::sqrt_from_zero(T(d.dot(d)));
-    return C;
+  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const {
+    return -Rod{length}.C(x, t);
   }
 };
 
