@@ -5,6 +5,7 @@
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/frame_schedule.h>
+#include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/skipped.h>
 
@@ -110,6 +111,47 @@ void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulati
   }
 }
 
+void print_joints(const pliant::Simulation& simulation) {
+  const pliant::Model& model = simulation.model();
+  if (model.joints().empty()) return;
+  const pliant::State& state = simulation.state();
+  pliant::Workspace<double> work;
+  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const pliant::JointModel& joint = model.joints()[j];
+    std::cout << joint.joint->type() << " " << joint.joint->name() << ": ";
+    const auto& points = joint.joint->points();
+    print_point(simulation, points.front());
+    if (joint.joint->n_points() > joint.joint->n_first()) {
+      std::cout << " to ";
+      print_point(simulation, points[static_cast<std::size_t>(joint.joint->n_first())]);
+    }
+    const pliant::JointMode mode = state.joints[j];
+    const double gap = model.gap(state, static_cast<int>(j));
+    if (mode == pliant::JointMode::closing)
+      std::cout << ", open by " << pliant::rounded_text(gap) << " m";
+    else if (mode == pliant::JointMode::slack)
+      std::cout << ", slack";
+    if (std::isfinite(joint.joint->on())) std::cout << ", from " << joint.joint->on() << " s on";
+    if (std::isfinite(joint.joint->off())) std::cout << ", until " << joint.joint->off() << " s";
+    std::cout << "\n";
+  }
+  int rows = 0, dependent = 0;
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const pliant::JointModel& joint = model.joints()[j];
+    if (joint.joint->one_sided() || !pliant::acts(state.joints[j])) continue;
+    rows += joint.rows;
+    dependent += pliant::redundant_rows(model, work.joints, static_cast<int>(j));
+  }
+  std::int64_t numbers = 0;
+  for (const pliant::Island& island : model.islands()) numbers += island.pattern.values();
+  std::cout << "constraints: " << pliant::count_text(rows, "row") << " of rank " << rows - dependent << ", "
+            << pliant::count_text(static_cast<std::int64_t>(model.islands().size()), "island") << ", "
+            << pliant::count_text(numbers, "number") << " in the factor of C_q M^-1 C_q^T\n";
+  const std::string note = pliant::redundancy_note(simulation);
+  if (!note.empty()) std::cout << "  " << note << "\n";
+}
+
 int info(const SceneOptions& options) {
   const std::unique_ptr<pliant::Scene> scene = read(options);
   const pliant::Simulation simulation(scene->body, scene->integrator);
@@ -125,6 +167,7 @@ int info(const SceneOptions& options) {
             << model.n_v() << " degrees of freedom (" << model.n_limits() << " dynamic parameters, " << frozen
             << " frozen), " << mass << " kg in motion\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
+  print_joints(simulation);
   print_forces(*scene, simulation);
   std::cout << "skipped:\n";
   for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";

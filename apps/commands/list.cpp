@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include <pliant/body/joint_registry.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/math/formula.h>
 #include <pliant/part/registry.h>
@@ -49,6 +50,11 @@ void list_deformations() {
   }
 }
 
+void list_joints() {
+  for (const pliant::JointInfo& joint : pliant::all_joints())
+    std::cout << joint.name << "\n  " << joint.formula << "\n";
+}
+
 void list_integrators() {
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
@@ -68,6 +74,7 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"shapes", "solid primitives, with their parameters, ranges and formulas", list_shapes},
     {"deformations", "links of a part's chain of global deformations", list_deformations},
+    {"joints", "constraints between points of parts and of the world", list_joints},
     {"integrators", "methods of time integration", list_integrators},
     {"functions", "what formulas of time may use", list_functions},
 };
@@ -76,7 +83,8 @@ constexpr Kind kKinds[] = {
 
 void add_list(CLI::App& app, Action& action) {
   const auto kind = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("list", "List shapes, deformations, integrators or functions");
+  CLI::App* command =
+      app.add_subcommand("list", "List shapes, deformations, joints, integrators or functions");
   std::vector<std::string> names;
   std::string footer = "Kinds:\n";
   for (const Kind& k : kKinds) {

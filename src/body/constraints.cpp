@@ -322,6 +322,14 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
   return power;
 }
 
+int redundant_rows(const Model& model, const ConstraintWorkspace<double>& work, int joint) {
+  const JointModel& m = model.joints()[at(joint)];
+  if (m.joint->one_sided() || !acts(work.modes[at(joint)])) return 0;
+  int count = 0;
+  for (int r = 0; r < m.rows; ++r) count += work.W_c[at(m.island)].held(m.island_row + r) ? 1 : 0;
+  return count;
+}
+
 #define PLIANT_INSTANCES(S)                                                                                \
   template void evaluate_joints(const Model&, const Island&, double, const std::vector<PartWorkspace<S>>&, \
                                 ConstraintWorkspace<S>&);                                                  \

@@ -58,7 +58,12 @@ Model::Model(MultiBody& body) : body_(&body) {
     torques_.push_back({torque.get(), body.index(*torque->part)});
   }
   body.stabilization.check();
-  for (const auto& joint : body.joints()) add_joint(*joint);
+  for (const auto& joint : body.joints()) {
+    add_joint(*joint);
+    for (const double time : {joint->on(), joint->off()})
+      if (std::isfinite(time)) switch_times_.push_back(time);
+  }
+  std::sort(switch_times_.begin(), switch_times_.end());
   lay_islands();
   Counters unused;
   for (PartModel& m : parts_)
@@ -196,7 +201,8 @@ State Model::initial_state() const {
   state.q.setZero(n_q_);
   state.v.setZero(n_v_);
   state.at_limit.assign(static_cast<std::size_t>(n_limits_), 0);
-  state.joints.assign(joints_.size(), JointMode::closing);
+  for (const JointModel& joint : joints_)
+    state.joints.push_back(joint.joint->acts_at(0) ? JointMode::closing : JointMode::off);
   for (const PartModel& m : parts_) {
     if (m.q0 < 0) continue;
     const Part& part = *m.part;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <pliant/body/joint_registry.h>
+
 namespace pliant {
 
 Part& MultiBody::add(std::unique_ptr<Part> part) {
@@ -59,6 +61,22 @@ Joint& MultiBody::join(std::unique_ptr<Joint> joint) {
       throw std::invalid_argument(what + ": the points of a side are not on one part");
   joints_.push_back(std::move(joint));
   return *joints_.back();
+}
+
+Joint& MultiBody::join(const std::string& type, std::string name, const JointSetting& setting) {
+  for (const Point* point : {&setting.from, &setting.to})
+    if (point->part != nullptr) parts_[static_cast<std::size_t>(index(*point->part))]->prepare();
+  return join(make_joint(type, std::move(name), setting));
+}
+
+Joint& MultiBody::hinge(std::string name, Point a, Point b, const Vec3<double>& axis) {
+  JointSetting setting{std::move(a), std::move(b)};
+  setting.axis = axis;
+  return join("hinge", std::move(name), setting);
+}
+
+Joint& MultiBody::weld(std::string name, Point a, Point b) {
+  return join("weld", std::move(name), JointSetting{std::move(a), std::move(b)});
 }
 
 Part* MultiBody::find(const std::string& name) const {

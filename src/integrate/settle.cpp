@@ -157,21 +157,17 @@ void note_strings(const Model& model, const Island& island, const Workspace<doub
 
 }  // namespace
 
-void close_at_start(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) {
+void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
+               Workspace<double>& work, StepCounters& counters) {
   const Model& model = dynamics.model();
-  const double t = state.time();
-  for (const Island& island : model.islands()) {
-    dynamics.factor_joints(t, state.q, state.v, state, island, work);
-    if (dynamics.hold().projected) close_joints(model, island, true, work, state);
-    close_strings(model, island, work, state);
-  }
-  if (model.joints().empty()) return;
-  dynamics.accelerations(t, state.q, state.v, state, work);
-  for_each_island(model, work, [&](const Group<double, Eigen::Dynamic>& group) {
-    settle_group(dynamics, t, group, true, state, work, counters);
-    dynamics.evaluate_joints(t, state.q, state.v, state, *group.island(), work);
-    note_strings(model, *group.island(), work, state);
-  });
+  dynamics.factor_joints(t, state.q, state.v, state, island, work);
+  if (dynamics.hold().projected) close_joints(model, island, true, work, state);
+  close_strings(model, island, work, state);
+  dynamics.factor_joints(t, state.q, state.v, state, island, work);
+  settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), true, state, work,
+               counters);
+  dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+  note_strings(model, island, work, state);
 }
 
 void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,

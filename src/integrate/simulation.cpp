@@ -1,5 +1,6 @@
 #include <pliant/integrate/simulation.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -7,6 +8,11 @@
 #include <pliant/integrate/settle.h>
 
 namespace pliant {
+
+namespace {
+/// Times that differ by less than this part of a step are the same.
+constexpr double kNear = 1e-9;
+}  // namespace
 
 Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads)
     : model_(body),
@@ -16,7 +22,9 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
   dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
-  close_at_start(dynamics_, state_, output_work_, step_counters_);
+  if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
+  for (const Island& island : model_.islands())
+    take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);
   start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
 }
@@ -34,7 +42,7 @@ void Simulation::step(double h) {
   }
   last_good_ = state_;
   try {
-    integrator_->step(dynamics_, state_, work_, step_counters_);
+    advance(h);
   } catch (const UnsatisfiableModel& failure) {
     state_ = last_good_;
     throw UnsatisfiableModel(failure.what(), state_.time());
@@ -43,6 +51,46 @@ void Simulation::step(double h) {
   ++step_counters_.steps;
   check(last_good_);
   note_held();
+}
+
+/// Moves the state on by h but for the count of its step, stopping where joints switch.
+void Simulation::advance(double h) {
+  const double end = state_.time() + h, near = kNear * h;
+  const std::vector<double>& times = model_.switch_times();
+  auto next = std::upper_bound(times.begin(), times.end(), state_.time() + near);
+  if (next == times.end() || *next > end + near)
+    return integrator_->step(dynamics_, state_, work_, step_counters_);
+  const double start = state_.start;
+  const std::int64_t step = state_.step;
+  for (double now = state_.time(); now < end - near;) {
+    const double stop = next == times.end() || *next > end - near ? end : *next;
+    state_.start = now;
+    state_.step = 0;
+    state_.h = stop - now;
+    integrator_->step(dynamics_, state_, work_, step_counters_);
+    switch_joints(stop);
+    now = stop;
+    next = std::upper_bound(times.begin(), times.end(), now + near);
+  }
+  state_.start = start;
+  state_.step = step;
+  state_.h = h;
+}
+
+/// Joints begin and cease to act at time t.
+void Simulation::switch_joints(double t) {
+  if (!state_.q.allFinite() || !state_.v.allFinite()) return;
+  const double then = t + kNear * state_.h;
+  std::vector<bool> more(model_.islands().size());
+  for (std::size_t j = 0; j < model_.joints().size(); ++j) {
+    const JointModel& joint = model_.joints()[j];
+    const bool on = joint.joint->acts_at(then), was_on = state_.joints[j] != JointMode::off;
+    if (on == was_on) continue;
+    state_.joints[j] = on ? JointMode::closing : JointMode::off;
+    if (on) more[static_cast<std::size_t>(joint.island)] = true;
+  }
+  for (std::size_t i = 0; i < more.size(); ++i)
+    if (more[i]) take_hold(dynamics_, t, model_.islands()[i], state_, work_, step_counters_);
 }
 
 void Simulation::check(const State& before) {

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/skipped.h>
@@ -95,6 +96,8 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
     note("warning: the step of " + number_text(schedule_.step()) +
          " s is above the largest stable one, about " + rounded_text(stable_step) + " s");
   }
+  const std::string redundant = redundancy_note(*simulation_);
+  if (!redundant.empty()) note(redundant);
   write_layout(folder_->path(), simulation_->model(), schedule_,
                TrajectoryTable(scene, *simulation_).columns());
   for (const char* file :

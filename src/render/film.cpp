@@ -44,14 +44,32 @@ Eigen::Vector3d Film::place(const Point& point, const State& state) const {
   return model_->world_point(state, model_->body().index(*point.part), point.material);
 }
 
-// Where springs hold on to the world, as far as that is beside the bodies and not somewhere far away.
+// What is drawn of springs and joints: a line between two points where it keeps them apart, dots where it
+// holds on to the world.
+std::vector<Film::Tie> Film::ties() const {
+  std::vector<Tie> all;
+  if (!scene_->show_springs) return all;
+  for (const auto& spring : scene_->body.springs()) all.push_back({{&spring->a, &spring->b}, true, nullptr});
+  for (const auto& joint : scene_->body.joints()) {
+    const std::vector<Point>& points = joint->points();
+    Tie tie{{&points.front()}, joint->rows() == 1 && points.size() == 2, joint.get()};
+    if (joint->n_points() > joint->n_first())
+      tie.ends.push_back(&points[static_cast<std::size_t>(joint->n_first())]);
+    all.push_back(std::move(tie));
+  }
+  return all;
+}
+
+// Where springs and joints hold on to the world, as far as that is beside the bodies and not somewhere far
+// away.
 Eigen::AlignedBox3d Film::anchors(const Eigen::AlignedBox3d& bodies) const {
   Eigen::AlignedBox3d box;
-  if (!scene_->show_springs || bodies.isEmpty()) return box;
+  if (bodies.isEmpty()) return box;
   const double reach = bodies.diagonal().norm();
+  const std::vector<Tie> all = ties();
   for (std::int64_t row = 0; row < recording_->rows(); ++row)
-    for (const auto& spring : scene_->body.springs())
-      for (const Point* end : {&spring->a, &spring->b}) {
+    for (const Tie& tie : all)
+      for (const Point* end : tie.ends) {
         if (end->part != nullptr) continue;
         const Eigen::Vector3d x = end->world.value(recording_->time(row));
         if (bodies.exteriorDistance(x) <= reach) box.extend(x);
@@ -87,15 +105,17 @@ void Film::choose_view() {
   if (camera.up.cross(view).norm() <= kVertical * view.norm()) camera.up = Eigen::Vector3d::UnitY();
 }
 
-void Film::draw_springs(const State& state) {
-  if (!scene_->show_springs) return;
-  for (const auto& spring : scene_->body.springs()) {
-    Picture::Track line;
-    line.points = {place(spring->a, state), place(spring->b, state)};
-    line.color = kSpringColor;
-    line.width = kSpringWidth;
-    picture_.tracks.push_back(line);
-    for (const Point* end : {&spring->a, &spring->b}) {
+void Film::draw_ties(const State& state) {
+  for (const Tie& tie : ties()) {
+    if (tie.joint != nullptr && !tie.joint->acts_at(state.time())) continue;
+    if (tie.line) {
+      Picture::Track line;
+      line.points = {place(*tie.ends[0], state), place(*tie.ends[1], state)};
+      line.color = kSpringColor;
+      line.width = kSpringWidth;
+      picture_.tracks.push_back(line);
+    }
+    for (const Point* end : tie.ends) {
       if (end->part != nullptr) continue;
       Picture::Track dot;
       dot.points = {place(*end, state)};
@@ -122,7 +142,7 @@ const Picture& Film::at(double time) {
     track.color = vector_of(scene_->tracks[i].color);
     picture_.tracks.push_back(std::move(track));
   }
-  draw_springs(state);
+  draw_ties(state);
   return picture_;
 }
 

@@ -8,6 +8,7 @@
 
 #include <pliant/part/registry.h>
 
+#include "direction_reader.h"
 #include "json_write.h"
 #include "parameter_reader.h"
 
@@ -30,15 +31,6 @@ bool is_workable(double x) {
 }
 
 }  // namespace
-
-Vec3<double> read_direction(const JsonValue& value, SceneFaults& faults) {
-  const Vec3<double> d = read_vector3(value);
-  if (d.isZero(0)) {
-    faults.value(value, "expected a direction that is not zero");
-    return {0, 0, 1};
-  }
-  return d.stableNormalized();
-}
 
 std::unique_ptr<Part> PartReader::read() {
   if (!r_.given("shape") || r_.faulty("deformations")) return nullptr;
@@ -63,7 +55,7 @@ std::unique_ptr<Part> PartReader::read() {
     refused(e);
   }
   if (r_.given("inertia")) read_inertia(r_.object("inertia"));
-  part_->place(r_.vector3("position"), orientation());
+  part_->place(r_.vector3("position"), read_orientation(r_.object("orientation"), faults_));
   part_->move(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
   check_rigid();
@@ -161,27 +153,6 @@ void PartReader::read_inertia(const Reader& r) {
                      " and " + brief(I[2]) +
                      " kg m^2; expected each > 0 and none larger than the other two together");
   part_->inertia(r.number("mass"), about_origin, c);
-}
-
-Eigen::Quaterniond PartReader::orientation() {
-  const Reader r = r_.object("orientation");
-  if (!r.complete()) return Eigen::Quaterniond::Identity();
-  if (r.name() == "by_axis")
-    return Eigen::Quaterniond(Eigen::AngleAxisd(r.number("angle"), read_direction(r.at("axis"), faults_)));
-  const JsonValue& value = r.at("quaternion");
-  const std::vector<double> q = r.numbers("quaternion");
-  const Eigen::Vector4d wxyz(q[0], q[1], q[2], q[3]);
-  const double length = wxyz.stableNorm();
-  if (std::abs(length - 1) <= 1e-3) return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
-  std::string hint;
-  if (length > 0) {
-    const Eigen::Vector4d unit = wxyz.stableNormalized();
-    for (const double x : {unit[0], unit[1], unit[2], unit[3]})
-      hint += (hint.empty() ? "; did you mean [" : ", ") + shortest(std::round(x * 1e6) / 1e6);
-    hint += "]?";
-  }
-  faults_.value(value, "its length is " + brief(length) + "; expected a quaternion of length 1" + hint);
-  return Eigen::Quaterniond::Identity();
 }
 
 /// What only parts without dynamic parameters can be.

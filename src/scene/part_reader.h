@@ -34,7 +34,6 @@ class PartReader {
   /// Numbers across the diagonal of [[...], ...] that differ are reported.
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
-  Eigen::Quaterniond orientation();
   void check_rigid();
   void refused(const std::invalid_argument& e);
   void prepare();
@@ -46,8 +45,5 @@ class PartReader {
   std::unique_ptr<Part> part_;
   bool prepared_ = false;
 };
-
-/// A vector of any length but 0 as a unit vector; (0, 0, 1) with a fault when it has none.
-Vec3<double> read_direction(const JsonValue& value, SceneFaults& faults);
 
 }  // namespace pliant

@@ -88,6 +88,11 @@ std::optional<Point> PointReader::anywhere(const Reader& r) const {
   return world(*moving);
 }
 
+std::optional<Point> PointReader::end(const Reader& r, const char* key) const {
+  if (!r.given(key)) return {};
+  return anywhere(r.object(key));
+}
+
 /// Resolved at the rest shape.
 std::optional<Material<double>> PointReader::material(const Part& part, const JsonValue& at) const {
   using Form = MaterialPointValue::Form;
@@ -121,6 +126,10 @@ std::optional<Material<double>> PointReader::material(const Part& part, const Js
       *at.find(by_direction ? "direction" : "near"),
       "no material point of part \"" + part.name() + "\" lies there; expected a place on its rest shape");
   return {};
+}
+
+bool same_point(const Material<double>& a, const Material<double>& b) {
+  return a.cu.x == b.cu.x && a.su.x == b.su.x && a.cv.x == b.cv.x && a.sv.x == b.sv.x && a.w == b.w;
 }
 
 Vec3<double> position_at_start(const Point& point) {

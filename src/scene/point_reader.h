@@ -32,6 +32,8 @@ class PointReader {
   std::optional<Point> on_part(const Reader& r) const;
   /// {"part", "at"} or {"world"}.
   std::optional<Point> anywhere(const Reader& r) const;
+  /// The same under a key of a spring or joint.
+  std::optional<Point> end(const Reader& r, const char* key) const;
 
  private:
   const NamedPart* named(const Reader& r) const;
@@ -41,6 +43,8 @@ class PointReader {
   TimeReader times_;
   SceneFaults& faults_;
 };
+
+bool same_point(const Material<double>& a, const Material<double>& b);
 
 /// Where a point is at time 0, m.
 Vec3<double> position_at_start(const Point& point);

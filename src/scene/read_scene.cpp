@@ -12,6 +12,8 @@
 #include <pliant/scene/scene_schema.h>
 #include <pliant/scene/validate.h>
 
+#include "direction_reader.h"
+#include "joint_reader.h"
 #include "part_reader.h"
 #include "point_reader.h"
 #include "scene_faults.h"
@@ -61,6 +63,8 @@ class SceneReader {
     for (const auto& [name, material] : root_.entries("materials")) materials_.emplace(name, material);
     for (const Reader& r : root_.objects("parts")) read_part(r);
     const PointReader points(parts_, scene_->end, faults_);
+    scene_->body.stabilization = read_stabilization(root_.object("stabilization"));
+    for (const Reader& r : named("joints")) read_joint(r, points, faults_, scene_->body);
     for (const Reader& r : named("springs")) read_spring(r, points);
     for (const Reader& r : named("forces")) read_force(r, points);
     for (const Reader& r : named("torques")) read_torque(r, points);
@@ -164,21 +168,12 @@ class SceneReader {
     }
     return all;
   }
-  static std::string name_of(const Reader& r, const char* kind, std::size_t number) {
-    return r.given("name") ? r.text("name") : kind + std::to_string(number + 1);
-  }
-
-  std::optional<Point> end_point(const Reader& spring, const char* key, const PointReader& points) {
-    if (!spring.given(key)) return {};
-    return points.anywhere(spring.object(key));
-  }
-
   void read_spring(const Reader& r, const PointReader& points) {
-    const std::optional<Point> from = end_point(r, "from", points), to = end_point(r, "to", points);
+    const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
     if (!from || !to || !r.complete()) return;
     if (from->part == nullptr && to->part == nullptr)
       return faults_.place(r.json(), "both ends are points of the world; expected at least one on a part");
-    if (from->part == to->part && same(from->material, to->material))
+    if (from->part == to->part && same_point(from->material, to->material))
       return faults_.place(r.at("to"), "this is the same point as \"from\"; expected another");
     const double length = r.number("rest_length");
     if (length > 0 && (position_at_start(*from) - position_at_start(*to)).norm() <= 1e-9 * length)
@@ -189,10 +184,6 @@ class SceneReader {
     scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
                         r.number("stiffness"), r.number("damping"), length);
   }
-  static bool same(const Material<double>& a, const Material<double>& b) {
-    return a.cu.x == b.cu.x && a.su.x == b.su.x && a.cv.x == b.cv.x && a.sv.x == b.sv.x && a.w == b.w;
-  }
-
   TimeReader times() { return {scene_->end, faults_}; }
   static Frame frame(const Reader& r) { return r.text("frame") == "body" ? Frame::body : Frame::world; }
   void read_force(const Reader& r, const PointReader& points) {

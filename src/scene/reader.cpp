@@ -134,6 +134,10 @@ std::vector<std::pair<std::string, Reader>> Reader::entries(const std::string& k
   return all;
 }
 
+std::string name_of(const Reader& r, const char* kind, std::size_t number) {
+  return r.given("name") ? r.text("name") : kind + std::to_string(number + 1);
+}
+
 Vec3<double> read_vector3(const JsonValue& value) {
   const JsonValue::Array& x = value.array();
   return {x[0].number(), x[1].number(), x[2].number()};

@@ -5,6 +5,8 @@
 #include <pliant/scene/point_value.h>
 #include <pliant/scene/time_value.h>
 
+#include "joint_schema.h"
+
 namespace pliant {
 
 namespace {
@@ -195,6 +197,9 @@ Record make_scene_record() {
            optional("materials", map(record(material)), "Materials by name.", "{}"),
            required("parts", array(record(part_record())), "The bodies.",
                     "[{\"name\": \"ball\", \"shape\": \"sphere\"}]"),
+           optional("joints", array(joint_type(end_point(), orientation())),
+                    "Joints between parts or to the world.", "[]"),
+           optional("stabilization", record(stabilization_record()), "How joints close and hold.", "{}"),
            optional("springs", array(record(spring)), "Springs between parts or to the world.", "[]"),
            optional("forces", array(record(force)), "Forces at material points.", "[]"),
            optional("torques", array(record(torque)), "Torques on parts.", "[]"),

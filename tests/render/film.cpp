@@ -47,7 +47,8 @@ TEST_CASE("camera and ground do not move, and hold the whole motion") {
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 4);
-    REQUIRE(picture.tracks.size() == 1 + 3 + 1);  // a track, three springs, one of them held by the world
+    // A track, three springs, one of them held by the world, and a string that is, too.
+    REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
     const Eigen::Vector3d back = (camera.eye - camera.target).normalized();

@@ -66,6 +66,9 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 
+/// Rows of a joint that follow from those of others, which hold them; after an evaluation.
+int redundant_rows(const Model& model, const ConstraintWorkspace<double>& work, int joint);
+
 /// Whether a joint acts in this mode.
 inline bool acts(JointMode mode) {
   return mode == JointMode::closing || mode == JointMode::closed;

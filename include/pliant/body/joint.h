@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -47,6 +48,17 @@ class Joint {
   virtual ~Joint() = default;
 
   const std::string& name() const { return name_; }
+  /// It acts from time `on` (s) until before `off`; always by default. Throws std::invalid_argument unless on
+  /// < off.
+  Joint& during(double on, double off = std::numeric_limits<double>::infinity()) {
+    if (!(on < off)) throw std::invalid_argument("joint '" + name_ + "' needs times on < off");
+    on_ = on;
+    off_ = off;
+    return *this;
+  }
+  double on() const { return on_; }
+  double off() const { return off_; }
+  bool acts_at(double t) const { return t >= on_ && t < off_; }
   virtual const char* type() const = 0;
   virtual int rows() const = 0;
   /// Whether it only holds one way: C >= 0 with a multiplier >= 0, instead of C = 0.
@@ -68,6 +80,7 @@ class Joint {
   std::string name_;
   std::vector<Point> points_;
   int n_first_, n_points_;
+  double on_ = -std::numeric_limits<double>::infinity(), off_ = std::numeric_limits<double>::infinity();
 };
 
 template <class F, class = void>
@@ -77,9 +90,10 @@ struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : st
 
 /// The joint of a formula F:
 ///   static constexpr const char *name, *formula;
-///   static constexpr int rows, first, second;  (first, second: points of each side; none: the world as it
-///   is) static constexpr bool one_sided; template <class T> Vec<T, rows> C(const std::array<Vec3<T>, first +
+///   static constexpr int rows, first, second;  // first, second: points of each side; none: the world as it
+///   is static constexpr bool one_sided; template <class T> Vec<T, rows> C(const std::array<Vec3<T>, first +
 ///   second>& x, const T& t) const;
+/// Those that scenes know also say in `keys` what of a JointSetting they use.
 template <class F>
 class JointOf final : public Joint {
  public:

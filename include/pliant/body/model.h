@@ -101,6 +101,8 @@ class Model {
   const std::vector<TorqueModel>& torques() const { return torques_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
+  /// Times at which joints begin or cease to act, in order.
+  const std::vector<double>& switch_times() const { return switch_times_; }
   int n_rows() const { return n_rows_; }          ///< of all joints
   int n_side_values() const { return n_sides_; }  ///< numbers in C_q^T of all joints
   int n_q() const { return n_q_; }
@@ -134,6 +136,7 @@ class Model {
   std::vector<TorqueModel> torques_;
   std::vector<JointModel> joints_;
   std::vector<Island> islands_;
+  std::vector<double> switch_times_;
   int n_q_ = 0, n_v_ = 0, n_limits_ = 0, n_rows_ = 0, n_sides_ = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pliant/body/joint.h>
+#include <pliant/body/joint_setting.h>
 #include <pliant/body/joints/ball.h>
 #include <pliant/body/points.h>
 #include <pliant/body/stabilization.h>
@@ -86,6 +87,13 @@ class MultiBody {
   Joint& ball(std::string name, Point a, Point b) {
     return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
   }
+  /// A joint of a type by name, "hinge" say (body/joint_registry.h), over parts as they are by now: their
+  /// rest values and places are to be set before. Throws std::invalid_argument.
+  Joint& join(const std::string& type, std::string name, const JointSetting& setting);
+  /// A hinge whose pin has a direction in the frame of b's part (or of the world), and for a the same as the
+  /// parts are placed; a weld of the parts as they are placed.
+  Joint& hinge(std::string name, Point a, Point b, const Vec3<double>& axis);
+  Joint& weld(std::string name, Point a, Point b);
 
   const std::vector<std::unique_ptr<Part>>& parts() const { return parts_; }
   const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }

@@ -12,9 +12,10 @@ namespace pliant {
 /// be at most kClosedRate lengths times the rate of the stabilization.
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
-/// At the start of a run: joints with a small enough gap are closed, and the velocities are made to agree
-/// with them by impulses.
-void close_at_start(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
+/// Where joints begin to act in an island: those with a small enough gap are closed, and the velocities are
+/// made to agree with them by impulses. work: of an evaluation at the state.
+void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
+               Workspace<double>& work, StepCounters& counters);
 
 /// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
 /// within its length and every closed joint closed at the end of the step. ahead: any, kept from step to

@@ -20,8 +20,8 @@ class Simulation {
   Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step of h seconds (> 0 and finite). Throws NumericalFailure, UnsatisfiableModel,
-  /// std::invalid_argument.
+  /// One step of h seconds (> 0 and finite), in two where a joint begins or ceases to act within it. Throws
+  /// NumericalFailure, UnsatisfiableModel, std::invalid_argument.
   void step(double h);
 
   const Model& model() const { return model_; }
@@ -45,6 +45,8 @@ class Simulation {
   std::set<std::string> held() const;
 
  private:
+  void advance(double h);
+  void switch_joints(double t);
   void check(const State& before);
   void note_held();
 

@@ -138,6 +138,10 @@ struct Dual {
     const T r = math::sqrt(a.v);
     return chain_rule(a, r, T(T(0.5) / r));
   }
+  friend Dual acos(const Dual& a) {
+    return chain_rule(a, math::acos(a.v), T(T(-1) / math::sqrt(T(T(1) - a.v * a.v))));
+  }
+  friend double plain(const Dual& a) { return plain(a.v); }
   friend Dual select_positive(const Dual& c, const Dual& x, const Dual& y) {
     Dual r;
     r.v = math::where_positive(c.v, x.v, y.v);

@@ -8,6 +8,14 @@
 
 namespace pliant {
 inline constexpr double kPi = 3.14159265358979323846;
+
+/// The plain number in a scalar, for decisions.
+inline double plain(double x) {
+  return x;
+}
+inline double plain(long double x) {
+  return static_cast<double>(x);
+}
 }  // namespace pliant
 
 namespace pliant::math {
@@ -23,6 +31,7 @@ PLIANT_MATH_FUNCTION(cos)
 PLIANT_MATH_FUNCTION(exp)
 PLIANT_MATH_FUNCTION(log)
 PLIANT_MATH_FUNCTION(sqrt)
+PLIANT_MATH_FUNCTION(acos)
 #undef PLIANT_MATH_FUNCTION
 
 inline double exp(double x) {

@@ -77,6 +77,11 @@ struct Taylor2 {
   friend Taylor2 chain_rule(const Taylor2& a, const T& value, const T& slope, const T& curvature) {
     return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
   }
+  friend Taylor2 acos(const Taylor2& a) {
+    const T sine2 = T(1.0) - a.v * a.v, slope = T(-1.0) / math::sqrt(sine2);
+    return chain_rule(a, math::acos(a.v), slope, T(slope * a.v / sine2));
+  }
+  friend double plain(const Taylor2& a) { return plain(a.v); }
   friend math::SinCos<Taylor2> sin_cos_of(const Taylor2& a) {
     const math::SinCos<T> r = math::sin_cos(a.v);
     return {chain_rule(a, r.sin, r.cos, T(-r.sin)), chain_rule(a, r.cos, T(-r.sin), T(-r.cos))};

@@ -99,6 +99,7 @@ class Part {
   /// Throws std::invalid_argument on a bad model; rest and initial values at which the part folds over make
   /// one.
   void prepare();
+  bool prepared() const { return prepared_; }
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
   const MatMax<double, kMaxGlobal>& K_s() const { return K_s_; }

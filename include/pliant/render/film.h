@@ -14,9 +14,9 @@
 
 namespace pliant {
 
-/// Makes the picture of any frame: the parts, the tracks up to then, and the springs as thin lines, which end
-/// in a dot where they hold on to the world. Camera and ground are the same in all frames of a run: where the
-/// scene leaves them open, they follow from the whole recorded motion.
+/// Makes the picture of any frame: the parts, the tracks up to then, and springs, rods and strings as thin
+/// lines, which end in a dot where they hold on to the world. Camera and ground are the same in all frames of
+/// a run: where the scene leaves them open, they follow from the whole recorded motion.
 class Film {
  public:
   /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
@@ -30,7 +30,13 @@ class Film {
   void lay_tracks();
   Eigen::Vector3d place(const Point& point, const State& state) const;
   Eigen::AlignedBox3d anchors(const Eigen::AlignedBox3d& bodies) const;
-  void draw_springs(const State& state);
+  struct Tie {
+    std::vector<const Point*> ends;  ///< one, of a joint that ties no other point, or two
+    bool line;
+    const Joint* joint;  ///< nullptr for a spring
+  };
+  std::vector<Tie> ties() const;
+  void draw_ties(const State& state);
   void choose_view();
 
   const Scene* scene_;

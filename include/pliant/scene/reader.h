@@ -72,4 +72,7 @@ const schema::Record* chosen_record(const schema::Type& type, const JsonValue& o
 
 Vec3<double> read_vector3(const JsonValue& value);
 
+/// The name that an object has, or one of its kind and its number (from 0) among those of its list.
+std::string name_of(const Reader& r, const char* kind, std::size_t number);
+
 }  // namespace pliant

@@ -10,14 +10,6 @@
 
 namespace pliant {
 
-inline double plain(double x) {
-  return x;
-}
-template <int N>
-double plain(const Dual<N>& x) {
-  return x.v;
-}
-
 template <class S>
 class SymmetricFactor {
  public:

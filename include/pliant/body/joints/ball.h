@@ -5,13 +5,14 @@
 
 #include <array>
 
-#include <pliant/math/types.h>
+#include <pliant/body/joint_setting.h>
 
 namespace pliant {
 
 struct Ball {
   static constexpr const char* name = "ball";
   static constexpr const char* formula = "x_0 - x_1 = 0";
+  static constexpr JointKeys keys{};
   static constexpr int rows = 3, first = 1, second = 1;
   static constexpr bool one_sided = false;
 

@@ -6,14 +6,15 @@
 #include <array>
 #include <limits>
 
+#include <pliant/body/joint_setting.h>
 #include <pliant/math/functions.h>
-#include <pliant/math/types.h>
 
 namespace pliant {
 
 struct Rod {
   static constexpr const char* name = "rod";
   static constexpr const char* formula = "|x_0 - x_1| - length = 0";
+  static constexpr JointKeys keys{JointKey::length};
   static constexpr int rows = 1, first = 1, second = 1;
   static constexpr bool one_sided = false;
   double length = 1;  ///< m

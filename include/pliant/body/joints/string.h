@@ -12,6 +12,7 @@ namespace pliant {
 struct String {
   static constexpr const char* name = "string";
   static constexpr const char* formula = "length - |x_0 - x_1| >= 0";
+  static constexpr JointKeys keys{JointKey::length};
   static constexpr int rows = 1, first = 1, second = 1;
   static constexpr bool one_sided = true;
   double length = 1;  ///< m

@@ -1,0 +1,43 @@
+// A hinge: two points coincide, and so do the directions of two axes.
+//   C = (x_0 - y_0, size (theta / sin theta) (a . b_2, a . b_3)),   cos theta = a . b_1
+// a is the first axis of the frame at x_0, b the frame at y_0; the last rows are the angle between the axes.
+#pragma once
+
+#include <array>
+
+#include <pliant/body/joint_setting.h>
+#include <pliant/body/material_frame.h>
+#include <pliant/math/rotation_vector.h>
+
+namespace pliant {
+
+struct Hinge {
+  static constexpr const char* name = "hinge";
+  static constexpr const char* formula = "x_0 - x_1 = 0, the axis at x_0 along that at x_1";
+  static constexpr JointKeys keys{JointKey::axis, JointKey::from_axis};
+  static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = false;
+  MaterialFrame from, to;
+  double size = 1;  ///< m, makes angles lengths
+
+  template <class T>
+  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+    Vec<T, rows> C;
+    C.template head<3>() = x[0] - x[first];
+    const Mat3<T> b = to.at(&x[first]);
+    C.template tail<2>() = axis_angle(Vec3<T>(from.at(&x[0]).col(0)), b) * T(size);
+    return C;
+  }
+
+  /// The turn that takes the first axis of a frame b to a unit vector a, about its other two.
+  template <class T>
+  static Vec<T, 2> axis_angle(const Vec3<T>& a, const Mat3<T>& b) {
+    Vec3<T> of_b = b.transpose() * a;
+    if (plain(of_b[0]) <= kHalfTurn) of_b[1] += T(kOffHalfTurn);
+    of_b /= math::sqrt(T(of_b.dot(of_b)));
+    const T factor = angle_over_sine(of_b[0], T(of_b[1] * of_b[1] + of_b[2] * of_b[2]));
+    return {of_b[1] * factor, of_b[2] * factor};
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,33 @@
+// A slider: a point on a line, without turning.
+//   C = ((b_2, b_3) . (x_0 - y_0), size times the rotation vector of b^T a)
+// a and b are the frames at x_0 and y_0; the first axis of b is the line.
+#pragma once
+
+#include <array>
+
+#include <pliant/body/joint_setting.h>
+#include <pliant/body/material_frame.h>
+#include <pliant/math/rotation_vector.h>
+
+namespace pliant {
+
+struct Slider {
+  static constexpr const char* name = "slider";
+  static constexpr const char* formula = "(x_0 - x_1) x d = 0 with the direction d at x_1, and no turning";
+  static constexpr JointKeys keys{JointKey::axis, JointKey::rotation};
+  static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
+  static constexpr bool one_sided = false;
+  MaterialFrame from, to;
+  double size = 1;  ///< m, makes angles lengths
+
+  template <class T>
+  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+    Vec<T, rows> C;
+    const Mat3<T> b = to.at(&x[first]);
+    C.template head<2>() = b.template rightCols<2>().transpose() * (x[0] - x[first]);
+    C.template tail<3>() = rotation_vector(Mat3<T>(b.transpose() * from.at(&x[0]))) * T(size);
+    return C;
+  }
+};
+
+}  // namespace pliant

@@ -1,0 +1,88 @@
+#include "joint_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include <pliant/body/joint_registry.h>
+
+#include "direction_reader.h"
+
+namespace pliant {
+
+Stabilization read_stabilization(const Reader& r) {
+  Stabilization rule;
+  static constexpr std::array<std::pair<const char*, BaumgarteRule>, 4> rules{
+      {{"automatic", BaumgarteRule::automatic},
+       {"free", BaumgarteRule::free},
+       {"critical", BaumgarteRule::critical},
+       {"step_consistent", BaumgarteRule::step_consistent}}};
+  for (const auto& [name, value] : rules)
+    if (r.text("rule") == name) rule.rule = value;
+  rule.rate = r.number("rate");
+  rule.stab_alpha = r.number("stab_alpha");
+  rule.stab_beta = r.number("stab_beta");
+  rule.speed = r.number("speed");
+  rule.projection = r.boolean("projection");
+  return rule;
+}
+
+namespace {
+
+/// Whether two ends are both of the world or of parts that do not move, or the same point of a part.
+bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
+  auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
+  if (!moves(from) && !moves(to)) {
+    faults.place(r.json(), "neither end is on a part that moves; expected at least one");
+    return true;
+  }
+  if (from.part != to.part || !same_point(from.material, to.material)) return false;
+  faults.place(r.at("to"), "this is the same point as \"from\"; expected another");
+  return true;
+}
+
+/// What the type of a joint takes from the scene; none of it when there are faults.
+bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneFaults& faults) {
+  const std::size_t before = faults.errors();
+  if (keys.has(JointKey::length)) {
+    if (r.faulty("length")) return false;
+    setting.length = r.given("length")
+                         ? r.number("length")
+                         : (position_at_start(setting.from) - position_at_start(setting.to)).norm();
+    if (!(setting.length > 0))
+      faults.place(r.json(), "its points are at the same place at time 0; expected a \"length\"");
+  }
+  if (keys.has(JointKey::axis)) setting.axis = read_direction(r.at("axis"), faults);
+  if (keys.has(JointKey::from_axis) && r.given("from_axis"))
+    setting.from_axis = read_direction(r.at("from_axis"), faults);
+  if (keys.has(JointKey::rotation) && r.given("rotation"))
+    setting.rotation = read_orientation(r.object("rotation"), faults);
+  if (r.given("off") && !(r.number("on") < r.number("off")))
+    faults.value(r.at("off"), "expected a time after \"on\", which is " + brief(r.number("on")) + " s");
+  return faults.errors() == before;
+}
+
+}  // namespace
+
+void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
+  const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
+  if (!from || !to || !r.complete() || ties_nothing(r, *from, *to, faults)) return;
+  const auto info = std::find_if(all_joints().begin(), all_joints().end(),
+                                 [&](const JointInfo& i) { return i.name == r.name(); });
+  JointSetting setting{*from, *to};
+  if (!read_setting(r, info->keys, setting, faults)) return;
+  std::string name = name_of(r, info->name, body.joints().size());
+  auto taken = [&] {
+    return std::any_of(body.joints().begin(), body.joints().end(),
+                       [&](const auto& joint) { return joint->name() == name; });
+  };
+  while (taken()) name += "'";  // a name of the scene's own can be one that is made here
+  Joint& joint = body.join(info->make(std::move(name), setting));
+  if (r.given("off"))
+    joint.during(r.number("on"), r.number("off"));
+  else if (r.given("on"))
+    joint.during(r.number("on"));
+}
+
+}  // namespace pliant

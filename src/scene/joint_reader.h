@@ -1,0 +1,17 @@
+// Joints of a scene, and how they close and hold.
+#pragma once
+
+#include <pliant/body/multibody.h>
+#include <pliant/scene/reader.h>
+
+#include "point_reader.h"
+#include "scene_faults.h"
+
+namespace pliant {
+
+Stabilization read_stabilization(const Reader& r);
+
+/// Adds a joint to the body, or faults.
+void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
+
+}  // namespace pliant
