@@ -111,8 +111,9 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
       const S* Cq = work.Cq.data() + side.offset;
       S* Y = work.Y.data() + side.offset;
       if constexpr (std::is_same_v<S, double>) {
-        if (part.part->rigid() && joint.rows == 3) {
-          FixedSide<S, 6, 3>(Y).noalias() = part.rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
+        const Eigen::Matrix<double, 6, 6>* inverse = parts[at(side.part)].inverse;
+        if (inverse != nullptr && joint.rows == 3) {
+          FixedSide<S, 6, 3>(Y).noalias() = inverse->lazyProduct(ConstSide<S, 6, 3>(Cq));
           continue;
         }
       }

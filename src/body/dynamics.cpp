@@ -122,6 +122,12 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
   }
 }
 
+void take_factor(const PartModel& m, PartWorkspace<double>& w) {
+  if (!m.part->rigid()) return w.factor.compute(w.inertia.M, m.inertia_floor);
+  w.factor = m.rigid_factor;
+  w.inverse = &m.rigid_inverse;
+}
+
 /// M^-1 e_i of a part.
 template <class S>
 VecMax<S> inverse_column(const SymmetricFactor<S>& factor, int n, int i) {
@@ -282,10 +288,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     gather_port_forces<S>(m, w);
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
-      if (m.part->rigid())
-        w.factor = m.rigid_factor;
-      else
-        w.factor.compute(w.inertia.M, m.inertia_floor);
+      take_factor(m, w);
       w.factor.solve(w.a_r);
       if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
     } else {
@@ -463,10 +466,7 @@ void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, con
     PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
     positions<double>(m, q, v, w);
     m.part->inertia(w.q_s, w.q_s_dot, Vec3<double>(w.v_r.segment<3>(3)), w.inertia, w.counters);
-    if (m.part->rigid())
-      w.factor = m.rigid_factor;
-    else
-      w.factor.compute(w.inertia.M, m.inertia_floor);
+    take_factor(m, w);
   }
 }
 

@@ -96,6 +96,10 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
     note("warning: the step of " + number_text(schedule_.step()) +
          " s is above the largest stable one, about " + rounded_text(stable_step) + " s");
   }
+  const AssemblyReport& assembly = simulation_->assembly();
+  if (assembly.iterations > 0)
+    note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
+         count_text(assembly.iterations, "iteration"));
   const std::string redundant = redundancy_note(*simulation_);
   if (!redundant.empty()) note(redundant);
   write_layout(folder_->path(), simulation_->model(), schedule_,

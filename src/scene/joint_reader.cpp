@@ -24,6 +24,7 @@ Stabilization read_stabilization(const Reader& r) {
   rule.stab_alpha = r.number("stab_alpha");
   rule.stab_beta = r.number("stab_beta");
   rule.speed = r.number("speed");
+  rule.assemble_first = r.text("assembly") == "before_start";
   rule.projection = r.boolean("projection");
   return rule;
 }

@@ -56,6 +56,12 @@ Record stabilization_record() {
        optional("speed", number(above(0), "1"),
                 "Most speed at which a gap closes, in units of rate times the size of the smaller part.",
                 "3"),
+       optional("assembly",
+                choice({{"in_time", "open joints close while time runs"},
+                        {"before_start",
+                         "parts are brought together before time 0 without inertia: rigid motion first, "
+                         "parameters as far as their stiffness says"}}),
+                "When open joints close.", "\"in_time\""),
        optional("projection", boolean(),
                 "Whether closed joints are projected onto C = 0 and C_dot = 0 after each step.", "true")}};
 }

@@ -28,8 +28,9 @@ struct PartWorkspace {
   std::vector<Vec3<S>> port_force;  ///< world
   // limits and accelerations
   SymmetricFactor<S> factor;
-  VecMax<S> a_r;             ///< (R^T c_ddot, omega_dot, q_s_ddot)
-  std::vector<int> pressed;  ///< dynamic parameters that their limit holds back
+  const Eigen::Matrix<double, 6, 6>* inverse = nullptr;  ///< M^-1 where it is constant
+  VecMax<S> a_r;                                         ///< (R^T c_ddot, omega_dot, q_s_ddot)
+  std::vector<int> pressed;                              ///< dynamic parameters that their limit holds back
   Counters counters;
 };
 

@@ -28,6 +28,8 @@ struct Stabilization {
   double stab_alpha = 0, stab_beta = 0;  ///< of the rule `free`, 1/s
   /// Most speed at which a gap is closed, in units of rate times the length of the smaller part.
   double speed = 3;
+  /// Whether open joints are brought together before time 0 (integrate/assemble.h), not while time runs.
+  bool assemble_first = false;
   /// Whether closed joints are projected after each step; by default they are.
   std::optional<bool> projection;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/integrate/assemble.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/integrate/step_failure.h>
 
@@ -38,6 +39,8 @@ class Simulation {
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }
 
+  /// What assembly before time 0 did, when it was asked for.
+  const AssemblyReport& assembly() const { return assembly_; }
   const StepCounters& step_counters() const { return step_counters_; }
   /// Work of the kernels, summed over parts.
   Counters counters() const;
@@ -57,6 +60,7 @@ class Simulation {
   State state_, last_good_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
+  AssemblyReport assembly_;
   std::vector<bool> held_;  ///< by velocity
   double start_energy_ = 0;
 };

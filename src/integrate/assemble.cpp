@@ -1,0 +1,302 @@
+#include <pliant/integrate/assemble.h>
+
+#include <algorithm>
+#include <limits>
+#include <sstream>
+
+#include <pliant/body/one_sided_rows.h>
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_failure.h>
+
+namespace pliant {
+
+namespace {
+
+/// Most turn of a part in one step, rad, and most change of a parameter, of its size or in rad.
+constexpr double kMostTurn = 0.5, kMostChange = 0.3;
+/// eps over the smallest ratio of stiffness to inertia: how little rigid motion costs.
+constexpr double kRigidFirst = 1e-6;
+/// A gap, in lengths of its joint, that is closed; and a step, in rad or sizes, at which the shape has
+/// settled.
+constexpr double kClosed = 1e-13, kSettled = 1e-9;
+/// Rounding of coordinates of size 1.
+constexpr double kRounding = 4e-15;
+constexpr int kMostIterations = 400;
+/// Without a gap smaller by this factor in so many iterations it cannot be closed.
+constexpr double kProgress = 0.9;
+constexpr int kPatience = 40, kMostHalvings = 5, kMostAttempts = 10;
+/// Steps of more than kTooFar times what is allowed make rigid motion dearer, once all gaps are below kNear
+/// lengths; good ones make it cheaper again.
+constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+class Assembly {
+ public:
+  Assembly(const Dynamics& dynamics, const Island& island, State& state, Workspace<double>& work)
+      : dynamics_(dynamics), model_(dynamics.model()), island_(island), state_(state), work_(work) {
+    modes_ = state;
+    for (const int j : island.joints)
+      if (modes_.joints[at(j)] != JointMode::off) modes_.joints[at(j)] = JointMode::closed;
+    for (const int j : island.strings)
+      if (modes_.joints[at(j)] != JointMode::off) modes_.joints[at(j)] = JointMode::slack;
+    const double softest = softest_ratio();
+    stiff_ = std::isfinite(softest);
+    eps_ = least_eps_ = kRigidFirst * (stiff_ ? softest : 1);
+  }
+
+  /// Widest gap, in lengths of its joint.
+  double gap() {
+    dynamics_.evaluate_joints(state_.time(), state_.q, state_.v, modes_, island_, work_);
+    double widest = 0;
+    for_each_gap(
+        [&](int, double gap, const JointModel& joint) { widest = std::max(widest, gap / joint.length); });
+    return widest;
+  }
+  /// The same in m.
+  double metres() const {
+    double widest = 0;
+    for_each_gap([&](int, double gap, const JointModel&) { widest = std::max(widest, gap); });
+    return widest;
+  }
+
+  /// Returns the iterations.
+  int run() {
+    double best = std::numeric_limits<double>::infinity();
+    int since_best = 0;
+    for (int i = 0; i < kMostIterations; ++i) {
+      const double now = gap();
+      const bool closed = is_closed();
+      if (now < kProgress * best) {
+        best = now;
+        since_best = 0;
+      } else if (!closed && ++since_best > kPatience) {
+        fail(i);
+      }
+      const double moved = step(now);
+      if (closed && moved <= kSettled) return i;
+    }
+    gap();
+    if (!is_closed()) fail(kMostIterations);
+    return kMostIterations;
+  }
+
+ private:
+  template <class F>
+  void for_each_gap(F&& act) const {
+    for (const int j : island_.joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (modes_.joints[at(j)] != JointMode::off)
+        act(j, work_.joints.C.segment(joint.row, joint.rows).norm(), joint);
+    }
+    for (const int j : island_.strings) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (modes_.joints[at(j)] != JointMode::off) act(j, std::max(0.0, -work_.joints.C[joint.row]), joint);
+    }
+  }
+
+  bool is_closed() const {
+    double size = 0;
+    for (const int i : island_.parts) size = std::max(size, work_.parts[at(i)].c.lpNorm<Eigen::Infinity>());
+    bool closed = true;
+    for_each_gap([&](int, double gap, const JointModel& joint) {
+      closed = closed && gap <= kClosed * joint.length + kRounding * size;
+    });
+    return closed;
+  }
+
+  /// Smallest ratio of stiffness to inertia of a parameter that has stiffness; infinite when none has.
+  double softest_ratio() {
+    dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
+    double least = std::numeric_limits<double>::infinity();
+    for (const int i : island_.parts) {
+      const PartModel& m = model_.parts()[at(i)];
+      for (int k = 0; k < m.n_s; ++k) {
+        const double stiffness = m.part->K_s()(k, k), inertia = work_.parts[at(i)].inertia.M(6 + k, 6 + k);
+        if (stiffness > 0 && inertia > 0) least = std::min(least, stiffness / inertia);
+      }
+    }
+    return least;
+  }
+
+  /// The metric M + K_s / eps of the parts, with turning dearer by a factor.
+  void lay_metric(double dear) {
+    dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
+    for (const int i : island_.parts) {
+      const PartModel& m = model_.parts()[at(i)];
+      PartWorkspace<double>& w = work_.parts[at(i)];
+      MatMax<double> H = w.inertia.M;
+      H.block<3, 3>(3, 3) *= dear;
+      H.bottomRightCorner(m.n_s, m.n_s) += m.part->K_s() / eps_;
+      w.factor.compute(H, m.inertia_floor);
+      w.inverse = nullptr;
+    }
+  }
+
+  /// One step; returns the largest turn or relative change of a parameter in it. Where rigid motion closes
+  /// little, as in a straight chain that is too short, it costs more for a while, which leaves more to the
+  /// parameters.
+  double step(double widest) {
+    double size = 0;
+    for (int attempt = 0;; ++attempt) {
+      const bool last = !stiff_ || attempt == kMostAttempts || widest > kNear;
+      const Group<double, Eigen::Dynamic> group(model_, work_, island_, false);
+      const VecX<double> x = direction(group, widest);
+      size = size_of(group, x);
+      if (!last && size > kTooFar) {
+        eps_ *= kDearer;
+        continue;
+      }
+      const VecX<double> from = state_.q;
+      const double before = merit();
+      double share = std::min(1.0, 1.0 / size);
+      for (int halving = 0; halving <= kMostHalvings; ++halving, share /= 2) {
+        state_.q = from;
+        move(group, x, share);
+        gap();
+        if (merit() < before || is_closed()) {
+          if (attempt == 0 && halving == 0) eps_ = std::max(least_eps_, eps_ / kCheaper);
+          return share * size * kMostTurn;
+        }
+      }
+      if (last) return share * size * kMostTurn;
+      state_.q = from;
+      gap();
+      eps_ *= kDearer;
+    }
+  }
+
+  /// The step that the linearised problem asks for.
+  VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double widest) {
+    lay_metric(1 + widest * widest);
+    work_.joints.modes = modes_.joints;
+    factor_joints<double>(model_, island_, work_.parts, work_.joints);
+    VecX<double> x = group.gather([&](int p) { return relaxation(group.model(p), group.workspace(p)); });
+    VecX<double> rows = group.joint_rows(x);
+    for (const int j : island_.joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (modes_.joints[at(j)] != JointMode::off)
+        rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
+    }
+    const VecX<double> lambda = group.correct(std::move(rows), x);
+    if (lambda.size() > 0) penalty_ = std::max(penalty_, 2 * eps_ * lambda.lpNorm<Eigen::Infinity>());
+    OneSidedRows<Eigen::Dynamic> one_sided(group);
+    return one_sided.meet_all(
+        x, [&](const OneSidedRow& row) { return bound(group, row); }, nullptr);
+  }
+
+  /// Elastic energy and a price for every gap that is above all forces: it falls along every step that is
+  /// short enough.
+  double merit() const {
+    double sum = 0;
+    for_each_gap([&](int, double gap, const JointModel&) { sum += penalty_ * gap; });
+    for (const int i : island_.parts) {
+      const PartModel& m = model_.parts()[at(i)];
+      const VecMax<double> s = stretch(m);
+      sum += 0.5 * s.dot(m.part->K_s() * s);
+    }
+    return sum;
+  }
+
+  VecMax<double> stretch(const PartModel& m) const {
+    VecMax<double> s = state_.q.segment(m.q0 + 7, m.n_s);
+    for (int k = 0; k < m.n_s; ++k) s[k] -= m.part->parameters().moving(k).rest.value(state_.time());
+    return s;
+  }
+
+  /// What takes the parameters of a part alone to rest.
+  VecMax<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
+    VecMax<double> x = VecMax<double>::Zero(6 + m.n_s);
+    x.tail(m.n_s) = -(m.part->K_s() * stretch(m)) / eps_;
+    w.factor.solve(x);
+    return x;
+  }
+
+  double bound(const Group<double, Eigen::Dynamic>& group, const OneSidedRow& row) const {
+    if (row.part < 0) {
+      const int j = island_.strings[at(row.k)];
+      if (row.sign < 0 || modes_.joints[at(j)] == JointMode::off)
+        return -std::numeric_limits<double>::infinity();
+      return -work_.joints.C[model_.joints()[at(j)].row];
+    }
+    const PartModel& m = group.model(row.part);
+    const Range range = m.part->parameters().moving(row.k).limits;
+    return row.sign * ((row.sign > 0 ? range.min : range.max) - state_.q[m.q0 + 7 + row.k]);
+  }
+
+  /// A step in units of the largest that is allowed.
+  double size_of(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x) const {
+    double size = 1e-300;
+    for (int p = 0; p < group.parts(); ++p) {
+      const PartModel& m = group.model(p);
+      const auto of_part = group.share(x, p);
+      size = std::max(size, of_part.segment<3>(3).norm() / kMostTurn);
+      for (int k = 0; k < m.n_s; ++k) {
+        const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+        const double scale = is_length ? std::abs(state_.q[m.q0 + 7 + k]) : 1.0;
+        size = std::max(size, std::abs(of_part[6 + k]) / (kMostChange * scale));
+      }
+    }
+    return size;
+  }
+
+  void move(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x, double share) {
+    VecX<double> v = VecX<double>::Zero(state_.v.size());
+    for (int p = 0; p < group.parts(); ++p) {
+      const PartModel& m = group.model(p);
+      take_velocity(m, group.workspace(p), VecMax<double>(group.share(x, p)), v);
+      advance_part(m, state_.q, v, share);
+      for (int k = 0; k < m.n_s; ++k) {
+        double& q = state_.q[m.q0 + 7 + k];
+        const Range range = m.part->parameters().moving(k).limits;
+        q = std::clamp(q, range.min, range.max);
+      }
+    }
+  }
+
+  [[noreturn]] void fail(int iterations) const {
+    int open = -1;
+    double widest = -1;
+    for_each_gap([&](int j, double gap, const JointModel& joint) {
+      if (gap / joint.length <= widest) return;
+      widest = gap / joint.length;
+      open = j;
+    });
+    const Joint& joint = *model_.joints()[at(open)].joint;
+    std::ostringstream message;
+    message << "assembly: " << joint.type() << " '" << joint.name() << "' cannot close: after " << iterations
+            << " iterations it is still open by " << widest * model_.joints()[at(open)].length << " m";
+    throw UnsatisfiableModel(message.str(), state_.time());
+  }
+
+  const Dynamics& dynamics_;
+  const Model& model_;
+  const Island& island_;
+  State& state_;
+  State modes_;  ///< with every joint closed that acts
+  Workspace<double>& work_;
+  double eps_ = 1, least_eps_ = 1;  ///< cost of rigid motion, 1/s^2
+  double penalty_ = 0;              ///< price of a gap, N
+  bool stiff_ = false;              ///< whether any parameter has a stiffness
+};
+
+}  // namespace
+
+AssemblyReport assemble(const Dynamics& dynamics, State& state) {
+  AssemblyReport report;
+  Workspace<double> work;
+  for (const Island& island : dynamics.model().islands()) {
+    Assembly assembly(dynamics, island, state, work);
+    const bool open = assembly.gap() > kClosedGap;
+    report.gap_before = std::max(report.gap_before, assembly.metres());
+    if (open) report.iterations = std::max(report.iterations, assembly.run());
+    assembly.gap();
+    report.gap = std::max(report.gap, assembly.metres());
+  }
+  return report;
+}
+
+}  // namespace pliant
