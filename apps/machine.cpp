@@ -58,11 +58,16 @@ std::string version_text() {
   if (!features.empty()) text += "processor features here: " + features + "\n";
   text += std::string("libpng ") + pliant::png_library_version() + "\n";
   text +=
-      "licence: MIT. Eigen is MPL-2, nlohmann-json MIT, CLI11 BSD-3, libpng under its own permissive "
+      "licence of the sources: MIT. Eigen is MPL-2, nlohmann-json MIT, CLI11 BSD-3, libpng under its own "
+      "permissive "
       "licence.\n"
-      "SuiteSparse: not linked into this program. pliant::core never links it; programs that link "
-      "pliant::suitesparse get\n"
-      "CHOLMOD, whose core is LGPL-2.1+ and whose supernodal module is GPL-2+, and AMD (BSD-3).\n"
+#ifdef PLIANT_HAS_SUITESPARSE
+      "SuiteSparse is linked: AMD is BSD-3, CHOLMOD's core LGPL-2.1+, its supernodal module GPL-2+, so that "
+      "this "
+      "program is distributed under the GPL's terms.\n"
+#else
+      "SuiteSparse is not linked.\n"
+#endif
       "graphics: OSMesa or EGL, opened only when a picture is asked for (pliant doctor tells which there "
       "are).\n";
   return text;

@@ -6,6 +6,8 @@
 #include <pliant/io/run_folder.h>
 #include <pliant/scene/read_scene.h>
 
+#include "scene_options.h"
+
 namespace pliant_cli {
 
 OpenRun open_run(const std::filesystem::path& folder) {
@@ -16,6 +18,7 @@ OpenRun open_run(const std::filesystem::path& folder) {
     throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
   pliant::Diagnostics warnings;  // they were shown when the run began
   run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings);
+  use_solvers(*run.scene);
   if (run.scene->hash != run.record.scene_hash)
     throw pliant::RecordingMismatch(file.string() +
                                     " is not the scene that was recorded: it was changed since");

@@ -3,6 +3,9 @@
 #include <iostream>
 
 #include <pliant/scene/read_scene.h>
+#ifdef PLIANT_HAS_SUITESPARSE
+#include <pliant/solve/suitesparse.h>
+#endif
 
 namespace pliant_cli {
 
@@ -23,7 +26,16 @@ std::unique_ptr<pliant::Scene> read(const SceneOptions& options) {
   pliant::Diagnostics diagnostics;
   std::unique_ptr<pliant::Scene> scene = pliant::read_scene(options.file, options.overrides, diagnostics);
   if (diagnostics.warnings() > 0) std::cerr << diagnostics.text();
+  use_solvers(*scene);
   return scene;
+}
+
+void use_solvers(pliant::Scene& scene) {
+#ifdef PLIANT_HAS_SUITESPARSE
+  pliant::use_suitesparse(scene.body.joint_solver);
+#else
+  static_cast<void>(scene);
+#endif
 }
 
 }  // namespace pliant_cli

@@ -64,6 +64,7 @@ int check(const CheckCommand& command) {
   std::unique_ptr<pliant::Scene> scene;
   try {
     scene = pliant::read_scene(command.scene.file, command.scene.overrides, diagnostics);
+    use_solvers(*scene);
   } catch (const pliant::SceneError& error) {
     if (!machine) throw;
     std::cout << error.diagnostics().json() << "\n";

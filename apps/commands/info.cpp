@@ -136,18 +136,25 @@ void print_joints(const pliant::Simulation& simulation) {
     if (std::isfinite(joint.joint->off())) std::cout << ", until " << joint.joint->off() << " s";
     std::cout << "\n";
   }
+  const std::vector<int> redundant = pliant::redundant_rows(model, work.joints);
   int rows = 0, dependent = 0;
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     const pliant::JointModel& joint = model.joints()[j];
     if (joint.joint->one_sided() || !pliant::acts(state.joints[j])) continue;
     rows += joint.rows;
-    dependent += pliant::redundant_rows(model, work.joints, static_cast<int>(j));
+    dependent += redundant[j];
   }
-  std::int64_t numbers = 0;
-  for (const pliant::Island& island : model.islands()) numbers += island.pattern.values();
+  std::int64_t numbers = 0, augmented = 0;
+  for (const pliant::Island& island : model.islands()) {
+    numbers += island.numbers;
+    augmented += island.augmented ? 1 : 0;
+  }
+  const auto islands = static_cast<std::int64_t>(model.islands().size());
   std::cout << "constraints: " << pliant::count_text(rows, "row") << " of rank " << rows - dependent << ", "
-            << pliant::count_text(static_cast<std::int64_t>(model.islands().size()), "island") << ", "
-            << pliant::count_text(numbers, "number") << " in the factor of C_q M^-1 C_q^T\n";
+            << pliant::count_text(islands, "island");
+  if (islands > augmented) std::cout << ", " << islands - augmented << " solved by blocks of C_q M^-1 C_q^T";
+  if (augmented > 0) std::cout << ", " << augmented << " as the augmented matrix";
+  std::cout << ", " << pliant::count_text(numbers, "number") << " in the factor\n";
   const std::string note = pliant::redundancy_note(simulation);
   if (!note.empty()) std::cout << "  " << note << "\n";
 }

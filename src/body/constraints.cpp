@@ -15,8 +15,6 @@ std::size_t at(int i) {
 }
 
 /// C_q^T or M^-1 C_q^T of a side: n_v x rows.
-template <class S>
-using SideMatrix = Eigen::Map<Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic>>;
 template <class S, int Velocities, int Rows>
 using FixedSide = Eigen::Map<Eigen::Matrix<S, Velocities, Rows>>;
 template <class S, int Velocities, int Rows>
@@ -39,19 +37,22 @@ PointMotion<S> port_motion(const PartModel& part, const PartWorkspace<S>& w, int
   return motion;
 }
 
-/// Adds (C_x L)^T of a point to C_q^T of its side, L = R [I, -[p]x, J].
-template <class S, class Slope>
-void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, const Slope& C_x,
-               SideMatrix<S>& Cq) {
+/// Adds (C_x L)^T of a point to C_q^T of its side, L = R [I, -[p]x, J]. C_x: rows x 3, by columns.
+template <class S>
+void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, int rows, const S* C_x, S* Cq) {
   const PointJet<S>& jet = w.ports[at(port)];
-  for (int r = 0; r < C_x.rows(); ++r) {
-    const Vec3<S> push = w.R.transpose() * C_x.row(r).transpose();
+  const int n = velocities(part);
+  for (int r = 0; r < rows; ++r, Cq += n) {
+    const S x = C_x[r], y = C_x[rows + r], z = C_x[2 * rows + r];
+    const Vec3<S> push(w.R(0, 0) * x + w.R(1, 0) * y + w.R(2, 0) * z,
+                       w.R(0, 1) * x + w.R(1, 1) * y + w.R(2, 1) * z,
+                       w.R(0, 2) * x + w.R(1, 2) * y + w.R(2, 2) * z);
     const Vec3<S> turn = jet.p.cross(push);
     for (int i = 0; i < 3; ++i) {
-      Cq(i, r) += push[i];
-      Cq(3 + i, r) += turn[i];
+      Cq[i] += push[i];
+      Cq[3 + i] += turn[i];
     }
-    for (int k = 0; k < part.n_s; ++k) Cq(6 + k, r) += jet.J.col(k).dot(push);
+    for (int k = 0; k < part.n_s; ++k) Cq[6 + k] += jet.J.col(k).dot(push);
   }
 }
 
@@ -91,8 +92,8 @@ void evaluate_joints(const Model& model, const Island& island, double t,
       for (const JointSide& side : joint.sides) {
         if (side.part != ref.part) continue;
         const PartModel& part = model.parts()[at(side.part)];
-        SideMatrix<S> Cq(work.Cq.data() + side.offset, velocities(part), joint.rows);
-        add_point(part, parts[at(side.part)], ref.port, rows.C_x.middleCols(3 * k, 3), Cq);
+        add_point(part, parts[at(side.part)], ref.port, joint.rows, rows.C_x.data() + 3 * k * joint.rows,
+                  work.Cq.data() + side.offset);
       }
     }
   };
@@ -111,45 +112,95 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
       const S* Cq = work.Cq.data() + side.offset;
       S* Y = work.Y.data() + side.offset;
       if constexpr (std::is_same_v<S, double>) {
-        const Eigen::Matrix<double, 6, 6>* inverse = parts[at(side.part)].inverse;
-        if (inverse != nullptr && joint.rows == 3) {
-          FixedSide<S, 6, 3>(Y).noalias() = inverse->lazyProduct(ConstSide<S, 6, 3>(Cq));
+        const PartModel* rigid = parts[at(side.part)].rigid;
+        if (rigid != nullptr && joint.rows == 3) {
+          FixedSide<S, 6, 3>(Y).noalias() = rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
           continue;
         }
       }
       for (int r = 0; r < joint.rows; ++r) {
         VecMax<S> column(n);
         for (int i = 0; i < n; ++i) column[i] = Cq[r * n + i];
-        parts[at(side.part)].factor.solve(column);
+        parts[at(side.part)].solve_mass(column);
         for (int i = 0; i < n; ++i) Y[r * n + i] = column[i];
       }
     }
   }
-  auto assemble = [&](BlockFactor<S>& W, auto&& counts) {
-    W.clear(island.pattern);
-    for (const Coupling& c : island.couplings) {
-      if (!counts(work.modes[at(c.row_joint)]) || !counts(work.modes[at(c.column_joint)])) continue;
-      const int n = velocities(model.parts()[at(c.part)]);
-      const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
-      S* block = W.block(c.target);
-      if (n == 6 && c.rows == 3 && c.columns == 3) {
-        FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
-        continue;
-      }
-      for (int k = 0; k < c.columns; ++k)
-        for (int r = 0; r < c.rows; ++r) {
-          S sum(0.0);
-          for (int i = 0; i < n; ++i) sum += Cq[r * n + i] * Y[k * n + i];
-          block[k * c.rows + r] += sum;
-        }
-    }
-    W.factor();
-  };
   const auto number = static_cast<std::size_t>(&island - model.islands().data());
-  assemble(work.W_c[number], [](JointMode mode) { return acts(mode); });
+  work.W_c[number].factor(model, island, parts, work, false);
   const bool open = std::any_of(island.joints.begin(), island.joints.end(),
                                 [&](int j) { return work.modes[at(j)] == JointMode::closing; });
-  if (open) assemble(work.W_closed[number], [](JointMode mode) { return mode == JointMode::closed; });
+  if (open) work.W_closed[number].factor(model, island, parts, work, true);
+}
+
+template <class S>
+void JointFactor<S>::factor(const Model& model, const Island& island,
+                            const std::vector<PartWorkspace<S>>& parts, const ConstraintWorkspace<S>& work,
+                            bool closed_only) {
+  if (island.augmented) {
+    if constexpr (std::is_same_v<S, double>) {
+      if (!augmented_) augmented_ = std::make_unique<AugmentedFactor>(model, island);
+      augmented_->factor(parts, work, closed_only);
+    }
+    return;
+  }
+  blocks_.clear(island.pattern);
+  for (const Coupling& c : island.couplings) {
+    if (!counts(work.modes[at(c.row_joint)], closed_only) ||
+        !counts(work.modes[at(c.column_joint)], closed_only))
+      continue;
+    const int n = velocities(model.parts()[at(c.part)]);
+    const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
+    S* block = blocks_.block(c.target);
+    if (n == 6 && c.rows == 3 && c.columns == 3) {
+      FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
+      continue;
+    }
+    for (int k = 0; k < c.columns; ++k)
+      for (int r = 0; r < c.rows; ++r) {
+        S sum(0.0);
+        for (int i = 0; i < n; ++i) sum += Cq[r * n + i] * Y[k * n + i];
+        block[k * c.rows + r] += sum;
+      }
+  }
+  blocks_.factor();
+}
+
+template <class S>
+void JointFactor<S>::solve(VecX<S>& x) const {
+  if constexpr (std::is_same_v<S, double>) {
+    if (augmented_) return augmented_->solve(x);
+  } else if (values_ != nullptr) {
+    VecX<double> value(x.size()), slope(x.size());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      value[i] = x[i].v;
+      slope[i] = x[i].d[0];
+    }
+    values_->solve(value);
+    values_->solve(slope);
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      x[i].v = value[i];
+      x[i].d[0] = slope[i];
+    }
+    return;
+  }
+  blocks_.solve(x);
+}
+
+template <class S>
+std::vector<bool> JointFactor<S>::dependent(const Model& model, const Island& island,
+                                            const ConstraintWorkspace<S>& work) const {
+  if constexpr (std::is_same_v<S, double>)
+    if (augmented_) return dependent_rows(model, island, work);
+  std::vector<bool> dependent(at(island.rows));
+  for (int r = 0; r < island.rows; ++r) dependent[at(r)] = blocks_.held(r);
+  return dependent;
+}
+
+template <class S>
+bool JointFactor<S>::is_rough() const {
+  constexpr double smallest = 1e-5;  // pivot
+  return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < smallest;
 }
 
 namespace {
@@ -194,14 +245,13 @@ class Holding {
   void hold() {
     x_ = free_;
     lambda_ = VecX<S>::Constant(island_.rows, S(0.0));
-    const BlockFactor<S>& W_c = joints_.W_c[number()];
-    const int refinements = W_c.smallest_pivot() < kRefineBelow ? 2 : 0;
+    const int refinements = joints_.W_c[number()].is_rough() ? 2 : 0;
     for (int pass = 0; pass <= refinements; ++pass) {
       VecX<S> rows = group_.joint_rows(x_);
       for (const int j : island_.joints)
         if (acts(joints_.modes[at(j)]))
           rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) += wanted(j);
-      lambda_ += group_.correct(std::move(rows), x_);  // Eq. (14), with what M gives taken out
+      lambda_ += group_.correct(rows, x_);  // Eq. (14), with what M gives taken out
     }
   }
   /// The same with pushes on one-sided rows.
@@ -323,11 +373,17 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
   return power;
 }
 
-int redundant_rows(const Model& model, const ConstraintWorkspace<double>& work, int joint) {
-  const JointModel& m = model.joints()[at(joint)];
-  if (m.joint->one_sided() || !acts(work.modes[at(joint)])) return 0;
-  int count = 0;
-  for (int r = 0; r < m.rows; ++r) count += work.W_c[at(m.island)].held(m.island_row + r) ? 1 : 0;
+std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work) {
+  std::vector<int> count(model.joints().size(), 0);
+  for (std::size_t i = 0; i < model.islands().size(); ++i) {
+    const Island& island = model.islands()[i];
+    const std::vector<bool> dependent = work.W_c[i].dependent(model, island, work);
+    for (const int j : island.joints) {
+      const JointModel& joint = model.joints()[at(j)];
+      if (!acts(work.modes[at(j)])) continue;
+      for (int r = 0; r < joint.rows; ++r) count[at(j)] += dependent[at(joint.island_row + r)] ? 1 : 0;
+    }
+  }
   return count;
 }
 
@@ -336,7 +392,8 @@ int redundant_rows(const Model& model, const ConstraintWorkspace<double>& work, 
                                 ConstraintWorkspace<S>&);                                                  \
   template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
                               ConstraintWorkspace<S>&);                                                    \
-  template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);
+  template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);                                  \
+  template class JointFactor<S>;
 PLIANT_INSTANCES(double)
 PLIANT_INSTANCES(Dual<1>)
 #undef PLIANT_INSTANCES

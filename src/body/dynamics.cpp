@@ -123,18 +123,8 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 }
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
-  if (!m.part->rigid()) return w.factor.compute(w.inertia.M, m.inertia_floor);
-  w.factor = m.rigid_factor;
-  w.inverse = &m.rigid_inverse;
-}
-
-/// M^-1 e_i of a part.
-template <class S>
-VecMax<S> inverse_column(const SymmetricFactor<S>& factor, int n, int i) {
-  VecMax<S> x(n);
-  for (int k = 0; k < n; ++k) x[k] = S(k == i ? 1.0 : 0.0);
-  factor.solve(x);
-  return x;
+  w.rigid = m.part->rigid() ? &m : nullptr;
+  if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
 /// The rows of the limits that parameters of a group's part i rest at.
@@ -142,7 +132,7 @@ template <class F>
 void for_each_rest(const PartModel& m, const std::int8_t* at_limit, const PartWorkspace<double>& w, int i,
                    F&& act) {
   for (int k = 0; k < m.n_s; ++k)
-    if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.factor.held(6 + k))
+    if (at_limit[k] != 0 && w.v_r[6 + k] == 0 && !w.held(6 + k))
       act(OneSidedRow{i, k, at_limit[k] < 0 ? 1.0 : -1.0, 0});
 }
 
@@ -289,7 +279,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
       take_factor(m, w);
-      w.factor.solve(w.a_r);
+      w.solve_mass(w.a_r);
       if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
     } else {
       w.factor.compute(w.inertia.M, m.inertia_floor);
@@ -342,6 +332,9 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
     joints.gains = fixed_modes->joints.gains;
     joints.most_speed = fixed_modes->joints.most_speed;
     joints.pushed = fixed_modes->joints.pushed;
+    if constexpr (!std::is_same_v<S, double>)
+      for (std::size_t i = 0; i < model.islands().size(); ++i)
+        joints.W_c[i].refer_to(fixed_modes->joints.W_c[i]);
   } else {
     joints.modes.assign(model.joints().size(), JointMode::off);
   }

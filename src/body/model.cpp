@@ -10,6 +10,11 @@
 
 namespace pliant {
 
+namespace {
+/// Multiplications below which blocks are always the faster way.
+constexpr long kCheapBlocks = 10000;
+}  // namespace
+
 Model::Model(MultiBody& body) : body_(&body) {
   if (!body.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
   for (const auto& part : body.parts()) {
@@ -125,7 +130,7 @@ void Model::lay_islands() {
       parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
     }
   std::vector<int> island_of(parts_.size(), -1);
-  std::vector<std::vector<std::pair<int, int>>> sides_of(parts_.size());  // joint, side
+  SidesOfParts sides_of(parts_.size());
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     JointModel& joint = joints_[j];
     int& island = island_of[static_cast<std::size_t>(root(joint.sides.front().part))];
@@ -162,38 +167,80 @@ void Model::lay_islands() {
     island.n_v += 6 + parts_[i].n_s;
   }
   for (Island& island : islands_) {
-    std::vector<int> sizes;
-    for (const int j : island.joints) sizes.push_back(joints_[static_cast<std::size_t>(j)].rows);
-    std::vector<std::pair<int, int>> edges;
-    for (const int i : island.parts)
-      for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
-        for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)])
-          if (a < b && joints_[static_cast<std::size_t>(a)].node >= 0 &&
-              joints_[static_cast<std::size_t>(b)].node >= 0)
-            edges.emplace_back(joints_[static_cast<std::size_t>(a)].node,
-                               joints_[static_cast<std::size_t>(b)].node);
-    island.pattern = BlockPattern::cheapest(sizes, edges);
-    for (const int i : island.parts)
-      for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
-        for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)]) {
-          if (a > b || joints_[static_cast<std::size_t>(a)].node < 0 ||
-              joints_[static_cast<std::size_t>(b)].node < 0)
-            continue;
-          int row = a, column = b, row_side = side_a, column_side = side_b;
-          const JointModel &joint_a = joints_[static_cast<std::size_t>(a)],
-                           &joint_b = joints_[static_cast<std::size_t>(b)];
-          const BlockPattern::Place place = island.pattern.place(joint_a.node, joint_b.node);
-          if (place.swapped) {
-            std::swap(row, column);
-            std::swap(row_side, column_side);
-          }
-          const JointModel &of_row = joints_[static_cast<std::size_t>(row)],
-                           &of_column = joints_[static_cast<std::size_t>(column)];
-          island.couplings.push_back({i, of_row.sides[static_cast<std::size_t>(row_side)].offset,
-                                      of_column.sides[static_cast<std::size_t>(column_side)].offset,
-                                      of_row.rows, of_column.rows, row, column, place.offset});
-        }
+    choose_solver(island, sides_of);
+    if (!island.augmented) lay_couplings(island, sides_of);
   }
+}
+
+void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
+  /// Pairs of joints beyond which W_c is not even looked at.
+  constexpr double most_pairs = 1e7;
+  const JointSolver& solver = body_->joint_solver;
+  auto equation = [&](int j) { return joints_[static_cast<std::size_t>(j)].node >= 0; };
+  std::vector<int> rows;
+  for (const int j : island.joints) rows.push_back(joints_[static_cast<std::size_t>(j)].rows);
+
+  // Eq. (14): parts and joints, a block for each side.
+  std::vector<int> sizes;
+  std::vector<std::pair<int, int>> edges;
+  double pairs = 0;
+  for (std::size_t p = 0; p < island.parts.size(); ++p) {
+    sizes.push_back(6 + parts_[static_cast<std::size_t>(island.parts[p])].n_s);
+    double sides = 0;
+    for (const auto& [j, side] : sides_of[static_cast<std::size_t>(island.parts[p])]) {
+      if (!equation(j)) continue;
+      edges.emplace_back(static_cast<int>(p),
+                         static_cast<int>(island.parts.size()) + joints_[static_cast<std::size_t>(j)].node);
+      sides += 1;
+    }
+    pairs += sides * sides / 2;
+  }
+  sizes.insert(sizes.end(), rows.begin(), rows.end());
+  using Choice = JointSolver::Choice;
+  island.augmented =
+      solver.choice == Choice::augmented || (solver.choice == Choice::automatic && pairs > most_pairs);
+  if (island.augmented) {
+    island.numbers = eliminate(sizes, edges, solver.order).values;
+    return;
+  }
+  std::vector<std::pair<int, int>> meetings;  // of joints on a part
+  for (const int i : island.parts)
+    for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
+      for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)])
+        if (a < b && equation(a) && equation(b))
+          meetings.emplace_back(joints_[static_cast<std::size_t>(a)].node,
+                                joints_[static_cast<std::size_t>(b)].node);
+  const Elimination blocks = cheapest_elimination(rows, meetings, solver.order);
+  island.numbers = blocks.values;
+  if (solver.choice == Choice::automatic && blocks.products > kCheapBlocks) {
+    const Elimination augmented = eliminate(sizes, edges, solver.order);
+    island.augmented = augmented_is_faster(blocks, augmented);
+    if (island.augmented) island.numbers = augmented.values;
+  }
+  if (!island.augmented) island.pattern = BlockPattern(blocks);
+}
+
+void Model::lay_couplings(Island& island, const SidesOfParts& sides_of) {
+  for (const int i : island.parts)
+    for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
+      for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)]) {
+        if (a > b || joints_[static_cast<std::size_t>(a)].node < 0 ||
+            joints_[static_cast<std::size_t>(b)].node < 0)
+          continue;
+        int row = a, column = b, row_side = side_a, column_side = side_b;
+        const JointModel &joint_a = joints_[static_cast<std::size_t>(a)],
+                         &joint_b = joints_[static_cast<std::size_t>(b)];
+        const BlockPattern::Place place = island.pattern.place(joint_a.node, joint_b.node);
+        if (place.swapped) {
+          std::swap(row, column);
+          std::swap(row_side, column_side);
+        }
+        const JointModel &of_row = joints_[static_cast<std::size_t>(row)],
+                         &of_column = joints_[static_cast<std::size_t>(column)];
+        island.couplings.push_back({i, of_row.sides[static_cast<std::size_t>(row_side)].offset,
+                                    of_column.sides[static_cast<std::size_t>(column_side)].offset,
+                                    of_row.rows, of_column.rows, row, column, place.offset});
+      }
 }
 
 State Model::initial_state() const {

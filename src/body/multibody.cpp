@@ -49,9 +49,8 @@ Joint& MultiBody::join(std::unique_ptr<Joint> joint) {
   const std::vector<Point>& points = joint->points();
   const std::string what = std::string(joint->type()) + " '" + joint->name() + "'";
   if (joint->name().empty()) throw std::invalid_argument("a joint needs a name");
-  for (const auto& other : joints_)
-    if (other->name() == joint->name())
-      throw std::invalid_argument("there are two joints called '" + joint->name() + "'");
+  if (has_joint(joint->name()))
+    throw std::invalid_argument("there are two joints called '" + joint->name() + "'");
   if (static_cast<int>(points.size()) != joint->n_points())
     throw std::invalid_argument(what + " ties " + std::to_string(joint->n_points()) + " points, not " +
                                 std::to_string(points.size()));
@@ -59,6 +58,7 @@ Joint& MultiBody::join(std::unique_ptr<Joint> joint) {
   for (std::size_t k = 1; k < points.size(); ++k)
     if (k != first && points[k].part != points[k < first ? 0 : first].part)
       throw std::invalid_argument(what + ": the points of a side are not on one part");
+  joint_names_.insert(joint->name());
   joints_.push_back(std::move(joint));
   return *joints_.back();
 }

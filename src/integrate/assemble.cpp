@@ -128,11 +128,11 @@ class Assembly {
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];
-      MatMax<double> H = w.inertia.M;
+      MatX<double>& H = w.inertia.M;
       H.block<3, 3>(3, 3) *= dear;
       H.bottomRightCorner(m.n_s, m.n_s) += m.part->K_s() / eps_;
       w.factor.compute(H, m.inertia_floor);
-      w.inverse = nullptr;
+      w.rigid = nullptr;
     }
   }
 
@@ -181,7 +181,7 @@ class Assembly {
       if (modes_.joints[at(j)] != JointMode::off)
         rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
     }
-    const VecX<double> lambda = group.correct(std::move(rows), x);
+    const VecX<double> lambda = group.correct(rows, x);
     if (lambda.size() > 0) penalty_ = std::max(penalty_, 2 * eps_ * lambda.lpNorm<Eigen::Infinity>());
     OneSidedRows<Eigen::Dynamic> one_sided(group);
     return one_sided.meet_all(
@@ -211,7 +211,7 @@ class Assembly {
   VecMax<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
     VecMax<double> x = VecMax<double>::Zero(6 + m.n_s);
     x.tail(m.n_s) = -(m.part->K_s() * stretch(m)) / eps_;
-    w.factor.solve(x);
+    w.solve_mass(x);
     return x;
   }
 

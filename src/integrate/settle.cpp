@@ -55,7 +55,7 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
     const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
     momentum.head<3>() = to.R.transpose() * P;
     momentum.segment<3>(3) = to.R.transpose() * L;
-    to.factor.solve(momentum);
+    to.solve_mass(momentum);
     take_velocity(m, to, momentum, state.v);
   }
 }

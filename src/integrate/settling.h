@@ -23,6 +23,8 @@ inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMostIterations = 30;
 /// A closed joint that its projection leaves this many times what it may be cannot be closed.
 inline constexpr double kOpen = 1e3;
+/// Most joints that a message names.
+inline constexpr int kMostNamed = 8;
 /// Rows that make up a dependent one have at least this share of it.
 inline constexpr double kDepends = 1e-6;
 /// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
@@ -32,6 +34,14 @@ inline constexpr double kTaut = 1e-9;
 
 inline std::size_t at(int i) {
   return static_cast<std::size_t>(i);
+}
+
+/// What a gap may be, by rounding, m.
+inline double rounding(const JointModel& joint, const Workspace<double>& work) {
+  double size = 0;
+  for (const JointSide& side : joint.sides)
+    size = std::max(size, work.parts[at(side.part)].c.template lpNorm<Eigen::Infinity>());
+  return kLeft * joint.length + kRounding * size;
 }
 
 inline Range limits_of(const PartModel& m, int k) {
@@ -165,14 +175,11 @@ class Settling {
 
   /// What a row of a joint may be, by rounding.
   double left(const JointModel& joint, Rows what) const {
+    if (what == Rows::coordinates) return rounding(joint, work_);
     double size = 0;
-    for (int i = 0; i < group_.parts(); ++i) {
-      const PartWorkspace<double>& w = group_.workspace(i);
-      size = std::max(size, what == Rows::velocities ? w.v_r.template lpNorm<Eigen::Infinity>()
-                                                     : w.c.template lpNorm<Eigen::Infinity>());
-    }
-    const double rate = what == Rows::velocities ? model_.body().stabilization.rate : 1.0;
-    return kLeft * rate * joint.length + kRounding * size;
+    for (const JointSide& side : joint.sides)
+      size = std::max(size, work_.parts[at(side.part)].v_r.template lpNorm<Eigen::Infinity>());
+    return kLeft * model_.body().stabilization.rate * joint.length + kRounding * size;
   }
 
   /// Evaluates the joints and adds to x what takes the rows of the closed ones to zero. False when nothing is
@@ -201,7 +208,7 @@ class Settling {
       fresh_ = true;
     }
     before_ = now;
-    group_.correct(std::move(error), x);
+    group_.correct(error, x);
     return true;
   }
 
@@ -224,12 +231,15 @@ class Settling {
     std::ostringstream message;
     message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
             << joint.joint->name() << "' stays open by " << widest << " m";
-    const char* word = ", held open by ";
+    int named = 0;
     for (const int j : island_->joints) {
       if (j == open || !depends(joint, model_.joints()[at(j)])) continue;
-      message << word << model_.joints()[at(j)].joint->type() << " '" << model_.joints()[at(j)].joint->name()
-              << "'";
-      word = ", ";
+      if (++named > kMostNamed) {
+        message << " and others";
+        break;
+      }
+      message << (named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
+              << model_.joints()[at(j)].joint->name() << "'";
     }
     throw UnsatisfiableModel(message.str(), t_);
   }
@@ -241,7 +251,7 @@ class Settling {
       for (const JointSide& side : joint.sides) {
         const int n = static_cast<int>(group_.share(x, side.place).size());
         VecMax<double> force = work_.joints.Cq.segment(side.offset + r * n, n);
-        group_.workspace(side.place).factor.solve(force);
+        group_.workspace(side.place).solve_mass(force);
         group_.share(x, side.place) += force;
       }
       Vector unused = x;

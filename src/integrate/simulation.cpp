@@ -12,6 +12,8 @@ namespace pliant {
 namespace {
 /// Times that differ by less than this part of a step are the same.
 constexpr double kNear = 1e-9;
+/// A step at which joints do not close is tried again in so many.
+constexpr int kShorter = 16;
 }  // namespace
 
 Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads)
@@ -45,13 +47,34 @@ void Simulation::step(double h) {
   try {
     advance(h);
   } catch (const UnsatisfiableModel& failure) {
+    const bool shorter = shorter_steps_pass(h);
     state_ = last_good_;
-    throw UnsatisfiableModel(failure.what(), state_.time());
+    if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
+    std::ostringstream message;
+    message << "a step of " << h << " s is too long for the motion: " << failure.what()
+            << ", but not after steps of " << h / kShorter << " s";
+    throw NumericalFailure(message.str(), state_.time());
   }
   ++state_.step;
   ++step_counters_.steps;
   check(last_good_);
   note_held();
+}
+
+/// Whether joints that did not close after a step do so after shorter ones.
+bool Simulation::shorter_steps_pass(double h) {
+  state_ = last_good_;
+  try {
+    for (int i = 0; i < kShorter; ++i) {
+      state_.start = last_good_.time() + i * h / kShorter;
+      state_.step = 0;
+      state_.h = h / kShorter;
+      advance(h / kShorter);
+    }
+  } catch (const UnsatisfiableModel&) {
+    return false;
+  }
+  return true;
 }
 
 /// Moves the state on by h but for the count of its step, stopping where joints switch.
@@ -124,9 +147,9 @@ void Simulation::check(const State& before) {
 void Simulation::note_held() {
   for (std::size_t i = 0; i < work_.parts.size(); ++i) {
     const PartModel& m = model_.parts()[i];
-    if (m.q0 < 0 || !work_.parts[i].factor.any_held()) continue;
+    if (m.q0 < 0 || !work_.parts[i].any_held()) continue;
     for (int k = 0; k < 6 + m.n_s; ++k)
-      if (work_.parts[i].factor.held(k)) held_[static_cast<std::size_t>(m.v0 + k)] = true;
+      if (work_.parts[i].held(k)) held_[static_cast<std::size_t>(m.v0 + k)] = true;
   }
 }
 

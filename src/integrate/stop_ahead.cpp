@@ -14,15 +14,6 @@ using namespace settling;
 
 namespace {
 
-/// What a gap may be, by rounding.
-template <int Max>
-double rounding(const JointModel& joint, const Group<double, Max>& group, const Workspace<double>& ahead) {
-  double size = 0;
-  for (int i = 0; i < group.parts(); ++i)
-    size = std::max(size, ahead.parts[at(group.part(i))].c.template lpNorm<Eigen::Infinity>());
-  return kLeft * joint.length + kRounding * size;
-}
-
 /// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
 /// closed joints. False when they are closed there.
 template <int Max>
@@ -34,10 +25,10 @@ bool close_ahead(const Model& model, const Island& island, const Group<double, M
     const JointModel& joint = model.joints()[at(j)];
     if (state.joints[at(j)] != JointMode::closed) continue;
     const auto C = ahead.joints.C.segment(joint.row, joint.rows);
-    open = open || !(C.norm() <= rounding(joint, group, ahead));
+    open = open || !(C.norm() <= rounding(joint, ahead));
     error.segment(joint.island_row, joint.rows) = C / h;
   }
-  if (open) group.correct(std::move(error), x);
+  if (open) group.correct(error, x);
   return open;
 }
 
@@ -91,7 +82,7 @@ void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& 
         const JointMode mode = state.joints[at(j)];
         const double C = ahead.joints.C[model.joints()[at(j)].row];
         if (mode == JointMode::off || mode == JointMode::closing || row.sign < 0 ||
-            C > -rounding(model.joints()[at(j)], group, ahead))
+            C > -rounding(model.joints()[at(j)], ahead))
           return -std::numeric_limits<double>::infinity();
         return group.value(row, now) - C / h;
       }

@@ -90,6 +90,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.height = scene.height;
   record_.steps = schedule_.steps();
   record_.stable_step = stable_step;
+  record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());
   record_.add_seconds("prepare", seconds_since(start));
   if (schedule_.step() > stable_step) {
@@ -186,6 +187,7 @@ void Run::record_state() {
   recorded_step_ = simulation_->state().step;
   writer_->append(simulation_->state());
   const Ledger ledger = simulation_->ledger();
+  record_.max_gap = std::max(record_.max_gap, widest_closed_gap(*simulation_));
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);

@@ -84,6 +84,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                      {"step", r.step},
                      {"frame_rate", r.frame_rate},
                      {"integrator", r.integrator},
+                     {"joint_solver", r.joint_solver},
                      {"threads", r.threads},
                      {"width", r.width},
                      {"height", r.height},
@@ -103,6 +104,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["monitors"] = {{"max_balance_error", r.max_balance_error},
                       {"max_energy", r.max_energy},
                       {"max_kinetic", r.max_kinetic},
+                      {"max_gap", r.max_gap},
                       {"largest_stable_step", bound(r.stable_step)}};
   json["held"] = r.held;
   json["skipped"] = r.skipped;
@@ -142,6 +144,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     options.at("step").get_to(r.step);
     options.at("frame_rate").get_to(r.frame_rate);
     options.at("integrator").get_to(r.integrator);
+    options.at("joint_solver").get_to(r.joint_solver);
     options.at("threads").get_to(r.threads);
     options.at("width").get_to(r.width);
     options.at("height").get_to(r.height);
@@ -163,6 +166,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     monitors.at("max_balance_error").get_to(r.max_balance_error);
     monitors.at("max_energy").get_to(r.max_energy);
     monitors.at("max_kinetic").get_to(r.max_kinetic);
+    monitors.at("max_gap").get_to(r.max_gap);
     if (!monitors.at("largest_stable_step").is_null())
       monitors.at("largest_stable_step").get_to(r.stable_step);
     json.at("held").get_to(r.held);

@@ -11,6 +11,12 @@
 
 namespace pliant {
 
+JointSolver::Choice joint_solver(const std::string& name) {
+  using Choice = JointSolver::Choice;
+  if (name == "blocks") return Choice::blocks;
+  return name == "augmented" ? Choice::augmented : Choice::automatic;
+}
+
 Stabilization read_stabilization(const Reader& r) {
   Stabilization rule;
   static constexpr std::array<std::pair<const char*, BaumgarteRule>, 4> rules{
@@ -74,11 +80,7 @@ void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
   JointSetting setting{*from, *to};
   if (!read_setting(r, info->keys, setting, faults)) return;
   std::string name = name_of(r, info->name, body.joints().size());
-  auto taken = [&] {
-    return std::any_of(body.joints().begin(), body.joints().end(),
-                       [&](const auto& joint) { return joint->name() == name; });
-  };
-  while (taken()) name += "'";  // a name of the scene's own can be one that is made here
+  while (body.has_joint(name)) name += "'";  // a name of the scene's own can be one that is made here
   Joint& joint = body.join(info->make(std::move(name), setting));
   if (r.given("off"))
     joint.during(r.number("on"), r.number("off"));

@@ -1,6 +1,8 @@
 // Joints of a scene, and how they close and hold.
 #pragma once
 
+#include <string>
+
 #include <pliant/body/multibody.h>
 #include <pliant/scene/reader.h>
 
@@ -8,6 +10,8 @@
 #include "scene_faults.h"
 
 namespace pliant {
+
+JointSolver::Choice joint_solver(const std::string& name);
 
 Stabilization read_stabilization(const Reader& r);
 

@@ -78,6 +78,7 @@ class SceneReader {
     scene_->end = time.number("end");
     scene_->step = time.number("step");
     scene_->integrator = time.text("integrator");
+    scene_->body.joint_solver.choice = joint_solver(time.text("solver"));
     scene_->frame_rate = output.number("frame_rate");
     constexpr double kMost = 1e12;
     if (scene_->end / scene_->step > kMost)

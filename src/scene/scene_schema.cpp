@@ -128,12 +128,18 @@ Record part_record() {
 }
 
 Record make_scene_record() {
-  const Record time{"time",
-                    "How long, and how to step.",
-                    {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
-                     optional("step", number(above(0), "s"), "Time step.", "0.001"),
-                     optional("integrator", choice(integrator_choices()), "Method of time integration.",
-                              "\"semi_implicit_euler\"")}};
+  const Record time{
+      "time",
+      "How long, and how to step.",
+      {optional("end", number(at_least(0), "s"), "End of the run; it starts at 0.", "1"),
+       optional("step", number(above(0), "s"), "Time step.", "0.001"),
+       optional("integrator", choice(integrator_choices()), "Method of time integration.",
+                "\"semi_implicit_euler\""),
+       optional("solver",
+                choice({{"auto", "what a fixed model of the cost says, for each island of parts"},
+                        {"blocks", "blocks of C_q M^-1 C_q^T"},
+                        {"augmented", "the sparse matrix of the paper's Eq. (14)"}}),
+                "How the forces of joints are found.", "\"auto\"")}};
   const Record spring{"spring",
                       "A linear spring and damper between two points. With rest length 0 its damper resists "
                       "all relative motion, else "

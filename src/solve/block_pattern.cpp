@@ -53,16 +53,9 @@ std::vector<int> cardinality_order(const std::vector<int>& first, const std::vec
   return order;
 }
 
-BlockPattern BlockPattern::cheapest(const std::vector<int>& sizes,
-                                    const std::vector<std::pair<int, int>>& edges) {
-  BlockPattern best(sizes, edges, cardinality_order), other(sizes, edges, minimum_degree_order);
-  return other.products() < best.products() ? std::move(other) : std::move(best);
-}
-
-BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
-                           NodeOrder order) {
+Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                      NodeOrder order) {
   const std::size_t n = sizes.size();
-  // The graph, and the nodes in the order of elimination.
   std::vector<std::vector<int>> next(n);
   for (const auto& [u, v] : edges) {
     if (u == v) continue;
@@ -76,7 +69,48 @@ BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std:
     neighbour.insert(neighbour.end(), of.begin(), of.end());
     first.push_back(static_cast<int>(neighbour.size()));
   }
-  const std::vector<int> node_at = n > 0 ? order(first, neighbour) : std::vector<int>{};
+  Elimination result;
+  result.sizes = sizes;
+  if (n > 0) result.node_at = order(first, neighbour);
+  std::vector<int> place_of(n);
+  for (std::size_t j = 0; j < n; ++j)
+    place_of[static_cast<std::size_t>(result.node_at[j])] = static_cast<int>(j);
+
+  // What is below the diagonal of a column goes on to the column of its first block.
+  result.below.resize(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<int>& places = result.below[j];
+    for (const int v : next[static_cast<std::size_t>(result.node_at[j])])
+      if (place_of[static_cast<std::size_t>(v)] > static_cast<int>(j))
+        places.push_back(place_of[static_cast<std::size_t>(v)]);
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    const long size = sizes[static_cast<std::size_t>(result.node_at[j])];
+    long rows = 0, squares = 0;  // of the blocks below
+    for (const int i : places) {
+      const long of_block = sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(i)])];
+      rows += of_block;
+      squares += of_block * of_block;
+    }
+    result.values += size * (size + rows);
+    result.products +=
+        size * size * size / 6 + size + size * size * rows + size * (rows * rows + squares) / 2;
+    if (places.empty()) continue;
+    std::vector<int>& parent = result.below[static_cast<std::size_t>(places.front())];
+    parent.insert(parent.end(), places.begin() + 1, places.end());
+  }
+  return result;
+}
+
+Elimination cheapest_elimination(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                                 NodeOrder order) {
+  Elimination best = eliminate(sizes, edges, cardinality_order), other = eliminate(sizes, edges, order);
+  return other.products < best.products ? other : best;
+}
+
+BlockPattern::BlockPattern(const Elimination& elimination) {
+  const std::size_t n = elimination.sizes.size();
+  const std::vector<int>&node_at = elimination.node_at, &sizes = elimination.sizes;
   place_of_.assign(n, 0);
   for (std::size_t j = 0; j < n; ++j) place_of_[static_cast<std::size_t>(node_at[j])] = static_cast<int>(j);
   std::vector<int> row_of(n);
@@ -84,26 +118,12 @@ BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std:
     row_of[u] = rows_;
     rows_ += sizes[u];
   }
-
-  // Fill: what is below the diagonal of a column goes on to the column of its first block.
-  std::vector<std::vector<int>> below(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    std::vector<int>& places = below[j];
-    for (const int v : next[static_cast<std::size_t>(node_at[j])])
-      if (place_of_[static_cast<std::size_t>(v)] > static_cast<int>(j))
-        places.push_back(place_of_[static_cast<std::size_t>(v)]);
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    if (places.empty()) continue;
-    std::vector<int>& parent = below[static_cast<std::size_t>(places.front())];
-    parent.insert(parent.end(), places.begin() + 1, places.end());
-  }
   for (std::size_t j = 0; j < n; ++j) {
     const int size = sizes[static_cast<std::size_t>(node_at[j])];
     Column column{
         size, row_of[static_cast<std::size_t>(node_at[j])], values_, static_cast<int>(blocks_.size()), 0, 0};
     values_ += size * size;
-    for (const int i : below[j]) {
+    for (const int i : elimination.below[j]) {
       blocks_.push_back({i, values_});
       values_ += size * sizes[static_cast<std::size_t>(node_at[static_cast<std::size_t>(i)])];
     }
@@ -111,7 +131,6 @@ BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std:
     columns_.push_back(column);
   }
 
-  auto size_at = [&](int place) { return columns_[static_cast<std::size_t>(place)].size; };
   auto offset_at = [&](int row, int column) {
     const Column& c = columns_[static_cast<std::size_t>(column)];
     if (row == column) return c.diagonal;
@@ -121,17 +140,10 @@ BlockPattern::BlockPattern(const std::vector<int>& sizes, const std::vector<std:
   };
   for (Column& column : columns_) {
     column.first_update = static_cast<int>(updates_.size());
-    const long s = column.size;
-    products_ += s * s * s / 6 + s;
-    for (int b = column.first; b < column.last; ++b) {
-      const Block& of_b = blocks_[static_cast<std::size_t>(b)];
-      products_ += s * s * size_at(of_b.place);
-      for (int a = b; a < column.last; ++a) {
-        const Block& of_a = blocks_[static_cast<std::size_t>(a)];
-        updates_.push_back(offset_at(of_a.place, of_b.place));
-        products_ += s * size_at(of_a.place) * size_at(of_b.place);
-      }
-    }
+    for (int b = column.first; b < column.last; ++b)
+      for (int a = b; a < column.last; ++a)
+        updates_.push_back(offset_at(blocks_[static_cast<std::size_t>(a)].place,
+                                     blocks_[static_cast<std::size_t>(b)].place));
   }
 }
 

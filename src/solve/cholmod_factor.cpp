@@ -46,7 +46,8 @@ class CholmodFactor final : public SparseFactor {
  private:
   void do_analyse(const SparseMatrix& A) override {
     cholmod_free_factor(&factor_, &common_);
-    common_.supernodal = A.cols() >= options_.supernodal_from ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
+    common_.supernodal =
+        A.cols() >= options_.supernodal_from && !quasi_definite() ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
     cholmod_sparse view = view_of(A);
     factor_ = cholmod_analyze(&view, &common_);
     check("analysis");

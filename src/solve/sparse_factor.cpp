@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-void SparseFactor::analyse(const SparseMatrix& A) {
+void SparseFactor::analyse(const SparseMatrix& A, Eigen::Index n_positive) {
   if (A.rows() != A.cols() || !A.isCompressed())
     throw std::invalid_argument("sparse factor: the matrix must be square and compressed");
   const int* columns = A.outerIndexPtr();
@@ -21,6 +21,8 @@ void SparseFactor::analyse(const SparseMatrix& A) {
   columns_.assign(columns, columns + A.cols() + 1);
   rows_.assign(rows, rows + A.nonZeros());
   diagonal_.assign(static_cast<std::size_t>(A.cols()), 0.0);
+  pivots_.assign(static_cast<std::size_t>(A.cols()), 0.0);
+  n_positive_ = n_positive;
   do_analyse(A);
 }
 
@@ -49,7 +51,9 @@ void SparseFactor::solve(Eigen::Ref<Eigen::MatrixXd> x) {
 
 bool SparseFactor::accept_pivot(Eigen::Index row, double pivot) {
   const double diagonal = diagonal_[static_cast<std::size_t>(row)];
-  if (pivot > 0 && pivot > kPivotTolerance * diagonal && std::isfinite(pivot)) return true;
+  const double size = row < n_positive_ ? pivot : -pivot;
+  pivots_[static_cast<std::size_t>(row)] = pivot;
+  if (size > 0 && size > kPivotTolerance * std::abs(diagonal) && std::isfinite(pivot)) return true;
   bad_pivot_ = {row, pivot, diagonal};
   return false;
 }

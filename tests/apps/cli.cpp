@@ -393,6 +393,28 @@ TEST_CASE("I59: a scene without parts") {
   CHECK(place.pliant("run top.json --end 0 --quiet").code == 0);
 }
 
+TEST_CASE("scripts print chains and nets of any size, and say how they are used") {
+  const Place place;
+  const std::string scenes = PLIANT_SCENES;
+  for (const char* script : {"chain.sh' 1", "chain.sh' 20", "net.sh' 3 3", "net.sh' 4 7"}) {
+    INFO(script);
+    const Result check = place.pliant("check -", "bash '" + scenes + "/" + script + " |");
+    CHECK(check.code == 0);
+    CHECK(has(check.out, "ok: "));
+    CHECK(check.err.empty());
+  }
+  for (const char* script : {"chain.sh'", "chain.sh' 0", "chain.sh' -3", "chain.sh' 2 2", "chain.sh' many",
+                             "net.sh'", "net.sh' 5", "net.sh' 2 5", "net.sh' 4 4.5"}) {
+    INFO(script);
+    const std::string file = (place.folder / "usage").string();
+    const int status =
+        std::system(("bash '" + scenes + "/" + script + " > '" + file + ".out' 2> '" + file + "'").c_str());
+    CHECK(WEXITSTATUS(status) == 2);
+    CHECK(has(bytes_of(file), "usage: "));
+    CHECK(bytes_of(file + ".out").empty());
+  }
+}
+
 TEST_CASE("no graphics library is opened unless a picture is asked for") {
   const Place place;
   const Result run = place.pliant("run top.json -o r --obj", "LD_DEBUG=files");

@@ -98,7 +98,7 @@ TEST_CASE("block factor: a chain and a tree fill nothing in", "[block_factor]") 
   Draws draws(2);
   for (const bool chain : {true, false}) {
     const Sample sample(draws, 200, 0, chain);
-    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    const BlockPattern pattern(cheapest_elimination(sample.sizes, sample.edges, minimum_degree_order));
     int expected = 0;
     for (const int size : sample.sizes) expected += size * size;
     for (const auto& [u, v] : sample.edges)
@@ -123,7 +123,7 @@ TEST_CASE("block factor: rows that depend on others are held, and the rest is so
     sample.A.row(same) = sample.A.row(as);
     sample.A.col(same) = sample.A.col(as);
     const VecX<double> b = sample.A * random(draws, n);
-    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    const BlockPattern pattern(cheapest_elimination(sample.sizes, sample.edges, minimum_degree_order));
     BlockFactor<double> factor;
     sample.fill(pattern, sample.A, factor);
     factor.factor();
@@ -153,7 +153,7 @@ TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
         A(i, k).d[0] = dA(i, k);
       }
     }
-    const BlockPattern pattern = BlockPattern::cheapest(sample.sizes, sample.edges);
+    const BlockPattern pattern(cheapest_elimination(sample.sizes, sample.edges, minimum_degree_order));
     BlockFactor<Dual<1>> factor;
     sample.fill(pattern, A, factor);
     factor.factor();

@@ -3,8 +3,10 @@
 // a being the accelerations without joints. What is found is added to them: a + M^-1 C_q^T lambda.
 #pragma once
 
+#include <memory>
 #include <vector>
 
+#include <pliant/body/augmented.h>
 #include <pliant/body/model.h>
 #include <pliant/body/stabilization.h>
 #include <pliant/solve/block_factor.h>
@@ -25,6 +27,33 @@ struct OneSidedRow {
   double bound;
 };
 
+/// W_c of an island, factored by blocks or within the augmented matrix.
+template <class S>
+class JointFactor {
+ public:
+  /// Factors it for the joints that act, or the closed ones alone.
+  void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
+              const ConstraintWorkspace<S>& work, bool closed_only);
+  /// That of the values, for a derivative of the augmented matrix.
+  void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
+
+  /// x = W_c^-1 x, with zeros for rows that depend on others. A derivative by the augmented matrix takes W_c
+  /// for constant, which is exact once what is left is solved again.
+  void solve(VecX<S>& x) const;
+  bool exact() const { return values_ == nullptr; }
+  /// Which rows depend on others.
+  std::vector<bool> dependent(const Model& model, const Island& island,
+                              const ConstraintWorkspace<S>& work) const;
+  /// Whether solutions are to be refined.
+  bool is_rough() const;
+
+ private:
+  friend class JointFactor<Dual<1>>;
+  BlockFactor<S> blocks_;
+  std::unique_ptr<AugmentedFactor> augmented_;
+  const AugmentedFactor* values_ = nullptr;
+};
+
 /// What is recomputed at each evaluation. The rows of all joints stand in the order of the joints.
 template <class S>
 struct ConstraintWorkspace {
@@ -35,10 +64,10 @@ struct ConstraintWorkspace {
   VecX<S> C, C_dot, bias;           ///< m, m/s, m/s^2
   VecX<S> Cq, Y;                    ///< C_q^T and M^-1 C_q^T of each side, n_v x rows, on v_r
   VecX<S> lambda;                   ///< N; on the parts act C_q^T lambda
-  std::vector<BlockFactor<S>> W_c;  ///< of each island, of the joints that act
+  std::vector<JointFactor<S>> W_c;  ///< of each island, of the joints that act
   /// The same of the closed joints alone, where there are others that close: impulses keep the closed ones
   /// and may open the others.
-  std::vector<BlockFactor<S>> W_closed;
+  std::vector<JointFactor<S>> W_closed;
   std::vector<std::vector<OneSidedRow>> pushed;  ///< of each island
 };
 
@@ -52,9 +81,6 @@ template <class S>
 void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                    ConstraintWorkspace<S>& work);
 
-/// Below this smallest pivot of W_c its solutions are refined.
-inline constexpr double kRefineBelow = 1e-5;
-
 /// Finds lambda and adds M^-1 C_q^T lambda to the accelerations of the parts. One-sided rows that could push
 /// are those of the strings that act and of `limits`; which of them do is told in work.joints.pushed.
 void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
@@ -66,12 +92,17 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 
-/// Rows of a joint that follow from those of others, which hold them; after an evaluation.
-int redundant_rows(const Model& model, const ConstraintWorkspace<double>& work, int joint);
+/// Of each joint, the number of its rows that follow from those of others, which hold them; after an
+/// evaluation.
+std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work);
 
 /// Whether a joint acts in this mode.
 inline bool acts(JointMode mode) {
   return mode == JointMode::closing || mode == JointMode::closed;
+}
+/// The same, or whether it is closed.
+inline bool counts(JointMode mode, bool closed_only) {
+  return closed_only ? mode == JointMode::closed : acts(mode);
 }
 
 }  // namespace pliant

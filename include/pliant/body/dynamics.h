@@ -27,11 +27,24 @@ struct PartWorkspace {
   Vec<S, kWorks> power;
   std::vector<Vec3<S>> port_force;  ///< world
   // limits and accelerations
-  SymmetricFactor<S> factor;
-  const Eigen::Matrix<double, 6, 6>* inverse = nullptr;  ///< M^-1 where it is constant
-  VecMax<S> a_r;                                         ///< (R^T c_ddot, omega_dot, q_s_ddot)
-  std::vector<int> pressed;                              ///< dynamic parameters that their limit holds back
+  SymmetricFactor<S> factor;         ///< of M
+  const PartModel* rigid = nullptr;  ///< instead of factor: a part whose M^-1 is constant
+  VecMax<S> a_r;                     ///< (R^T c_ddot, omega_dot, q_s_ddot)
+  std::vector<int> pressed;          ///< dynamic parameters that their limit holds back
   Counters counters;
+
+  /// x = M^-1 x.
+  void solve_mass(VecMax<S>& x) const {
+    if constexpr (std::is_same_v<S, double>)
+      if (rigid != nullptr) {
+        x = (rigid->rigid_inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
+        return;
+      }
+    factor.solve(x);
+  }
+  /// Whether a velocity has no inertia right now, and is held.
+  bool held(int k) const { return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k); }
+  bool any_held() const { return rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held(); }
 };
 
 template <class S>

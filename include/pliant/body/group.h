@@ -63,13 +63,13 @@ class Group {
     if (row.part >= 0) {
       VecMax<S> force = VecMax<S>::Constant(velocities(part(row.part)), S(0.0));
       force[6 + row.k] = S(row.sign);
-      workspace(row.part).factor.solve(force);
+      workspace(row.part).solve_mass(force);
       share(x, row.part) = force;
       return x;
     }
     for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
       VecMax<S> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
-      workspace(side.place).factor.solve(force);
+      workspace(side.place).solve_mass(force);
       share(x, side.place) += force;
     }
     return x;
@@ -88,9 +88,14 @@ class Group {
       const JointModel& joint = model_->joints()[at(j)];
       for (const JointSide& side : joint.sides) {
         const int n = velocities(side.part), start = island_->first[at(side.place)];
+        const S* Cq = work_->joints.Cq.data() + side.offset;
+        if (n == 6 && joint.rows == 3) {
+          rows.template segment<3>(joint.island_row) +=
+              BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
+          continue;
+        }
         for (int r = 0; r < joint.rows; ++r)
-          for (int i = 0; i < n; ++i)
-            rows[joint.island_row + r] += work_->joints.Cq[side.offset + r * n + i] * x[start + i];
+          for (int i = 0; i < n; ++i) rows[joint.island_row + r] += Cq[r * n + i] * x[start + i];
       }
     }
     return rows;
@@ -98,30 +103,51 @@ class Group {
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
   /// -rows. Returns lambda. When W_c is that of an earlier configuration, lambda is near to it, and the
   /// forces still pull with C_q^T as it is now: two ends of a joint are pushed by opposite forces.
-  VecX<S> correct(VecX<S> rows, Vector& x) const {
-    VecX<S> lambda = -rows;
+  VecX<S> correct(const VecX<S>& rows, Vector& x) const {
     const auto& factors = closed_only_ ? work_->joints.W_closed : work_->joints.W_c;
-    factors[at(static_cast<int>(island_ - model_->islands().data()))].solve(lambda);
-    Vector force = Vector::Constant(size_, S(0.0));
-    for (const int j : island_->joints) {
-      const JointModel& joint = model_->joints()[at(j)];
-      for (const JointSide& side : joint.sides) {
-        const int n = velocities(side.part), start = island_->first[at(side.place)];
-        for (int r = 0; r < joint.rows; ++r)
-          for (int i = 0; i < n; ++i)
-            force[start + i] += work_->joints.Cq[side.offset + r * n + i] * lambda[joint.island_row + r];
-      }
+    const JointFactor<S>& factor = factors[at(static_cast<int>(island_ - model_->islands().data()))];
+    VecX<S> lambda = -rows;
+    factor.solve(lambda);
+    Vector change = moved_by(lambda);
+    if (!factor.exact()) {
+      VecX<S> more = -(rows + joint_rows(change));
+      factor.solve(more);
+      lambda += more;
+      change += moved_by(more);
     }
-    for (int i = 0; i < parts(); ++i) {
-      VecMax<S> change = share(force, i);
-      workspace(i).factor.solve(change);
-      share(x, i) += change;
-    }
+    x += change;
     return lambda;
   }
 
  private:
+  /// C_q^T of a ball joint on a rigid part.
+  using BallSide = Eigen::Map<const Eigen::Matrix<S, 6, 3>>;
+
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  /// M^-1 C_q^T lambda.
+  Vector moved_by(const VecX<S>& lambda) const {
+    Vector x = Vector::Constant(size_, S(0.0));
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_->joints()[at(j)];
+      for (const JointSide& side : joint.sides) {
+        const int n = velocities(side.part), start = island_->first[at(side.place)];
+        const S* Cq = work_->joints.Cq.data() + side.offset;
+        if (n == 6 && joint.rows == 3) {
+          x.template segment<6>(start) +=
+              BallSide(Cq).lazyProduct(lambda.template segment<3>(joint.island_row));
+          continue;
+        }
+        for (int r = 0; r < joint.rows; ++r)
+          for (int i = 0; i < n; ++i) x[start + i] += Cq[r * n + i] * lambda[joint.island_row + r];
+      }
+    }
+    for (int i = 0; i < parts(); ++i) {
+      VecMax<S> of_part = share(x, i);
+      workspace(i).solve_mass(of_part);
+      share(x, i) = of_part;
+    }
+    return x;
+  }
   int velocities(int part) const { return 6 + model_->parts()[at(part)].n_s; }
 
   const Model* model_;

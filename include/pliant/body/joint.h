@@ -83,6 +83,13 @@ class Joint {
   double on_ = -std::numeric_limits<double>::infinity(), off_ = std::numeric_limits<double>::infinity();
 };
 
+/// A formula that is linear in x, without a constant and without t, says so by
+///   static constexpr bool linear = true;
+template <class F, class = void>
+struct IsLinear : std::false_type {};
+template <class F>
+struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::linear> {};
+
 template <class F, class = void>
 struct HasFault : std::false_type {};
 template <class F>
@@ -106,6 +113,7 @@ class JointOf final : public Joint {
     if constexpr (HasFault<F>::value)
       if (const char* fault = formula_.fault())
         throw std::invalid_argument(std::string(F::name) + " '" + this->name() + "' " + fault);
+    if constexpr (IsLinear<F>::value) slope_ = constant_slope();
   }
 
   const char* type() const override { return F::name; }
@@ -127,32 +135,65 @@ class JointOf final : public Joint {
 
  private:
   template <class S>
+  using Points = std::array<Vec3<S>, kPoints>;
+
+  template <class S>
   void evaluate_as(double t, const PointMotion<S>* x, JointRows<S>& out) const {
-    using T = Taylor2<S>;
-    using D = Dual<3 * kPoints, S>;
-    std::array<Vec3<T>, kPoints> moving;
-    std::array<Vec3<D>, kPoints> varied;
-    for (int k = 0; k < kPoints; ++k)
-      for (int r = 0; r < 3; ++r) {
-        const auto p = static_cast<std::size_t>(k);
-        moving[p][r] = T(x[k].x[r], x[k].x_dot[r], x[k].x_ddot[r]);
-        varied[p][r] = D::variable(x[k].x[r], 3 * k + r);
+    if constexpr (IsLinear<F>::value) {
+      Points<S> at, rate, bias;
+      for (std::size_t k = 0; k < at.size(); ++k) {
+        at[k] = x[k].x;
+        rate[k] = x[k].x_dot;
+        bias[k] = x[k].x_ddot;
       }
-    const Vec<T, kRows> rates = formula_.template C<T>(moving, T(S(t), S(1.0), S(0.0)));
-    const Vec<D, kRows> slopes = formula_.template C<D>(varied, D(S(t)));
-    out.C.resize(kRows);
-    out.C_dot.resize(kRows);
-    out.bias.resize(kRows);
-    out.C_x.resize(kRows, 3 * kPoints);
-    for (int r = 0; r < kRows; ++r) {
-      out.C[r] = rates[r].v;
-      out.C_dot[r] = rates[r].d;
-      out.bias[r] = rates[r].dd;
-      for (int c = 0; c < 3 * kPoints; ++c) out.C_x(r, c) = slopes[r].d[static_cast<std::size_t>(c)];
+      out.C = formula_.template C<S>(at, S(t));
+      out.C_dot = formula_.template C<S>(rate, S(t));
+      out.bias = formula_.template C<S>(bias, S(t));
+      out.C_x = slope_.template cast<S>();
+    } else {
+      using T = Taylor2<S>;
+      Points<T> moving;
+      Points<S> at;
+      for (int k = 0; k < kPoints; ++k) {
+        const auto p = static_cast<std::size_t>(k);
+        at[p] = x[k].x;
+        for (int r = 0; r < 3; ++r) moving[p][r] = T(x[k].x[r], x[k].x_dot[r], x[k].x_ddot[r]);
+      }
+      const Vec<T, kRows> rates = formula_.template C<T>(moving, T(S(t), S(1.0), S(0.0)));
+      out.C.resize(kRows);
+      out.C_dot.resize(kRows);
+      out.bias.resize(kRows);
+      for (int r = 0; r < kRows; ++r) {
+        out.C[r] = rates[r].v;
+        out.C_dot[r] = rates[r].d;
+        out.bias[r] = rates[r].dd;
+      }
+      out.C_x = slope(S(t), at);
     }
   }
 
+  /// dC/dx.
+  template <class S>
+  Eigen::Matrix<S, kRows, 3 * kPoints> slope(const S& t, const Points<S>& x) const {
+    using D = Dual<3 * kPoints, S>;
+    Points<D> varied;
+    for (int k = 0; k < kPoints; ++k)
+      for (int r = 0; r < 3; ++r)
+        varied[static_cast<std::size_t>(k)][r] = D::variable(x[static_cast<std::size_t>(k)][r], 3 * k + r);
+    const Vec<D, kRows> rows = formula_.template C<D>(varied, D(t));
+    Eigen::Matrix<S, kRows, 3 * kPoints> C_x;
+    for (int r = 0; r < kRows; ++r)
+      for (int c = 0; c < 3 * kPoints; ++c) C_x(r, c) = rows[r].d[static_cast<std::size_t>(c)];
+    return C_x;
+  }
+  Eigen::Matrix<double, kRows, 3 * kPoints> constant_slope() const {
+    Points<double> x;
+    for (Vec3<double>& point : x) point.setZero();
+    return slope(0.0, x);
+  }
+
   F formula_;
+  Eigen::Matrix<double, IsLinear<F>::value ? kRows : 0, 3 * kPoints> slope_;  ///< of a linear formula
 };
 
 }  // namespace pliant

@@ -85,8 +85,10 @@ struct Island {
   std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< of joints
-  BlockPattern pattern;
+  bool augmented = false;    ///< solved as the augmented matrix, not by blocks
+  BlockPattern pattern;      ///< of the blocks of W_c, when they are used
   std::vector<Coupling> couplings;
+  long numbers = 0;  ///< in the factor
 };
 
 class Model {
@@ -128,6 +130,10 @@ class Model {
   PortRef attach(const Point& point, const std::string& what);
   void add_joint(const Joint& joint);
   void lay_islands();
+  /// A joint and which of its sides is on a part.
+  using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
+  void choose_solver(Island& island, const SidesOfParts& sides_of);
+  void lay_couplings(Island& island, const SidesOfParts& sides_of);
 
   const MultiBody* body_;
   std::vector<PartModel> parts_;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include <pliant/body/points.h>
 #include <pliant/body/stabilization.h>
 #include <pliant/part/primitive.h>
+#include <pliant/solve/joint_solver.h>
 
 namespace pliant {
 
@@ -54,6 +56,7 @@ class MultiBody {
  public:
   Vec3<double> gravity{0, 0, -9.81};  ///< m/s^2
   Stabilization stabilization;
+  JointSolver joint_solver;
 
   /// Adds a part; the reference stays valid. Throws std::invalid_argument when the name is taken or empty.
   template <class P, class... Args>
@@ -102,6 +105,7 @@ class MultiBody {
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
   /// The part called name; nullptr if there is none.
   Part* find(const std::string& name) const;
+  bool has_joint(const std::string& name) const { return joint_names_.count(name) > 0; }
   /// Number of a part of this body.
   int index(const Part& part) const;
 
@@ -112,6 +116,7 @@ class MultiBody {
   std::vector<std::unique_ptr<PointForce>> forces_;
   std::vector<std::unique_ptr<Torque>> torques_;
   std::vector<std::unique_ptr<Joint>> joints_;
+  std::unordered_set<std::string> joint_names_;
 };
 
 }  // namespace pliant

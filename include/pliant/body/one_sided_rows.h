@@ -40,7 +40,7 @@ class OneSidedRows {
     };
     for (int i = 0; i < group_.parts(); ++i)
       for (int k = 0; k < group_.model(i).n_s; ++k) {
-        if (group_.workspace(i).factor.held(6 + k)) continue;
+        if (group_.workspace(i).held(6 + k)) continue;
         judge({i, k, 1, 0});
         judge({i, k, -1, 0});
       }

@@ -49,6 +49,7 @@ class Simulation {
 
  private:
   void advance(double h);
+  bool shorter_steps_pass(double h);
   void switch_joints(double t);
   void check(const State& before);
   void note_held();

@@ -32,6 +32,7 @@ struct RunRecord {
   double step = 0;        ///< s, as taken: asked_step, or a little less so that steps fill the run
   double frame_rate = 0;  ///< 1/s
   std::string integrator;
+  std::string joint_solver;  ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
   int width = 0, height = 0;  ///< of pictures
   std::string graphics;       ///< library that drew them; empty without
@@ -52,6 +53,7 @@ struct RunRecord {
   double max_balance_error = 0;                                  ///< J, largest |balance| at a recorded state
   double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
   double max_kinetic = 0;                                        ///< J
+  double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
   std::vector<std::string> held;     ///< parameters that had no inertia and were held
   std::vector<std::string> skipped;  ///< what the scene did not need
   std::vector<std::string> notes;    ///< warnings and choices

@@ -11,7 +11,7 @@ namespace pliant {
 
 template <class S>
 struct Inertia {
-  MatMax<S> M;      ///< (6 + n_s) x (6 + n_s)
+  MatX<S> M;        ///< (6 + n_s) x (6 + n_s); on the heap, so that the parts of a chain lie close together
   VecMax<S> g_q;    ///< 6 + n_s
   Vec3<S> moment;   ///< sum m p: mass times the centre of mass in the body frame
   double mass = 0;  ///< kg

@@ -19,13 +19,28 @@ std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::
 /// systems of chains and trees.
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 
+/// A graph of nodes of several rows each, in an order of elimination, and what fills in.
+struct Elimination {
+  std::vector<int> sizes;               ///< rows of each node
+  std::vector<int> node_at;             ///< the node at each place
+  std::vector<std::vector<int>> below;  ///< of each place, the places whose blocks are not zero
+  long products = 0;                    ///< multiplications of a factorisation
+  long values = 0;                      ///< numbers in the blocks of the factor
+};
+/// edges: pairs of nodes whose block is not zero, in any order.
+Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                      NodeOrder order);
+/// By the order that costs the least, of the cardinality search and a given one.
+Elimination cheapest_elimination(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                                 NodeOrder order);
+
 class BlockPattern {
  public:
   BlockPattern() = default;
-  /// sizes: rows of each node, 1 to kMaxBlock. edges: pairs of nodes whose block is not zero, in any order.
-  BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges, NodeOrder order);
-  /// With the order, of those above, that costs the least.
-  static BlockPattern cheapest(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges);
+  /// Nodes have at most kMaxBlock rows.
+  explicit BlockPattern(const Elimination& elimination);
+  BlockPattern(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges, NodeOrder order)
+      : BlockPattern(eliminate(sizes, edges, order)) {}
 
   /// Where a block of the matrix is stored, by columns: rows of `row`, columns of `column`, one of them u and
   /// the other v. Throws std::out_of_range if it is not in the pattern.
@@ -39,8 +54,6 @@ class BlockPattern {
   int rows() const { return rows_; }
   /// Numbers that the blocks of the factor hold: the storage that a factor needs.
   int values() const { return values_; }
-  /// Multiplications of a factorisation.
-  long products() const { return products_; }
 
   /// A block below the diagonal in a column.
   struct Block {
@@ -66,7 +79,6 @@ class BlockPattern {
   std::vector<int> updates_;
   std::vector<int> place_of_;  // of each node
   int rows_ = 0, values_ = 0;
-  long products_ = 0;
 };
 
 }  // namespace pliant

@@ -9,7 +9,8 @@
 namespace pliant {
 
 struct CholmodOptions {
-  /// Unknowns from which the supernodal method (dense blocks, BLAS) is used instead of the simplicial one.
+  /// Unknowns from which the supernodal method (dense blocks, BLAS) is used instead of the simplicial one,
+  /// which quasi-definite matrices always use.
   Eigen::Index supernodal_from = 4000;
 };
 

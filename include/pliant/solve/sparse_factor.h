@@ -1,7 +1,8 @@
-// Sparse Cholesky factorisation of symmetric positive definite matrices, behind one face: A = Pᵀ L D Lᵀ P
-// with a fill-reducing ordering P (AMD). The pattern is analysed once, values are factored as often as they
-// change. Eigen's own factorisation is in core; CHOLMOD's is the library pliant::suitesparse
-// (solve/cholmod_factor.h).
+// Sparse Cholesky factorisation of symmetric matrices, behind one face: A = Pᵀ L D Lᵀ P with a fill-reducing
+// ordering P (AMD). A is positive definite, or quasi-definite: positive definite in its first rows, negative
+// definite in the others, as Eq. (14) is with a small -δI below; then D has the signs of these rows. The
+// pattern is analysed once, values are factored as often as they change. Eigen's own factorisation is in
+// core; CHOLMOD's is the library pliant::suitesparse (solve/cholmod_factor.h).
 #pragma once
 
 #include <memory>
@@ -30,17 +31,22 @@ class SparseFactor {
 
   /// Ordering and symbolic factorisation for the pattern of A; its values are not read. Diagonal entries must
   /// be there. Throws std::invalid_argument unless A is square, compressed and has its whole diagonal.
-  void analyse(const SparseMatrix& A);
+  void analyse(const SparseMatrix& A) { analyse(A, A.rows()); }
+  /// The same of a quasi-definite matrix whose rows from n_positive on are negative definite.
+  void analyse(const SparseMatrix& A, Eigen::Index n_positive);
 
   /// Numeric factorisation of A, whose pattern is the analysed one (else std::invalid_argument).
-  /// False when A is not safely positive definite: a pivot is not above kPivotTolerance times the diagonal
-  /// entry it began as, or is not finite; bad_pivot() then names the first in the order of elimination.
+  /// False when A is not safely definite: a pivot, with the sign that its row is to have, is not above
+  /// kPivotTolerance times the size of the diagonal entry it began as, or is not finite; bad_pivot() then
+  /// names the first in the order of elimination.
   [[nodiscard]] bool factor(const SparseMatrix& A);
 
   /// Overwrites each column of x, a right-hand side b, with A⁻¹ b. Throws std::logic_error unless the last
   /// factor() succeeded, std::invalid_argument when x has not n rows.
   void solve(Eigen::Ref<Eigen::MatrixXd> x);
 
+  /// The pivots of a factor() that succeeded, in the order of A's rows.
+  const std::vector<double>& pivots() const { return pivots_; }
   /// Where the last factor() stopped; meaningless after one that succeeded.
   const BadPivot& bad_pivot() const { return bad_pivot_; }
   /// Rows of the analysed matrix.
@@ -56,6 +62,7 @@ class SparseFactor {
   /// Whether a pivot that began as the diagonal entry of a row (of A) is good; keeps it as the bad one
   /// otherwise.
   bool accept_pivot(Eigen::Index row, double pivot);
+  bool quasi_definite() const { return n_positive_ < size(); }
 
  private:
   virtual void do_analyse(const SparseMatrix& A) = 0;
@@ -65,6 +72,8 @@ class SparseFactor {
 
   std::vector<int> columns_, rows_;  // the analysed pattern
   std::vector<double> diagonal_;     // of the matrix last factored
+  std::vector<double> pivots_;
+  Eigen::Index n_positive_ = 0;
   BadPivot bad_pivot_{};
   bool factored_ = false;
 };

@@ -17,7 +17,8 @@ class SymmetricFactor {
   static constexpr double kVanished = 1e-12;
 
   /// Factors A. floor_i: a diagonal entry at or below it has no inertia in this model's units.
-  void compute(const MatMax<S>& A, const VecMax<double>& floor) {
+  template <class Matrix>
+  void compute(const Matrix& A, const VecMax<double>& floor) {
     n_ = static_cast<int>(A.rows());
     held_.reset();
     L_.resize(n_, n_);
@@ -58,7 +59,7 @@ class SymmetricFactor {
 
  private:
   int n_ = 0;
-  MatMax<S> L_;
+  MatX<S> L_;  // on the heap, so that the parts of a chain lie close together
   std::array<S, kMaxVelocities> D_;
   std::bitset<kMaxVelocities> held_;
 };

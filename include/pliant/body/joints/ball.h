@@ -14,7 +14,7 @@ struct Ball {
   static constexpr const char* formula = "x_0 - x_1 = 0";
   static constexpr JointKeys keys{};
   static constexpr int rows = 3, first = 1, second = 1;
-  static constexpr bool one_sided = false;
+  static constexpr bool one_sided = false, linear = true;
 
   template <class T>
   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
