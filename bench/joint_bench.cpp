@@ -1,0 +1,163 @@
+// What joints cost: time per link of a force evaluation and of a step, for chains, trees, nets, rings and
+// stars of growing size, the exponents of their growth, and the share of each stage.
+//
+//   joint_bench [FOLDER]     writes joint_bench.csv and joint_exponents.csv to FOLDER, a table to standard
+//   output
+//
+// Of one evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T, W_c and
+// its factor), solve (lambda and what it adds), rest (the joints' points, powers). Projection is a step less
+// its evaluations. Stages are timed one by one, in loops of their own, so that their caches are warm.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <pliant/pliant.h>
+
+#include "linkage.h"
+#include "table_file.h"
+#include "timing.h"
+
+using namespace pliant;
+using bench::Linkage;
+
+namespace {
+
+struct System {
+  const char* name;
+  bool soft;
+  std::function<void(Linkage&, int)> build;
+  std::vector<int> sizes;  ///< what build takes
+};
+
+/// Times in microseconds per link.
+struct Cost {
+  std::string system;
+  int links, joints;
+  double evaluation, rk4_step, euler_step;
+  double parts, rows, factor, solve;
+
+  double rest() const { return evaluation - parts - rows - factor - solve; }
+  double rk4_projection() const { return rk4_step - 4 * evaluation; }
+  double euler_projection() const { return euler_step - evaluation; }
+};
+
+constexpr double kStep = 1e-3;
+
+double step_seconds(Simulation& simulation, const State& start) {
+  return bench::seconds_per_call(
+      [&] {
+        simulation.set_state(start);
+        simulation.step(kStep);
+      },
+      0.02, 5);
+}
+
+Cost measure(const System& system, int size) {
+  MultiBody tied, loose;
+  Linkage with(tied, system.soft), without(loose, system.soft, false);
+  system.build(with, size);
+  system.build(without, size);
+  Simulation rk4(tied, "rk4"), euler(tied, "semi_implicit_euler"), apart(loose, "rk4");
+  for (int i = 0; i < 10; ++i) rk4.step(kStep);
+  const State start = rk4.state();
+  const Model& model = rk4.model();
+  const double t = start.time(), links = static_cast<double>(tied.parts().size());
+
+  Cost cost{};
+  cost.system = system.name;
+  cost.links = static_cast<int>(tied.parts().size());
+  cost.joints = static_cast<int>(tied.joints().size());
+  auto per_link = [&](auto&& stage) { return bench::seconds_per_call(stage) * 1e6 / links; };
+  Workspace<double> work, own_work;
+  cost.evaluation = per_link([&] { rk4.dynamics().accelerations(t, start.q, start.v, start, work); });
+  cost.parts =
+      per_link([&] { apart.dynamics().accelerations(t, start.q, start.v, apart.state(), own_work); });
+  auto each_island = [&](auto&& act) {
+    return [&model, act] {
+      for (const Island& island : model.islands()) act(island);
+    };
+  };
+  cost.rows = per_link(each_island(
+      [&](const Island& island) { evaluate_joints<double>(model, island, t, work.parts, work.joints); }));
+  cost.factor = per_link(each_island(
+      [&](const Island& island) { factor_joints<double>(model, island, work.parts, work.joints); }));
+  cost.solve = per_link(each_island([&](const Island& island) { solve_joints(model, island, {}, work); }));
+  cost.rk4_step = step_seconds(rk4, start) * 1e6 / links;
+  cost.euler_step = step_seconds(euler, start) * 1e6 / links;
+  return cost;
+}
+
+/// Slope of log(time of all links) over log(links), least squares.
+double exponent(const std::vector<Cost>& costs, double Cost::*time) {
+  double x = 0, y = 0, xx = 0, xy = 0;
+  const auto n = static_cast<double>(costs.size());
+  for (const Cost& cost : costs) {
+    const double a = std::log(cost.links), b = std::log(cost.*time * cost.links);
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
+  auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
+  const double peak = bench::multiply_add_peak(), triad = bench::triad_bandwidth();
+  char calibration[128];
+  std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
+                peak, triad);
+  std::printf("%s", calibration);
+  bench::TableFile costs_file(
+      in_folder("joint_bench.csv"),
+      std::string(calibration) +
+          "system,links,joints,evaluation_us_per_link,rk4_step_us_per_link,euler_step_us_per_link,"
+          "parts_us,rows_us,factor_us,solve_us,rest_us,rk4_projection_us,euler_projection_us,"
+          "evaluation_multiply_adds_per_link\n");
+  bench::TableFile exponents_file(in_folder("joint_exponents.csv"),
+                                  std::string(calibration) + "system,evaluation,rk4_step,euler_step\n");
+
+  const std::vector<int> chains{8, 32, 128, 512, 1000, 2000, 5000, 10000};
+  const std::vector<System> systems{
+      {"chain", false, [](Linkage& linkage, int n) { bench::chain(linkage, n); }, chains},
+      {"hanging chain", false, [](Linkage& linkage, int n) { bench::chain(linkage, n, true); }, chains},
+      {"chain, 3 parameters", true, [](Linkage& linkage, int n) { bench::chain(linkage, n); }, chains},
+      {"binary tree", false, bench::tree, {15, 127, 1023, 8191}},
+      {"ring", false, bench::ring, {8, 32, 128, 512, 2000}},
+      {"net", false, bench::net, {4, 8, 16, 32}},
+      {"star", false, bench::star, {8, 32, 128, 256}},
+  };
+  std::printf("microseconds per link\n%-20s %6s %6s | %8s %8s %8s | %7s %7s %7s %7s %7s | %7s %7s\n",
+              "system", "links", "joints", "evaluate", "rk4", "euler", "parts", "rows", "factor", "solve",
+              "rest", "pr.rk4", "pr.eul");
+  for (const System& system : systems) {
+    std::vector<Cost> costs;
+    for (const int size : system.sizes) {
+      const Cost c = measure(system, size);
+      costs.push_back(c);
+      std::printf("%-20s %6d %6d | %8.3f %8.3f %8.3f | %7.3f %7.3f %7.3f %7.3f %7.3f | %7.3f %7.3f\n",
+                  c.system.c_str(), c.links, c.joints, c.evaluation, c.rk4_step, c.euler_step, c.parts,
+                  c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection());
+      std::fflush(stdout);
+      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.0f\n",
+                     c.system.c_str(), c.links, c.joints, c.evaluation, c.rk4_step, c.euler_step, c.parts,
+                     c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(),
+                     c.evaluation * 1e-6 * peak);
+    }
+    const double e = exponent(costs, &Cost::evaluation), r = exponent(costs, &Cost::rk4_step),
+                 s = exponent(costs, &Cost::euler_step);
+    std::printf("%-20s grows as links to the power %.3f (evaluation) %.3f (rk4) %.3f (euler)\n", system.name,
+                e, r, s);
+    exponents_file.row("\"%s\",%.4f,%.4f,%.4f\n", system.name, e, r, s);
+  }
+  return 0;
+} catch (const std::exception& fault) {
+  std::fprintf(stderr, "%s\n", fault.what());
+  return 1;
+}
