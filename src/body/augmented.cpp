@@ -85,7 +85,7 @@ void AugmentedFactor::factor(const std::vector<PartWorkspace<double>>& parts,
     }
   }
   for (const double of_row : d) *value++ = -of_row;
-  sound_ = factor_->factor(K_);  // only what is not a number stops it
+  sound_ = factor_->factor(K_);  // what stops it leaves solutions that are no numbers
 }
 
 void AugmentedFactor::solve(VecX<double>& x) const {
@@ -114,6 +114,7 @@ void AugmentedFactor::solve(VecX<double>& x) const {
 
 std::vector<bool> dependent_rows(const Model& model, const Island& island,
                                  const ConstraintWorkspace<double>& work) {
+  if (island.rows > kMostForRank) return std::vector<bool>(at(island.rows), false);
   std::vector<Eigen::Triplet<double>> entries;  // of C_q^T, columns of unit length
   for (const int j : island.joints) {
     const JointModel& joint = model.joints()[at(j)];

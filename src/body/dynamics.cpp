@@ -78,7 +78,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
   const int n = m.n_s;
   w.f = w.inertia.g_q;
   const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
-  const MatMax<S>& M = w.inertia.M;
+  const MatX<S>& M = w.inertia.M;
   // Gravity acts like an acceleration of the frame: f = M (g, 0, 0).
   for (int i = 0; i < 6 + n; ++i)
     for (int k = 0; k < 3; ++k) w.f[i] += M(i, k) * g_body[k];

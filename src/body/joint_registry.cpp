@@ -1,6 +1,8 @@
 #include <pliant/body/joint_registry.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -15,11 +17,12 @@ Eigen::Quaterniond orientation(const Point& point) {
   return point.part == nullptr ? Eigen::Quaterniond::Identity() : point.part->R0();
 }
 
-/// The size of the smaller of the parts of a joint, m.
+/// The size of the smaller of the parts of a joint that move, m.
 double smaller_size(const JointSetting& s) {
   double size = std::numeric_limits<double>::infinity();
   for (const Point* point : {&s.from, &s.to})
-    if (point->part != nullptr) size = std::min(size, point->part->size());
+    if (point->part != nullptr && !point->part->fixed()) size = std::min(size, point->part->size());
+  if (!std::isfinite(size)) throw std::invalid_argument("it ties no part that moves");
   return size;
 }
 

@@ -20,7 +20,9 @@ std::vector<Material<double>> neighbours(const Material<double>& m, bool ring) {
     if (at.w + sign * step >= 0 && at.w + sign * step <= 1)
       all.push_back(material_at(at.u, at.v, at.w + sign * step));
   }
-  // At poles and at the centre the angles lead nowhere.
+  // At poles, at the centre and on the core of a ring the angles lead nowhere.
+  if (ring && at.w + step <= 1)
+    for (const double turn : {kPi / 2, kPi}) all.push_back(material_at(at.u + turn, at.v, at.w + step));
   if (!ring)
     for (int k = 0; k < 3; ++k)
       for (const double sign : {-1.0, 1.0})

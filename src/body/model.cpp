@@ -261,12 +261,20 @@ State Model::initial_state() const {
       const Parameter& p = part.parameters().moving(k);
       state.q[m.q0 + 7 + k] = p.initial;
       state.v[m.v0 + 6 + k] = p.initial_rate;
-      std::int8_t& at = state.at_limit[static_cast<std::size_t>(m.limit0 + k)];
-      if (p.initial <= p.limits.min) at = -1;
-      if (p.initial >= p.limits.max) at = 1;
     }
   }
+  note_limits(state);
   return state;
+}
+
+void Model::note_limits(State& state) const {
+  for (const PartModel& m : parts_)
+    for (int k = 0; k < m.n_s; ++k) {
+      const Range range = m.part->parameters().moving(k).limits;
+      const double q = state.q[m.q0 + 7 + k];
+      state.at_limit[static_cast<std::size_t>(m.limit0 + k)] =
+          static_cast<std::int8_t>(q <= range.min ? -1 : (q >= range.max ? 1 : 0));
+    }
 }
 
 ParameterValues<double> Model::values(const State& state, int part) const {

@@ -1,6 +1,7 @@
 #include <pliant/integrate/assemble.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <sstream>
 
@@ -20,6 +21,8 @@ constexpr double kRigidFirst = 1e-6;
 /// A gap, in lengths of its joint, that is closed; and a step, in rad or sizes, at which the shape has
 /// settled.
 constexpr double kClosed = 1e-13, kSettled = 1e-9;
+/// A gap, in lengths, that is left to the projection at the start.
+constexpr double kNearlyClosed = 1e-9;
 /// Rounding of coordinates of size 1.
 constexpr double kRounding = 4e-15;
 constexpr int kMostIterations = 400;
@@ -29,6 +32,8 @@ constexpr int kPatience = 40, kMostHalvings = 5, kMostAttempts = 10;
 /// Steps of more than kTooFar times what is allowed make rigid motion dearer, once all gaps are below kNear
 /// lengths; good ones make it cheaper again.
 constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -65,22 +70,24 @@ class Assembly {
 
   /// Returns the iterations.
   int run() {
-    double best = std::numeric_limits<double>::infinity();
-    int since_best = 0;
+    double best_gap = kInfinite, best_merit = kInfinite;
+    int since_gap = 0, since_merit = 0;
     for (int i = 0; i < kMostIterations; ++i) {
       const double now = gap();
+      if (!std::isfinite(now))
+        throw NumericalFailure("assembly: the gap of a joint is not a finite number", state_.time());
+      since_gap = now < kProgress * best_gap ? 0 : since_gap + 1;
+      since_merit = merit() < (1 - kSettled) * best_merit ? 0 : since_merit + 1;
+      best_gap = std::min(best_gap, now);
+      best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
-      if (now < kProgress * best) {
-        best = now;
-        since_best = 0;
-      } else if (!closed && ++since_best > kPatience) {
-        fail(i);
-      }
+      if (!closed && since_gap > kPatience) fail(i);
+      // What is left is rounding, of gaps or of the shape.
+      if (now <= kNearlyClosed && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kSettled) return i;
     }
-    gap();
-    if (!is_closed()) fail(kMostIterations);
+    if (gap() > kNearlyClosed) fail(kMostIterations);
     return kMostIterations;
   }
 
@@ -111,7 +118,7 @@ class Assembly {
   /// Smallest ratio of stiffness to inertia of a parameter that has stiffness; infinite when none has.
   double softest_ratio() {
     dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinite;
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       for (int k = 0; k < m.n_s; ++k) {
@@ -218,8 +225,7 @@ class Assembly {
   double bound(const Group<double, Eigen::Dynamic>& group, const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_.strings[at(row.k)];
-      if (row.sign < 0 || modes_.joints[at(j)] == JointMode::off)
-        return -std::numeric_limits<double>::infinity();
+      if (row.sign < 0 || modes_.joints[at(j)] == JointMode::off) return -kInfinite;
       return -work_.joints.C[model_.joints()[at(j)].row];
     }
     const PartModel& m = group.model(row.part);
@@ -296,6 +302,7 @@ AssemblyReport assemble(const Dynamics& dynamics, State& state) {
     assembly.gap();
     report.gap = std::max(report.gap, assembly.metres());
   }
+  dynamics.model().note_limits(state);
   return report;
 }
 

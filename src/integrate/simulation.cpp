@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include <pliant/integrate/advance.h>
@@ -10,8 +11,8 @@
 namespace pliant {
 
 namespace {
-/// Times that differ by less than this part of a step are the same.
-constexpr double kNear = 1e-9;
+/// Times that differ by less than this part of a step, or this many units of their last place, are the same.
+constexpr double kNear = 1e-9, kUlps = 8;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
 }  // namespace
@@ -74,41 +75,42 @@ bool Simulation::shorter_steps_pass(double h) {
   } catch (const UnsatisfiableModel&) {
     return false;
   }
-  return true;
+  return state_.q.allFinite() && state_.v.allFinite();
 }
 
 /// Moves the state on by h but for the count of its step, stopping where joints switch.
 void Simulation::advance(double h) {
-  const double end = state_.time() + h, near = kNear * h;
   const std::vector<double>& times = model_.switch_times();
-  auto next = std::upper_bound(times.begin(), times.end(), state_.time() + near);
-  if (next == times.end() || *next > end + near)
-    return integrator_->step(dynamics_, state_, work_, step_counters_);
+  if (times.empty()) return integrator_->step(dynamics_, state_, work_, step_counters_);
+  const double end = state_.time() + h;
+  const double near = std::max(kNear * h, kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;
   const std::int64_t step = state_.step;
   for (double now = state_.time(); now < end - near;) {
+    switch_joints(now, near);
+    const auto next = std::upper_bound(times.begin(), times.end(), now + near);
     const double stop = next == times.end() || *next > end - near ? end : *next;
-    state_.start = now;
-    state_.step = 0;
-    state_.h = stop - now;
+    if (now != state_.time() || stop != end) {
+      state_.start = now;
+      state_.step = 0;
+      state_.h = stop - now;
+    }
     integrator_->step(dynamics_, state_, work_, step_counters_);
-    switch_joints(stop);
     now = stop;
-    next = std::upper_bound(times.begin(), times.end(), now + near);
   }
+  switch_joints(end, near);
   state_.start = start;
   state_.step = step;
   state_.h = h;
 }
 
-/// Joints begin and cease to act at time t.
-void Simulation::switch_joints(double t) {
+/// Joints act or do not, as they are to at a time t; times nearer than `near` are the same.
+void Simulation::switch_joints(double t, double near) {
   if (!state_.q.allFinite() || !state_.v.allFinite()) return;
-  const double then = t + kNear * state_.h;
   std::vector<bool> more(model_.islands().size());
   for (std::size_t j = 0; j < model_.joints().size(); ++j) {
     const JointModel& joint = model_.joints()[j];
-    const bool on = joint.joint->acts_at(then), was_on = state_.joints[j] != JointMode::off;
+    const bool on = joint.joint->acts_at(t + near), was_on = state_.joints[j] != JointMode::off;
     if (on == was_on) continue;
     state_.joints[j] = on ? JointMode::closing : JointMode::off;
     if (on) more[static_cast<std::size_t>(joint.island)] = true;

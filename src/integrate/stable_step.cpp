@@ -126,7 +126,7 @@ double largest_stable_step(const Simulation& simulation) {
       const PartModel& m = model.parts()[i];
       const Part& part = *m.part;
       const int at = first[i], n_v = 6 + m.n_s;
-      const MatMax<double>& M = work.parts[i].inertia.M;
+      const MatX<double>& M = work.parts[i].inertia.M;
       system.M.block(at, at, n_v, n_v) = M;
       system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
       system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=

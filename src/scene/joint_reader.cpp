@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -81,11 +82,15 @@ void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults,
   if (!read_setting(r, info->keys, setting, faults)) return;
   std::string name = name_of(r, info->name, body.joints().size());
   while (body.has_joint(name)) name += "'";  // a name of the scene's own can be one that is made here
-  Joint& joint = body.join(info->make(std::move(name), setting));
-  if (r.given("off"))
-    joint.during(r.number("on"), r.number("off"));
-  else if (r.given("on"))
-    joint.during(r.number("on"));
+  try {
+    Joint& joint = body.join(info->make(std::move(name), setting));
+    if (r.given("off"))
+      joint.during(r.number("on"), r.number("off"));
+    else if (r.given("on"))
+      joint.during(r.number("on"));
+  } catch (const std::invalid_argument& e) {
+    faults.place(r.json(), e.what());
+  }
 }
 
 }  // namespace pliant

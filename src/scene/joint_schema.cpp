@@ -24,12 +24,13 @@ Type joint_type(const Type& end_point, const Type& orientation) {
     add(JointKey::axis,
         optional("axis", vector3("1"),
                  "Direction at \"to\", in the frame of its part at rest or of the world.", "[0, 0, 1]"));
-    add(JointKey::from_axis,
-        optional("from_axis", vector3("1"),
-                 "The axis at \"from\" likewise; as \"axis\" stands at time 0 when not given."));
-    add(JointKey::rotation, optional("rotation", orientation,
-                                     "Orientation of the frame at \"from\" in that at \"to\"; as they stand "
-                                     "at time 0 when not given."));
+    add(JointKey::from_axis, optional("from_axis", vector3("1"),
+                                      "The axis at \"from\" likewise; as \"axis\" stands at time 0 when not "
+                                      "given, the parts undeformed."));
+    add(JointKey::rotation,
+        optional("rotation", orientation,
+                 "Orientation of the frame at \"from\" in that at \"to\"; as they stand at time 0 "
+                 "when not given, the parts undeformed."));
     record.fields.push_back(optional("on", number(at_least(0), "s"), "When it begins to act.", "0"));
     record.fields.push_back(
         optional("off", number(above(0), "s"), "When it ceases to; never when not given."));

@@ -151,6 +151,27 @@ TEST_CASE("assembly changes parameters only as far as their stiffness says", "[j
   }
 }
 
+TEST_CASE("assembly leaves limits that it leaves, and ends when the shape has come to rest", "[joints]") {
+  MultiBody body;
+  body.stabilization.assemble_first = true;
+  for (const char* name : {"left", "right"}) {
+    Part& part = test::add(body, name, "ellipsoid", {}, 1000);
+    part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}}).stiffness({{"a3", 1e4}}).limits("a3", {0.5, 2});
+    part.place({name == std::string("left") ? -0.5 : 0.5, 0, 0.01},
+               Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 2, Vec3<double>::UnitY())));
+  }
+  Part &left = *body.find("left"), &right = *body.find("right");
+  body.ball("l", world(-1.2, 0, 0), point(left, -kPi / 2, 0));
+  body.ball("m", point(left, kPi / 2, 0), point(right, -kPi / 2, 0));
+  body.ball("r", world(1.2, 0, 0), point(right, kPi / 2, 0));
+  const Simulation simulation(body, "rk4");
+  CHECK(simulation.state().q[7] == Approx(0.6).epsilon(1e-6));
+  CHECK(simulation.state().q[15] == Approx(0.6).epsilon(1e-6));
+  CHECK(simulation.state().at_limit[0] == 0);
+  CHECK(simulation.assembly().iterations <= 100);
+  CHECK(widest_gap(simulation) <= 1e-10);
+}
+
 TEST_CASE("assembly does no harm to what is assembled, and starts what is not from where it is near",
           "[joints]") {
   MultiBody body, same;

@@ -176,7 +176,7 @@ TEST_CASE(
 
 TEST_CASE("hinges and welds close from any turn, half turns too", "[joints]") {
   for (const char* type : {"hinge", "weld"})
-    for (const double angle : {0.5, 2.0, 3.0, kPi}) {
+    for (const double angle : {0.5, kPi / 2, kPi / 2 + 1e-12, kPi / 2 + 1e-7, 2.0, 3.0, kPi}) {
       MultiBody body;
       body.gravity.setZero();
       Part& a = ellipsoid(body, "a", {0, 0, 0});
@@ -199,6 +199,20 @@ TEST_CASE("hinges and welds close from any turn, half turns too", "[joints]") {
       CHECK(gap(simulation) <= 1e-12);
       CHECK(fastest <= 60);
     }
+}
+
+TEST_CASE("a small fixed part does not make a wrong turn small", "[joints]") {
+  MultiBody body;
+  body.gravity.setZero();
+  Part& peg = test::add(body, "peg", "sphere", {}, 1000);
+  peg.rest({{"r", 5e-4}}).fix();
+  Part& part = ellipsoid(body, "part", {0, 0, 0}, turn({0, 0, 1}, 0.8));
+  JointSetting setting{point(part, 0, 0, 0), point(peg, 0, 0, 0)};
+  setting.rotation = Eigen::Quaterniond::Identity();
+  body.join("weld", "weld", setting);
+  const Simulation simulation(body, "rk4");
+  CHECK(simulation.state().joints[0] == JointMode::closing);
+  CHECK(gap(simulation) == Approx(0.8 * part.size()).epsilon(1e-12));
 }
 
 TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre", "[joints]") {
@@ -306,6 +320,20 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     parts.set_state(at);
     for (int i = 21; i < 70; ++i) parts.step(7e-3);
     CHECK(hash(whole.state()) == hash(parts.state()));
+  }
+  SECTION("switches at almost the same time, and right after the start, are not missed") {
+    MultiBody body;
+    Part& bob = ellipsoid(body, "bob", {0, 0, 0});
+    body.ball("first", point(bob, 0, 0), world(0.1, 0, 0)).during(0, 0.0599999);
+    body.ball("second", point(bob, 0, kPi), world(-0.1, 0, 0)).during(0, 0.06 + 5e-12);
+    body.ball("third", point(bob, kPi / 2, 0), world(0, 0, 0.3)).during(0, 1e-12);
+    Simulation simulation(body, "rk4");
+    simulation.step(0.01);
+    CHECK(simulation.state().joints[2] == JointMode::off);
+    for (int i = 0; i < 9; ++i) simulation.step(0.01);
+    CHECK(simulation.state().joints[0] == JointMode::off);
+    CHECK(simulation.state().joints[1] == JointMode::off);
+    CHECK(simulation.time() == Approx(0.1).epsilon(1e-14));
   }
   SECTION("times are refused unless on < off") {
     MultiBody body;

@@ -39,6 +39,8 @@ class AugmentedFactor {
 };
 
 /// Which rows of C_q of an island depend on others, by a sparse QR factorisation: for people, not for steps.
+/// In islands of more than kMostForRank rows none is looked for.
+inline constexpr int kMostForRank = 900;
 std::vector<bool> dependent_rows(const Model& model, const Island& island,
                                  const ConstraintWorkspace<double>& work);
 

@@ -95,12 +95,12 @@ struct HasFault : std::false_type {};
 template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
-/// The joint of a formula F:
-///   static constexpr const char *name, *formula;
-///   static constexpr int rows, first, second;  // first, second: points of each side; none: the world as it
-///   is static constexpr bool one_sided; template <class T> Vec<T, rows> C(const std::array<Vec3<T>, first +
-///   second>& x, const T& t) const;
-/// Those that scenes know also say in `keys` what of a JointSetting they use.
+/// The joint of a formula F. F says, as static constants, `name` and `formula` in words, how many `rows` it
+/// has, how many points on its `first` and `second` side (none on the second: the world itself), and whether
+/// it is `one_sided`; and it has
+///   template <class T>
+///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;
+/// Formulas that scenes know also say in `keys` what of a JointSetting they use.
 template <class F>
 class JointOf final : public Joint {
  public:

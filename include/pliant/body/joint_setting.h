@@ -16,9 +16,11 @@ struct JointSetting {
   double length = 0;  ///< of a rod or string, m
   /// A direction at `to`, in the frame of its part at rest or of the world: normal, line or hinge pin.
   Vec3<double> axis{0, 0, 1};
-  /// The pin of a hinge at `from` likewise; the direction that `axis` has at time 0 when not given.
+  /// The pin of a hinge at `from` likewise; the direction that `axis` has at time 0, the
+  /// parts undeformed, when not given.
   std::optional<Vec3<double>> from_axis{};
-  /// Orientation of the frame at `from` in that at `to`; as they stand at time 0 when not given.
+  /// Orientation of the frame at `from` in that at `to`; as they stand at time 0, the parts
+  /// undeformed, when not given.
   std::optional<Eigen::Quaterniond> rotation{};
 };
 

@@ -113,6 +113,8 @@ class Model {
 
   /// The state at time 0.
   State initial_state() const;
+  /// Parameters are at their limits, or not, as their values say.
+  void note_limits(State& state) const;
   /// All parameters of a part in a state.
   ParameterValues<double> values(const State& state, int part) const;
   Vec3<double> position(const State& state, int part) const;

@@ -94,7 +94,7 @@ class MultiBody {
   /// rest values and places are to be set before. Throws std::invalid_argument.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);
   /// A hinge whose pin has a direction in the frame of b's part (or of the world), and for a the same as the
-  /// parts are placed; a weld of the parts as they are placed.
+  /// parts are placed; a weld of the parts as they are placed, undeformed.
   Joint& hinge(std::string name, Point a, Point b, const Vec3<double>& axis);
   Joint& weld(std::string name, Point a, Point b);
 

@@ -21,7 +21,7 @@ class Simulation {
   Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step of h seconds (> 0 and finite), in two where a joint begins or ceases to act within it. Throws
+  /// One step of h seconds (> 0 and finite), in several where joints begin or cease to act within it. Throws
   /// NumericalFailure, UnsatisfiableModel, std::invalid_argument.
   void step(double h);
 
@@ -50,7 +50,7 @@ class Simulation {
  private:
   void advance(double h);
   bool shorter_steps_pass(double h);
-  void switch_joints(double t);
+  void switch_joints(double t, double near);
   void check(const State& before);
   void note_held();
 

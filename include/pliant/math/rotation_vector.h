@@ -14,7 +14,8 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   const double size = plain(x);
   if (size > 0.1) {
     const T sine = math::sqrt(sine2);
-    const T angle = plain(cosine) < 0 ? T(T(kPi / 2) + math::acos(sine)) : T(math::acos(cosine));
+    // Near a half turn by the sine, which is exact there; not near a right angle, where its own slope ends.
+    const T angle = plain(cosine) < -0.7 ? T(T(kPi / 2) + math::acos(sine)) : T(math::acos(cosine));
     return angle / sine;
   }
   // asin(sqrt x) / sqrt(x (1 - x)) = sum of (2 / 3) (4 / 5) ... (2 n / (2 n + 1)) x^n
