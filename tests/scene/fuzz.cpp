@@ -24,9 +24,9 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Sanitizers make a case thirty times as slow: they get each fourth of the cases, plain builds all of them.
+// Sanitizers make a case thirty times as slow: they get one of sixteen cases, plain builds all of them.
 #ifdef __SANITIZE_ADDRESS__
-constexpr int kEach = 4;
+constexpr int kEach = 16;
 #else
 constexpr int kEach = 1;
 #endif
@@ -204,13 +204,14 @@ TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
   int cases = 0, ready = 0;
   for (const Dose& dose : {Dose{PLIANT_SCENES, 40, 80}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(dose.folder)) {
-      if (sample.name == "mould.json") continue;  // exponents as degrees of freedom take a second to prepare
+      // Exponents as degrees of freedom take a second to prepare, and so do a hundred parts.
+      if (sample.name == "mould.json" || sample.name == "net.json") continue;
       Spoiler spoiler(sample.name);
-      for (int i = 0; i < dose.by_bytes / kEach; ++i, ++cases)
+      for (int i = 0; i < std::max(1, dose.by_bytes / kEach); ++i, ++cases)
         try_out(sample, spoiler.spoil_bytes(sample.text), &ready);
       const Json document = Json::parse(sample.text, nullptr, false);
       if (document.is_discarded()) continue;
-      for (int i = 0; i < dose.by_values / kEach; ++i, ++cases)
+      for (int i = 0; i < std::max(1, dose.by_values / kEach); ++i, ++cases)
         try_out(sample, spoiler.spoil_values(document), &ready);
     }
   }
