@@ -26,17 +26,6 @@ double gap(const Simulation& simulation, int joint = 0) {
   return simulation.model().gap(simulation.state(), joint);
 }
 
-/// K(sin^2(theta / 2)), by the arithmetic-geometric mean.
-double elliptic_K(double theta) {
-  double a = 1, b = std::cos(theta / 2);
-  while (std::abs(a - b) > 1e-15 * a) {
-    const double mean = (a + b) / 2;
-    b = std::sqrt(a * b);
-    a = mean;
-  }
-  return kPi / (2 * a);
-}
-
 }  // namespace
 
 TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about the pin", "[joints]") {
@@ -60,7 +49,7 @@ TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about t
   const Vec3<double> pin_body = R.conjugate() * pin;
   const double about_pin = pin_body.dot(I * pin_body) + m * r * r;
   const double pull = m * r * (g - pin * pin.dot(g)).norm();
-  const double period = 4 * std::sqrt(about_pin / pull) * elliptic_K(theta);
+  const double period = 4 * std::sqrt(about_pin / pull) * test::elliptic_K(theta);
   test::run(simulation, period, 2000);
   CHECK((simulation.state().q.head<3>() - c).norm() <= 1e-8);
   CHECK(gap(simulation) <= 1e-12);

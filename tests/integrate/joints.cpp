@@ -56,17 +56,6 @@ void chain(MultiBody& body, int links, double turn = 0) {
   }
 }
 
-/// K(sin^2(theta / 2)), by the arithmetic-geometric mean.
-double elliptic_K(double theta) {
-  double a = 1, b = std::cos(theta / 2);
-  while (std::abs(a - b) > 1e-15 * a) {
-    const double mean = (a + b) / 2;
-    b = std::sqrt(a * b);
-    a = mean;
-  }
-  return kPi / (2 * a);
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -176,7 +165,7 @@ TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]")
   // An ellipsoid hung at the tip of its long axis: l = I_O / (m r).
   const double r = 0.3, l = (0.09 + 0.01) / (5 * r) + r;
   for (const double degrees : {30, 60, 90, 120, 150}) {
-    const double theta = degrees * kPi / 180, period = 4 * std::sqrt(l / 9.81) * elliptic_K(theta);
+    const double theta = degrees * kPi / 180, period = 4 * std::sqrt(l / 9.81) * test::elliptic_K(theta);
     MultiBody body;
     Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
     part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});

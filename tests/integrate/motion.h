@@ -47,6 +47,17 @@ inline double observed_order(const std::vector<double>& errors) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+/// K(sin^2(theta / 2)), by the arithmetic-geometric mean: of the period of a pendulum.
+inline double elliptic_K(double theta) {
+  double a = 1, b = std::cos(theta / 2);
+  while (std::abs(a - b) > 1e-15 * a) {
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return kPi / (2 * a);
+}
+
 /// Adds a part made at run time.
 inline Part& add(MultiBody& body, const std::string& name, const std::string& shape,
                  const std::vector<std::string>& chain, double density) {

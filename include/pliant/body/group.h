@@ -84,20 +84,14 @@ class Group {
   /// C_q x of the joints of the island.
   VecX<S> joint_rows(const Vector& x) const {
     VecX<S> rows = VecX<S>::Constant(island_->rows, S(0.0));
-    for (const int j : island_->joints) {
-      const JointModel& joint = model_->joints()[at(j)];
-      for (const JointSide& side : joint.sides) {
-        const int n = velocities(side.part), start = island_->first[at(side.place)];
-        const S* Cq = work_->joints.Cq.data() + side.offset;
-        if (n == 6 && joint.rows == 3) {
-          rows.template segment<3>(joint.island_row) +=
-              BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
-          continue;
-        }
-        for (int r = 0; r < joint.rows; ++r)
-          for (int i = 0; i < n; ++i) rows[joint.island_row + r] += Cq[r * n + i] * x[start + i];
+    for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
+      if (n == 6 && n_rows == 3) {
+        rows.template segment<3>(row) += BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
+        return;
       }
-    }
+      for (int r = 0; r < n_rows; ++r)
+        for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
+    });
     return rows;
   }
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
@@ -124,23 +118,27 @@ class Group {
   using BallSide = Eigen::Map<const Eigen::Matrix<S, 6, 3>>;
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  /// act(first row, rows, first velocity, velocities, C_q^T) for each side of each joint of the island.
+  template <class F>
+  void for_each_side(F&& act) const {
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_->joints()[at(j)];
+      for (const JointSide& side : joint.sides)
+        act(joint.island_row, joint.rows, island_->first[at(side.place)], velocities(side.part),
+            work_->joints.Cq.data() + side.offset);
+    }
+  }
   /// M^-1 C_q^T lambda.
   Vector moved_by(const VecX<S>& lambda) const {
     Vector x = Vector::Constant(size_, S(0.0));
-    for (const int j : island_->joints) {
-      const JointModel& joint = model_->joints()[at(j)];
-      for (const JointSide& side : joint.sides) {
-        const int n = velocities(side.part), start = island_->first[at(side.place)];
-        const S* Cq = work_->joints.Cq.data() + side.offset;
-        if (n == 6 && joint.rows == 3) {
-          x.template segment<6>(start) +=
-              BallSide(Cq).lazyProduct(lambda.template segment<3>(joint.island_row));
-          continue;
-        }
-        for (int r = 0; r < joint.rows; ++r)
-          for (int i = 0; i < n; ++i) x[start + i] += Cq[r * n + i] * lambda[joint.island_row + r];
+    for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
+      if (n == 6 && n_rows == 3) {
+        x.template segment<6>(start) += BallSide(Cq).lazyProduct(lambda.template segment<3>(row));
+        return;
       }
-    }
+      for (int r = 0; r < n_rows; ++r)
+        for (int i = 0; i < n; ++i) x[start + i] += Cq[r * n + i] * lambda[row + r];
+    });
     for (int i = 0; i < parts(); ++i) {
       VecMax<S> of_part = share(x, i);
       workspace(i).solve_mass(of_part);
