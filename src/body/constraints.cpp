@@ -215,11 +215,12 @@ class Holding {
         work_(work),
         joints_(work.joints),
         group_(model, work, island, false),
-        free_(group_.gather([&](int i) -> const VecMax<S>& { return group_.workspace(i).a_r; })),
-        x_(free_) {}
+        kept_(joints_.vectors[group_.number()]) {
+    group_.gather(kept_.before, [&](int i) -> const VecX<S>& { return group_.workspace(i).a_r; });
+  }
 
   const Group<S, Eigen::Dynamic>& group() const { return group_; }
-  const VecX<S>& x() const { return x_; }
+  const VecX<S>& x() const { return kept_.x; }
 
   /// bias + 2 alpha C_dot + beta^2 C: C_ddot is to be minus this, but for what the accelerations give.
   VecMax<S, kMaxJointRows> wanted(int j) const {
@@ -243,22 +244,23 @@ class Holding {
 
   /// x = free + what the joints add.
   void hold() {
-    x_ = free_;
-    lambda_ = VecX<S>::Constant(island_.rows, S(0.0));
-    const int refinements = joints_.W_c[number()].is_rough() ? 2 : 0;
+    VecX<S>& rows = kept_.rows;
+    kept_.x = kept_.before;
+    kept_.lambda.setConstant(island_.rows, S(0.0));
+    const int refinements = joints_.W_c[group_.number()].is_rough() ? 2 : 0;
     for (int pass = 0; pass <= refinements; ++pass) {
-      VecX<S> rows = group_.joint_rows(x_);
+      group_.joint_rows(kept_.x, rows);
       for (const int j : island_.joints)
         if (acts(joints_.modes[at(j)]))
           rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) += wanted(j);
-      lambda_ += group_.correct(rows, x_);  // Eq. (14), with what M gives taken out
+      kept_.lambda += group_.correct(rows, kept_.x);  // Eq. (14), with what M gives taken out
     }
   }
   /// The same with pushes on one-sided rows.
   template <class Lambda>
   void hold(const std::vector<OneSidedRow>& pushed, const Lambda& lambda) {
     for (std::size_t i = 0; i < pushed.size(); ++i)
-      free_ += group_.push(pushed[i]) * lambda[static_cast<Eigen::Index>(i)];
+      kept_.before += group_.push(pushed[i]) * lambda[static_cast<Eigen::Index>(i)];
     hold();
     for (std::size_t i = 0; i < pushed.size(); ++i) {
       const OneSidedRow& row = pushed[i];
@@ -266,27 +268,25 @@ class Holding {
         joints_.lambda[model_.joints()[at(island_.strings[at(row.k)])].row] =
             lambda[static_cast<Eigen::Index>(i)];
       else
-        x_[group_.first(row.part) + 6 + row.k] = S(0.0);  // to the last bit
+        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // to the last bit
     }
   }
 
   void finish() {
-    for (int i = 0; i < group_.parts(); ++i) work_.parts[at(group_.part(i))].a_r = group_.share(x_, i);
+    for (int i = 0; i < group_.parts(); ++i) work_.parts[at(group_.part(i))].a_r = group_.share(x(), i);
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
-      joints_.lambda.segment(joint.row, joint.rows) = lambda_.segment(joint.island_row, joint.rows);
+      joints_.lambda.segment(joint.row, joint.rows) = kept_.lambda.segment(joint.island_row, joint.rows);
     }
   }
 
  private:
-  std::size_t number() const { return static_cast<std::size_t>(&island_ - model_.islands().data()); }
-
   const Model& model_;
   const Island& island_;
   Workspace<S>& work_;
   ConstraintWorkspace<S>& joints_;
   Group<S, Eigen::Dynamic> group_;
-  VecX<S> free_, x_, lambda_;
+  GroupVectors<S, Eigen::Dynamic>& kept_;
 };
 
 }  // namespace
@@ -304,7 +304,7 @@ void solve_joints(const Model& model, const Island& island, std::vector<OneSided
   if (!limits.empty()) {
     OneSidedRows<Eigen::Dynamic> rows(holding.group());
     for (const OneSidedRow& row : limits) rows.add(row);
-    rows.meet(holding.x(), nullptr);
+    rows.meet(holding.x());
     std::vector<double> pushes;
     rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
       pushed.push_back(row);
@@ -363,7 +363,7 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!joint.driven) continue;
     S done(0.0);  // lambda C_q v, on the parts
     for (const JointSide& side : joint.sides) {
-      const VecMax<S>& v_r = work.parts[at(side.part)].v_r;
+      const VecX<S>& v_r = work.parts[at(side.part)].v_r;
       for (int r = 0; r < joint.rows; ++r)
         for (int i = 0; i < v_r.size(); ++i)
           done += lambda[r] * joints.Cq[side.offset + r * v_r.size() + i] * v_r[i];

@@ -47,7 +47,9 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
     w.v_r.tail(3 + m.n_s) = v.segment(m.v0 + 3, 3 + m.n_s);
   }
   if (n_ports == 0) return;
-  if (part.rigid()) {
+  if (w.rigid == &m && w.ports.size() == n_ports) {
+    // They are there, from the evaluation before.
+  } else if (m.n_s == 0) {
     w.ports.resize(n_ports);
     for (std::size_t k = 0; k < n_ports; ++k) {
       w.ports[k].p = m.rigid_ports[k].p.template cast<S>();
@@ -71,18 +73,21 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   }
 }
 
-// forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
+// mass: M and g_q, Eq. (11); of a rigid part M stays from evaluation to evaluation
 template <class S>
-void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w) {
+void masses(const PartModel& m, PartWorkspace<S>& w) {
+  const Vec3<S> omega = w.v_r.template segment<3>(3);
+  if constexpr (std::is_same_v<S, double>)
+    if (w.rigid == &m) return Part::rigid_force(omega, w.inertia, w.counters);
+  m.part->inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
+}
+
+// elasticity and damping of the global parameters of a part
+template <class S>
+void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
   const Part& part = *m.part;
   const int n = m.n_s;
-  w.f = w.inertia.g_q;
-  const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
   const MatX<S>& M = w.inertia.M;
-  // Gravity acts like an acceleration of the frame: f = M (g, 0, 0).
-  for (int i = 0; i < 6 + n; ++i)
-    for (int k = 0; k < 3; ++k) w.f[i] += M(i, k) * g_body[k];
-
   const bool damped = part.alpha() > 0 || part.beta() > 0;
   VecMax<S> stretch(n);
   for (int k = 0; k < n; ++k) {
@@ -101,12 +106,25 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
     const Parameter& p = part.parameters().moving(i);
     if (!p.rest.is_constant()) w.power[static_cast<int>(Work::actuation)] -= elastic * p.rest.at(t).d;
   }
-  if (part.drag() > 0) {
+}
+
+// forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
+template <class S>
+void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w) {
+  const int n = m.n_s;
+  w.f = w.inertia.g_q;
+  const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
+  const MatX<S>& M = w.inertia.M;
+  // Gravity acts like an acceleration of the frame: f = M (g, 0, 0).
+  for (int i = 0; i < 6 + n; ++i)
+    for (int k = 0; k < 3; ++k) w.f[i] += M(i, k) * g_body[k];
+  if (n > 0) elastic_forces<S>(m, t, w);
+  if (m.drag > 0) {
     for (int i = 0; i < 6 + n; ++i) {
       S momentum(0.0);
       for (int k = 0; k < 6 + n; ++k) momentum += M(i, k) * w.v_r[k];
-      w.f[i] -= momentum * part.drag();
-      w.power[static_cast<int>(Work::drag)] -= momentum * w.v_r[i] * part.drag();
+      w.f[i] -= momentum * m.drag;
+      w.power[static_cast<int>(Work::drag)] -= momentum * w.v_r[i] * m.drag;
     }
   }
 }
@@ -123,7 +141,7 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 }
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
-  w.rigid = m.part->rigid() ? &m : nullptr;
+  w.rigid = m.n_s == 0 ? &m : nullptr;
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
@@ -148,7 +166,7 @@ void press(const Model& model, int part, const State& modes, Workspace<double>& 
   const Group<double, kMaxVelocities> group(model, work, part);
   OneSidedRows<kMaxVelocities> rows(group);
   for_each_rest(m, modes.at_limit.data() + m.limit0, w, 0, [&](const OneSidedRow& row) { rows.add(row); });
-  w.a_r = rows.meet(w.a_r, nullptr);
+  w.a_r = rows.meet(w.a_r);
   rows.for_each_pushed([&](const OneSidedRow& row, double) { w.pressed.push_back(row.k); });
 }
 
@@ -156,7 +174,7 @@ void press(const Model& model, int part, const State& modes, Workspace<double>& 
 template <class S>
 void hold_pressed(const Model& model, int part, const std::vector<int>& pressed, Workspace<S>& work) {
   if (pressed.empty()) return;
-  VecMax<S>& a_r = work.parts[static_cast<std::size_t>(part)].a_r;
+  VecX<S>& a_r = work.parts[static_cast<std::size_t>(part)].a_r;
   const Group<S, kMaxVelocities> group(model, work, part);
   const int n = static_cast<int>(pressed.size());
   MatMax<S> W(n, n);
@@ -169,7 +187,7 @@ void hold_pressed(const Model& model, int part, const std::vector<int>& pressed,
     for (int j = 0; j < n; ++j) W(i, j) = responses[static_cast<std::size_t>(j)][6 + k];
   }
   SymmetricFactor<S> factor;
-  factor.compute(W, VecMax<double>::Zero(n));
+  factor.compute(W, VecX<double>::Zero(n));
   factor.solve(lambda);
   for (int i = 0; i < n; ++i) a_r += responses[static_cast<std::size_t>(i)] * lambda[i];
 }
@@ -203,7 +221,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     positions<S>(m, q, v, w);
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
-    m.part->inertia(w.q_s, w.q_s_dot, Vec3<S>(w.v_r.template segment<3>(3)), w.inertia, w.counters);
+    masses<S>(m, w);
     own_forces<S>(m, model.body().gravity, t, w);
   });
 
@@ -312,6 +330,7 @@ void Dynamics::size_joints(Workspace<S>& work) const {
   joints.W_c.resize(model.islands().size());
   joints.W_closed.resize(model.islands().size());
   joints.pushed.resize(model.islands().size());
+  joints.vectors.resize(model.islands().size());
 }
 
 // joints: rows, W_c and its factor, forces; each island apart
@@ -458,7 +477,7 @@ void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, con
     const PartModel& m = model_->parts()[static_cast<std::size_t>(i)];
     PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
     positions<double>(m, q, v, w);
-    m.part->inertia(w.q_s, w.q_s_dot, Vec3<double>(w.v_r.segment<3>(3)), w.inertia, w.counters);
+    masses<double>(m, w);
     take_factor(m, w);
   }
 }

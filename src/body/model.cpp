@@ -23,6 +23,7 @@ Model::Model(MultiBody& body) : body_(&body) {
     m.part = part.get();
     m.use = part->use();
     m.n_s = part->n_s();
+    m.drag = part->drag();
     m.q0 = part->fixed() ? -1 : n_q_;
     m.v0 = part->fixed() ? -1 : n_v_;
     m.limit0 = n_limits_;
@@ -33,7 +34,7 @@ Model::Model(MultiBody& body) : body_(&body) {
 
     // Below this a diagonal entry of M counts as no inertia: rounding noise of a body of this mass and size.
     const double mass = part->total_mass(), size = part->size();
-    m.inertia_floor = VecMax<double>::Zero(6 + m.n_s);
+    m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
     for (int k = 0; k < m.n_s; ++k) {
       const Parameter& p = part->parameters().moving(k);
       m.inertia_floor[6 + k] = 1e-24 * mass * (p.spec->quantity == Quantity::length ? 1.0 : size * size);

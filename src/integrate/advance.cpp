@@ -4,9 +4,9 @@
 
 namespace pliant {
 
-void advance_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h) {
-  q.segment<3>(m.q0) += h * v.segment<3>(m.v0);
-  const Vec3<double> half = 0.5 * h * v.segment<3>(m.v0 + 3);
+void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const VecX<double>>& v, double h) {
+  q.segment<3>(m.q0) += h * v.head<3>();
+  const Vec3<double> half = 0.5 * h * v.segment<3>(3);
   const double angle = half.norm();
   const math::SinCos<double> of_angle = math::sin_cos(angle);
   const Vec3<double> axis = sinc(angle, of_angle) * half;
@@ -15,18 +15,24 @@ void advance_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, do
   const Eigen::Quaterniond now =
       (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * turn).normalized();
   theta << now.w(), now.x(), now.y(), now.z();
-  q.segment(m.q0 + 7, m.n_s) += h * v.segment(m.v0 + 6, m.n_s);
+  q.segment(m.q0 + 7, m.n_s) += h * v.tail(m.n_s);
 }
 
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h) {
   for (const PartModel& m : model.parts())
-    if (m.q0 >= 0) advance_part(m, q, v, h);
+    if (m.q0 >= 0) advance_part(m, q, share_of(m, v), h);
 }
 
-void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecMax<double>& v_r,
-                   VecX<double>& v) {
-  v.segment<3>(m.v0) = w.R * v_r.head<3>();
-  v.segment(m.v0 + 3, 3 + m.n_s) = v_r.tail(3 + m.n_s);
+VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v) {
+  VecMax<double> v_r = v;
+  v_r.head<3>() = w.R.transpose() * v.head<3>();
+  return v_r;
+}
+
+VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r) {
+  VecMax<double> v = v_r;
+  v.head<3>() = w.R * v_r.head<3>();
+  return v;
 }
 
 void normalise_rotations(const Model& model, VecX<double>& q) {

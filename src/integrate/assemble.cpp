@@ -181,18 +181,19 @@ class Assembly {
     lay_metric(1 + widest * widest);
     work_.joints.modes = modes_.joints;
     factor_joints<double>(model_, island_, work_.parts, work_.joints);
-    VecX<double> x = group.gather([&](int p) { return relaxation(group.model(p), group.workspace(p)); });
-    VecX<double> rows = group.joint_rows(x);
+    VecX<double> x, rows;
+    group.gather(x, [&](int p) { return relaxation(group.model(p), group.workspace(p)); });
+    group.joint_rows(x, rows);
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
       if (modes_.joints[at(j)] != JointMode::off)
         rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
     }
-    const VecX<double> lambda = group.correct(rows, x);
+    const VecX<double>& lambda = group.correct(rows, x);
     if (lambda.size() > 0) penalty_ = std::max(penalty_, 2 * eps_ * lambda.lpNorm<Eigen::Infinity>());
     OneSidedRows<Eigen::Dynamic> one_sided(group);
-    return one_sided.meet_all(
-        x, [&](const OneSidedRow& row) { return bound(group, row); }, nullptr);
+    one_sided.meet_all(x, [&](const OneSidedRow& row) { return bound(group, row); });
+    return x;
   }
 
   /// Elastic energy and a price for every gap that is above all forces: it falls along every step that is
@@ -250,11 +251,9 @@ class Assembly {
   }
 
   void move(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x, double share) {
-    VecX<double> v = VecX<double>::Zero(state_.v.size());
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);
-      take_velocity(m, group.workspace(p), VecMax<double>(group.share(x, p)), v);
-      advance_part(m, state_.q, v, share);
+      advance_part(m, state_.q, world_velocity(group.workspace(p), group.share(x, p)), share);
       for (int k = 0; k < m.n_s; ++k) {
         double& q = state_.q[m.q0 + 7 + k];
         const Range range = m.part->parameters().moving(k).limits;

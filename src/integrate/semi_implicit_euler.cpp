@@ -15,7 +15,7 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   state.v += h * work.v_dot;
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
-  stop_ahead(dynamics, work, state, h, ahead_, counters);
+  stop_ahead(dynamics, work, state, h, q_end_, ahead_, counters);
   advance_coordinates(dynamics.model(), state.q, state.v, h);
   settle_on_limits(dynamics.model(), state);
   settle_joints(dynamics, state.time() + h, state, work, counters);

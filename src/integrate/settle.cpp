@@ -17,9 +17,10 @@ namespace {
 template <int Max>
 class Snapshot {
  public:
-  Snapshot(const Group<double, Max>& group, State& state) : group_(group) {
-    q_.resize(group.size() + group.parts());
-    v_.resize(group.size());
+  Snapshot(const Group<double, Max>& group, State& state, GroupVectors<double, Max>& vectors)
+      : group_(group), kept_(vectors) {
+    kept_.q.resize(group.size() + group.parts());
+    kept_.v.resize(group.size());
     exchange(state, [](auto&& kept, auto&& now) { kept = now; });
   }
   /// The state takes these, and they become what it had.
@@ -32,14 +33,12 @@ class Snapshot {
   void exchange(State& state, F&& act) {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
-      act(q_.segment(group_.first(i) + i, 7 + m.n_s), state.q.segment(m.q0, 7 + m.n_s));
-      act(v_.segment(group_.first(i), 6 + m.n_s), state.v.segment(m.v0, 6 + m.n_s));
+      act(kept_.q.segment(group_.first(i) + i, 7 + m.n_s), state.q.segment(m.q0, 7 + m.n_s));
+      act(kept_.v.segment(group_.first(i), 6 + m.n_s), state.v.segment(m.v0, 6 + m.n_s));
     }
   }
-  static constexpr int kMaxQ = Max == Eigen::Dynamic ? Eigen::Dynamic : Max + 1;
   const Group<double, Max>& group_;
-  VecMax<double, kMaxQ> q_;
-  VecMax<double, Max> v_;
+  GroupVectors<double, Max>& kept_;
 };
 
 /// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
@@ -56,7 +55,7 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
     momentum.head<3>() = to.R.transpose() * P;
     momentum.segment<3>(3) = to.R.transpose() * L;
     to.solve_mass(momentum);
-    take_velocity(m, to, momentum, state.v);
+    share_of(m, state.v) = world_velocity(to, momentum);
   }
 }
 
@@ -72,8 +71,10 @@ const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
 template <int Max>
 void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& group, bool closed,
                   State& state, Workspace<double>& work, StepCounters& counters) {
-  Snapshot<Max> before(group, state);
-  Settling<Max> settling(dynamics, t, group, state, work);
+  GroupVectors<double, Max> own;
+  GroupVectors<double, Max>& kept = kept_vectors(group, work, own);
+  Snapshot<Max> before(group, state, kept);
+  Settling<Max> settling(dynamics, t, group, state, work, kept);
   const bool pushed = settling.coordinates();
   // The impulses that close a joint do work; those that put right the error of a step are an error too, and
   // show in the balance.

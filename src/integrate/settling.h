@@ -51,12 +51,14 @@ inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
 
-inline VecMax<double> body_velocity(const PartModel& m, const PartWorkspace<double>& w,
-                                    const VecX<double>& v) {
-  VecMax<double> v_r(6 + m.n_s);
-  v_r.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
-  v_r.tail(3 + m.n_s) = v.segment(m.v0 + 3, 3 + m.n_s);
-  return v_r;
+/// The vectors of an island, or a part's own.
+template <int Max>
+GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work,
+                                        GroupVectors<double, Max>& own) {
+  if constexpr (Max == Eigen::Dynamic)
+    return work.joints.vectors[group.number()];
+  else
+    return own;
 }
 
 /// Change of the kinetic energy from velocities x to y of a group.
@@ -73,14 +75,14 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
 
 /// act(group) for every part alone that has parameters, and every island.
 template <class F>
-void for_each_alone(const Model& model, const Workspace<double>& work, F&& act) {
+void for_each_alone(const Model& model, Workspace<double>& work, F&& act) {
   for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
     const PartModel& m = model.parts()[at(i)];
     if (m.q0 >= 0 && m.island < 0 && m.n_s > 0) act(Group<double, kMaxVelocities>(model, work, i));
   }
 }
 template <class F>
-void for_each_island(const Model& model, const Workspace<double>& work, F&& act) {
+void for_each_island(const Model& model, Workspace<double>& work, F&& act) {
   for (const Island& island : model.islands()) act(Group<double, Eigen::Dynamic>(model, work, island, true));
 }
 
@@ -90,31 +92,30 @@ class Settling {
  public:
   using Vector = VecMax<double, Max>;
 
+  /// vectors: any.
   Settling(const Dynamics& dynamics, double t, const Group<double, Max>& group, State& state,
-           Workspace<double>& work)
+           Workspace<double>& work, GroupVectors<double, Max>& vectors)
       : dynamics_(dynamics),
         model_(dynamics.model()),
         t_(t),
         group_(group),
         island_(group.island()),
         state_(state),
-        work_(work) {}
+        work_(work),
+        kept_(vectors) {}
 
   /// Coordinates onto C = 0 and within the limits. Returns whether a limit or a string that was loose pushed.
   bool coordinates() {
     bool pushed = false;
     for (int i = 0; i < kMostIterations; ++i) {
-      Vector x = Vector::Zero(group_.size());
+      Vector& x = kept_.x;
+      x.setZero(group_.size());
       const bool open = correct_joints(Rows::coordinates, i, x);
       OneSidedRows<Max> rows(group_);
-      x = rows.meet_all(
-          x, [&](const OneSidedRow& row) { return distance(row); }, nullptr);
+      rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
       if (!open && rows.empty()) return pushed;
-      if (move_.size() == 0) move_.resize(state_.v.size());
-      for (int p = 0; p < group_.parts(); ++p) {
-        take_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), move_);
-        advance_part(group_.model(p), state_.q, move_, 1);
-      }
+      for (int p = 0; p < group_.parts(); ++p)
+        advance_part(group_.model(p), state_.q, world_velocity(group_.workspace(p), group_.share(x, p)), 1);
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
           pushed = pushed || !stays(row);
@@ -145,19 +146,20 @@ class Settling {
       }
     }
     for (int i = 0; i < kMostIterations; ++i) {
-      const Vector before =
-          group_.gather([&](int p) { return body_velocity(group_.model(p), group_.workspace(p), state_.v); });
-      Vector x = before;
+      Vector &before = kept_.before, &joined = kept_.joined, &x = kept_.x;
+      group_.gather(before, [&](int p) {
+        return body_velocity(group_.workspace(p), share_of(group_.model(p), std::as_const(state_.v)));
+      });
+      x = before;
       const bool open = correct_joints(Rows::velocities, i, x);
-      const Vector joined = x;
+      joined = x;
       OneSidedRows<Max> rows(group_);
-      x = rows.meet_all(
-          x, [&](const OneSidedRow& row) { return slowest(row, before); }, nullptr);
+      rows.meet_all(x, [&](const OneSidedRow& row) { return slowest(row, before); });
       if (!open && rows.empty()) break;
       joints += kinetic_change(group_, before, joined);
       one_sided += kinetic_change(group_, joined, x);
       for (int p = 0; p < group_.parts(); ++p)
-        take_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
+        share_of(group_.model(p), state_.v) = world_velocity(group_.workspace(p), group_.share(x, p));
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) { impulses += stays(row) ? 0 : 1; });
       if (island_ == nullptr) break;
@@ -190,7 +192,8 @@ class Settling {
     if (!dynamics_.hold().projected) return false;
     const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
     double now = 0;
-    VecX<double> error = VecX<double>::Zero(island_->rows);
+    VecX<double>& error = kept_.rows;
+    error.setZero(island_->rows);
     for (const int j : island_->joints) {
       const JointModel& joint = model_.joints()[at(j)];
       if (state_.joints[at(j)] != JointMode::closed) continue;
@@ -255,7 +258,9 @@ class Settling {
         group_.share(x, side.place) += force;
       }
       Vector unused = x;
-      const VecX<double> share = group_.correct(group_.joint_rows(x), unused);
+      VecX<double> rows;
+      group_.joint_rows(x, rows);
+      const VecX<double>& share = group_.correct(rows, unused);
       const auto of_other = share.segment(other.island_row, other.rows);
       if (of_other.norm() > kDepends * share.norm()) return true;
     }
@@ -316,7 +321,7 @@ class Settling {
   const Island* island_;
   State& state_;
   Workspace<double>& work_;
-  VecX<double> move_;
+  GroupVectors<double, Max>& kept_;
   double before_ = 0;
   bool fresh_ = false;
 };

@@ -18,8 +18,9 @@ namespace {
 /// closed joints. False when they are closed there.
 template <int Max>
 bool close_ahead(const Model& model, const Island& island, const Group<double, Max>& group,
-                 const State& state, const Workspace<double>& ahead, double h, VecMax<double, Max>& x) {
-  VecX<double> error = VecX<double>::Zero(island.rows);
+                 const State& state, const Workspace<double>& ahead, double h, VecX<double>& error,
+                 VecMax<double, Max>& x) {
+  error.setZero(island.rows);
   bool open = false;
   for (const int j : island.joints) {
     const JointModel& joint = model.joints()[at(j)];
@@ -60,22 +61,22 @@ void note_limits(const Group<double, Max>& group, double h, State& state) {
 
 }  // namespace
 
-void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& state, double h,
-                Workspace<double>& ahead, StepCounters& counters) {
+void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state, double h,
+                VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters) {
   const Model& model = dynamics.model();
-  VecX<double> q_end(
-      model.islands().empty() ? 0 : state.q.size());  // at the end of the step, of parts with joints
+  if (!model.islands().empty()) q_end.resize(state.q.size());
   auto act = [&](const auto& group) {
-    using Rows = OneSidedRows<std::decay_t<decltype(group)>::kMax>;
+    constexpr int kMax = std::decay_t<decltype(group)>::kMax;
     const Island* island = group.island();
     if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
-    auto x = group.gather([&](int i) { return body_velocity(group.model(i), group.workspace(i), state.v); });
-    auto take = [&] {
-      for (int i = 0; i < group.parts(); ++i)
-        take_velocity(group.model(i), group.workspace(i), group.share(x, i), state.v);
-    };
+    GroupVectors<double, kMax> own;
+    GroupVectors<double, kMax>& kept = kept_vectors(group, work, own);
+    auto &x = kept.x, &now = kept.before, &joined = kept.joined;
+    group.gather(x, [&](int i) {
+      return body_velocity(group.workspace(i), share_of(group.model(i), std::as_const(state.v)));
+    });
     // The velocity that just reaches a limit, or the length of a string, at the end of the step.
-    auto now = x;
+    now = x;
     auto bound = [&](const OneSidedRow& row) {
       if (row.part < 0) {
         const int j = island->strings[at(row.k)];
@@ -99,18 +100,19 @@ void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& 
         for (int i = 0; i < group.parts(); ++i) {
           const PartModel& m = group.model(i);
           q_end.segment(m.q0, 7 + m.n_s) = state.q.segment(m.q0, 7 + m.n_s);
-          advance_part(m, q_end, state.v, h);
+          advance_part(m, q_end, share_of(m, state.v), h);
         }
         dynamics.evaluate_joints(state.time() + h, q_end, state.v, state, *island, ahead);
         now = x;
-        open = dynamics.hold().projected && close_ahead(model, *island, group, state, ahead, h, x);
+        open = dynamics.hold().projected && close_ahead(model, *island, group, state, ahead, h, kept.rows, x);
       }
-      Rows rows(group);
-      const auto joined = x;
-      x = rows.meet_all(x, bound, nullptr);
+      OneSidedRows<kMax> rows(group);
+      joined = x;
+      rows.meet_all(x, bound);
       if (!rows.empty()) state.work[static_cast<int>(Work::limits)] += kinetic_change(group, joined, x);
       if (!open && rows.empty()) break;
-      take();
+      for (int i = 0; i < group.parts(); ++i)
+        share_of(group.model(i), state.v) = world_velocity(group.workspace(i), group.share(x, i));
       if (!rows.empty())
         counters.limit_impulses += rows.for_each_pushed([&](const OneSidedRow& row, double) {
           if (row.part >= 0)

@@ -192,12 +192,9 @@ void sum_over(const Part& part, const MassPoints& points, const VecMax<P>& q_s, 
   for (int c = 0; c < n; ++c) out.g_q[6 + c] = -total(sums.Jb[static_cast<std::size_t>(c)]);  // Eq. (11)
 }
 
-/// A rigid part: everything but the gyroscopic force is constant.
+/// The gyroscopic force of a rigid part; everything else is constant.
 template <class P>
-void rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, Inertia<P>& out, Counters& counters) {
-  out.mass = rest.mass;
-  out.M = rest.M.cast<P>();
-  out.moment = rest.moment.cast<P>();
+void gyroscopic_force(const Vec3<P>& omega, Inertia<P>& out, Counters& counters) {
   out.g_q.resize(6);
   if (all_zero(omega)) {
     out.g_q.setConstant(P(0.0));
@@ -208,13 +205,21 @@ void rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, Inertia<P>
   Vec3<P> L;
   for (int i = 0; i < 3; ++i) {
     L[i] = P(0.0);
-    for (int j = 0; j < 3; ++j) L[i] += omega[j] * rest.M(3 + i, 3 + j);
+    for (int j = 0; j < 3; ++j) L[i] += omega[j] * out.M(3 + i, 3 + j);
   }
   const Vec3<P> gyroscopic = omega.cross(L);
   for (int r = 0; r < 3; ++r) {
     out.g_q[r] = -centripetal[r];
     out.g_q[3 + r] = -gyroscopic[r];
   }
+}
+
+template <class P>
+void rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, Inertia<P>& out, Counters& counters) {
+  out.mass = rest.mass;
+  out.M = rest.M.cast<P>();
+  out.moment = rest.moment.cast<P>();
+  gyroscopic_force(omega, out, counters);
 }
 
 template <class P>
@@ -273,6 +278,9 @@ void Part::inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, con
     rigid_inertia<double>(rest_inertia_, omega, out, counters);
   else
     sum_over<double>(*this, mass_points_, q_s, q_s_dot, omega, out, counters);
+}
+void Part::rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters) {
+  gyroscopic_force<double>(omega, out, counters);
 }
 void Part::inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
                    Inertia<Dual<1>>& out, Counters& counters) const {

@@ -54,6 +54,18 @@ class JointFactor {
   const AugmentedFactor* values_ = nullptr;
 };
 
+/// Vectors of parts that act on each other at once, see group.h. Those of islands are kept, so that a step
+/// takes nothing from the heap.
+template <class S, int Max>
+struct GroupVectors {
+  VecMax<S, Max> before, joined, x;  ///< accelerations or velocities: without joints, with them, with all
+  VecX<S> rows, lambda;              ///< of the joints
+  VecX<S> correction, change;        ///< of lambda and of x, by Group::correct
+  /// Coordinates and velocities of a state.
+  VecMax<S, Max == Eigen::Dynamic ? Eigen::Dynamic : Max + 1> q;
+  VecMax<S, Max> v;
+};
+
 /// What is recomputed at each evaluation. The rows of all joints stand in the order of the joints.
 template <class S>
 struct ConstraintWorkspace {
@@ -68,7 +80,8 @@ struct ConstraintWorkspace {
   /// The same of the closed joints alone, where there are others that close: impulses keep the closed ones
   /// and may open the others.
   std::vector<JointFactor<S>> W_closed;
-  std::vector<std::vector<OneSidedRow>> pushed;  ///< of each island
+  std::vector<std::vector<OneSidedRow>> pushed;          ///< of each island
+  std::vector<GroupVectors<S, Eigen::Dynamic>> vectors;  ///< of each island
 };
 
 /// Rows of the joints: C, C_dot, bias, C_q.

@@ -11,30 +11,32 @@
 
 namespace pliant {
 
-/// What is recomputed at each evaluation, in the order of the stages.
+/// What is recomputed at each evaluation, in the order of the stages. A workspace is for one model: what is
+/// constant stays in it.
 template <class S>
 struct PartWorkspace {
   // positions
   Vec3<S> c;
   Mat3<S> R;
-  VecMax<S> q_s, q_s_dot, v_r;              ///< v_r = (R^T c_dot, omega, q_s_dot)
+  VecX<S> q_s, q_s_dot, v_r;                ///< v_r = (R^T c_dot, omega, q_s_dot)
   std::vector<PointJet<S>> ports;           ///< body frame
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< world
   // mass
   Inertia<S> inertia;  ///< Eq. (11)
   // forces, body frame, on v_r
-  VecMax<S> f;
+  VecX<S> f;
   Vec<S, kWorks> power;
   std::vector<Vec3<S>> port_force;  ///< world
   // limits and accelerations
   SymmetricFactor<S> factor;         ///< of M
   const PartModel* rigid = nullptr;  ///< instead of factor: a part whose M^-1 is constant
-  VecMax<S> a_r;                     ///< (R^T c_ddot, omega_dot, q_s_ddot)
+  VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot)
   std::vector<int> pressed;          ///< dynamic parameters that their limit holds back
   Counters counters;
 
   /// x = M^-1 x.
-  void solve_mass(VecMax<S>& x) const {
+  template <class Vector>
+  void solve_mass(Vector&& x) const {
     if constexpr (std::is_same_v<S, double>)
       if (rigid != nullptr) {
         x = (rigid->rigid_inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();

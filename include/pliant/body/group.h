@@ -17,10 +17,10 @@ class Group {
   static constexpr int kMax = Max;
 
   /// Of a part alone.
-  Group(const Model& model, const Workspace<S>& work, int part)
+  Group(const Model& model, Workspace<S>& work, int part)
       : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
   /// Of an island; which of its joints hold against pushes and corrections: all that act, or the closed ones.
-  Group(const Model& model, const Workspace<S>& work, const Island& island, bool closed_only)
+  Group(const Model& model, Workspace<S>& work, const Island& island, bool closed_only)
       : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
     closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
                      return work.joints.modes[at(j)] == JointMode::closing;
@@ -35,13 +35,14 @@ class Group {
   const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
   const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
   const Island* island() const { return island_; }
+  /// The number of its island.
+  std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
-  /// x of what `of` gives for each part's workspace.
+  /// x of what `of` gives for each of its parts.
   template <class F>
-  Vector gather(F&& of) const {
-    Vector x(size_);
+  void gather(Vector& x, F&& of) const {
+    x.resize(size_);
     for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = of(i);
-    return x;
   }
   auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
   auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
@@ -61,10 +62,9 @@ class Group {
   Vector push(const OneSidedRow& row) const {
     Vector x = Vector::Constant(size_, S(0.0));
     if (row.part >= 0) {
-      VecMax<S> force = VecMax<S>::Constant(velocities(part(row.part)), S(0.0));
+      auto force = share(x, row.part);
       force[6 + row.k] = S(row.sign);
       workspace(row.part).solve_mass(force);
-      share(x, row.part) = force;
       return x;
     }
     for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
@@ -77,13 +77,17 @@ class Group {
   /// The same while the joints hold.
   Vector response(const OneSidedRow& row) const {
     Vector x = push(row);
-    if (island_ != nullptr) correct(joint_rows(x), x);
+    if (island_ == nullptr) return x;
+    VecX<S> rows;
+    joint_rows(x, rows);
+    correct(rows, x);
     return x;
   }
 
-  /// C_q x of the joints of the island.
-  VecX<S> joint_rows(const Vector& x) const {
-    VecX<S> rows = VecX<S>::Constant(island_->rows, S(0.0));
+  /// rows = C_q x of the joints of the island.
+  template <class V>
+  void joint_rows(const V& x, VecX<S>& rows) const {
+    rows.setConstant(island_->rows, S(0.0));
     for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
       if (n == 6 && n_rows == 3) {
         rows.template segment<3>(row) += BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
@@ -92,22 +96,25 @@ class Group {
       for (int r = 0; r < n_rows; ++r)
         for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
     });
-    return rows;
   }
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
-  /// -rows. Returns lambda. When W_c is that of an earlier configuration, lambda is near to it, and the
-  /// forces still pull with C_q^T as it is now: two ends of a joint are pushed by opposite forces.
-  VecX<S> correct(const VecX<S>& rows, Vector& x) const {
-    const auto& factors = closed_only_ ? work_->joints.W_closed : work_->joints.W_c;
-    const JointFactor<S>& factor = factors[at(static_cast<int>(island_ - model_->islands().data()))];
-    VecX<S> lambda = -rows;
+  /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
+  /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by
+  /// opposite forces.
+  const VecX<S>& correct(const VecX<S>& rows, Vector& x) const {
+    const JointFactor<S>& factor = (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
+    GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
+    VecX<S>&lambda = kept.correction, &change = kept.change;
+    lambda = -rows;
     factor.solve(lambda);
-    Vector change = moved_by(lambda);
+    moved_by(lambda, change);
     if (!factor.exact()) {
-      VecX<S> more = -(rows + joint_rows(change));
+      VecX<S> more;
+      joint_rows(change, more);
+      more = -(rows + more);
       factor.solve(more);
       lambda += more;
-      change += moved_by(more);
+      moved_by(lambda, change);
     }
     x += change;
     return lambda;
@@ -128,9 +135,9 @@ class Group {
             work_->joints.Cq.data() + side.offset);
     }
   }
-  /// M^-1 C_q^T lambda.
-  Vector moved_by(const VecX<S>& lambda) const {
-    Vector x = Vector::Constant(size_, S(0.0));
+  /// x = M^-1 C_q^T lambda.
+  void moved_by(const VecX<S>& lambda, VecX<S>& x) const {
+    x.setConstant(size_, S(0.0));
     for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
       if (n == 6 && n_rows == 3) {
         x.template segment<6>(start) += BallSide(Cq).lazyProduct(lambda.template segment<3>(row));
@@ -139,17 +146,12 @@ class Group {
       for (int r = 0; r < n_rows; ++r)
         for (int i = 0; i < n; ++i) x[start + i] += Cq[r * n + i] * lambda[row + r];
     });
-    for (int i = 0; i < parts(); ++i) {
-      VecMax<S> of_part = share(x, i);
-      workspace(i).solve_mass(of_part);
-      share(x, i) = of_part;
-    }
-    return x;
+    for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));
   }
   int velocities(int part) const { return 6 + model_->parts()[at(part)].n_s; }
 
   const Model* model_;
-  const Workspace<S>* work_;
+  Workspace<S>* work_;
   const Island* island_ = nullptr;
   int alone_ = -1;
   bool closed_only_ = false;

@@ -19,9 +19,10 @@ struct PartModel {
   int q0, v0;  ///< first entries in q and v; -1 for a fixed part
   int n_s;
   int limit0;                                 ///< first entry in State::at_limit
+  double drag;                                ///< nu, 1/s
   std::vector<Material<double>> ports;        ///< material points that forces act on
   std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
-  VecMax<double> inertia_floor;               ///< see SymmetricFactor
+  VecX<double> inertia_floor;                 ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
   int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone

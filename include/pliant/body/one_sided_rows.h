@@ -52,9 +52,8 @@ class OneSidedRows {
     return n_ > before;
   }
 
-  /// x with the pushes of the rows; on a velocity they do the work sum lambda (value before + value after) /
-  /// 2.
-  Vector meet(const Vector& x, double* work) {
+  /// x with the pushes of the rows.
+  Vector meet(const Vector& x) {
     const auto n = static_cast<Eigen::Index>(n_);
     MatMax<double, kMaxRows> W(n, n);
     VecMax<double, kMaxRows> b(n);
@@ -72,18 +71,16 @@ class OneSidedRows {
       const OneSidedRow& row = rows_[i];
       if (!pushed(i)) continue;
       if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // to the last bit
-      if (work != nullptr)
-        *work +=
-            lambda_[static_cast<Eigen::Index>(i)] * 0.5 * (group_.value(row, x) + group_.value(row, after));
     }
     return after;
   }
-  /// The same with every row of bound(row) that is passed, if only by what the others push.
+  /// Takes x to where every row of bound(row) is met that it passes, if only by what the others push.
   template <class Bound>
-  Vector meet_all(const Vector& x, Bound&& bound, double* work) {
-    Vector now = x;
-    while (add_unmet(now, bound)) now = meet(x, nullptr);
-    return empty() ? now : meet(x, work);
+  void meet_all(Vector& x, Bound&& bound) {
+    if (!add_unmet(x, bound)) return;
+    Vector now = meet(x);
+    while (add_unmet(now, bound)) now = meet(x);
+    x = now;
   }
 
   /// act(row, lambda) for each row that the last meet() pushed; returns their number.

@@ -8,12 +8,20 @@ namespace pliant {
 /// q <- q (+) h v: c and q_s add, theta <- theta o exp(h omega / 2).
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
-/// The same of one part.
-void advance_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h);
+/// The same of one part, with its own velocities (c_dot, omega, q_s_dot).
+void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const VecX<double>>& v, double h);
 
-/// Writes the velocities v_r = (R^T c_dot, omega, q_s_dot) of a part into v.
-void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecMax<double>& v_r,
-                   VecX<double>& v);
+/// The share of a part in the velocities v of all.
+inline auto share_of(const PartModel& m, VecX<double>& v) {
+  return v.segment(m.v0, 6 + m.n_s);
+}
+inline auto share_of(const PartModel& m, const VecX<double>& v) {
+  return v.segment(m.v0, 6 + m.n_s);
+}
+
+/// (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot), and back; work: of its frame.
+VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v);
+VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
 /// Brings every quaternion back to unit length.
 void normalise_rotations(const Model& model, VecX<double>& q);

@@ -14,7 +14,9 @@ class SemiImplicitEuler final : public Integrator {
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
-  Workspace<double> ahead_;  // kept between steps: no heap in a step
+  // Coordinates at the end of a step and their joints, kept between steps: no heap in a step.
+  VecX<double> q_end_;
+  Workspace<double> ahead_;
 };
 
 }  // namespace pliant

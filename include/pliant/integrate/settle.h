@@ -18,10 +18,10 @@ void take_hold(const Dynamics& dynamics, double t, const Island& island, State& 
                Workspace<double>& work, StepCounters& counters);
 
 /// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
-/// within its length and every closed joint closed at the end of the step. ahead: any, kept from step to
-/// step.
-void stop_ahead(const Dynamics& dynamics, const Workspace<double>& work, State& state, double h,
-                Workspace<double>& ahead, StepCounters& counters);
+/// within its length and every closed joint closed at the end of the step. work: of the evaluation at the
+/// start; q_end, ahead: any, kept from step to step.
+void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state, double h,
+                VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters);
 
 /// After the coordinates moved: parameters that came to a limit are on it to the last bit.
 void settle_on_limits(const Model& model, State& state);

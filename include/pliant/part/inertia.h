@@ -11,8 +11,9 @@ namespace pliant {
 
 template <class S>
 struct Inertia {
-  MatX<S> M;        ///< (6 + n_s) x (6 + n_s); on the heap, so that the parts of a chain lie close together
-  VecMax<S> g_q;    ///< 6 + n_s
+  // On the heap, so that the parts of a chain lie close together.
+  MatX<S> M;        ///< (6 + n_s) x (6 + n_s)
+  VecX<S> g_q;      ///< 6 + n_s
   Vec3<S> moment;   ///< sum m p: mass times the centre of mass in the body frame
   double mass = 0;  ///< kg
 };
@@ -20,10 +21,10 @@ struct Inertia {
 /// A material point of a part in its body frame, as forces, joints and tracks take it.
 template <class S>
 struct PointJet {
-  Vec3<S> p;                                                ///< position, m
-  Vec3<S> p1;                                               ///< J qs_dot, m/s
-  Vec3<S> p2;                                               ///< Jdot qs_dot, m/s^2
-  Eigen::Matrix<S, 3, Eigen::Dynamic, 0, 3, kMaxGlobal> J;  ///< dp/dq_s
+  Vec3<S> p;                              ///< position, m
+  Vec3<S> p1;                             ///< J qs_dot, m/s
+  Vec3<S> p2;                             ///< Jdot qs_dot, m/s^2
+  Eigen::Matrix<S, 3, Eigen::Dynamic> J;  ///< dp/dq_s
 };
 
 }  // namespace pliant

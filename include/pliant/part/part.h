@@ -102,7 +102,7 @@ class Part {
   bool prepared() const { return prepared_; }
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
-  const MatMax<double, kMaxGlobal>& K_s() const { return K_s_; }
+  const MatX<double>& K_s() const { return K_s_; }
   double total_mass() const { return rest_inertia_.mass; }
   /// Inertia at rest; of a rigid part for ever.
   const Inertia<double>& rest_inertia() const { return rest_inertia_; }
@@ -116,6 +116,8 @@ class Part {
                Inertia<double>& out, Counters& counters) const;
   void inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
                Inertia<Dual<1>>& out, Counters& counters) const;
+  /// Of a rigid part g_q alone; the rest of out is as its inertia() left it.
+  static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
   /// Material points: position, J, rates, in the body frame.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
               const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
@@ -181,7 +183,7 @@ class Part {
   Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
 
   MassPoints mass_points_;
-  MatMax<double, kMaxGlobal> K_s_;
+  MatX<double> K_s_;
   Inertia<double> rest_inertia_;
   double size_ = 0;
 };

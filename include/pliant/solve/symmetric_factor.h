@@ -18,25 +18,26 @@ class SymmetricFactor {
 
   /// Factors A. floor_i: a diagonal entry at or below it has no inertia in this model's units.
   template <class Matrix>
-  void compute(const Matrix& A, const VecMax<double>& floor) {
+  void compute(const Matrix& A, const VecX<double>& floor) {
     n_ = static_cast<int>(A.rows());
     held_.reset();
     L_.resize(n_, n_);
+    D_.resize(n_);
     for (int j = 0; j < n_; ++j) {
       S d = A(j, j);
-      for (int k = 0; k < j; ++k) d -= L_(j, k) * L_(j, k) * D_[static_cast<std::size_t>(k)];
+      for (int k = 0; k < j; ++k) d -= L_(j, k) * L_(j, k) * D_[k];
       const double diagonal = plain(A(j, j));
       if (!(diagonal > floor[j]) || !(plain(d) > kVanished * diagonal)) {
         if (diagonal == diagonal)
           held_.set(static_cast<std::size_t>(j));  // not a number: leave it to the finite check
       }
-      D_[static_cast<std::size_t>(j)] = d;
+      D_[j] = d;
       const bool gone = held_.test(static_cast<std::size_t>(j));
-      if (gone) D_[static_cast<std::size_t>(j)] = S(1.0);
+      if (gone) D_[j] = S(1.0);
       for (int i = j + 1; i < n_; ++i) {
         S sum = A(i, j);
-        for (int k = 0; k < j; ++k) sum -= L_(i, k) * L_(j, k) * D_[static_cast<std::size_t>(k)];
-        L_(i, j) = gone ? S(0.0) : S(sum / D_[static_cast<std::size_t>(j)]);
+        for (int k = 0; k < j; ++k) sum -= L_(i, k) * L_(j, k) * D_[k];
+        L_(i, j) = gone ? S(0.0) : S(sum / D_[j]);
       }
       if (gone)
         for (int k = 0; k < j; ++k) L_(j, k) = S(0.0);
@@ -44,12 +45,13 @@ class SymmetricFactor {
   }
 
   /// x = A^-1 x, with zeros for held coordinates.
-  void solve(VecMax<S>& x) const {
+  template <class Vector>
+  void solve(Vector&& x) const {
     for (int i = 0; i < n_; ++i) {
       if (held_.test(static_cast<std::size_t>(i))) x[i] = S(0.0);
       for (int k = 0; k < i; ++k) x[i] -= L_(i, k) * x[k];
     }
-    for (int i = 0; i < n_; ++i) x[i] = x[i] / D_[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n_; ++i) x[i] = x[i] / D_[i];
     for (int i = n_ - 1; i >= 0; --i)
       for (int k = i + 1; k < n_; ++k) x[i] -= L_(k, i) * x[k];
   }
@@ -59,8 +61,9 @@ class SymmetricFactor {
 
  private:
   int n_ = 0;
-  MatX<S> L_;  // on the heap, so that the parts of a chain lie close together
-  std::array<S, kMaxVelocities> D_;
+  // On the heap, so that the parts of a chain lie close together.
+  MatX<S> L_;
+  VecX<S> D_;
   std::bitset<kMaxVelocities> held_;
 };
 
