@@ -11,6 +11,8 @@
 
 #include <pliant/integrate/simulation.h>
 
+#include "fastest_sway.h"
+
 namespace pliant {
 
 namespace {
@@ -157,6 +159,22 @@ double largest_stable_step(const Simulation& simulation) {
   };
 
   double smallest = std::numeric_limits<double>::infinity();
+  /// x_ddot = -stiffness x - damping x_dot.
+  auto one = [&](double stiffness, double damping) {
+    const auto number = [](double x) { return MatX<double>::Constant(1, 1, x); };
+    return stable_step_of(simulation.integrator(), {number(1), number(stiffness), number(damping)});
+  };
+  smallest = std::min(smallest, one(std::pow(fastest_sway(simulation.dynamics(), state, work), 2), 0));
+  const Dynamics::Hold& hold = simulation.dynamics().hold();
+  const Stabilization& rule = model.body().stabilization;
+  const bool by_gains = !rule.follows_step(hold.step_consistent) &&
+                        std::any_of(state.joints.begin(), state.joints.end(), [&](JointMode mode) {
+                          return mode == JointMode::closing || (mode == JointMode::closed && !hold.projected);
+                        });
+  if (by_gains) {
+    const Gains gains = rule.gains(state.h, hold.step_consistent);
+    smallest = std::min(smallest, one(gains.beta * gains.beta, 2 * gains.alpha));
+  }
   for (std::size_t i = 0; i < n; ++i) {
     const PartModel& m = model.parts()[i];
     if (m.q0 < 0) continue;

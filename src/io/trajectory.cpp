@@ -21,6 +21,11 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
   numbers.insert(numbers.end(), {x[0], x[1], x[2]});
 }
 
+// Joints that hold more than one point of a side hold its turning too.
+bool has_torque(const JointModel& joint) {
+  return joint.joint->n_first() > 1;
+}
+
 // A cell of a CSV file: in quotes where it has to be.
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -65,6 +70,8 @@ std::vector<Column> TrajectoryTable::columns() const {
     if (!parts_shown_) break;
     const std::string name = "joint." + joint.joint->name();
     add_axes(columns, name + ".force", "N", "on its first side, world");
+    if (has_torque(joint))
+      add_axes(columns, name + ".torque", "N m", "on its first side about the joint, world");
     columns.push_back({name + ".gap", "m", "how far it is open"});
   }
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
@@ -99,7 +106,9 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
     add_vector(numbers,
                model.world_point(state, model.body().index(*track.point.part), track.point.material));
   for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
-    add_vector(numbers, simulation_->dynamics().joint_force(state.time(), j, work_));
+    const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work_);
+    add_vector(numbers, wrench.force);
+    if (has_torque(model.joints()[static_cast<std::size_t>(j)])) add_vector(numbers, wrench.torque);
     numbers.push_back(model.gap(state, j));
   }
   numbers.insert(numbers.end(),

@@ -57,6 +57,34 @@ TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about t
   CHECK(std::abs((simulation.model().orientation(simulation.state(), 0) * pin_body - pin).norm()) <= 1e-12);
 }
 
+TEST_CASE("the force and the torque of a hinge are those of the motion, with no torque about its pin",
+          "[joints]") {
+  const Vec3<double> pin = Vec3<double>(0.2, 1, 0.5).normalized();
+  MultiBody body;
+  const Eigen::Quaterniond R = turn({1, 0.4, -0.3}, 0.9);
+  Part& door = ellipsoid(body, "door", {0.07, -0.02, 0.03}, R);
+  door.prepare();
+  const Vec3<double> at = R.conjugate() * -door.c0();
+  body.hinge("hinge", point(door, door.label(at, door.parameters().rest())), world(0, 0, 0), pin);
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.3, 300);
+  const State& state = simulation.state();
+  Workspace<double> work;
+  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
+  const Wrench wrench = simulation.dynamics().joint_wrench(state.time(), 0, work);
+
+  const double m = door.total_mass();
+  const Mat3<double> I = door.rest_inertia().M.bottomRightCorner<3, 3>();
+  const Vec3<double> c = state.q.head<3>(), omega = state.v.segment<3>(3);
+  const Vec3<double> force = m * (work.v_dot.head<3>() - body.gravity);
+  const Vec3<double> turning = I * work.v_dot.segment<3>(3) + omega.cross(I * omega);  // body frame
+  const Vec3<double> torque = simulation.model().orientation(state, 0) * turning + c.cross(force);
+  CHECK((wrench.force - force).norm() <= 1e-11 * force.norm());
+  CHECK((wrench.torque - torque).norm() <= 1e-11 * force.norm() * c.norm());
+  CHECK(wrench.torque.norm() >= 1e-2 * force.norm() * c.norm());
+  CHECK(std::abs(wrench.torque.dot(pin)) <= 1e-11 * force.norm() * c.norm());
+}
+
 TEST_CASE("weld: two bodies tumble as the one that they make", "[joints]") {
   MultiBody two;
   two.gravity.setZero();
@@ -238,7 +266,7 @@ TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre",
         Workspace<double> work;
         const State& state = simulation.state();
         simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
-        CHECK(simulation.dynamics().joint_force(state.time(), 0, work).norm() > 0);
+        CHECK(simulation.dynamics().joint_wrench(state.time(), 0, work).force.norm() > 0);
       }
 }
 

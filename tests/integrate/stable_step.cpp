@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 
+#include <pliant/body/joints/rod.h>
+
 #include "motion.h"
 
 using namespace pliant;
@@ -147,6 +149,79 @@ TEST_CASE("N19: a spin allows half a radian a step", "[stable]") {
   }
   INFO(message);
   CHECK(message.find("the largest stable step here is about") != std::string::npos);
+}
+
+/// A chain of points that hangs by rods of 1 m, in a field of 1 m/s^2; the last is displaced.
+void hang(MultiBody& body, int n, double sideways = 0) {
+  body.gravity = {0, 0, -1};
+  const Part* above = nullptr;
+  for (int i = 0; i < n; ++i) {
+    auto& mass = body.add<Primitive<Sphere>>("mass" + std::to_string(i), 1000);
+    mass.rest({{"r", 0.01}}).place({0, 0, -1.0 - i});
+    if (i == n - 1) mass.move({sideways, 0, 0}, {0, 0, 0});
+    body.join("rod" + std::to_string(i), Rod{1},
+              {above == nullptr ? world(0, 0, 0) : point(*above, 0, 0, 0), point(mass, 0, 0, 0)});
+    above = &mass;
+  }
+}
+
+TEST_CASE("N20: joints under load: a hanging chain swings at the largest root of Laguerre's polynomial",
+          "[stable]") {
+  for (const auto& [n, root] : {std::pair<int, double>{1, 1}, {2, 3.414213562373}, {5, 12.640800844276}}) {
+    MultiBody body;
+    hang(body, n);
+    INFO(n);
+    CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / root)).epsilon(1e-3));
+    CHECK(largest_stable_step(Simulation(body, "semi_implicit_euler")) ==
+          Approx(2 / std::sqrt(root)).epsilon(1e-3));
+  }
+  // What falls over has no limit of its own; what swings beside it has.
+  MultiBody body;
+  hang(body, 2);
+  auto& top = body.add<Primitive<Sphere>>("top", 1000);
+  top.rest({{"r", 0.01}}).place({5, 0, 0.01});
+  body.join("rod", Rod{0.01}, {world(5, 0, 0), point(top, 0, 0, 0)});
+  CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / 3.414213562373)).epsilon(1e-2));
+}
+
+TEST_CASE("N20: the predicted limit of a hanging chain is the measured one", "[stable]") {
+  for (const char* method : {"semi_implicit_euler", "rk4"}) {
+    MultiBody body;
+    hang(body, 5);
+    const double predicted = largest_stable_step(Simulation(body, method));
+    for (const double part : {0.95, 1.05}) {
+      MultiBody swaying;
+      hang(swaying, 5, 1e-9);
+      Simulation simulation(swaying, method);
+      double fastest = 0;
+      try {
+        for (int i = 0; i < 1000 && fastest < 1e-3; ++i) {
+          simulation.step(part * predicted);
+          fastest = std::max(fastest, simulation.state().v.norm());
+        }
+      } catch (const StepFailure&) {
+        fastest = 1;
+      }
+      INFO(method << " at " << part << " of " << predicted);
+      CHECK((fastest < 1e-6) == (part < 1));
+    }
+  }
+}
+
+TEST_CASE("N20: Baumgarte's terms, where a gap is left to them", "[stable]") {
+  auto limit = [](const char* method, BaumgarteRule rule, bool projection) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.ball("joint", point(body.add<Primitive<Sphere>>("ball", 1000), 0, 0, 0), world(0, 0, 0));
+    body.stabilization.rule = rule;
+    body.stabilization.rate = 10;
+    body.stabilization.projection = projection;
+    return largest_stable_step(Simulation(body, method));
+  };
+  CHECK(limit("semi_implicit_euler", BaumgarteRule::critical, false) == Approx(0.0828427).epsilon(1e-4));
+  CHECK(limit("rk4", BaumgarteRule::critical, false) == Approx(0.27853).epsilon(1e-4));
+  CHECK(std::isinf(limit("rk4", BaumgarteRule::critical, true)));
+  CHECK(std::isinf(limit("semi_implicit_euler", BaumgarteRule::step_consistent, false)));
 }
 
 TEST_CASE("long chains: bounded part by part, safely and at once", "[stable]") {

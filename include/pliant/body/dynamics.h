@@ -57,6 +57,12 @@ struct Workspace {
   Vec<S, kWorks> power;  ///< rates of the works of the ledger, W
 };
 
+/// What a joint does to the part of its first side, world: a force (N) at its first point, and a torque (N m)
+/// about that point.
+struct Wrench {
+  Vec3<double> force, torque;
+};
+
 /// A direction in the space of states: changes of q (of each quaternion its derivative) and of v.
 struct StateDirection {
   VecX<double> q, v;
@@ -87,8 +93,8 @@ class Dynamics {
   /// The same, with the mass matrices, M^-1 C_q^T and the factor of W_c.
   void factor_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      const Island& island, Workspace<double>& work) const;
-  /// The force of a joint on its first side, N, world; work as accelerations(t, ...) left it.
-  Vec3<double> joint_force(double t, int joint, const Workspace<double>& work) const;
+  /// What a joint does to its first side; work as accelerations(t, ...) left it.
+  Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const;
   /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// The same without an evaluation of its own. work: as the evaluation at (t, q, v) left it; dual_work: any,

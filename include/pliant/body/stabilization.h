@@ -40,20 +40,14 @@ struct Stabilization {
         throw std::invalid_argument(
             "stabilization: rate, stab_alpha, stab_beta and speed must be numbers >= 0");
   }
-  /// h: step, s; consistent: what automatic means.
+  /// Whether the gains go with the step, so that any step is stable; consistent: what automatic means.
+  bool follows_step(bool consistent) const {
+    return rule == BaumgarteRule::step_consistent || (rule == BaumgarteRule::automatic && consistent);
+  }
+  /// h: step, s.
   Gains gains(double h, bool consistent) const {
-    switch (rule) {
-      case BaumgarteRule::free:
-        return {stab_alpha, stab_beta};
-      case BaumgarteRule::critical:
-        return {rate, rate};
-      case BaumgarteRule::automatic:
-        if (!consistent) return {rate, rate};
-        break;
-      case BaumgarteRule::step_consistent:
-        break;
-    }
-    if (!(h > 0)) return {rate, rate};  // the limit of small steps
+    if (rule == BaumgarteRule::free) return {stab_alpha, stab_beta};
+    if (!follows_step(consistent) || !(h > 0)) return {rate, rate};  // the latter the limit of small steps
     const double r = std::exp(-rate * h);
     return {(1 - r * r) / (2 * h), (1 - r) / h};
   }

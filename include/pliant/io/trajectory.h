@@ -9,6 +9,8 @@
 //     NAME.PARAMETER_dot                     rates
 //     NAME.com.x y z                         true centre of mass (m, world), where not the frame's origin
 //   track.NAME.x y z                         points that the scene tracks, m
+//   joint.NAME.force.x y z, joint.NAME.gap   N in the world, on its first side; m (of up to kMostParts parts)
+//   joint.NAME.torque.x y z                  N m, about the joint, of hinges, sliders and welds
 //   energy.kinetic gravity elastic springs total, work.KIND   J
 //   balance                                  J: energy.total - its value at time 0 - all works
 //   momentum.x y z, angular_momentum.x y z   kg m/s; kg m^2/s about the world's origin
