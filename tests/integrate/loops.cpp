@@ -285,6 +285,24 @@ TEST_CASE("IFToMM A04: Bricard's mechanism from rest, for 10 s", "[loops]") {
   CHECK(worst.gap <= 1e-9);
 }
 
+TEST_CASE("N43: mechanisms with rows that depend on others, by the augmented matrix", "[loops]") {
+  const std::pair<const char*, std::function<void(MultiBody&)>> mechanisms[] = {
+      {"Bricard", [](MultiBody& body) { bricard(body); }},
+      {"windows", [](MultiBody& body) { windows_in_a_row(body, 2); }},
+      {"four bars", [](MultiBody& body) { four_bar(body); }}};
+  for (const auto& [name, build] : mechanisms) {
+    MultiBody body;
+    build(body);
+    body.joint_solver.choice = JointSolver::Choice::augmented;
+    Simulation simulation(body, "rk4");
+    REQUIRE(simulation.model().islands()[0].augmented);
+    const Worst worst = run_watched(simulation, 4, 4000);
+    INFO(name << ": " << worst.energy << " J, " << worst.gap << " m");
+    CHECK(worst.energy <= 1e-6 * 5 * 9.81);
+    CHECK(worst.gap <= 1e-9);
+  }
+}
+
 TEST_CASE("N43: a ring of 100 links in free flight for 10 s", "[loops]") {
   MultiBody body;
   body.gravity.setZero();

@@ -2,7 +2,8 @@
 //   [ M    C_q^T ]
 //   [ C_q   -d I ]
 // sparse and quasi-definite: a small d keeps rows that depend on others harmless, and iterative refinement
-// takes its error out again. It answers what W_c = C_q M^-1 C_q^T would, whose blocks it never forms.
+// takes its error out again for all others. It answers what W_c = C_q M^-1 C_q^T would, whose blocks it never
+// forms.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,5 @@
 // How the system of the joints is solved: by blocks of W_c = C_q M^-1 C_q^T, whose size is the number of
 // rows, or as the augmented matrix of Eq. (14), sparse, for parts that very many joints hold on to.
-// Overconstrained mechanisms, whose rows depend on others only where all is closed, are for the blocks, which
-// hold such rows; the augmented matrix takes them for independent within a step.
 #pragma once
 
 #include <functional>
