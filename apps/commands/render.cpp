@@ -80,7 +80,7 @@ void add_render(CLI::App& app, Action& action) {
       ->check(number_between(5, 120))
       ->type_name("DEGREES");
   command->add_flag("--no-ground", options->no_ground, "Without the ground");
-  command->add_flag("--no-springs", options->no_springs, "Without the lines of springs");
+  command->add_flag("--no-springs", options->no_springs, "Without what shows springs and joints");
   command->add_flag("--no-shadows", options->no_shadows, "Without shadows");
   add_graphics_option(*command, options->backend);
   command->add_flag("--force", options->force, "Replace pictures that exist");

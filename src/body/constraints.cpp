@@ -144,7 +144,7 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     }
     return;
   }
-  blocks_.clear(island.pattern);
+  blocks_.clear(island.pattern, work.rank);
   for (const Coupling& c : island.couplings) {
     if (!counts(work.modes[at(c.row_joint)], closed_only) ||
         !counts(work.modes[at(c.column_joint)], closed_only))

@@ -382,12 +382,13 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   work.power += joint_power<S>(model, work);
 }
 
-void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                               const Island& island, Workspace<double>& work) const {
+void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
+                               const std::vector<JointMode>& modes, const Island& island,
+                               Workspace<double>& work) const {
   size_joints(work);
   for (const std::vector<int>* joints : {&island.joints, &island.strings})
     for (const int j : *joints)
-      work.joints.modes[static_cast<std::size_t>(j)] = modes.joints[static_cast<std::size_t>(j)];
+      work.joints.modes[static_cast<std::size_t>(j)] = modes[static_cast<std::size_t>(j)];
   for (const int i : island.anchors)
     if (work.parts[static_cast<std::size_t>(i)].port_x.empty())
       positions<double>(model_->parts()[static_cast<std::size_t>(i)], q, v,
@@ -398,8 +399,10 @@ void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<doubl
   pliant::evaluate_joints<double>(*model_, island, t, work.parts, work.joints);
 }
 
-void Dynamics::factor_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                             const Island& island, Workspace<double>& work) const {
+void Dynamics::factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
+                             const std::vector<JointMode>& modes, const Island& island,
+                             Workspace<double>& work, RankRule rank) const {
+  work.joints.rank = rank;
   evaluate_masses(q, v, island.parts, work);
   evaluate_joints(t, q, v, modes, island, work);
   pliant::factor_joints<double>(*model_, island, work.parts, work.joints);
@@ -429,7 +432,8 @@ Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work
 }
 
 void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                             Workspace<double>& work) const {
+                             Workspace<double>& work, RankRule rank) const {
+  work.joints.rank = rank;
   evaluate<double>(t, q, v, &modes, nullptr, work);
 }
 

@@ -10,6 +10,8 @@
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_failure.h>
 
+#include "settling.h"
+
 namespace pliant {
 
 namespace {
@@ -18,13 +20,10 @@ namespace {
 constexpr double kMostTurn = 0.5, kMostChange = 0.3;
 /// eps over the smallest ratio of stiffness to inertia: how little rigid motion costs.
 constexpr double kRigidFirst = 1e-6;
-/// A gap, in lengths of its joint, that is closed; and a step, in rad or sizes, at which the shape has
-/// settled.
-constexpr double kClosed = 1e-13, kSettled = 1e-9;
+/// A step, in rad or sizes, at which the shape has settled.
+constexpr double kSettled = 1e-9;
 /// A gap, in lengths, that is left to the projection at the start.
 constexpr double kNearlyClosed = 1e-9;
-/// Rounding of coordinates of size 1.
-constexpr double kRounding = 4e-15;
 constexpr int kMostIterations = 400;
 /// Without a gap smaller by this factor in so many iterations it cannot be closed.
 constexpr double kProgress = 0.9;
@@ -35,19 +34,21 @@ constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+using settling::at;
 
 class Assembly {
  public:
   Assembly(const Dynamics& dynamics, const Island& island, State& state, Workspace<double>& work)
-      : dynamics_(dynamics), model_(dynamics.model()), island_(island), state_(state), work_(work) {
-    modes_ = state;
+      : dynamics_(dynamics),
+        model_(dynamics.model()),
+        island_(island),
+        state_(state),
+        work_(work),
+        modes_(state.joints) {
     for (const int j : island.joints)
-      if (modes_.joints[at(j)] != JointMode::off) modes_.joints[at(j)] = JointMode::closed;
+      if (modes_[at(j)] != JointMode::off) modes_[at(j)] = JointMode::closed;
     for (const int j : island.strings)
-      if (modes_.joints[at(j)] != JointMode::off) modes_.joints[at(j)] = JointMode::slack;
+      if (modes_[at(j)] != JointMode::off) modes_[at(j)] = JointMode::slack;
     const double softest = softest_ratio();
     stiff_ = std::isfinite(softest);
     eps_ = least_eps_ = kRigidFirst * (stiff_ ? softest : 1);
@@ -96,21 +97,19 @@ class Assembly {
   void for_each_gap(F&& act) const {
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
-      if (modes_.joints[at(j)] != JointMode::off)
+      if (modes_[at(j)] != JointMode::off)
         act(j, work_.joints.C.segment(joint.row, joint.rows).norm(), joint);
     }
     for (const int j : island_.strings) {
       const JointModel& joint = model_.joints()[at(j)];
-      if (modes_.joints[at(j)] != JointMode::off) act(j, std::max(0.0, -work_.joints.C[joint.row]), joint);
+      if (modes_[at(j)] != JointMode::off) act(j, std::max(0.0, -work_.joints.C[joint.row]), joint);
     }
   }
 
   bool is_closed() const {
-    double size = 0;
-    for (const int i : island_.parts) size = std::max(size, work_.parts[at(i)].c.lpNorm<Eigen::Infinity>());
     bool closed = true;
     for_each_gap([&](int, double gap, const JointModel& joint) {
-      closed = closed && gap <= kClosed * joint.length + kRounding * size;
+      closed = closed && gap <= settling::rounding(joint, work_);
     });
     return closed;
   }
@@ -179,14 +178,14 @@ class Assembly {
   /// The step that the linearised problem asks for.
   VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double widest) {
     lay_metric(1 + widest * widest);
-    work_.joints.modes = modes_.joints;
+    work_.joints.modes = modes_;
     factor_joints<double>(model_, island_, work_.parts, work_.joints);
     VecX<double> x, rows;
     group.gather(x, [&](int p) { return relaxation(group.model(p), group.workspace(p)); });
     group.joint_rows(x, rows);
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
-      if (modes_.joints[at(j)] != JointMode::off)
+      if (modes_[at(j)] != JointMode::off)
         rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
     }
     const VecX<double>& lambda = group.correct(rows, x);
@@ -226,7 +225,7 @@ class Assembly {
   double bound(const Group<double, Eigen::Dynamic>& group, const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_.strings[at(row.k)];
-      if (row.sign < 0 || modes_.joints[at(j)] == JointMode::off) return -kInfinite;
+      if (row.sign < 0 || modes_[at(j)] == JointMode::off) return -kInfinite;
       return -work_.joints.C[model_.joints()[at(j)].row];
     }
     const PartModel& m = group.model(row.part);
@@ -281,8 +280,8 @@ class Assembly {
   const Model& model_;
   const Island& island_;
   State& state_;
-  State modes_;  ///< with every joint closed that acts
   Workspace<double>& work_;
+  std::vector<JointMode> modes_;    ///< with every joint closed that acts
   double eps_ = 1, least_eps_ = 1;  ///< cost of rigid motion, 1/s^2
   double penalty_ = 0;              ///< price of a gap, N
   bool stiff_ = false;              ///< whether any parameter has a stiffness

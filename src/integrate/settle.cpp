@@ -90,7 +90,7 @@ void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& 
   const double energy = dynamics.energy(t, state.q, state.v, parts, scratch);
   before.swap(state);
   if (group.island() != nullptr)
-    dynamics.factor_joints(t, state.q, state.v, state, *group.island(), work);
+    dynamics.factor_joints(t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
   if (pushed) keep_momenta(group, scratch, work, state);
@@ -161,13 +161,13 @@ void note_strings(const Model& model, const Island& island, const Workspace<doub
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
                Workspace<double>& work, StepCounters& counters) {
   const Model& model = dynamics.model();
-  dynamics.factor_joints(t, state.q, state.v, state, island, work);
+  dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   if (dynamics.hold().projected) close_joints(model, island, true, work, state);
   close_strings(model, island, work, state);
-  dynamics.factor_joints(t, state.q, state.v, state, island, work);
+  dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), true, state, work,
                counters);
-  dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+  dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
   note_strings(model, island, work, state);
 }
 
@@ -180,15 +180,15 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
     bool closed = false;
     if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||
         std::any_of(island.strings.begin(), island.strings.end(), closing)) {
-      dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+      dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
       closed = dynamics.hold().projected && close_joints(model, island, false, work, state);
       close_strings(model, island, work, state);
-      if (closed) dynamics.factor_joints(t, state.q, state.v, state, island, work);
+      if (closed) dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
     }
     settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), closed, state, work,
                  counters);
     if (island.strings.empty()) continue;
-    dynamics.evaluate_joints(t, state.q, state.v, state, island, work);
+    dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
     note_strings(model, island, work, state);
   }
 }

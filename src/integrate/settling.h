@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -29,6 +30,8 @@ inline constexpr int kMostNamed = 8;
 inline constexpr double kDepends = 1e-6;
 /// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
 inline constexpr double kWidest = 0.1;
+/// A projection by other rows than the step began with may take back at most this part of its motion.
+inline constexpr double kFar = 0.25;
 /// A string this near to its length, in lengths of its smaller part, is taut.
 inline constexpr double kTaut = 1e-9;
 
@@ -104,36 +107,28 @@ class Settling {
         work_(work),
         kept_(vectors) {}
 
-  /// Coordinates onto C = 0 and within the limits. Returns whether a limit or a string that was loose pushed.
+  /// Coordinates onto C = 0 and within the limits, from those that the vectors keep. Returns whether a limit
+  /// or a string that was loose pushed.
   bool coordinates() {
-    bool pushed = false;
-    for (int i = 0; i < kMostIterations; ++i) {
-      Vector& x = kept_.x;
-      x.setZero(group_.size());
-      const bool open = correct_joints(Rows::coordinates, i, x);
-      OneSidedRows<Max> rows(group_);
-      rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
-      if (!open && rows.empty()) return pushed;
-      for (int p = 0; p < group_.parts(); ++p)
-        advance_part(group_.model(p), state_.q, world_velocity(group_.workspace(p), group_.share(x, p)), 1);
-      if (!rows.empty())
-        rows.for_each_pushed([&](const OneSidedRow& row, double) {
-          pushed = pushed || !stays(row);
-          if (row.part < 0) return;
-          const PartModel& m = group_.model(row.part);
-          double& q = state_.q[m.q0 + 7 + row.k];
-          const Range range = limits_of(m, row.k);
-          q = std::abs(q - range.min) < std::abs(q - range.max) ? range.min : range.max;
-        });
-      if (island_ == nullptr) return pushed;
+    // Rows that depended on others at the start of the step still do, unless it goes through a singular
+    // position. What can only be closed by going back does not go on.
+    std::optional<UnsatisfiableModel> failure;
+    for (const RankRule rank : {RankRule::keep, RankRule::decide, RankRule::rounding}) {
+      rank_ = rank;
+      const bool pushed = approach();
+      if (island_ == nullptr || !dynamics_.hold().projected) return pushed;
+      std::optional<UnsatisfiableModel> open = open_joint();
+      if (!open && (rank == RankRule::keep || !moved_far())) return pushed;
+      if (open && rank != RankRule::rounding) failure = std::move(open);
+      for_each_coordinates([](auto&& kept, auto&& now) { now = kept; });
     }
-    fail_if_open();
-    return pushed;
+    throw *failure;
   }
 
   /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
   /// on one-sided rows. joints, rows: work of the impulses of each, J.
   int velocities(double& joints, double& one_sided) {
+    rank_ = RankRule::decide;
     int impulses = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
@@ -175,6 +170,56 @@ class Settling {
  private:
   enum class Rows { coordinates, velocities };
 
+  /// Iterates until the joints are closed, or as near as they come.
+  bool approach() {
+    fresh_ = false;
+    bool pushed = false;
+    for (int i = 0; i < kMostIterations; ++i) {
+      Vector& x = kept_.x;
+      x.setZero(group_.size());
+      const bool open = correct_joints(Rows::coordinates, i, x);
+      OneSidedRows<Max> rows(group_);
+      rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
+      if (!open && rows.empty()) return pushed;
+      for (int p = 0; p < group_.parts(); ++p)
+        advance_part(group_.model(p), state_.q, world_velocity(group_.workspace(p), group_.share(x, p)), 1);
+      if (!rows.empty())
+        rows.for_each_pushed([&](const OneSidedRow& row, double) {
+          pushed = pushed || !stays(row);
+          if (row.part < 0) return;
+          const PartModel& m = group_.model(row.part);
+          double& q = state_.q[m.q0 + 7 + row.k];
+          const Range range = limits_of(m, row.k);
+          q = std::abs(q - range.min) < std::abs(q - range.max) ? range.min : range.max;
+        });
+      if (island_ == nullptr) return pushed;
+    }
+    return pushed;
+  }
+
+  /// act(kept coordinates, those of the state) for each part.
+  template <class F>
+  void for_each_coordinates(F&& act) const {
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      act(kept_.q.segment(group_.first(i) + i, 7 + m.n_s), state_.q.segment(m.q0, 7 + m.n_s));
+    }
+  }
+  /// Whether the way from the kept coordinates is no small part of what the parts move in a step.
+  bool moved_far() const {
+    double way = 0, motion = 0;
+    int i = 0;
+    for_each_coordinates([&](const auto& kept, const auto& now) {
+      const PartModel& m = group_.model(i++);
+      const double size = m.part->size();
+      const auto v = share_of(m, std::as_const(state_.v));
+      way += (kept.template head<3>() - now.template head<3>()).squaredNorm() +
+             4 * size * size * (kept.template segment<4>(3) - now.template segment<4>(3)).squaredNorm();
+      motion += v.template head<3>().squaredNorm() + size * size * v.template segment<3>(3).squaredNorm();
+    });
+    return way > kFar * kFar * state_.h * state_.h * motion;
+  }
+
   /// What a row of a joint may be, by rounding.
   double left(const JointModel& joint, Rows what) const {
     if (what == Rows::coordinates) return rounding(joint, work_);
@@ -188,7 +233,7 @@ class Settling {
   /// left to do: they are there, or as near as rounding lets them come.
   bool correct_joints(Rows what, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
-    dynamics_.evaluate_joints(t_, state_.q, state_.v, state_, *island_, work_);
+    dynamics_.evaluate_joints(t_, state_.q, state_.v, state_.joints, *island_, work_);
     if (!dynamics_.hold().projected) return false;
     const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
     double now = 0;
@@ -202,22 +247,18 @@ class Settling {
       now = std::max(now, row.norm() / left(joint, what));
     }
     if (!(now > 1)) return false;
-    if (iteration > 0 && now > kSlow * before_) {
-      if (fresh_ && now > kStalled * before_) {
-        if (what == Rows::coordinates) fail_if_open();
-        return false;
-      }
-      dynamics_.factor_joints(t_, state_.q, state_.v, state_, *island_, work_);
-      fresh_ = true;
-    }
+    const bool slow = iteration > 0 && now > kSlow * before_;
+    if (slow && fresh_ && now > kStalled * before_) return false;
+    fresh_ = slow || (iteration == 0 && what == Rows::coordinates && rank_ != RankRule::keep);
+    if (fresh_) dynamics_.factor_joints(t_, state_.q, state_.v, state_.joints, *island_, work_, rank_);
     before_ = now;
     group_.correct(error, x);
     return true;
   }
 
-  /// Throws when a closed joint is further open than rounding explains: it is named with those that hold it
-  /// open.
-  void fail_if_open() const {
+  /// The failure of a closed joint that is further open than rounding explains: it is named with those that
+  /// hold it open.
+  std::optional<UnsatisfiableModel> open_joint() const {
     int open = -1;
     double widest = 0;
     for (const int j : island_->joints) {
@@ -229,7 +270,7 @@ class Settling {
       open = j;
       widest = gap;
     }
-    if (open < 0) return;
+    if (open < 0) return std::nullopt;
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
     message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
@@ -244,7 +285,7 @@ class Settling {
       message << (named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
               << model_.joints()[at(j)].joint->name() << "'";
     }
-    throw UnsatisfiableModel(message.str(), t_);
+    return UnsatisfiableModel(message.str(), t_);
   }
 
   /// Whether the rows of a joint that the factor holds are made of those of another, among the rest.
@@ -323,7 +364,8 @@ class Settling {
   Workspace<double>& work_;
   GroupVectors<double, Max>& kept_;
   double before_ = 0;
-  bool fresh_ = false;
+  RankRule rank_ = RankRule::keep;
+  bool fresh_ = false;  ///< whether the factor was that of the iteration before
 };
 
 }  // namespace pliant::settling

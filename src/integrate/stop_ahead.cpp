@@ -14,23 +14,28 @@ using namespace settling;
 
 namespace {
 
+/// An iteration that leaves more than this part of the gaps has come to the rounding of the rows.
+constexpr double kIdle = 0.9;
+
 /// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
-/// closed joints. False when they are closed there.
+/// closed joints. False when they are closed there, or as near as rounding lets them come. widest: that of
+/// the iteration before, and then of this one.
 template <int Max>
 bool close_ahead(const Model& model, const Island& island, const Group<double, Max>& group,
                  const State& state, const Workspace<double>& ahead, double h, VecX<double>& error,
-                 VecMax<double, Max>& x) {
+                 VecMax<double, Max>& x, double& widest) {
   error.setZero(island.rows);
-  bool open = false;
+  const double before = std::exchange(widest, 0);
   for (const int j : island.joints) {
     const JointModel& joint = model.joints()[at(j)];
     if (state.joints[at(j)] != JointMode::closed) continue;
     const auto C = ahead.joints.C.segment(joint.row, joint.rows);
-    open = open || !(C.norm() <= rounding(joint, ahead));
+    widest = std::max(widest, C.norm() / rounding(joint, ahead));
     error.segment(joint.island_row, joint.rows) = C / h;
   }
-  if (open) group.correct(error, x);
-  return open;
+  if (!(widest > 1) || widest > kIdle * before) return false;
+  group.correct(error, x);
+  return true;
 }
 
 /// Whether a parameter passes a limit when it moves on for a time h.
@@ -92,6 +97,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
       return row.sign * ((row.sign > 0 ? range.min : range.max) - q) / h;
     };
     std::vector<std::pair<std::int8_t*, std::int8_t>> stopped;
+    double widest = std::numeric_limits<double>::infinity();
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       // Impulses at the start of the step that close the joints at its end: h v is projected, not q alone,
       // which keeps the energy of turning parts (the method SHAKE; Ryckaert, Ciccotti & Berendsen 1977).
@@ -102,9 +108,10 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
           q_end.segment(m.q0, 7 + m.n_s) = state.q.segment(m.q0, 7 + m.n_s);
           advance_part(m, q_end, share_of(m, state.v), h);
         }
-        dynamics.evaluate_joints(state.time() + h, q_end, state.v, state, *island, ahead);
+        dynamics.evaluate_joints(state.time() + h, q_end, state.v, state.joints, *island, ahead);
         now = x;
-        open = dynamics.hold().projected && close_ahead(model, *island, group, state, ahead, h, kept.rows, x);
+        open = dynamics.hold().projected &&
+               close_ahead(model, *island, group, state, ahead, h, kept.rows, x, widest);
       }
       OneSidedRows<kMax> rows(group);
       joined = x;

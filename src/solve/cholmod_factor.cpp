@@ -6,6 +6,7 @@
 #include <dlfcn.h>
 
 #include <limits>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -21,7 +22,6 @@ void use_one_blas_thread() {
 class CholmodFactor final : public SparseFactor {
  public:
   explicit CholmodFactor(const CholmodOptions& options) : options_(options) {
-    use_one_blas_thread();
     cholmod_start(&common_);
     common_.print = 0;
     common_.nmethods = 1;
@@ -138,6 +138,8 @@ class CholmodFactor final : public SparseFactor {
 }  // namespace
 
 std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options) {
+  static std::once_flag once;  // islands make theirs on several threads
+  std::call_once(once, use_one_blas_thread);
   return std::make_unique<CholmodFactor>(options);
 }
 

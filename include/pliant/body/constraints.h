@@ -69,14 +69,15 @@ struct GroupVectors {
 /// What is recomputed at each evaluation. The rows of all joints stand in the order of the joints.
 template <class S>
 struct ConstraintWorkspace {
-  std::vector<JointMode> modes;     ///< as they were at the evaluation
-  Gains gains;                      ///< of Baumgarte's terms of joints that close
-  bool stabilise_closed = true;     ///< whether closed joints have them too
-  double most_speed = 0;            ///< cap of the speed at which a gap closes, body lengths / s
-  VecX<S> C, C_dot, bias;           ///< m, m/s, m/s^2
-  VecX<S> Cq, Y;                    ///< C_q^T and M^-1 C_q^T of each side, n_v x rows, on v_r
-  VecX<S> lambda;                   ///< N; on the parts act C_q^T lambda
-  std::vector<JointFactor<S>> W_c;  ///< of each island, of the joints that act
+  std::vector<JointMode> modes;      ///< as they were at the evaluation
+  Gains gains;                       ///< of Baumgarte's terms of joints that close
+  bool stabilise_closed = true;      ///< whether closed joints have them too
+  RankRule rank = RankRule::decide;  ///< of the factors
+  double most_speed = 0;             ///< cap of the speed at which a gap closes, body lengths / s
+  VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2
+  VecX<S> Cq, Y;                     ///< C_q^T and M^-1 C_q^T of each side, n_v x rows, on v_r
+  VecX<S> lambda;                    ///< N; on the parts act C_q^T lambda
+  std::vector<JointFactor<S>> W_c;   ///< of each island, of the joints that act
   /// The same of the closed joints alone, where there are others that close: impulses keep the closed ones
   /// and may open the others.
   std::vector<JointFactor<S>> W_closed;

@@ -85,14 +85,16 @@ class Dynamics {
   /// Parameters that rest at a limit, with a rate of exactly 0, may only leave it; those that move there are
   /// the integrator's to stop.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                     Workspace<double>& work) const;
+                     Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Frames and points of the parts of an island, and its joints' C, C_dot and C_q, at (t, q, v); nothing
   /// else of work changes.
-  void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                       const Island& island, Workspace<double>& work) const;
+  void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
+                       const std::vector<JointMode>& modes, const Island& island,
+                       Workspace<double>& work) const;
   /// The same, with the mass matrices, M^-1 C_q^T and the factor of W_c.
-  void factor_joints(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
-                     const Island& island, Workspace<double>& work) const;
+  void factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
+                     const std::vector<JointMode>& modes, const Island& island, Workspace<double>& work,
+                     RankRule rank = RankRule::decide) const;
   /// What a joint does to its first side; work as accelerations(t, ...) left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const;
   /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.

@@ -14,18 +14,25 @@
 
 namespace pliant {
 
+/// How rows that depend on others are told: by a vanished pivot; by the factor before, as where joints are a
+/// little open within a step, which makes such rows seem independent; or only where nothing but rounding is
+/// left of a pivot, next to a singular position.
+enum class RankRule { decide, keep, rounding };
+
 template <class S>
 class BlockFactor {
  public:
-  /// A pivot at or below this part of its diagonal entry has vanished. Rows that depend on others where
-  /// joints are closed leave more than rounding a little off them, as within a Runge-Kutta step.
-  static constexpr double kVanished = 1e-9;
+  /// A pivot at or below this part of its diagonal entry has vanished, and one of which only rounding is
+  /// left.
+  static constexpr double kVanished = 1e-9, kRounding = 1e-12;
 
   /// All blocks zero. The pattern must outlive the factor.
-  void clear(const BlockPattern& pattern) {
+  void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
+    keep_ = rule == RankRule::keep && pattern_ == &pattern;
+    vanished_ = rule == RankRule::rounding ? kRounding : kVanished;
     pattern_ = &pattern;
     values_.assign(static_cast<std::size_t>(pattern.values()), S(0.0));
-    held_.assign(static_cast<std::size_t>(pattern.rows()), 0);
+    if (!keep_) held_.assign(static_cast<std::size_t>(pattern.rows()), 0);
   }
   /// Numbers of the block at an offset that the pattern gave, by columns.
   S* block(int offset) { return values_.data() + offset; }
@@ -133,7 +140,7 @@ class BlockFactor {
       for (int k = 0; k < j; ++k) d -= A[k * n + j] * A[k * n + j] * A[k * n + k];
       const double from = diagonal_[at(c.row + j)], left = plain(d);
       // What is not a number is left to the finite check.
-      const bool gone = std::isfinite(from) && !(left > kVanished * from);
+      const bool gone = keep_ ? held(c.row + j) : std::isfinite(from) && !(left > vanished_ * from);
       if (gone) {
         held_[at(c.row + j)] = 1;
         A[j * n + j] = S(1.0);
@@ -184,7 +191,8 @@ class BlockFactor {
   std::vector<S> values_, scaled_;
   std::vector<double> diagonal_;
   std::vector<std::uint8_t> held_;
-  double smallest_ = 1;
+  double smallest_ = 1, vanished_ = kVanished;
+  bool keep_ = false;
 };
 
 }  // namespace pliant

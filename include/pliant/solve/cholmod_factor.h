@@ -14,8 +14,8 @@ struct CholmodOptions {
   Eigen::Index supernodal_from = 4000;
 };
 
-/// Making one sets an OpenBLAS that has threads to one thread, for the whole process: more never help at
-/// these sizes, and results would depend on their number.
+/// Making the first one sets an OpenBLAS that has threads to one thread, for the whole process: more never
+/// help at these sizes, and results would depend on their number.
 std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options = {});
 
 }  // namespace pliant

@@ -1,0 +1,101 @@
+// Run time against energy error of scenes, with both integrators and ever smaller steps; by default the
+// mechanisms of the IFToMM benchmark library (Gonzalez et al. 2006) A01, A02 and A04.
+//
+//   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
+//
+// Time: CPU time of the stepping loop, one thread. Energy error: the largest balance of the ledger, looked at
+// a hundred times; gap: the widest of the closed joints.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <pliant/io/joint_notes.h>
+#include <pliant/pliant.h>
+#include <pliant/scene/read_scene.h>
+
+#include "table_file.h"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kFirstStep = 0.02, kSmallest = 1e-10;  // s, and of the kinetic energy
+constexpr int kHalvings = 8, kLooks = 100;
+
+struct Run {
+  double cpu_ms = 0, error = 0, kinetic = 0, gap = 0;
+};
+
+Run run(const std::string& file, const char* method, double end, long steps) {
+  Diagnostics faults;
+  const auto scene = read_scene(file, {}, faults);
+  Run r;
+  Simulation simulation(scene->body, method);
+  const double h = end / static_cast<double>(steps);
+  for (int look = 0; look < kLooks; ++look) {
+    const std::clock_t start = std::clock();
+    for (long i = steps * look / kLooks; i < steps * (look + 1) / kLooks; ++i) simulation.step(h);
+    r.cpu_ms += 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    const Ledger ledger = simulation.ledger();
+    r.error = std::max(r.error, std::abs(ledger.balance));
+    r.kinetic = std::max(r.kinetic, ledger.kinetic);
+    r.gap = std::max(r.gap, widest_closed_gap(simulation));
+  }
+  return r;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  double end = 10;
+  std::string csv;
+  std::vector<std::string> scenes;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--end") == 0 && i + 1 < argc)
+      end = std::atof(argv[++i]);
+    else if (std::strcmp(argv[i], "-o") == 0 && i + 1 < argc)
+      csv = argv[++i];
+    else if (std::filesystem::is_directory(argv[i]))
+      for (const char* name : {"point_pendulum", "n_four_bar", "bricard"})
+        scenes.push_back(std::string(argv[i]) + "/" + name + ".json");
+    else
+      scenes.push_back(argv[i]);
+  }
+  if (scenes.empty() || !(end > 0)) {
+    std::fprintf(stderr, "scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...\n");
+    return 2;
+  }
+  bench::TableFile file(csv, "scene,method,end_s,step_s,cpu_ms,energy_error_J,largest_kinetic_J,gap_m\n");
+  for (const std::string& scene : scenes) {
+    const std::string name = std::filesystem::path(scene).stem().string();
+    for (const IntegratorInfo& method : all_integrators()) {
+      double before = 0;
+      for (int halving = 0; halving <= kHalvings; ++halving) {
+        const long steps = std::lround(end / kFirstStep) << halving;
+        const double h = end / static_cast<double>(steps);
+        try {
+          const Run r = run(scene, method.name, end, steps);
+          std::printf("%-16s %-20s h %9.3g s  %9.2f ms  energy %8.1e of %.1e J  order %5.2f  gap %.1e m\n",
+                      name.c_str(), method.name, h, r.cpu_ms, r.error, r.kinetic, std::log2(before / r.error),
+                      r.gap);
+          file.row("%s,%s,%g,%g,%.3f,%.3e,%.3e,%.3e\n", name.c_str(), method.name, end, h, r.cpu_ms, r.error,
+                   r.kinetic, r.gap);
+          before = r.error;
+          if (r.error < kSmallest * r.kinetic) break;
+        } catch (const StepFailure& failure) {
+          std::printf("%-16s %-20s h %9.3g s  %s\n", name.c_str(), method.name, h, failure.what());
+        }
+      }
+    }
+  }
+} catch (const std::exception& failure) {
+  std::fprintf(stderr, "scene_bench: %s\n", failure.what());
+  return 1;
+}
