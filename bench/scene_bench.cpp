@@ -27,7 +27,7 @@ using namespace pliant;
 namespace {
 
 constexpr double kFirstStep = 0.02, kSmallest = 1e-10;  // s, and of the kinetic energy
-constexpr int kHalvings = 8, kLooks = 100;
+constexpr int kHalvings = 6, kLooks = 100;
 
 struct Run {
   double cpu_ms = 0, error = 0, kinetic = 0, gap = 0;

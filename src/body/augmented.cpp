@@ -12,7 +12,7 @@ namespace pliant {
 namespace {
 
 /// d over the diagonal entry of W_c.
-constexpr double kRegular = 1e-8;
+constexpr double kRegular = 1e-9;
 /// A row of unit length that is nearer than this to those before it depends on them.
 constexpr double kDependent = 3e-5;
 /// Refinements, which end when the rows are met to rounding, or when so many of them did not improve.

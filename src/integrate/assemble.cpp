@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include <pliant/body/one_sided_rows.h>
 #include <pliant/integrate/advance.h>
@@ -22,6 +23,8 @@ constexpr double kMostTurn = 0.5, kMostChange = 0.3;
 constexpr double kRigidFirst = 1e-6;
 /// A step, in rad or sizes, at which the shape has settled.
 constexpr double kSettled = 1e-9;
+/// Merits of closed joints that differ by less than this part are equal.
+constexpr double kEqual = 1e-12;
 /// A gap, in lengths, that is left to the projection at the start.
 constexpr double kNearlyClosed = 1e-9;
 constexpr int kMostIterations = 400;
@@ -71,24 +74,25 @@ class Assembly {
 
   /// Returns the iterations.
   int run() {
-    double best_gap = kInfinite, best_merit = kInfinite;
+    double best_gap = kInfinite, best_merit = kInfinite, price = penalty_;
     int since_gap = 0, since_merit = 0;
     for (int i = 0; i < kMostIterations; ++i) {
       const double now = gap();
       if (!std::isfinite(now))
         throw NumericalFailure("assembly: the gap of a joint is not a finite number", state_.time());
+      if (std::exchange(price, penalty_) != penalty_) best_merit = kInfinite;  // merits at another price
       since_gap = now < kProgress * best_gap ? 0 : since_gap + 1;
       since_merit = merit() < (1 - kSettled) * best_merit ? 0 : since_merit + 1;
       best_gap = std::min(best_gap, now);
       best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
-      if (!closed && since_gap > kPatience) fail(i);
+      if (!closed && since_gap > kPatience && (!stiff_ || since_merit > kPatience)) fail(i);
       // What is left is rounding, of gaps or of the shape.
       if (now <= kNearlyClosed && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kSettled) return i;
     }
-    if (gap() > kNearlyClosed) fail(kMostIterations);
+    if (gap() > kClosedGap) fail(kMostIterations);  // the projection at the start closes the rest
     return kMostIterations;
   }
 
@@ -162,8 +166,8 @@ class Assembly {
       for (int halving = 0; halving <= kMostHalvings; ++halving, share /= 2) {
         state_.q = from;
         move(group, x, share);
-        gap();
-        if (merit() < before || is_closed()) {
+        restore(group);
+        if (merit() < before || (is_closed() && merit() <= (1 + kEqual) * before)) {
           if (attempt == 0 && halving == 0) eps_ = std::max(least_eps_, eps_ / kCheaper);
           return share * size * kMostTurn;
         }
@@ -183,16 +187,32 @@ class Assembly {
     VecX<double> x, rows;
     group.gather(x, [&](int p) { return relaxation(group.model(p), group.workspace(p)); });
     group.joint_rows(x, rows);
-    for (const int j : island_.joints) {
-      const JointModel& joint = model_.joints()[at(j)];
-      if (modes_[at(j)] != JointMode::off)
-        rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
-    }
+    add_gaps(rows);
     const VecX<double>& lambda = group.correct(rows, x);
     if (lambda.size() > 0) penalty_ = std::max(penalty_, 2 * eps_ * lambda.lpNorm<Eigen::Infinity>());
     OneSidedRows<Eigen::Dynamic> one_sided(group);
     one_sided.meet_all(x, [&](const OneSidedRow& row) { return bound(group, row); });
     return x;
+  }
+
+  /// Closes what a step left open by curvature, as long as that works: otherwise steps along curved
+  /// constraints would have to be short (Maratos 1978).
+  void restore(const Group<double, Eigen::Dynamic>& group) {
+    double before = settling::kWidest / settling::kSlow;
+    for (double now = gap(); now <= settling::kSlow * before && !is_closed(); now = gap()) {
+      before = now;
+      VecX<double> x = VecX<double>::Zero(group.size()), rows = VecX<double>::Zero(island_.rows);
+      add_gaps(rows);
+      group.correct(rows, x);
+      move(group, x, 1);
+    }
+  }
+  void add_gaps(VecX<double>& rows) const {
+    for (const int j : island_.joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (modes_[at(j)] != JointMode::off)
+        rows.segment(joint.island_row, joint.rows) += work_.joints.C.segment(joint.row, joint.rows);
+    }
   }
 
   /// Elastic energy and a price for every gap that is above all forces: it falls along every step that is
