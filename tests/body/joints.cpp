@@ -37,7 +37,7 @@ void check_laws(const F& formula, std::uint64_t seed) {
       for (std::size_t k = 0; k < x.size(); ++k)
         x[k] = motion[k].x.template cast<long double>() + t * motion[k].x_dot.template cast<long double>() +
                t * t / 2 * motion[k].x_ddot.template cast<long double>();
-      return VecX<long double>(formula.template C<long double>(x, static_cast<long double>(t0) + t));
+      return VecX<long double>(joint.template C<long double>(x, static_cast<long double>(t0) + t));
     };
     const VecX<double> C = along(0).template cast<double>();
     const VecX<double> C_dot = test::first_derivative(along, 1e-3L).template cast<double>();
@@ -56,7 +56,7 @@ void check_laws(const F& formula, std::uint64_t seed) {
           std::array<Vec3<long double>, kPoints> y;
           for (std::size_t n = 0; n < y.size(); ++n) y[n] = x[n].template cast<long double>();
           y[static_cast<std::size_t>(k)][i] += e;
-          return VecX<long double>(formula.template C<long double>(y, static_cast<long double>(t0)));
+          return VecX<long double>(joint.template C<long double>(y, static_cast<long double>(t0)));
         };
         const VecX<double> slope = test::first_derivative(shifted, 1e-3L).template cast<double>();
         CHECK((rows.C_x.col(3 * k + i) - slope).norm() <= 1e-9 * (1 + slope.norm()));

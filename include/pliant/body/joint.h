@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/material_frame.h>
 #include <pliant/body/points.h>
 #include <pliant/math/dual.h>
 #include <pliant/math/taylor2.h>
@@ -90,6 +91,16 @@ struct IsLinear : std::false_type {};
 template <class F>
 struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::linear> {};
 
+/// A formula of points with axes instead of points says so by
+///   static constexpr bool framed = true;
+/// It has MaterialFrames `from` and `to`, of a side of four points; one of a single point has no axes; and
+///   template <class T>
+///   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const;
+template <class F, class = void>
+struct IsFramed : std::false_type {};
+template <class F>
+struct IsFramed<F, std::void_t<decltype(F::framed)>> : std::bool_constant<F::framed> {};
+
 template <class F, class = void>
 struct HasFault : std::false_type {};
 template <class F>
@@ -116,6 +127,18 @@ class JointOf final : public Joint {
     if constexpr (IsLinear<F>::value) slope_ = constant_slope();
   }
 
+  template <class T>
+  using Points = std::array<Vec3<T>, kPoints>;
+
+  /// The formula at the points.
+  template <class T>
+  Vec<T, kRows> C(const Points<T>& x, const T& t) const {
+    if constexpr (IsFramed<F>::value)
+      return formula_.template C<T>(first_side(x.data()), second_side(x.data()));
+    else
+      return formula_.template C<T>(x, t);
+  }
+
   const char* type() const override { return F::name; }
   int rows() const override { return kRows; }
   bool one_sided() const override { return F::one_sided; }
@@ -130,12 +153,21 @@ class JointOf final : public Joint {
   VecMax<double, kMaxJointRows> gap(double t, const Vec3<double>* x) const override {
     std::array<Vec3<double>, kPoints> at;
     for (int k = 0; k < kPoints; ++k) at[static_cast<std::size_t>(k)] = x[k];
-    return formula_.template C<double>(at, t);
+    return C<double>(at, t);
   }
 
  private:
-  template <class S>
-  using Points = std::array<Vec3<S>, kPoints>;
+  template <class T>
+  Framed<T> first_side(const Vec3<T>* x) const {
+    if constexpr (F::first == 1)
+      return {x[0], Mat3<T>::Constant(T(0.0))};
+    else
+      return formula_.from.framed_at(x);
+  }
+  template <class T>
+  Framed<T> second_side(const Vec3<T>* x) const {
+    return formula_.to.framed_at(x + F::first);
+  }
 
   template <class S>
   void evaluate_as(double t, const PointMotion<S>* x, JointRows<S>& out) const {
@@ -159,7 +191,7 @@ class JointOf final : public Joint {
         at[p] = x[k].x;
         for (int r = 0; r < 3; ++r) moving[p][r] = T(x[k].x[r], x[k].x_dot[r], x[k].x_ddot[r]);
       }
-      const Vec<T, kRows> rates = formula_.template C<T>(moving, T(S(t), S(1.0), S(0.0)));
+      const Vec<T, kRows> rates = C<T>(moving, T(S(t), S(1.0), S(0.0)));
       out.C.resize(kRows);
       out.C_dot.resize(kRows);
       out.bias.resize(kRows);
@@ -175,16 +207,54 @@ class JointOf final : public Joint {
   /// dC/dx.
   template <class S>
   Eigen::Matrix<S, kRows, 3 * kPoints> slope(const S& t, const Points<S>& x) const {
-    using D = Dual<3 * kPoints, S>;
-    Points<D> varied;
-    for (int k = 0; k < kPoints; ++k)
-      for (int r = 0; r < 3; ++r)
-        varied[static_cast<std::size_t>(k)][r] = D::variable(x[static_cast<std::size_t>(k)][r], 3 * k + r);
-    const Vec<D, kRows> rows = formula_.template C<D>(varied, D(t));
-    Eigen::Matrix<S, kRows, 3 * kPoints> C_x;
+    if constexpr (IsFramed<F>::value) {
+      return framed_slope(x);
+    } else {
+      using D = Dual<3 * kPoints, S>;
+      Points<D> varied;
+      for (int k = 0; k < kPoints; ++k)
+        for (int r = 0; r < 3; ++r)
+          varied[static_cast<std::size_t>(k)][r] = D::variable(x[static_cast<std::size_t>(k)][r], 3 * k + r);
+      const Vec<D, kRows> rows = C<D>(varied, D(t));
+      Eigen::Matrix<S, kRows, 3 * kPoints> C_x;
+      for (int r = 0; r < kRows; ++r)
+        for (int c = 0; c < 3 * kPoints; ++c) C_x(r, c) = rows[r].d[static_cast<std::size_t>(c)];
+      return C_x;
+    }
+  }
+  /// The same by how points and axes move, and those by the points of the frames.
+  template <class S>
+  Eigen::Matrix<S, kRows, 3 * kPoints> framed_slope(const Points<S>& x) const {
+    using D = Dual<12, S>;
+    const Framed<S> a = first_side(x.data()), b = second_side(x.data());
+    const Vec<D, kRows> rows = formula_.template C<D>(varied<D>(a, 0), varied<D>(b, 6));
+    Eigen::Matrix<S, kRows, 3 * kPoints> C_x = Eigen::Matrix<S, kRows, 3 * kPoints>::Constant(S(0.0));
+    Eigen::Matrix<S, kRows, 12> C_u;
     for (int r = 0; r < kRows; ++r)
-      for (int c = 0; c < 3 * kPoints; ++c) C_x(r, c) = rows[r].d[static_cast<std::size_t>(c)];
+      for (std::size_t c = 0; c < 12; ++c) C_u(r, static_cast<Eigen::Index>(c)) = rows[r].d[c];
+    if constexpr (F::first > 1)
+      C_x.template leftCols<3 * F::first>() =
+          C_u.template middleCols<3>(3).lazyProduct(formula_.from.turn(x.data(), a.axes));
+    C_x.template rightCols<3 * F::second>() =
+        C_u.template middleCols<3>(9).lazyProduct(formula_.to.turn(x.data() + F::first, b.axes));
+    C_x.template leftCols<3>() += C_u.template leftCols<3>();
+    C_x.template middleCols<3>(3 * F::first) += C_u.template middleCols<3>(6);
     return C_x;
+  }
+  /// x + dx and the axes A + A [phi]x, dx and phi being the variables from `first` on.
+  template <class D, class S>
+  static Framed<D> varied(const Framed<S>& of, std::size_t first) {
+    Framed<D> out;
+    for (int i = 0; i < 3; ++i) {
+      out.x[i] = D::variable(of.x[i], static_cast<int>(first) + i);
+      for (int c = 0; c < 3; ++c) {
+        const int next = (c + 1) % 3, last = (c + 2) % 3;
+        out.axes(i, c) = D(of.axes(i, c));
+        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(last)] = of.axes(i, next);
+        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(next)] = -of.axes(i, last);
+      }
+    }
+    return out;
   }
   Eigen::Matrix<double, kRows, 3 * kPoints> constant_slope() const {
     Points<double> x;

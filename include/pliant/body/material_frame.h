@@ -10,6 +10,13 @@
 
 namespace pliant {
 
+/// A point with axes, the columns of a rotation, world.
+template <class T>
+struct Framed {
+  Vec3<T> x;
+  Mat3<T> axes;
+};
+
 struct MaterialFrame {
   static constexpr int points = 4;
   Mat3<double> K = Mat3<double>::Identity();  ///< axes = (x_1 - x_0, x_2 - x_0, x_3 - x_0) K + still, 1/m
@@ -19,17 +26,47 @@ struct MaterialFrame {
   template <class T>
   Mat3<T> at(const Vec3<T>* x) const {
     if (!still.isZero(0)) return still.cast<T>();
-    Mat3<T> D, E;
-    for (int k = 0; k < 3; ++k) D.col(k) = x[k + 1] - x[0];
-    for (int c = 0; c < 3; ++c)
-      E.col(c) = D.col(0) * T(K(0, c)) + D.col(1) * T(K(1, c)) + D.col(2) * T(K(2, c));
-    const Vec3<T> first = E.col(0) / math::sqrt(T(E.col(0).dot(E.col(0))));
-    const Vec3<T> across = E.col(1) - first * first.dot(E.col(1));
-    const Vec3<T> second = across / math::sqrt(T(across.dot(across)));
-    E.col(0) = first;
-    E.col(1) = second;
-    E.col(2) = first.cross(second);
-    return E;
+    const Vec3<T> e_1 = edge(x, 0), e_2 = edge(x, 1);
+    Mat3<T> axes;
+    axes.col(0) = e_1 / length(e_1);
+    const Vec3<T> across = e_2 - axes.col(0) * axes.col(0).dot(e_2);
+    axes.col(1) = across / length(across);
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+  }
+  template <class T>
+  Framed<T> framed_at(const Vec3<T>* x) const {
+    return {x[0], at(x)};
+  }
+
+  /// How the axes A turn as the points move: d A = A [phi]x, d phi = turn dx, 3 x 12.
+  template <class T>
+  Eigen::Matrix<T, 3, 3 * points> turn(const Vec3<T>* x, const Mat3<T>& A) const {
+    Eigen::Matrix<T, 3, 3 * points> turn = Eigen::Matrix<T, 3, 3 * points>::Constant(T(0.0));
+    if (!still.isZero(0)) return turn;
+    const Vec3<T> e_1 = edge(x, 0), e_2 = edge(x, 1);
+    const T along = A.col(0).dot(e_2), inverse_1 = T(1.0) / length(e_1),
+            inverse_2 = T(1.0) / A.col(1).dot(e_2);
+    for (int k = 0; k < 3; ++k) {
+      Mat3<T> d;  // by x_k+1
+      d.row(2) = A.col(1).transpose() * T(inverse_1 * K(k, 0));
+      d.row(1) = A.col(2).transpose() * T(-inverse_1 * K(k, 0));
+      d.row(0) = (A.col(2).transpose() * T(K(k, 1)) + d.row(1) * along) * inverse_2;
+      turn.template middleCols<3>(3 * k + 3) = d;
+      turn.template leftCols<3>() -= d;
+    }
+    return turn;
+  }
+
+ private:
+  /// An axis as the points have it, neither of length 1 nor square to the others.
+  template <class T>
+  Vec3<T> edge(const Vec3<T>* x, int c) const {
+    return (x[1] - x[0]) * T(K(0, c)) + (x[2] - x[0]) * T(K(1, c)) + (x[3] - x[0]) * T(K(2, c));
+  }
+  template <class T>
+  static T length(const Vec3<T>& x) {
+    return math::sqrt(T(x.dot(x)));
   }
 };
 

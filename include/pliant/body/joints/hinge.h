@@ -3,8 +3,6 @@
 // a is the first axis of the frame at x_0, b the frame at y_0; the last rows are the angle between the axes.
 #pragma once
 
-#include <array>
-
 #include <pliant/body/joint_setting.h>
 #include <pliant/body/material_frame.h>
 #include <pliant/math/rotation_vector.h>
@@ -16,16 +14,15 @@ struct Hinge {
   static constexpr const char* formula = "x_0 - x_1 = 0, the axis at x_0 along that at x_1";
   static constexpr JointKeys keys{JointKey::axis, JointKey::from_axis};
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = false;
+  static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
   double size = 1;  ///< m, makes angles lengths
 
   template <class T>
-  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
     Vec<T, rows> C;
-    C.template head<3>() = x[0] - x[first];
-    const Mat3<T> b = to.at(&x[first]);
-    C.template tail<2>() = axis_angle(Vec3<T>(from.at(&x[0]).col(0)), b) * T(size);
+    C.template head<3>() = a.x - b.x;
+    C.template tail<2>() = axis_angle(Vec3<T>(a.axes.col(0)), b.axes) * T(size);
     return C;
   }
 

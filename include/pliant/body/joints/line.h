@@ -2,8 +2,6 @@
 //   C = (b_2, b_3) . (x_0 - x_1),   b the frame at x_1, whose first axis is the line
 #pragma once
 
-#include <array>
-
 #include <pliant/body/joint_setting.h>
 #include <pliant/body/material_frame.h>
 
@@ -14,12 +12,12 @@ struct Line {
   static constexpr const char* formula = "(x_0 - x_1) x d = 0 with the direction d at x_1";
   static constexpr JointKeys keys{JointKey::axis};
   static constexpr int rows = 2, first = 1, second = MaterialFrame::points;
-  static constexpr bool one_sided = false;
+  static constexpr bool one_sided = false, framed = true;
   MaterialFrame to;
 
   template <class T>
-  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
-    return to.at(&x[1]).template rightCols<2>().transpose() * (x[0] - x[1]);
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
+    return b.axes.template rightCols<2>().transpose() * (a.x - b.x);
   }
 };
 

@@ -2,8 +2,6 @@
 //   C = n . (x_0 - x_1),   n the first axis of the frame at x_1
 #pragma once
 
-#include <array>
-
 #include <pliant/body/joint_setting.h>
 #include <pliant/body/material_frame.h>
 
@@ -14,13 +12,13 @@ struct Plane {
   static constexpr const char* formula = "n . (x_0 - x_1) = 0 with the normal n at x_1";
   static constexpr JointKeys keys{JointKey::axis};
   static constexpr int rows = 1, first = 1, second = MaterialFrame::points;
-  static constexpr bool one_sided = false;
+  static constexpr bool one_sided = false, framed = true;
   MaterialFrame to;
 
   template <class T>
-  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
     Vec<T, rows> C;
-    C[0] = to.at(&x[1]).col(0).dot(x[0] - x[1]);
+    C[0] = b.axes.col(0).dot(a.x - b.x);
     return C;
   }
 };

@@ -3,8 +3,6 @@
 // a and b are the frames at x_0 and y_0; the first axis of b is the line.
 #pragma once
 
-#include <array>
-
 #include <pliant/body/joint_setting.h>
 #include <pliant/body/material_frame.h>
 #include <pliant/math/rotation_vector.h>
@@ -16,16 +14,15 @@ struct Slider {
   static constexpr const char* formula = "(x_0 - x_1) x d = 0 with the direction d at x_1, and no turning";
   static constexpr JointKeys keys{JointKey::axis, JointKey::rotation};
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
-  static constexpr bool one_sided = false;
+  static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
   double size = 1;  ///< m, makes angles lengths
 
   template <class T>
-  Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& /*t*/) const {
+  Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
     Vec<T, rows> C;
-    const Mat3<T> b = to.at(&x[first]);
-    C.template head<2>() = b.template rightCols<2>().transpose() * (x[0] - x[first]);
-    C.template tail<3>() = rotation_vector(Mat3<T>(b.transpose() * from.at(&x[0]))) * T(size);
+    C.template head<2>() = b.axes.template rightCols<2>().transpose() * (a.x - b.x);
+    C.template tail<3>() = rotation_vector(Mat3<T>(b.axes.transpose() * a.axes)) * T(size);
     return C;
   }
 };
