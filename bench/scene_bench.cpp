@@ -76,9 +76,9 @@ int main(int argc, char** argv) try {
   for (const std::string& scene : scenes) {
     const std::string name = std::filesystem::path(scene).stem().string();
     for (const IntegratorInfo& method : all_integrators()) {
-      double before = 0;
+      double before = std::nan("");
       for (int halving = 0; halving <= kHalvings; ++halving) {
-        const long steps = std::lround(end / kFirstStep) << halving;
+        const long steps = std::max(1L, std::lround(end / kFirstStep)) << halving;
         const double h = end / static_cast<double>(steps);
         try {
           const Run r = run(scene, method.name, end, steps);
@@ -91,6 +91,7 @@ int main(int argc, char** argv) try {
           if (r.error < kSmallest * r.kinetic) break;
         } catch (const StepFailure& failure) {
           std::printf("%-16s %-20s h %9.3g s  %s\n", name.c_str(), method.name, h, failure.what());
+          file.row("%s,%s,%g,%g,nan,nan,nan,nan\n", name.c_str(), method.name, end, h);
         }
       }
     }

@@ -184,7 +184,7 @@ int info(const SceneOptions& options) {
             << "\n";
   const double stable = pliant::largest_stable_step(simulation);
   if (std::isfinite(stable))
-    std::cout << "largest stable step: about " << pliant::rounded_text(stable) << " s\n";
+    std::cout << "largest stable step: about " << pliant::rounded_text(stable) << " s at the start\n";
   else
     std::cout << "largest stable step: no bound, nothing is stiff\n";
   if (schedule.step() > stable)

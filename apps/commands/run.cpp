@@ -117,7 +117,8 @@ int run_scene(const RunCommand& command) {
   options.stop = [] { return stop_signal() != 0; };
   pliant::Run run(*scene, std::move(options), *progress);
   if (!command.quiet && std::isfinite(run.record().stable_step))
-    progress->note("step " + pliant::number_text(run.record().step) + " s; the largest stable one is about " +
+    progress->note("step " + pliant::number_text(run.record().step) +
+                   " s; the largest stable one at the start is about " +
                    pliant::rounded_text(run.record().stable_step) + " s");
   if (!run.simulate()) {
     run.finish(pliant::RunRecord::Status::stopped, "by signal " + std::to_string(stop_signal()));

@@ -18,6 +18,8 @@ constexpr double kDependent = 3e-5;
 /// Refinements, which end when the rows are met to rounding, or when so many of them did not improve.
 constexpr int kMostRefinements = 12, kStalled = 3;
 constexpr double kMet = 1e-16, kImproves = 0.5;
+/// Rows that are met but for this part of them are met as well as rounding lets them be.
+constexpr double kRounding = 1e-13;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -108,8 +110,10 @@ void AugmentedFactor::solve(VecX<double>& x) const {
     left = b - K_.selfadjointView<Eigen::Lower>() * z;
     left.tail(rows) += K_.diagonal().tail(rows).cwiseProduct(z.tail(rows));
     const double now = left.tail(rows).lpNorm<Eigen::Infinity>();
-    if (!(now > kMet * b.lpNorm<Eigen::Infinity>())) break;
+    const double size = b.lpNorm<Eigen::Infinity>();
+    if (!(now > kMet * size)) break;
     stalled = now > kImproves * before ? stalled + 1 : 0;
+    if (stalled > 0 && now <= kRounding * size) break;
     if (stalled == kStalled) {
       // What is left is on rows that depend on others but disagree with them, as where joints are a little
       // open within a step. Each refinement has added the same to their forces: they are to have none.

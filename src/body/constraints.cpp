@@ -203,6 +203,37 @@ bool JointFactor<S>::is_rough() const {
   return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < smallest;
 }
 
+template <class S>
+VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
+  const JointModel& joint = model.joints()[at(j)];
+  const JointMode mode = joints.modes[at(j)];
+  auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
+  VecMax<S, kMaxJointRows> sum = rows(joints.bias);
+  if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed)) return sum;
+  const double alpha = joints.gains.alpha, beta2 = joints.gains.beta * joints.gains.beta;
+  sum += S(2 * alpha) * rows(joints.C_dot);
+  // Beyond the cap a gap counts as one that closes at the most allowed speed.
+  S factor(beta2);
+  if (mode == JointMode::closing) {
+    const S gap = math::sqrt_from_zero(S(rows(joints.C).squaredNorm()));
+    const double most = 2 * alpha * joints.most_speed * joint.length;
+    if (plain(gap) * beta2 > most) factor = S(most) / gap;
+  }
+  sum += factor * rows(joints.C);
+  return sum;
+}
+
+double disagreement(const Model& model, const Workspace<double>& work, int j) {
+  const JointModel& joint = model.joints()[at(j)];
+  VecMax<double, kMaxJointRows> left = wanted(model, work.joints, j);
+  for (const JointSide& side : joint.sides) {
+    const VecX<double>& a_r = work.parts[at(side.part)].a_r;
+    for (int r = 0; r < joint.rows; ++r)
+      left[r] += work.joints.Cq.segment(side.offset + r * a_r.size(), a_r.size()).dot(a_r);
+  }
+  return left.norm();
+}
+
 namespace {
 
 /// The joints of an island, and the accelerations x of its parts that they shape.
@@ -222,26 +253,6 @@ class Holding {
   const Group<S, Eigen::Dynamic>& group() const { return group_; }
   const VecX<S>& x() const { return kept_.x; }
 
-  /// bias + 2 alpha C_dot + beta^2 C: C_ddot is to be minus this, but for what the accelerations give.
-  VecMax<S, kMaxJointRows> wanted(int j) const {
-    const JointModel& joint = model_.joints()[at(j)];
-    const JointMode mode = joints_.modes[at(j)];
-    auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
-    VecMax<S, kMaxJointRows> sum = rows(joints_.bias);
-    if (!acts(mode) || (mode == JointMode::closed && !joints_.stabilise_closed)) return sum;
-    const double alpha = joints_.gains.alpha, beta2 = joints_.gains.beta * joints_.gains.beta;
-    sum += S(2 * alpha) * rows(joints_.C_dot);
-    // Beyond the cap a gap counts as one that closes at the most allowed speed.
-    S factor(beta2);
-    if (mode == JointMode::closing) {
-      const S gap = math::sqrt_from_zero(S(rows(joints_.C).squaredNorm()));
-      const double most = 2 * alpha * joints_.most_speed * joint.length;
-      if (plain(gap) * beta2 > most) factor = S(most) / gap;
-    }
-    sum += factor * rows(joints_.C);
-    return sum;
-  }
-
   /// x = free + what the joints add.
   void hold() {
     VecX<S>& rows = kept_.rows;
@@ -252,7 +263,8 @@ class Holding {
       group_.joint_rows(kept_.x, rows);
       for (const int j : island_.joints)
         if (acts(joints_.modes[at(j)]))
-          rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) += wanted(j);
+          rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) +=
+              wanted(model_, joints_, j);
       kept_.lambda += group_.correct(rows, kept_.x);  // Eq. (14), with what M gives taken out
     }
   }
@@ -297,7 +309,7 @@ void solve_joints(const Model& model, const Island& island, std::vector<OneSided
   holding.hold();
   for (std::size_t k = 0; k < island.strings.size(); ++k)
     if (acts(work.joints.modes[at(island.strings[k])]))
-      limits.push_back({-1, static_cast<int>(k), 1, -holding.wanted(island.strings[k])[0]});
+      limits.push_back({-1, static_cast<int>(k), 1, -wanted(model, work.joints, island.strings[k])[0]});
   std::vector<OneSidedRow>& pushed =
       work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
   pushed.clear();
@@ -338,7 +350,7 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
       const VecX<S> response = holding.group().response(row);
       for (int i = k; i < n; ++i)
         *W.block(pattern.place(i, k).offset) = holding.group().value(pushed[at(i)], response);
-      const S bound = row.part >= 0 ? S(0.0) : S(-holding.wanted(island.strings[at(row.k)])[0]);
+      const S bound = row.part >= 0 ? S(0.0) : S(-wanted(model, work.joints, island.strings[at(row.k)])[0]);
       lambda[k] = bound - holding.group().value(row, holding.x());
     }
     W.factor();
@@ -392,6 +404,7 @@ std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<do
                                 ConstraintWorkspace<S>&);                                                  \
   template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
                               ConstraintWorkspace<S>&);                                                    \
+  template VecMax<S, kMaxJointRows> wanted(const Model&, const ConstraintWorkspace<S>&, int);              \
   template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);                                  \
   template class JointFactor<S>;
 PLIANT_INSTANCES(double)

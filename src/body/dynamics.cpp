@@ -376,7 +376,7 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   };
   const int n = static_cast<int>(model.islands().size());
   if (pool_ != nullptr)
-    pool_->run(n, solve);
+    pool_->run(n, std::ref(solve));
   else
     for (int i = 0; i < n; ++i) solve(i);
   work.power += joint_power<S>(model, work);

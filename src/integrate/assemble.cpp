@@ -38,6 +38,7 @@ constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 using settling::at;
+using settling::wider;
 
 class Assembly {
  public:
@@ -62,13 +63,13 @@ class Assembly {
     dynamics_.evaluate_joints(state_.time(), state_.q, state_.v, modes_, island_, work_);
     double widest = 0;
     for_each_gap(
-        [&](int, double gap, const JointModel& joint) { widest = std::max(widest, gap / joint.length); });
+        [&](int, double gap, const JointModel& joint) { widest = wider(gap / joint.length, widest); });
     return widest;
   }
   /// The same in m.
   double metres() const {
     double widest = 0;
-    for_each_gap([&](int, double gap, const JointModel&) { widest = std::max(widest, gap); });
+    for_each_gap([&](int, double gap, const JointModel&) { widest = wider(gap, widest); });
     return widest;
   }
 
@@ -163,14 +164,16 @@ class Assembly {
       const VecX<double> from = state_.q;
       const double before = merit();
       double share = std::min(1.0, 1.0 / size);
-      for (int halving = 0; halving <= kMostHalvings; ++halving, share /= 2) {
+      for (int halving = 0;; ++halving, share /= 2) {
         state_.q = from;
+        if (halving > 0) gap();  // the frames to move in
         move(group, x, share);
         restore(group);
         if (merit() < before || (is_closed() && merit() <= (1 + kEqual) * before)) {
           if (attempt == 0 && halving == 0) eps_ = std::max(least_eps_, eps_ / kCheaper);
           return share * size * kMostTurn;
         }
+        if (halving == kMostHalvings) break;
       }
       if (last) return share * size * kMostTurn;
       state_.q = from;

@@ -134,6 +134,30 @@ bool close_joints(const Model& model, const Island& island, bool any_rate, const
   return any;
 }
 
+/// Throws for a joint that has had the time to close and is not let: rows follow from those of others that
+/// disagree, its own or theirs. work: of the last evaluation of the step that ends at t.
+void fail_if_stuck(const Dynamics& dynamics, double t, const Island& island, State& state,
+                   Workspace<double>& work) {
+  const Model& model = dynamics.model();
+  const double beta = work.joints.gains.beta;
+  for (const int j : island.joints) {
+    const JointMode mode = work.joints.modes[at(j)];
+    if (mode != JointMode::closing && (mode != JointMode::closed || dynamics.hold().projected)) continue;
+    const JointModel& joint = model.joints()[at(j)];
+    const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
+    if (!(gap > kStuckGap * joint.length) || !(beta * (t - std::max(0.0, joint.joint->on())) > kPatience))
+      continue;
+    const double asked = wanted(model, work.joints, j).norm();
+    const auto held = std::find_if(island.joints.begin(), island.joints.end(), [&](int k) {
+      return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * asked;
+    });
+    if (held == island.joints.end()) continue;
+    const Group<double, Eigen::Dynamic> group(model, work, island, false);
+    throw Settling<Eigen::Dynamic>(dynamics, t, group, state, work, work.joints.vectors[group.number()])
+        .contradiction(j, gap, *held);
+  }
+}
+
 /// Strings that were too long have closed when they are short enough.
 void close_strings(const Model& model, const Island& island, const Workspace<double>& work, State& state) {
   for (const int j : island.strings) {
@@ -176,6 +200,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
   const Model& model = dynamics.model();
   if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
   for (const Island& island : model.islands()) {
+    fail_if_stuck(dynamics, t, island, state, work);
     auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
     bool closed = false;
     if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||

@@ -30,6 +30,9 @@ inline constexpr int kMostNamed = 8;
 inline constexpr double kDepends = 1e-6;
 /// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
 inline constexpr double kWidest = 0.1;
+/// A joint that is left open beyond kStuckGap lengths, and is not let close after a time of kPatience / beta,
+/// never will be.
+inline constexpr double kStuckGap = 1e-5, kPatience = 10;
 /// A projection by other rows than the step began with may take back at most this part of its motion.
 inline constexpr double kFar = 0.25;
 /// A string this near to its length, in lengths of its smaller part, is taut.
@@ -37,6 +40,11 @@ inline constexpr double kTaut = 1e-9;
 
 inline std::size_t at(int i) {
   return static_cast<std::size_t>(i);
+}
+
+/// The wider of two gaps, and not a number if the first is none.
+inline double wider(double gap, double widest) {
+  return gap <= widest ? widest : gap;
 }
 
 /// What a gap may be, by rounding, m.
@@ -71,7 +79,10 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
   double sum = 0;
   for (int i = 0; i < group.parts(); ++i) {
     const VecMax<double> change = group.share(y, i) - group.share(x, i);
-    sum += change.dot(group.workspace(i).inertia.M * (group.share(x, i) + 0.5 * change));
+    const VecMax<double> middle = group.share(x, i) + 0.5 * change;
+    VecMax<double> momentum(middle.size());
+    momentum.noalias() = group.workspace(i).inertia.M * middle;
+    sum += change.dot(momentum);
   }
   return sum;
 }
@@ -122,7 +133,12 @@ class Settling {
       if (open && rank != RankRule::rounding) failure = std::move(open);
       for_each_coordinates([](auto&& kept, auto&& now) { now = kept; });
     }
-    throw *failure;
+    if (entry_ <= kWidest) throw *failure;
+    std::ostringstream message;
+    message << "a step of " << state_.h << " s is too long for the motion: it opens "
+            << model_.joints()[at(widest_)].joint->type() << " '"
+            << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
+    throw NumericalFailure(message.str(), t_);
   }
 
   /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
@@ -165,6 +181,26 @@ class Settling {
         if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0) limit_mode(state_, m, k) = 0;  // it leaves
     }
     return impulses;
+  }
+
+  /// A joint that is open by a gap (m) and cannot close, with those that hold it open. held: that whose rows
+  /// depend on those of others, this one or one that it disagrees with.
+  UnsatisfiableModel contradiction(int open, double gap, int held) const {
+    const JointModel& joint = model_.joints()[at(open)];
+    std::ostringstream message;
+    message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
+            << joint.joint->name() << "' stays open by " << gap << " m";
+    int named = 0;
+    for (const int j : island_->joints) {
+      if (j == open || (j != held && !depends(model_.joints()[at(held)], model_.joints()[at(j)]))) continue;
+      if (++named > kMostNamed) {
+        message << " and others";
+        break;
+      }
+      message << (named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
+              << model_.joints()[at(j)].joint->name() << "'";
+    }
+    return UnsatisfiableModel(message.str(), t_);
   }
 
  private:
@@ -243,8 +279,12 @@ class Settling {
       const JointModel& joint = model_.joints()[at(j)];
       if (state_.joints[at(j)] != JointMode::closed) continue;
       const auto row = rows.segment(joint.row, joint.rows);
+      if (iteration == 0 && rank_ == RankRule::keep && !(row.norm() <= entry_ * joint.length)) {
+        entry_ = row.norm() / joint.length;
+        widest_ = j;
+      }
       error.segment(joint.island_row, joint.rows) = row;
-      now = std::max(now, row.norm() / left(joint, what));
+      now = wider(row.norm() / left(joint, what), now);
     }
     if (!(now > 1)) return false;
     const bool slow = iteration > 0 && now > kSlow * before_;
@@ -271,21 +311,7 @@ class Settling {
       widest = gap;
     }
     if (open < 0) return std::nullopt;
-    const JointModel& joint = model_.joints()[at(open)];
-    std::ostringstream message;
-    message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
-            << joint.joint->name() << "' stays open by " << widest << " m";
-    int named = 0;
-    for (const int j : island_->joints) {
-      if (j == open || !depends(joint, model_.joints()[at(j)])) continue;
-      if (++named > kMostNamed) {
-        message << " and others";
-        break;
-      }
-      message << (named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
-              << model_.joints()[at(j)].joint->name() << "'";
-    }
-    return UnsatisfiableModel(message.str(), t_);
+    return contradiction(open, widest, open);
   }
 
   /// Whether the rows of a joint that the factor holds are made of those of another, among the rest.
@@ -365,6 +391,8 @@ class Settling {
   GroupVectors<double, Max>& kept_;
   double before_ = 0;
   RankRule rank_ = RankRule::keep;
+  double entry_ = 0;    ///< widest gap of the closed joints before the projection, in lengths of the joint,
+  int widest_ = -1;     ///< and whose it is
   bool fresh_ = false;  ///< whether the factor was that of the iteration before
 };
 

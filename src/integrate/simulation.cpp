@@ -55,6 +55,9 @@ void Simulation::step(double h) {
     message << "a step of " << h << " s is too long for the motion: " << failure.what()
             << ", but not after steps of " << h / kShorter << " s";
     throw NumericalFailure(message.str(), state_.time());
+  } catch (...) {
+    state_ = last_good_;
+    throw;
   }
   ++state_.step;
   ++step_counters_.steps;
@@ -120,8 +123,12 @@ void Simulation::switch_joints(double t, double near) {
 }
 
 void Simulation::check(const State& before) {
-  if (state_.q.allFinite() && state_.v.allFinite() && state_.work.allFinite()) return;
+  const bool joints = work_.joints.C.allFinite();
+  if (joints && state_.q.allFinite() && state_.v.allFinite() && state_.work.allFinite()) return;
   std::string where;
+  for (const JointModel& joint : model_.joints())
+    if (!joints && where.empty() && !work_.joints.C.segment(joint.row, joint.rows).allFinite())
+      where = "the gap of joint '" + joint.joint->name() + "'";
   for (Eigen::Index i = 0; i < state_.v.size() && where.empty(); ++i)
     if (!std::isfinite(state_.v[i])) where = model_.velocity_name(static_cast<int>(i));
   for (Eigen::Index i = 0; i < state_.q.size() && where.empty(); ++i)

@@ -30,7 +30,7 @@ bool close_ahead(const Model& model, const Island& island, const Group<double, M
     const JointModel& joint = model.joints()[at(j)];
     if (state.joints[at(j)] != JointMode::closed) continue;
     const auto C = ahead.joints.C.segment(joint.row, joint.rows);
-    widest = std::max(widest, C.norm() / rounding(joint, ahead));
+    widest = wider(C.norm() / rounding(joint, ahead), widest);
     error.segment(joint.island_row, joint.rows) = C / h;
   }
   if (!(widest > 1) || widest > kIdle * before) return false;

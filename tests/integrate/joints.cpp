@@ -616,6 +616,52 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
+TEST_CASE("N42: joints that contradict each other from afar stop the run, projected or not", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"})
+    for (const bool projected : {true, false})
+      for (const double on : {0., 0.1003}) {
+        MultiBody body;
+        body.stabilization.projection = projected;
+        Part& mass = sphere(body, "mass", {0, 0, 0});
+        body.ball("here", world(0, 0, 0), centre(mass));
+        body.ball("there", world(1, 0, 0), centre(mass)).during(on);
+        body.ball("else", point(mass, 0, 0), centre(sphere(body, "other", {0.2, 0, 0})));
+        INFO(method << " " << projected << " " << on);
+        Simulation simulation(body, method);
+        try {
+          for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
+          FAIL_CHECK("went on");
+        } catch (const UnsatisfiableModel& failure) {
+          const std::string what = failure.what();
+          CHECK(what.find("'here'") != std::string::npos);
+          CHECK(what.find("'there'") != std::string::npos);
+          CHECK(what.find("'else'") == std::string::npos);
+          CHECK(simulation.time() >= 0.99);
+          CHECK(simulation.time() <= 1.02 + on);
+        }
+      }
+}
+
+TEST_CASE("a step that throws joints far open is told to be too long, not the joints to contradict",
+          "[joints]") {
+  MultiBody body;
+  const Part* before = nullptr;
+  for (int i = 0; i < 8; ++i) {
+    Part& link = test::add(body, "link" + std::to_string(i), "ellipsoid", {}, 1000);
+    link.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.3 + 0.6 * i, 0, 0});
+    body.ball("joint" + std::to_string(i), before == nullptr ? world(0, 0, 0) : point(*before, 0, 0),
+              point(link, 0, kPi));
+    before = &link;
+  }
+  Simulation simulation(body, "rk4");
+  try {
+    for (int i = 0; i < 100; ++i) simulation.step(0.3);
+    FAIL("went on");
+  } catch (const NumericalFailure& failure) {
+    CHECK(std::string(failure.what()).find("too long") != std::string::npos);
+  }
+}
+
 TEST_CASE("what is not a number in a joint is named", "[joints]") {
   MultiBody body;
   Part& mass = sphere(body, "mass", {0, 0, 0});

@@ -15,6 +15,15 @@ namespace {
 long allocations = 0;
 }  // namespace
 
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+// Eigen takes its memory from malloc.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) noexcept {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#endif
+
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size)) return memory;

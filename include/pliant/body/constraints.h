@@ -102,6 +102,14 @@ void solve_joints(const Model& model, const Island& island, std::vector<OneSided
 /// The same for a derivative, with the rows of work.joints.pushed pushing.
 void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work);
 
+/// bias + 2 alpha C_dot + beta^2 C of a joint: what C_ddot is to be minus, but for what the accelerations
+/// give.
+template <class S>
+VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
+/// How far an evaluation is from giving a joint that, m/s^2: not at all, unless its rows depend on others
+/// that disagree.
+double disagreement(const Model& model, const Workspace<double>& work, int j);
+
 /// Rates of the works of the joints, W.
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);

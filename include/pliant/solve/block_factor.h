@@ -140,7 +140,8 @@ class BlockFactor {
       for (int k = 0; k < j; ++k) d -= A[k * n + j] * A[k * n + j] * A[k * n + k];
       const double from = diagonal_[at(c.row + j)], left = plain(d);
       // What is not a number is left to the finite check.
-      const bool gone = keep_ ? held(c.row + j) : std::isfinite(from) && !(left > vanished_ * from);
+      const bool gone = (keep_ && held(c.row + j)) ||
+                        (std::isfinite(from) && !(left > (keep_ ? kRounding : vanished_) * from));
       if (gone) {
         held_[at(c.row + j)] = 1;
         A[j * n + j] = S(1.0);
