@@ -231,7 +231,7 @@ double disagreement(const Model& model, const Workspace<double>& work, int j) {
     for (int r = 0; r < joint.rows; ++r)
       left[r] += work.joints.Cq.segment(side.offset + r * a_r.size(), a_r.size()).dot(a_r);
   }
-  return left.norm();
+  return joint.joint->one_sided() ? std::max(0.0, -left[0]) : left.norm();
 }
 
 namespace {

@@ -140,22 +140,28 @@ void fail_if_stuck(const Dynamics& dynamics, double t, const Island& island, Sta
                    Workspace<double>& work) {
   const Model& model = dynamics.model();
   const double beta = work.joints.gains.beta;
-  for (const int j : island.joints) {
+  auto judge = [&](int j) {
     const JointMode mode = work.joints.modes[at(j)];
-    if (mode != JointMode::closing && (mode != JointMode::closed || dynamics.hold().projected)) continue;
+    if (mode != JointMode::closing && (mode != JointMode::closed || dynamics.hold().projected)) return;
     const JointModel& joint = model.joints()[at(j)];
     const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
     if (!(gap > kStuckGap * joint.length) || !(beta * (t - std::max(0.0, joint.joint->on())) > kPatience))
-      continue;
+      return;
     const double asked = wanted(model, work.joints, j).norm();
-    const auto held = std::find_if(island.joints.begin(), island.joints.end(), [&](int k) {
+    auto disagrees = [&](int k) {
       return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * asked;
-    });
-    if (held == island.joints.end()) continue;
+    };
+    auto held = std::find_if(island.joints.begin(), island.joints.end(), disagrees);
+    if (held == island.joints.end()) {
+      if (!joint.joint->one_sided() || !disagrees(j)) return;
+      held = std::find(island.strings.begin(), island.strings.end(), j);
+    }
     const Group<double, Eigen::Dynamic> group(model, work, island, false);
     throw Settling<Eigen::Dynamic>(dynamics, t, group, state, work, work.joints.vectors[group.number()])
         .contradiction(j, gap, *held);
-  }
+  };
+  std::for_each(island.joints.begin(), island.joints.end(), judge);
+  std::for_each(island.strings.begin(), island.strings.end(), judge);
 }
 
 /// Strings that were too long have closed when they are short enough.

@@ -642,6 +642,26 @@ TEST_CASE("N42: joints that contradict each other from afar stop the run, projec
       }
 }
 
+TEST_CASE("N42: a string too short to reach between what holds its ends stops the run", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0, 0, 0});
+    body.ball("here", world(0, 0, 0), centre(mass));
+    body.join("string", String{0.5}, {world(1, 0, 0), centre(mass)});
+    Simulation simulation(body, method);
+    try {
+      for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
+      FAIL("went on");
+    } catch (const UnsatisfiableModel& failure) {
+      const std::string what = failure.what();
+      INFO(what);
+      CHECK(what.find("'string' stays open by 0.5 m") != std::string::npos);
+      CHECK(what.find("'here'") != std::string::npos);
+      CHECK(simulation.time() == Approx(1).margin(0.01));
+    }
+  }
+}
+
 TEST_CASE("a step that throws joints far open is told to be too long, not the joints to contradict",
           "[joints]") {
   MultiBody body;
