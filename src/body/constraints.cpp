@@ -1,6 +1,7 @@
 #include <pliant/body/constraints.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <pliant/body/dynamics.h>
 #include <pliant/body/group.h>
@@ -203,15 +204,17 @@ bool JointFactor<S>::is_rough() const {
   return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < smallest;
 }
 
+namespace {
+
+/// 2 alpha C_dot + beta^2 C of a joint that has Baumgarte's terms.
 template <class S>
-VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
+VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
   const JointModel& joint = model.joints()[at(j)];
   const JointMode mode = joints.modes[at(j)];
   auto rows = [&](const VecX<S>& of) { return of.segment(joint.row, joint.rows); };
-  VecMax<S, kMaxJointRows> sum = rows(joints.bias);
-  if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed)) return sum;
+  if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed))
+    return VecMax<S, kMaxJointRows>::Constant(joint.rows, S(0.0));
   const double alpha = joints.gains.alpha, beta2 = joints.gains.beta * joints.gains.beta;
-  sum += S(2 * alpha) * rows(joints.C_dot);
   // Beyond the cap a gap counts as one that closes at the most allowed speed.
   S factor(beta2);
   if (mode == JointMode::closing) {
@@ -219,8 +222,15 @@ VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>
     const double most = 2 * alpha * joints.most_speed * joint.length;
     if (plain(gap) * beta2 > most) factor = S(most) / gap;
   }
-  sum += factor * rows(joints.C);
-  return sum;
+  return S(2 * alpha) * rows(joints.C_dot) + factor * rows(joints.C);
+}
+
+}  // namespace
+
+template <class S>
+VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
+  const JointModel& joint = model.joints()[at(j)];
+  return joints.bias.segment(joint.row, joint.rows) + baumgarte(model, joints, j);
 }
 
 double disagreement(const Model& model, const Workspace<double>& work, int j) {
@@ -246,6 +256,7 @@ class Holding {
         work_(work),
         joints_(work.joints),
         group_(model, work, island, false),
+        closed_(model, work, island, true),
         kept_(joints_.vectors[group_.number()]) {
     group_.gather(kept_.before, [&](int i) -> const VecX<S>& { return group_.workspace(i).a_r; });
   }
@@ -253,20 +264,18 @@ class Holding {
   const Group<S, Eigen::Dynamic>& group() const { return group_; }
   const VecX<S>& x() const { return kept_.x; }
 
-  /// x = free + what the joints add.
+  /// x = before + what the joints add. Closed joints come first; those that close get what these leave them.
   void hold() {
-    VecX<S>& rows = kept_.rows;
+    auto closing = [&](int j) { return joints_.modes[at(j)] == JointMode::closing; };
+    const bool open = std::any_of(island_.joints.begin(), island_.joints.end(), closing);
     kept_.x = kept_.before;
     kept_.lambda.setConstant(island_.rows, S(0.0));
-    const int refinements = joints_.W_c[group_.number()].is_rough() ? 2 : 0;
-    for (int pass = 0; pass <= refinements; ++pass) {
-      group_.joint_rows(kept_.x, rows);
-      for (const int j : island_.joints)
-        if (acts(joints_.modes[at(j)]))
-          rows.segment(model_.joints()[at(j)].island_row, model_.joints()[at(j)].rows) +=
-              wanted(model_, joints_, j);
-      kept_.lambda += group_.correct(rows, kept_.x);  // Eq. (14), with what M gives taken out
-    }
+    correct(
+        closed_, [&](int j) { return !closing(j); }, kept_.x, kept_.lambda);
+    if (!open) return;
+    add_closing(closing);
+    correct(
+        closed_, [&](int j) { return !closing(j); }, kept_.x, kept_.lambda);
   }
   /// The same with pushes on one-sided rows.
   template <class Lambda>
@@ -293,12 +302,67 @@ class Holding {
   }
 
  private:
+  using Vectors = GroupVectors<S, Eigen::Dynamic>;
+
+  /// Takes x to where C_q x = -wanted for the rows of some joints that act, and adds the forces to lambda;
+  /// Eq. (14), with what M gives taken out.
+  template <class Which>
+  void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
+    const int refinements = group.is_rough() ? 2 : 0;
+    for (int pass = 0; pass <= refinements; ++pass) {
+      group.joint_rows(x, kept_.rows);
+      for (const int j : island_.joints) {
+        const JointModel& joint = model_.joints()[at(j)];
+        auto rows = kept_.rows.segment(joint.island_row, joint.rows);
+        if (acts(joints_.modes[at(j)]) && which(j))
+          rows += wanted(model_, joints_, j);
+        else
+          rows.setConstant(S(0.0));
+      }
+      lambda += group.correct(kept_.rows, x);
+    }
+  }
+
+  /// What brings joints together that close. Where their rows all but depend on each other and disagree, as
+  /// of rods that pull apart, it would throw the parts away: no part is accelerated by more than kMostLever
+  /// times what the gaps are.
+  template <class Closing>
+  void add_closing(Closing&& closing) {
+    const VecX<S> before = kept_.x, lambda = kept_.lambda;
+    group_.joint_rows(before, kept_.rows);
+    double asked = 0, most = 0;
+    for (const int j : island_.joints) {
+      if (!closing(j)) continue;
+      const JointModel& joint = model_.joints()[at(j)];
+      const VecMax<S, kMaxJointRows> more = wanted(model_, joints_, j);
+      double square = 0;
+      for (int r = 0; r < joint.rows; ++r)
+        square += std::pow(plain(kept_.rows[joint.island_row + r]) + plain(more[r]), 2);
+      asked = std::max(asked, std::sqrt(square));
+    }
+    correct(group_, closing, kept_.x, kept_.lambda);
+    const VecX<S> change = kept_.x - before;
+    for (int i = 0; i < group_.parts(); ++i) {
+      double straight = 0, turning = 0;
+      for (int k = 0; k < 3; ++k) {
+        straight += std::pow(plain(change[group_.first(i) + k]), 2);
+        turning += std::pow(plain(change[group_.first(i) + 3 + k]), 2);
+      }
+      most = std::max({most, std::sqrt(straight), group_.model(i).part->size() * std::sqrt(turning)});
+    }
+    if (!(most > kMostLever * asked)) return;
+    const S share(kMostLever * asked / most);
+    kept_.x = before + share * change;
+    kept_.lambda = lambda + share * (kept_.lambda - lambda);
+  }
+  static constexpr double kMostLever = 30;
+
   const Model& model_;
   const Island& island_;
   Workspace<S>& work_;
   ConstraintWorkspace<S>& joints_;
-  Group<S, Eigen::Dynamic> group_;
-  GroupVectors<S, Eigen::Dynamic>& kept_;
+  Group<S, Eigen::Dynamic> group_, closed_;  ///< all joints that act; the closed ones, while others close
+  Vectors& kept_;
 };
 
 }  // namespace

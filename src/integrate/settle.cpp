@@ -156,7 +156,9 @@ void fail_if_stuck(const Dynamics& dynamics, double t, const Island& island, Sta
       if (!joint.joint->one_sided() || !disagrees(j)) return;
       held = std::find(island.strings.begin(), island.strings.end(), j);
     }
-    const Group<double, Eigen::Dynamic> group(model, work, island, false);
+    const bool closed = std::any_of(island.joints.begin(), island.joints.end(),
+                                    [&](int k) { return work.joints.modes[at(k)] == JointMode::closed; });
+    const Group<double, Eigen::Dynamic> group(model, work, island, closed);
     throw Settling<Eigen::Dynamic>(dynamics, t, group, state, work, work.joints.vectors[group.number()])
         .contradiction(j, gap, *held);
   };

@@ -97,12 +97,14 @@ class Group {
         for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
     });
   }
+  /// Whether what correct() gives is to be refined.
+  bool is_rough() const { return factor().is_rough(); }
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
   /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
   /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by
   /// opposite forces.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x) const {
-    const JointFactor<S>& factor = (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
+    const JointFactor<S>& factor = this->factor();
     GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
     VecX<S>&lambda = kept.correction, &change = kept.change;
     lambda = -rows;
@@ -125,6 +127,9 @@ class Group {
   using BallSide = Eigen::Map<const Eigen::Matrix<S, 6, 3>>;
 
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  const JointFactor<S>& factor() const {
+    return (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
+  }
   /// act(first row, rows, first velocity, velocities, C_q^T) for each side of each joint of the island.
   template <class F>
   void for_each_side(F&& act) const {
