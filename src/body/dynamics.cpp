@@ -352,8 +352,10 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
     joints.most_speed = fixed_modes->joints.most_speed;
     joints.pushed = fixed_modes->joints.pushed;
     if constexpr (!std::is_same_v<S, double>)
-      for (std::size_t i = 0; i < model.islands().size(); ++i)
+      for (std::size_t i = 0; i < model.islands().size(); ++i) {
         joints.W_c[i].refer_to(fixed_modes->joints.W_c[i]);
+        joints.W_closed[i].refer_to(fixed_modes->joints.W_closed[i]);
+      }
   } else {
     joints.modes.assign(model.joints().size(), JointMode::off);
   }
