@@ -35,6 +35,17 @@ Counters after_steps(Simulation& simulation, int steps) {
   return simulation.counters();
 }
 
+/// Steps take no memory once the first have sized everything.
+void check_heap(Simulation& simulation, double h) {
+  simulation.step(h);
+  simulation.step(h);
+  const long before = allocations;
+  CHECK((before > 0) == kCounted);
+  for (int i = 0; i < 10; ++i) simulation.step(h);
+  const long taken = allocations - before;
+  CHECK(taken == 0);
+}
+
 }  // namespace
 
 TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix", "[skip]") {
@@ -122,14 +133,8 @@ TEST_CASE("a step takes nothing from the heap", "[skip]") {
     body.force("push", point(a, 0.3, 1), TimeVector(test::wave(0, 1, 3), 0, 0));
     body.torque("turn", b, TimeVector(test::wave(0, 1, 3), 0, 0));
     Simulation simulation(body, method);
-    simulation.step(1e-3);
-    simulation.step(1e-3);
-    const long before = allocations;
-    CHECK((before > 0) == kCounted);
-    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
-    const long taken = allocations - before;
     INFO(method);
-    CHECK(taken == 0);
+    check_heap(simulation, 1e-3);
   }
 }
 
@@ -148,14 +153,8 @@ TEST_CASE("a step of parts with joints takes nothing from the heap", "[skip]") {
     body.join("rod", Rod{1}, {point(*above, -kPi / 2, 0), world(1, 0, -4.5)});
     body.force("push", point(*above, 0, 0), TimeVector(0, test::wave(0, 100, 3), 0));
     Simulation simulation(body, method);
-    simulation.step(1e-4);
-    simulation.step(1e-4);
-    const long before = allocations;
-    CHECK((before > 0) == kCounted);
-    for (int i = 0; i < 10; ++i) simulation.step(1e-4);
-    const long taken = allocations - before;
     INFO(method);
-    CHECK(taken == 0);
+    check_heap(simulation, 1e-4);
   }
 }
 
@@ -165,14 +164,8 @@ TEST_CASE("a held parameter takes nothing from the heap", "[skip]") {
     Part& part = test::add(body, "part", "box", {"bend"}, 1000);
     part.make_dynamic({"bend.direction"}).move({0, 0, 0}, {1, 2, 3});  // no bend: its direction moves nothing
     Simulation simulation(body, method);
-    simulation.step(1e-3);
-    simulation.step(1e-3);
-    const long before = allocations;
-    CHECK((before > 0) == kCounted);
-    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
-    const long taken = allocations - before;
     INFO(method);
-    CHECK(taken == 0);
+    check_heap(simulation, 1e-3);
     CHECK(simulation.held().count("part.bend.direction") == 1);
   }
 }
@@ -186,11 +179,7 @@ TEST_CASE("a parameter resting on its limit takes nothing from the heap", "[skip
     Simulation simulation(body, method);
     for (int i = 0; i < 5; ++i) simulation.step(1e-3);
     REQUIRE(simulation.state().q[7] == 1);
-    const long before = allocations;
-    CHECK((before > 0) == kCounted);
-    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
-    const long taken = allocations - before;
     INFO(method);
-    CHECK(taken == 0);
+    check_heap(simulation, 1e-3);
   }
 }
