@@ -246,6 +246,12 @@ double disagreement(const Model& model, const Workspace<double>& work, int j) {
 
 namespace {
 
+/// Closing joints whose rows all but contradict each other would throw their parts away, as rods that pull
+/// apart would: nothing is accelerated by more than this times what the gaps ask.
+constexpr double kMostLever = 30;
+/// Strings that would are as soft as this, and share what there is.
+constexpr double kSoftClosing = 1e-3;
+
 /// The joints of an island, and the accelerations x of its parts that they shape.
 template <class S>
 class Holding {
@@ -323,9 +329,7 @@ class Holding {
     }
   }
 
-  /// What brings joints together that close. Where their rows all but depend on each other and disagree, as
-  /// of rods that pull apart, it would throw the parts away: no part is accelerated by more than kMostLever
-  /// times what the gaps are.
+  /// What brings joints together that close, no part faster than kMostLever allows.
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;
@@ -355,7 +359,6 @@ class Holding {
     kept_.x = before + share * change;
     kept_.lambda = lambda + share * (kept_.lambda - lambda);
   }
-  static constexpr double kMostLever = 30;
 
   const Model& model_;
   const Island& island_;
@@ -367,13 +370,36 @@ class Holding {
 
 }  // namespace
 
+namespace {
+
+/// Softens the strings that close, where one of them pushes out of all proportion; whether one does.
+bool soften_closing(const Model& model, const Island& island, const ConstraintWorkspace<double>& joints,
+                    const Group<double, Eigen::Dynamic>& group, OneSidedRows<Eigen::Dynamic>& rows) {
+  auto closes = [&](const OneSidedRow& row) {
+    return row.part < 0 && joints.modes[at(island.strings[at(row.k)])] == JointMode::closing;
+  };
+  double asked = 0, most = 0;
+  rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
+    if (!closes(row)) return;
+    asked = std::max(asked, wanted(model, joints, island.strings[at(row.k)]).norm());
+    most = std::max(most, lambda * group.value(row, group.response(row)));
+  });
+  if (!(most > kMostLever * asked)) return false;
+  rows.soften(kSoftClosing, closes);
+  return true;
+}
+
+}  // namespace
+
 void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
                   Workspace<double>& work) {
   Holding<double> holding(model, island, work);
   holding.hold();
-  for (std::size_t k = 0; k < island.strings.size(); ++k)
-    if (acts(work.joints.modes[at(island.strings[k])]))
-      limits.push_back({-1, static_cast<int>(k), 1, -wanted(model, work.joints, island.strings[k])[0]});
+  for (std::size_t k = 0; k < island.strings.size(); ++k) {
+    const int j = island.strings[k];
+    if (acts(work.joints.modes[at(j)]))
+      limits.push_back({-1, static_cast<int>(k), 1, -wanted(model, work.joints, j)[0]});
+  }
   std::vector<OneSidedRow>& pushed =
       work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
   pushed.clear();
@@ -381,6 +407,7 @@ void solve_joints(const Model& model, const Island& island, std::vector<OneSided
     OneSidedRows<Eigen::Dynamic> rows(holding.group());
     for (const OneSidedRow& row : limits) rows.add(row);
     rows.meet(holding.x());
+    if (soften_closing(model, island, work.joints, holding.group(), rows)) rows.meet(holding.x());
     std::vector<double> pushes;
     rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
       pushed.push_back(row);
@@ -414,6 +441,7 @@ void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& 
       const VecX<S> response = holding.group().response(row);
       for (int i = k; i < n; ++i)
         *W.block(pattern.place(i, k).offset) = holding.group().value(pushed[at(i)], response);
+      *W.block(pattern.place(k, k).offset) *= S(1 + row.softness);
       const S bound = row.part >= 0 ? S(0.0) : S(-wanted(model, work.joints, island.strings[at(row.k)])[0]);
       lambda[k] = bound - holding.group().value(row, holding.x());
     }

@@ -154,7 +154,9 @@ void fail_if_stuck(const Dynamics& dynamics, double t, const Island& island, Sta
     auto held = std::find_if(island.joints.begin(), island.joints.end(), disagrees);
     if (held == island.joints.end()) {
       if (!joint.joint->one_sided() || !disagrees(j)) return;
-      held = std::find(island.strings.begin(), island.strings.end(), j);
+      held = std::find_if(island.strings.begin(), island.strings.end(),
+                          [&](int k) { return k != j && disagrees(k); });
+      if (held == island.strings.end()) held = std::find(island.strings.begin(), island.strings.end(), j);
     }
     const bool closed = std::any_of(island.joints.begin(), island.joints.end(),
                                     [&](int k) { return work.joints.modes[at(k)] == JointMode::closed; });

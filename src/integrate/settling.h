@@ -191,14 +191,18 @@ class Settling {
     message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
             << joint.joint->name() << "' stays open by " << gap << " m";
     int named = 0;
+    auto name = [&](int j) {
+      message << (++named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
+              << model_.joints()[at(j)].joint->name() << "'";
+    };
+    if (held != open && model_.joints()[at(held)].joint->one_sided()) name(held);
     for (const int j : island_->joints) {
       if (j == open || (j != held && !depends(model_.joints()[at(held)], model_.joints()[at(j)]))) continue;
-      if (++named > kMostNamed) {
+      if (named == kMostNamed) {
         message << " and others";
         break;
       }
-      message << (named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
-              << model_.joints()[at(j)].joint->name() << "'";
+      name(j);
     }
     return UnsatisfiableModel(message.str(), t_);
   }

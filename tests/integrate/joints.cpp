@@ -662,6 +662,31 @@ TEST_CASE("N42: a string too short to reach between what holds its ends stops th
   }
 }
 
+TEST_CASE("N42: strings too short that pull against each other stop the run", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"})
+    for (const double aside : {0.0, 1e-3, 0.1}) {
+      MultiBody body;
+      Part& mass = sphere(body, "mass", {0, 0, 0});
+      body.join("left", String{0.5}, {world(-1, aside, 0), centre(mass)});
+      body.join("right", String{0.5}, {world(1, 0, 0), centre(mass)});
+      Simulation simulation(body, method);
+      double farthest = 0;
+      try {
+        for (int i = 0; i < 5000; ++i) {
+          simulation.step(1e-3);
+          farthest = std::max(farthest, simulation.state().q.head<3>().norm());
+        }
+        FAIL("went on");
+      } catch (const UnsatisfiableModel& failure) {
+        const std::string what = failure.what();
+        INFO(what);
+        CHECK(what.find("string 'left' stays open by 0.5") != std::string::npos);
+        CHECK(what.find("held open by string 'right'") != std::string::npos);
+        CHECK(farthest < 0.1 + aside);
+      }
+    }
+}
+
 TEST_CASE("a step that throws joints far open is told to be too long, not the joints to contradict",
           "[joints]") {
   MultiBody body;

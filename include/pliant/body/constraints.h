@@ -25,6 +25,7 @@ struct OneSidedRow {
   int k;
   double sign;  ///< 1 at a lower limit and for a string, -1 at an upper limit
   double bound;
+  double softness = 0;  ///< it is met but for this share of its own push: rows that contradict each other end
 };
 
 /// W_c of an island, factored by blocks or within the augmented matrix.

@@ -62,6 +62,7 @@ class OneSidedRows {
       b[r] = group_.value(rows_[i], x) - rows_[i].bound;
       for (std::size_t j = 0; j < n_; ++j)
         W(r, static_cast<Eigen::Index>(j)) = group_.value(rows_[i], responses_[j]);
+      W(r, r) *= 1 + rows_[i].softness;
     }
     lambda_ = solve_complementarity(W, b).lambda;
     Vector after = x;
@@ -93,6 +94,13 @@ class OneSidedRows {
         ++count;
       }
     return count;
+  }
+
+  /// Makes the rows soft of which which(row).
+  template <class Which>
+  void soften(double softness, Which&& which) {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (which(rows_[i])) rows_[i].softness = softness;
   }
 
  private:
