@@ -7,7 +7,7 @@
 
 #include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
-#include <pliant/body/thread_pool.h>
+#include <pliant/math/thread_pool.h>
 
 namespace pliant {
 

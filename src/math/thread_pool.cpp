@@ -1,4 +1,4 @@
-#include <pliant/body/thread_pool.h>
+#include <pliant/math/thread_pool.h>
 
 #include <atomic>
 #include <condition_variable>
@@ -8,6 +8,11 @@
 #include <vector>
 
 namespace pliant {
+
+namespace {
+/// Whether this thread runs a task of a pool.
+thread_local bool in_task = false;
+}  // namespace
 
 struct ThreadPool::Impl {
   std::vector<std::thread> threads;
@@ -23,6 +28,7 @@ struct ThreadPool::Impl {
   std::exception_ptr failure;
 
   void work() {
+    in_task = true;
     for (int i = next.fetch_add(1); i < n; i = next.fetch_add(1)) {
       try {
         (*task)(i);
@@ -34,6 +40,7 @@ struct ThreadPool::Impl {
         }
       }
     }
+    in_task = false;
   }
   void serve() {
     long seen = 0;
@@ -69,7 +76,7 @@ int ThreadPool::threads() const {
 
 void ThreadPool::run(int n, const std::function<void(int)>& task) {
   Impl& pool = *impl_;
-  if (pool.threads.empty() || n <= 1) {
+  if (pool.threads.empty() || n <= 1 || in_task) {
     for (int i = 0; i < n; ++i) task(i);
     return;
   }

@@ -1,5 +1,5 @@
-// A pool of threads for loops over parts. Which thread runs a part never changes a result: parts do not share
-// sums.
+// A pool of threads for loops over parts, or over ranges of the elements of one. Which thread runs what never
+// changes a result: nothing that runs at once adds to the same sum.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ class ThreadPool {
 
   int threads() const;
   /// task(i) for 0 <= i < n, in any order; returns when all are done. The first exception of the lowest i is
-  /// rethrown.
+  /// rethrown. Within a task of a pool everything runs in the calling thread.
   void run(int n, const std::function<void(int)>& task);
 
  private:

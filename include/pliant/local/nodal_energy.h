@@ -1,0 +1,46 @@
+// The face of an energy of local deformation (design 1.4): E(x) of local coordinates x, see nodes.h. It never
+// forms a matrix to give a force. Elements come in batches of Pack lanes, structure of arrays; a node gathers
+// what its elements push in a fixed order, so that results do not depend on the number of threads.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+#include <pliant/local/nodes.h>
+#include <pliant/math/thread_pool.h>
+
+namespace pliant {
+
+class NodalEnergy {
+ public:
+  /// What E depends on. Of displacements d it is quadratic, E = 1/2 x K x, and acts on d alone; of positions
+  /// p = s + d it is an energy of the whole map from rest to now, and global parameters feel it too.
+  enum class Of { displacement, position };
+
+  /// What an evaluation needs for itself; kept from call to call, so that a step takes nothing from the heap.
+  struct Buffer {
+    std::vector<double> numbers;
+  };
+
+  virtual ~NodalEnergy() = default;
+  virtual Of of() const = 0;
+  /// Inertia of the coordinates that the energy has of its own; they follow those of the nodes. Most have
+  /// none.
+  virtual VecX<double> own_inertia() const { return {}; }
+
+  /// J.
+  virtual double energy(const VecX<double>& x) const = 0;
+  /// f -= dE/dx, N. pool: may be nullptr.
+  virtual void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const = 0;
+  /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
+  virtual void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+                              ThreadPool* pool) const = 0;
+  /// Adds the entries of K(x).
+  virtual void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
+  /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over
+  /// all coordinates.
+  virtual double frequency_bound(const VecX<double>& x, const VecX<double>& M) const = 0;
+};
+
+}  // namespace pliant
