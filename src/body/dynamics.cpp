@@ -26,6 +26,22 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
   return R;
 }
 
+/// Adds the local deformation at the ports to their positions and velocities.
+void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
+  const auto d = nodes(w.local->d, m.local->n_nodes()), d_dot = nodes(w.local->d_dot, m.local->n_nodes());
+  for (std::size_t k = 0; k < m.ports.size(); ++k) {
+    if (m.n_s == 0) {
+      w.ports[k].p = m.rigid_ports[k].p;
+      w.ports[k].p1.setZero();
+    }
+    const NodeWeights& at = m.node_weights[k];
+    for (std::size_t i = 0; i < at.node.size(); ++i) {
+      w.ports[k].p += at.weight[i] * d.row(at.node[i]).transpose();
+      w.ports[k].p1 += at.weight[i] * d_dot.row(at.node[i]).transpose();
+    }
+  }
+}
+
 // positions: frames, parameters and attachment points in the world, Eqs. (1) and (9)
 template <class S>
 void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorkspace<S>& w) {
@@ -46,6 +62,13 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
     w.v_r.template head<3>() = w.R.transpose() * v.template segment<3>(m.v0);
     w.v_r.tail(3 + m.n_s) = v.segment(m.v0 + 3, 3 + m.n_s);
   }
+  if constexpr (std::is_same_v<S, double>)
+    if (m.local != nullptr) {
+      if (!w.local) w.local = std::make_unique<LocalWorkspace>();
+      w.local->d = q.segment(m.q0 + 7 + m.n_s, m.n_d());
+      w.local->d_dot = v.segment(m.v0 + 6 + m.n_s, m.n_d());
+      local_positions(part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
+    }
   if (n_ports == 0) return;
   if (w.rigid == &m && w.ports.size() == n_ports) {
     // They are there, from the evaluation before.
@@ -59,6 +82,8 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   } else {
     part.points(m.ports, w.q_s, w.q_s_dot, w.ports, w.counters);
   }
+  if constexpr (std::is_same_v<S, double>)
+    if (m.local != nullptr) displace_ports(m, w);
   w.port_x.resize(n_ports);
   w.port_x_dot.resize(n_ports);
   w.port_force.assign(n_ports, Vec3<S>::Constant(S(0.0)));
@@ -77,6 +102,12 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
 template <class S>
 void masses(const PartModel& m, PartWorkspace<S>& w) {
   const Vec3<S> omega = w.v_r.template segment<3>(3);
+  if constexpr (std::is_same_v<S, double>)
+    if (m.local != nullptr) {
+      local_masses(*m.part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
+      w.inertia.M = w.local->H0;
+      return;
+    }
   if constexpr (std::is_same_v<S, double>)
     if (w.rigid == &m) return Part::rigid_force(omega, w.inertia, w.counters);
   m.part->inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
@@ -110,8 +141,18 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
 
 // forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
 template <class S>
-void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w) {
+void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w,
+                ThreadPool* pool) {
   const int n = m.n_s;
+  if constexpr (std::is_same_v<S, double>)
+    if (m.local != nullptr) {
+      w.f.setZero(6 + n);
+      if (n > 0) elastic_forces<S>(m, t, w);
+      local_forces(*m.local, w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
+      w.power[static_cast<int>(Work::damping)] += w.local->damping;
+      w.power[static_cast<int>(Work::drag)] += w.local->drag;
+      return;
+    }
   w.f = w.inertia.g_q;
   const Vec3<S> g_body = w.R.transpose() * gravity.template cast<S>();
   const MatX<S>& M = w.inertia.M;
@@ -137,10 +178,13 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
     w.f.template head<3>() += f;
     w.f.template segment<3>(3) += w.ports[k].p.cross(f);
     w.f.tail(m.n_s) += w.ports[k].J.transpose().lazyProduct(f);
+    if constexpr (std::is_same_v<S, double>)
+      if (m.local != nullptr) push_nodes(*m.local, m.node_weights[k], f, *w.local);
   }
 }
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
+  if (m.local != nullptr) return;
   w.rigid = m.n_s == 0 ? &m : nullptr;
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
@@ -222,7 +266,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
     masses<S>(m, w);
-    own_forces<S>(m, model.body().gravity, t, w);
+    own_forces<S>(m, model.body().gravity, t, w, pool_);
   });
 
   // forces between parts, in a fixed order
@@ -296,6 +340,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     gather_port_forces<S>(m, w);
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
+      if (m.local != nullptr) return local_accelerations(*m.local, w.a_r, *w.local);
       take_factor(m, w);
       w.solve_mass(w.a_r);
       if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
@@ -314,6 +359,8 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     const PartWorkspace<S>& w = work.parts[i];
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.tail(3 + m.n_s);
+    if constexpr (std::is_same_v<S, double>)
+      if (m.local != nullptr) work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()) = w.local->d_ddot;
   }
 }
 
@@ -453,7 +500,7 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
     rate[1] = 0.5 * (theta[0] * omega[0] + theta[2] * omega[2] - theta[3] * omega[1]);
     rate[2] = 0.5 * (theta[0] * omega[1] + theta[3] * omega[0] - theta[1] * omega[2]);
     rate[3] = 0.5 * (theta[0] * omega[2] + theta[1] * omega[1] - theta[2] * omega[0]);
-    q_dot.segment(m.q0 + 7, m.n_s) = v.segment(m.v0 + 6, m.n_s);
+    q_dot.segment(m.q0 + 7, m.n_s + m.n_d()) = v.segment(m.v0 + 6, m.n_s + m.n_d());
   }
 }
 

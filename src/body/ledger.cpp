@@ -5,8 +5,16 @@ namespace pliant {
 
 void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
                           Ledger& ledger) const {
-  ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
-  ledger.gravity -= model_->body().gravity.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
+  const Vec3<double>& g = model_->body().gravity;
+  if (m.local != nullptr) {
+    const LocalMotion motion = local_motion(*m.local, w.v_r, *w.local);
+    ledger.kinetic += motion.kinetic;
+    ledger.local += motion.elastic;
+    ledger.gravity -= g.dot(m.part->total_mass() * w.c + w.R * motion.moment);
+  } else {
+    ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
+    ledger.gravity -= g.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
+  }
   VecMax<double> stretch(m.n_s);
   for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
   ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
@@ -32,7 +40,14 @@ Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) c
     if (m.q0 < 0) continue;
     const PartWorkspace<double>& w = work.parts[i];
     add_energy(t, m, w, ledger);
-    const VecMax<double> momentum = w.inertia.M * w.v_r;
+    VecMax<double> momentum;  // P and L about c, body frame
+    if (m.local != nullptr) {
+      const LocalMotion motion = local_motion(*m.local, w.v_r, *w.local);
+      momentum.resize(6);
+      momentum << motion.momentum, motion.angular_momentum;
+    } else {
+      momentum = w.inertia.M * w.v_r;
+    }
     const Vec3<double> P = w.R * momentum.head<3>();
     ledger.momentum += P;
     ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);

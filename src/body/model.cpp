@@ -23,6 +23,7 @@ Model::Model(MultiBody& body) : body_(&body) {
     m.part = part.get();
     m.use = part->use();
     m.n_s = part->n_s();
+    m.local = part->local();
     m.drag = part->drag();
     m.q0 = part->fixed() ? -1 : n_q_;
     m.v0 = part->fixed() ? -1 : n_v_;
@@ -73,7 +74,7 @@ Model::Model(MultiBody& body) : body_(&body) {
   lay_islands();
   Counters unused;
   for (PartModel& m : parts_)
-    if (m.part->rigid() && !m.ports.empty())
+    if (m.n_s == 0 && !m.ports.empty())
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
 }
 
@@ -87,6 +88,8 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
+  if (const LocalDeformation* local = point.part->local())
+    parts_[static_cast<std::size_t>(part)].node_weights.push_back(local->weights(*point.part, m));
   return {part, static_cast<int>(ports.size()) - 1};
 }
 
@@ -263,6 +266,9 @@ State Model::initial_state() const {
       state.q[m.q0 + 7 + k] = p.initial;
       state.v[m.v0 + 6 + k] = p.initial_rate;
     }
+    if (m.local == nullptr) continue;
+    state.q.segment(m.q0 + 7 + m.n_s, m.n_d()) = m.local->initial();
+    state.v.segment(m.v0 + 6 + m.n_s, m.n_d()) = m.local->initial_rate();
   }
   note_limits(state);
   return state;
@@ -315,13 +321,23 @@ double Model::gap(const State& state, int joint) const {
   return m.joint->one_sided() ? std::max(0.0, -C[0]) : C.norm();
 }
 
+namespace {
+/// "upper.d[17].x"; what energies have of their own: "upper.own[3]".
+std::string local_name(const PartModel& m, int k) {
+  const auto n = static_cast<int>(m.local->n_nodes());
+  if (k >= 3 * n) return m.part->name() + ".own[" + std::to_string(k - 3 * n) + "]";
+  return m.part->name() + ".d[" + std::to_string(k % n) + "]." + "xyz"[k / n];
+}
+}  // namespace
+
 std::string Model::velocity_name(int i) const {
   static constexpr std::array<const char*, 6> rigid{"c_dot.x", "c_dot.y", "c_dot.z",
                                                     "omega.x", "omega.y", "omega.z"};
   for (const PartModel& m : parts_) {
-    if (m.v0 < 0 || i < m.v0 || i >= m.v0 + 6 + m.n_s) continue;
+    if (m.v0 < 0 || i < m.v0 || i >= m.v0 + m.n_v()) continue;
     const int k = i - m.v0;
     if (k < 6) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
+    if (k >= 6 + m.n_s) return local_name(m, k - 6 - m.n_s) + "_dot";
     return m.part->name() + "." + m.part->parameters().moving(k - 6).name + "_dot";
   }
   throw std::out_of_range("no velocity number " + std::to_string(i));
@@ -331,9 +347,10 @@ std::string Model::coordinate_name(int i) const {
   static constexpr std::array<const char*, 7> rigid{"c.x",    "c.y",    "c.z",   "quat.w",
                                                     "quat.x", "quat.y", "quat.z"};
   for (const PartModel& m : parts_) {
-    if (m.q0 < 0 || i < m.q0 || i >= m.q0 + 7 + m.n_s) continue;
+    if (m.q0 < 0 || i < m.q0 || i >= m.q0 + m.n_q()) continue;
     const int k = i - m.q0;
     if (k < 7) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
+    if (k >= 7 + m.n_s) return local_name(m, k - 7 - m.n_s);
     return m.part->name() + "." + m.part->parameters().moving(k - 7).name;
   }
   throw std::out_of_range("no coordinate number " + std::to_string(i));

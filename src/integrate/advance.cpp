@@ -20,7 +20,11 @@ void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const Ve
 
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h) {
   for (const PartModel& m : model.parts())
-    if (m.q0 >= 0) advance_part(m, q, share_of(m, v), h);
+    if (m.q0 >= 0) {
+      advance_part(m, q, share_of(m, v), h);
+      if (m.local != nullptr)
+        q.segment(m.q0 + 7 + m.n_s, m.n_d()) += h * v.segment(m.v0 + 6 + m.n_s, m.n_d());
+    }
 }
 
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v) {

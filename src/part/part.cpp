@@ -228,6 +228,15 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
   return *this;
 }
 
+Part& Part::deform_locally(LocalSettings settings) {
+  change();
+  if (!(settings.alpha >= 0) || !(settings.beta >= 0) || !std::isfinite(settings.alpha + settings.beta))
+    refuse("the damping of its nodes, alpha " + text(settings.alpha) + " and beta " + text(settings.beta) +
+           ", must not be negative");
+  local_settings_ = std::move(settings);
+  return *this;
+}
+
 Part& Part::fix() {
   change();
   fixed_ = true;
@@ -255,6 +264,9 @@ void Part::prepare() {
   }
   if (fixed_ && n > 0) refuse("a fixed part has no dynamic parameters; freeze " + parameters_.moving(0).name);
   if (given_inertia_ && n > 0) refuse("an inertia can be given to a rigid part only; freeze its parameters");
+  if (given_inertia_ && local_settings_)
+    refuse("a part that deforms locally takes its inertia from its density");
+  if (fixed_ && local_settings_) refuse("a fixed part does not deform locally");
   K_s_.resize(n, n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
@@ -288,6 +300,7 @@ void Part::prepare() {
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
+  if (local_settings_) local_ = std::make_unique<LocalDeformation>(*this, *local_settings_);
   prepared_ = true;
 }
 

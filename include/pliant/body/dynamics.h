@@ -8,6 +8,7 @@
 #include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
 #include <pliant/math/thread_pool.h>
+#include <pliant/part/local_dynamics.h>
 
 namespace pliant {
 
@@ -19,6 +20,7 @@ struct PartWorkspace {
   Vec3<S> c;
   Mat3<S> R;
   VecX<S> q_s, q_s_dot, v_r;                ///< v_r = (R^T c_dot, omega, q_s_dot)
+  std::unique_ptr<LocalWorkspace> local;    ///< of a part that deforms locally
   std::vector<PointJet<S>> ports;           ///< body frame
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< world
   // mass

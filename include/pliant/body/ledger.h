@@ -6,13 +6,14 @@
 namespace pliant {
 
 struct Ledger {
-  double kinetic = 0, gravity = 0, elastic = 0, springs = 0;  ///< energies, J
-  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();     ///< work so far, J
-  Vec3<double> momentum = Vec3<double>::Zero();               ///< P, kg m/s, world
-  Vec3<double> angular_momentum = Vec3<double>::Zero();       ///< L about the world's origin, kg m^2/s
+  /// Energies, J; elastic: of the global parameters, local: of local deformation.
+  double kinetic = 0, gravity = 0, elastic = 0, local = 0, springs = 0;
+  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< work so far, J
+  Vec3<double> momentum = Vec3<double>::Zero();            ///< P, kg m/s, world
+  Vec3<double> angular_momentum = Vec3<double>::Zero();    ///< L about the world's origin, kg m^2/s
   double balance = 0;  ///< energy - energy at the start - work: zero but for the step's error
 
-  double energy() const { return kinetic + gravity + elastic + springs; }
+  double energy() const { return kinetic + gravity + elastic + local + springs; }
 };
 
 }  // namespace pliant

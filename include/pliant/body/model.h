@@ -18,16 +18,22 @@ struct PartModel {
   const Part* part;
   int q0, v0;  ///< first entries in q and v; -1 for a fixed part
   int n_s;
+  const LocalDeformation* local;              ///< nullptr of a part that has none
   int limit0;                                 ///< first entry in State::at_limit
   double drag;                                ///< nu, 1/s
   std::vector<Material<double>> ports;        ///< material points that forces act on
   std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
+  std::vector<NodeWeights> node_weights;      ///< of each port, of a part that deforms locally
   VecX<double> inertia_floor;                 ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
   int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone
   Eigen::Matrix3d R0;                         ///< of a fixed part
   Part::Use use;                              ///< keeps the part from being changed
+
+  int n_d() const { return local == nullptr ? 0 : static_cast<int>(local->n_d()); }
+  int n_q() const { return 7 + n_s + n_d(); }  ///< coordinates in q
+  int n_v() const { return 6 + n_s + n_d(); }  ///< velocities in v
 };
 
 /// Where an attachment is: a port of a part, or the world.

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/part/inertia.h>
+#include <pliant/part/local_deformation.h>
 #include <pliant/part/mass_points.h>
 #include <pliant/part/parameters.h>
 #include <pliant/part/triangle_mesh.h>
@@ -68,6 +69,8 @@ class Part {
   /// density.
   Part& inertia(double mass, const Mat3<double>& about_origin,
                 const Vec3<double>& centre = Vec3<double>::Zero());
+  /// Its nodes deform locally: those of a surface mesh of a shell, of a mesh of the body of a solid.
+  Part& deform_locally(LocalSettings settings);
   /// The part does not move and has no coordinates.
   Part& fix();
 
@@ -85,9 +88,11 @@ class Part {
   const Vec3<double>& c0_dot() const { return c0_dot_; }
   const Vec3<double>& omega0() const { return omega0_; }
   int n_s() const { return fixed_ ? 0 : parameters_.n_dynamic(); }
-  int n_v() const { return fixed_ ? 0 : 6 + n_s(); }
-  int n_q() const { return fixed_ ? 0 : 7 + n_s(); }
-  bool rigid() const { return parameters_.n_dynamic() == 0; }
+  /// Local coordinates; valid after prepare().
+  int n_d() const { return local_ ? static_cast<int>(local_->n_d()) : 0; }
+  int n_v() const { return fixed_ ? 0 : 6 + n_s() + n_d(); }
+  int n_q() const { return fixed_ ? 0 : 7 + n_s() + n_d(); }
+  bool rigid() const { return parameters_.n_dynamic() == 0 && !local_settings_; }
 
   /// Held by a Model for as long as it runs the part.
   using Use = std::shared_ptr<const int>;
@@ -108,6 +113,8 @@ class Part {
   const Inertia<double>& rest_inertia() const { return rest_inertia_; }
   /// A length of the body at rest: its largest half extent, m.
   double size() const { return size_; }
+  /// The local deformation; nullptr of a part that has none.
+  const LocalDeformation* local() const { return local_.get(); }
 
   // Evaluation. q_s, q_s_dot: the dynamic parameters and their rates; omega: body frame.
 
@@ -176,6 +183,7 @@ class Part {
   double density_;
   std::optional<double> total_mass_;
   std::optional<Inertia<double>> given_inertia_;
+  std::optional<LocalSettings> local_settings_;
   MatX<double> stiffness_;  // over all parameters
   double alpha_ = 0, beta_ = 0, drag_ = 0;
   bool fixed_ = false, shell_ = false, prepared_ = false;
@@ -186,6 +194,7 @@ class Part {
   MatX<double> K_s_;
   Inertia<double> rest_inertia_;
   double size_ = 0;
+  std::unique_ptr<LocalDeformation> local_;
 };
 
 }  // namespace pliant

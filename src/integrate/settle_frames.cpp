@@ -1,0 +1,63 @@
+// Reference conditions W^T d = 0 after a step (design 1.3). A change of (c, theta, q_s) by delta that leaves
+// every node where it is changes d by -G delta, and W^T d by -K^T delta:
+//   K^T delta = W^T d,   and of the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
+#include <Eigen/Geometry>
+
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
+
+namespace pliant {
+
+namespace {
+
+/// Changes of the frame below this part of the size of the part are rounding.
+constexpr double kRounding = 1e-15;
+constexpr int kMostIterations = 8;
+
+/// Rows of x, each turned by R.
+Nodes turned(const Nodes& x, const Mat3<double>& R) {
+  return x * R.transpose();
+}
+
+}  // namespace
+
+void settle_frames(const Dynamics& dynamics, State& state, Workspace<double>& work) {
+  const Model& model = dynamics.model();
+  for (std::size_t i = 0; i < model.parts().size(); ++i) {
+    const PartModel& m = model.parts()[i];
+    if (m.local == nullptr) continue;
+    const LocalDeformation& local = *m.local;
+    const Eigen::Index n = local.n_nodes();
+    auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
+    if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) continue;
+    const std::vector<int> part{static_cast<int>(i)};
+    dynamics.evaluate_masses(state.q, state.v, part, work);
+    PartWorkspace<double>& w = work.parts[i];
+    const double size = m.part->size();
+    const Nodes x_dot = turned(node_velocities(local, w.v_r, *w.local), w.R);
+    Nodes p = nodes(w.local->x, n);
+    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+      const VecMax<double> unmet = frame_share(local, nodes(w.local->d, n), *w.local);
+      const VecMax<double> delta = w.local->factor.transpose().solve(unmet);
+      if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
+      advance_part(m, state.q, world_velocity(w, delta), 1);
+      const Vec3<double> turn = delta.segment<3>(3);
+      const double angle = turn.norm();
+      const Mat3<double> back =
+          Eigen::AngleAxisd(-angle, angle > 0 ? Vec3<double>(turn / angle) : Vec3<double>::UnitX())
+              .toRotationMatrix();
+      p = turned(p.rowwise() - delta.head<3>().transpose(), back);
+      // Where the nodes would be with the displacements of before tells the reference shape.
+      dynamics.evaluate_masses(state.q, state.v, part, work);
+      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - w.local->s;
+      dynamics.evaluate_masses(state.q, state.v, part, work);
+    }
+    const Nodes now = turned(x_dot, w.R.transpose());
+    const VecMax<double> v_r = w.local->factor.transpose().solve(frame_share(local, now, *w.local));
+    share_of(m, state.v) = world_velocity(w, v_r);
+    state.v.segment(m.v0 + 6 + m.n_s, 3 * n) =
+        Eigen::Map<const VecX<double>>(Nodes(now - frame_velocities(local, v_r, *w.local)).data(), 3 * n);
+  }
+}
+
+}  // namespace pliant

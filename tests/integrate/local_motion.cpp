@@ -1,0 +1,200 @@
+// Motion of parts whose nodes deform locally: what a push does, free flight, dust.
+#include "catch.h"
+
+#include <pliant/part/surface.h>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+
+/// Springs of no length between the displacements of neighbours: 1/2 k sum |d_i - d_j|^2.
+class Net final : public NodalEnergy {
+ public:
+  Net(const LocalMesh& mesh, double k) : triangles_(mesh.triangles), n_(mesh.X.rows()), k_(k) {}
+  Of of() const override { return Of::displacement; }
+  double energy(const VecX<double>& x) const override {
+    VecX<double> f = VecX<double>::Zero(x.size());
+    Buffer none;
+    add_force(x, f, none, nullptr);
+    return -0.5 * x.dot(f);
+  }
+  void add_force(const VecX<double>& x, VecX<double>& f, Buffer&, ThreadPool*) const override {
+    auto d = nodes(x, n_);
+    auto force = nodes(f, n_);
+    for (Eigen::Index t = 0; t < triangles_.cols(); ++t)
+      for (int e = 0; e < 3; ++e) {
+        const int i = triangles_(e, t), j = triangles_((e + 1) % 3, t);
+        if (i > j) continue;
+        const Eigen::RowVector3d pull = k_ * (d.row(j) - d.row(i));
+        force.row(i) += pull;
+        force.row(j) -= pull;
+      }
+  }
+  void add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+                      ThreadPool* pool) const override {
+    add_force(dx, f, buffer, pool);
+  }
+  void add_stiffness(const VecX<double>&, std::vector<Eigen::Triplet<double>>&) const override {}
+  double frequency_bound(const VecX<double>&, const VecX<double>& M) const override {
+    return 24 * k_ / M.minCoeff();
+  }
+
+ private:
+  Eigen::Matrix3Xi triangles_;
+  Eigen::Index n_;
+  double k_;
+};
+
+LocalSettings net(int resolution, double k) {
+  LocalSettings settings;
+  settings.resolution = resolution;
+  settings.energies.push_back([k](const LocalMesh& mesh) { return std::make_unique<Net>(mesh, k); });
+  return settings;
+}
+
+Vec3<double> bump(const Vec3<double>& X) {
+  return 0.03 * Vec3<double>(std::sin(3 * X[0] + X[1]), std::cos(2 * X[2]) * X[0], X[1] * X[2] + 0.2);
+}
+Vec3<double> rush(const Vec3<double>& X) {
+  return 0.2 * Vec3<double>(X[1] * X[2], std::sin(4 * X[0]), std::cos(3 * X[1]));
+}
+
+/// A tumbling shell whose global parameters move too.
+Part& tumbling(MultiBody& body, int resolution, bool soft = true) {
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Superellipsoid, Chain<Taper, Twist>>>("shell", 2);
+  part.make_shell()
+      .rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
+      .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
+      .move({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
+  if (soft)
+    part.stiffness({{"a1", 200}, {"a2", 300}, {"a3", 150}, {"taper.tx", 20}, {"twist.angle", 15}})
+        .initial({{"a1", 0.52}, {"twist.angle", 0.3}})
+        .initial_rate({{"a3", 0.4}, {"taper.tx", 0.3}});
+  LocalSettings settings = net(resolution, 20);
+  settings.displacement = bump;
+  settings.velocity = rush;
+  part.deform_locally(settings);
+  return part;
+}
+
+/// W^T d of the part, of the scale of its largest term.
+double unmet(const Simulation& simulation) {
+  const PartModel& m = simulation.model().parts()[0];
+  Workspace<double> work;
+  simulation.dynamics().evaluate_masses(simulation.state().q, simulation.state().v, {0}, work);
+  const LocalWorkspace& w = *work.parts[0].local;
+  const VecMax<double> all = frame_share(*m.local, nodes(w.d, m.local->n_nodes()), w);
+  return all.norm() / (m.part->total_mass() * m.part->size());
+}
+
+}  // namespace
+
+TEST_CASE("nodes carry the mass, the centre and the inertia of the part", "[local]") {
+  MultiBody body;
+  Part& part = tumbling(body, 4);
+  const Model model(body);
+  const LocalMesh& mesh = part.local()->mesh();
+  CHECK(mesh.mass.minCoeff() > 0);
+  CHECK(mesh.mass.sum() == Approx(part.total_mass()).epsilon(1e-12));
+  Mat3<double> I = Mat3<double>::Zero();
+  Vec3<double> moment = Vec3<double>::Zero();
+  for (Eigen::Index k = 0; k < mesh.X.rows(); ++k) {
+    const Vec3<double> x = mesh.X.row(k).transpose();
+    moment += mesh.mass[k] * x;
+    I += mesh.mass[k] * (x.squaredNorm() * Mat3<double>::Identity() - x * x.transpose());
+  }
+  const Inertia<double>& whole = part.rest_inertia();
+  CHECK((moment - whole.moment).norm() <= 1e-12 * whole.mass);
+  CHECK((I - whole.M.block<3, 3>(3, 3)).norm() <= 1e-12 * I.norm());
+}
+
+TEST_CASE("free flight of a shell that rings, tumbles and changes its shape: order 4, and what is conserved",
+          "[local][motion]") {
+  std::vector<double> energy, momentum, turning;
+  for (const int steps : {50, 100, 200, 400}) {
+    MultiBody body;
+    tumbling(body, 3);
+    Simulation simulation(body, "rk4");
+    const Ledger start = simulation.ledger();
+    CHECK(unmet(simulation) <= 1e-12);
+    test::run(simulation, 1, steps);
+    const Ledger end = simulation.ledger();
+    CHECK(unmet(simulation) <= 1e-12);
+    energy.push_back(std::abs(end.energy() - start.energy()) / start.energy());
+    momentum.push_back((end.momentum - start.momentum).norm() / start.momentum.norm());
+    turning.push_back((end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm());
+  }
+  CHECK(test::observed_order(energy) >= 3.9);
+  CHECK(test::observed_order(momentum) >= 3.9);
+  CHECK(test::observed_order(turning) >= 3.9);
+  CHECK(energy.back() <= 1e-6);
+}
+
+TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns the body by its torque",
+          "[local]") {
+  for (const bool soft : {false, true}) {
+    MultiBody body;
+    Part& part = tumbling(body, 2, soft);
+    const Surface surface(part, 2);
+    Model first(body);
+    const auto n = static_cast<std::size_t>(surface.material().size());
+    for (std::size_t k = 0; k < n; k += 7) {
+      MultiBody pushed;
+      Part& shell = tumbling(pushed, 2, soft);
+      const Vec3<double> force(1, -2, 0.5);
+      pushed.force("push", point(shell, surface.material()[k]), force);
+      shell.move({0, 0, 0}, {0, 0, 0});
+      Simulation simulation(pushed, "rk4");
+      State state = simulation.state();
+      state.v.setZero();
+      Workspace<double> work;
+      simulation.dynamics().accelerations(0, state.q, state.v, state, work);
+      const PartWorkspace<double>& w = work.parts[0];
+      const LocalDeformation& local = *shell.local();
+      const Nodes a = frame_velocities(local, w.a_r, *w.local) + nodes(w.local->d_ddot, local.n_nodes());
+      Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
+        sum += ma;
+        turning += nodes(w.local->x, local.n_nodes()).row(i).transpose().cross(ma);
+      }
+      const Vec3<double> f = w.R.transpose() * force;
+      CHECK((sum - f).norm() <= 1e-12 * f.norm());
+      CHECK((turning - w.ports[0].p.cross(f)).norm() <= 1e-12 * f.norm());
+    }
+  }
+}
+
+TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves straight", "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Ellipsoid>>("dust", 1);
+  part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).move({0.1, 0, 0}, {0.5, 0.3, 1});
+  part.make_dynamic({"a1", "a2", "a3"});
+  LocalSettings settings;
+  settings.resolution = 3;
+  settings.velocity = rush;
+  part.deform_locally(settings);
+  std::vector<double> errors;
+  for (const int steps : {50, 100, 200}) {
+    Simulation simulation(body, "rk4");
+    auto places = [&] {
+      Workspace<double> work;
+      const State& s = simulation.state();
+      simulation.dynamics().evaluate_masses(s.q, s.v, {0}, work);
+      const PartWorkspace<double>& w = work.parts[0];
+      const Eigen::Index n = part.local()->n_nodes();
+      const Nodes v = node_velocities(*part.local(), w.v_r, *w.local) * w.R.transpose();
+      const Nodes x = (nodes(w.local->x, n) * w.R.transpose()).rowwise() + w.c.transpose();
+      return std::make_pair(x, v);
+    };
+    const auto [x0, v0] = places();
+    test::run(simulation, 1, steps);
+    errors.push_back((places().first - x0 - v0).norm() / x0.norm());
+  }
+  CHECK(test::observed_order(errors) >= 3.9);
+  CHECK(errors.back() <= 1e-7);
+}
