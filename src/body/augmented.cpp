@@ -36,7 +36,7 @@ AugmentedFactor::AugmentedFactor(const Model& model, const Island& island)
   }
   std::vector<Eigen::Triplet<double>> entries;
   for (std::size_t p = 0; p < island.parts.size(); ++p) {
-    const int first = island.first[p], n = 6 + model.parts()[at(island.parts[p])].n_s;
+    const int first = island.first[p], n = model.parts()[at(island.parts[p])].n_x();
     for (int i = 0; i < n; ++i) {
       for (int k = i; k < n; ++k) entries.emplace_back(first + k, first + i, 1.0);
       for (const auto& [j, side] : sides_of_[p])
@@ -79,7 +79,7 @@ void AugmentedFactor::factor(const std::vector<PartWorkspace<double>>& parts,
     for (int r = 0; r < joint.rows; ++r) {
       double diagonal = 0;
       for (const JointSide& side : joint.sides) {
-        const int n = 6 + model_->parts()[at(side.part)].n_s;
+        const int n = model_->parts()[at(side.part)].n_x();
         for (int i = 0; i < n; ++i)
           diagonal += work.Cq[side.offset + r * n + i] * work.Y[side.offset + r * n + i];
       }
@@ -135,12 +135,12 @@ std::vector<bool> dependent_rows(const Model& model, const Island& island,
     for (int r = 0; r < joint.rows; ++r) {
       double square = 0;
       for (const JointSide& side : joint.sides) {
-        const int n = 6 + model.parts()[at(side.part)].n_s;
+        const int n = model.parts()[at(side.part)].n_x();
         square += work.Cq.segment(side.offset + r * n, n).squaredNorm();
       }
       if (!(square > 0)) continue;
       for (const JointSide& side : joint.sides) {
-        const int n = 6 + model.parts()[at(side.part)].n_s, first = island.first[at(side.place)];
+        const int n = model.parts()[at(side.part)].n_x(), first = island.first[at(side.place)];
         for (int i = 0; i < n; ++i)
           entries.emplace_back(first + i, joint.island_row + r,
                                work.Cq[side.offset + r * n + i] / std::sqrt(square));

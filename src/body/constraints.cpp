@@ -22,7 +22,7 @@ template <class S, int Velocities, int Rows>
 using ConstSide = Eigen::Map<const Eigen::Matrix<S, Velocities, Rows>>;
 
 int velocities(const PartModel& part) {
-  return 6 + part.n_s;
+  return part.n_x();
 }
 
 /// The motion of a point of a part while no generalised velocity changes: x_ddot = R b of design 1.2.
@@ -33,7 +33,7 @@ PointMotion<S> port_motion(const PartModel& part, const PartWorkspace<S>& w, int
   const PointJet<S>& jet = w.ports[at(port)];
   const Vec3<S> omega = w.v_r.template segment<3>(3);
   Vec3<S> b = omega.cross(omega.cross(jet.p));
-  if (part.n_s > 0) b += S(2.0) * omega.cross(jet.p1) + jet.p2;
+  if (part.n_s > 0 || part.local != nullptr) b += S(2.0) * omega.cross(jet.p1) + jet.p2;
   motion.x_ddot = w.R * b;
   return motion;
 }
@@ -54,6 +54,9 @@ void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, int r
       Cq[3 + i] += turn[i];
     }
     for (int k = 0; k < part.n_s; ++k) Cq[6 + k] += jet.J.col(k).dot(push);
+    const int place = part.local == nullptr ? -1 : part.port_place[at(port)];
+    if (place >= 0)
+      for (int i = 0; i < 3; ++i) Cq[6 + part.n_s + 3 * place + i] += push[i];
   }
 }
 
@@ -119,6 +122,12 @@ void factor_joints(const Model& model, const Island& island, const std::vector<P
           continue;
         }
       }
+      if constexpr (std::is_same_v<S, double>)
+        if (part.local != nullptr) {
+          Eigen::Map<MatX<S>>(Y, n, joint.rows).noalias() =
+              parts[at(side.part)].local->A * Eigen::Map<const MatX<S>>(Cq, n, joint.rows);
+          continue;
+        }
       for (int r = 0; r < joint.rows; ++r) {
         VecMax<S> column(n);
         for (int i = 0; i < n; ++i) column[i] = Cq[r * n + i];

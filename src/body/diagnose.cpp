@@ -12,9 +12,9 @@ std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& 
   const Part& part = *m.part;
   VecMax<double> stretch = w.q_s;
   for (int k = 0; k < m.n_s; ++k) stretch[k] -= part.parameters().moving(k).rest.value(t);
-  const VecMax<double> elastic = part.K_s() * stretch, momentum = w.inertia.M * w.v_r;
+  const VecMax<double> elastic = part.K_s() * stretch, momentum = mass_matrix(w) * w.v_r;
   const VecMax<double> damping =
-      (part.alpha() * w.inertia.M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
+      (part.alpha() * mass_matrix(w).bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
   if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
   if (!damping.allFinite()) return "the damping force D q_dot";
   if (part.drag() > 0 && !(part.drag() * momentum).allFinite()) return "the drag";
@@ -33,7 +33,10 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
     if (model_->parts()[i].q0 < 0) continue;
     if (!work.parts[i].inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
-    if (!work.parts[i].inertia.g_q.allFinite()) return "the inertial force g_q" + of_part(i);
+    if (work.parts[i].local && !work.parts[i].local->force.allFinite())
+      return "the force on the nodes" + of_part(i);
+    if (!work.parts[i].local && !work.parts[i].inertia.g_q.allFinite())
+      return "the inertial force g_q" + of_part(i);
   }
   for (const PartModel& m : model_->parts())
     for (const int k : m.part->parameters().dynamic()) {

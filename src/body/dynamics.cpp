@@ -105,7 +105,6 @@ void masses(const PartModel& m, PartWorkspace<S>& w) {
   if constexpr (std::is_same_v<S, double>)
     if (m.local != nullptr) {
       local_masses(*m.part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
-      w.inertia.M = w.local->H0;
       return;
     }
   if constexpr (std::is_same_v<S, double>)
@@ -118,7 +117,7 @@ template <class S>
 void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
   const Part& part = *m.part;
   const int n = m.n_s;
-  const MatX<S>& M = w.inertia.M;
+  const MatX<S>& M = mass_matrix(w);
   const bool damped = part.alpha() > 0 || part.beta() > 0;
   VecMax<S> stretch(n);
   for (int k = 0; k < n; ++k) {
@@ -184,9 +183,22 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 }
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
-  if (m.local != nullptr) return;
+  if (m.local != nullptr) {
+    local_compliance(*m.local, m.shared, *w.local);
+    w.inertia.M = w.local->A_inverse;
+    return;
+  }
   w.rigid = m.n_s == 0 ? &m : nullptr;
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
+}
+
+/// a_r of a part that deforms locally, with the d_ddot at its joints, and the d_ddot of its nodes.
+void accelerate_nodes(const PartModel& m, PartWorkspace<double>& w) {
+  local_accelerations(*m.local, w.a_r, *w.local);
+  const VecX<double> a_r = w.a_r;
+  w.a_r.resize(m.n_x());
+  w.a_r << a_r, at_points(m.shared, nodes(w.local->d_ddot, m.local->n_nodes()));
+  w.local->a_free = w.a_r;
 }
 
 /// The rows of the limits that parameters of a group's part i rest at.
@@ -340,9 +352,11 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     gather_port_forces<S>(m, w);
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
-      if (m.local != nullptr) return local_accelerations(*m.local, w.a_r, *w.local);
       take_factor(m, w);
-      w.solve_mass(w.a_r);
+      if (m.local != nullptr)
+        accelerate_nodes(m, w);
+      else
+        w.solve_mass(w.a_r);
       if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
     } else {
       w.factor.compute(w.inertia.M, m.inertia_floor);
@@ -358,9 +372,16 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     if (m.q0 < 0) continue;
     const PartWorkspace<S>& w = work.parts[i];
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
-    work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.tail(3 + m.n_s);
+    work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
     if constexpr (std::is_same_v<S, double>)
-      if (m.local != nullptr) work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()) = w.local->d_ddot;
+      if (m.local != nullptr) {
+        auto d_ddot = work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d());
+        d_ddot = w.local->d_ddot;
+        // What joints and limits push.
+        if (w.a_r != w.local->a_free)
+          push_all_nodes(*m.local, m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
+                         d_ddot);
+      }
   }
 }
 
@@ -466,6 +487,10 @@ void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>
 VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
                            const StateDirection& along, const Workspace<double>& work,
                            Workspace<Dual<1>>& dual_work) const {
+  for (const PartModel& m : model_->parts())
+    if (m.local != nullptr)
+      throw std::logic_error("no derivative of the accelerations of part '" + m.part->name() +
+                             "', which deforms locally");
   using D = Dual<1>;
   auto dual = [](const VecX<double>& x, const VecX<double>& dx) {
     VecX<D> r(x.size());

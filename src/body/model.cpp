@@ -71,6 +71,7 @@ Model::Model(MultiBody& body) : body_(&body) {
       if (std::isfinite(time)) switch_times_.push_back(time);
   }
   std::sort(switch_times_.begin(), switch_times_.end());
+  lay_sides();
   lay_islands();
   Counters unused;
   for (PartModel& m : parts_)
@@ -90,6 +91,7 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   ports.push_back(point.material);
   if (const LocalDeformation* local = point.part->local())
     parts_[static_cast<std::size_t>(part)].node_weights.push_back(local->weights(*point.part, m));
+  parts_[static_cast<std::size_t>(part)].port_place.push_back(-1);
   return {part, static_cast<int>(ports.size()) - 1};
 }
 
@@ -110,13 +112,31 @@ void Model::add_joint(const Joint& joint) {
     const bool known =
         std::any_of(m.sides.begin(), m.sides.end(), [&](const JointSide& side) { return side.part == part; });
     if (known) continue;
-    m.sides.push_back({part, -1, n_sides_});
-    n_sides_ += (6 + of.n_s) * m.rows;
+    m.sides.push_back({part, -1, 0});
   }
   if (m.sides.empty()) throw std::invalid_argument(what + " ties no part that moves");
   m.length = length;
   n_rows_ += m.rows;
   joints_.push_back(std::move(m));
+}
+
+void Model::lay_sides() {
+  // Joints at the same point of a part that deforms locally share its local velocities.
+  for (const JointModel& joint : joints_)
+    for (const PortRef& ref : joint.at) {
+      if (ref.part < 0) continue;
+      PartModel& m = parts_[static_cast<std::size_t>(ref.part)];
+      const auto port = static_cast<std::size_t>(ref.port);
+      if (m.local == nullptr || m.node_weights[port].node.empty()) continue;
+      const auto same = std::find(m.shared.begin(), m.shared.end(), m.node_weights[port]);
+      m.port_place[port] = static_cast<int>(same - m.shared.begin());
+      if (same == m.shared.end()) m.shared.push_back(m.node_weights[port]);
+    }
+  for (JointModel& joint : joints_)
+    for (JointSide& side : joint.sides) {
+      side.offset = n_sides_;
+      n_sides_ += parts_[static_cast<std::size_t>(side.part)].n_x() * joint.rows;
+    }
 }
 
 void Model::lay_islands() {
@@ -168,7 +188,7 @@ void Model::lay_islands() {
           static_cast<int>(island.parts.size());
     island.parts.push_back(static_cast<int>(i));
     island.first.push_back(island.n_v);
-    island.n_v += 6 + parts_[i].n_s;
+    island.n_v += parts_[i].n_x();
   }
   for (Island& island : islands_) {
     choose_solver(island, sides_of);
@@ -189,7 +209,7 @@ void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
   std::vector<std::pair<int, int>> edges;
   double pairs = 0;
   for (std::size_t p = 0; p < island.parts.size(); ++p) {
-    sizes.push_back(6 + parts_[static_cast<std::size_t>(island.parts[p])].n_s);
+    sizes.push_back(parts_[static_cast<std::size_t>(island.parts[p])].n_x());
     double sides = 0;
     for (const auto& [j, side] : sides_of[static_cast<std::size_t>(island.parts[p])]) {
       if (!equation(j)) continue;
@@ -304,9 +324,23 @@ Eigen::Quaterniond Model::orientation(const State& state, int part) const {
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material) const {
-  const Part& p = *parts_[static_cast<std::size_t>(part)].part;
-  const Vec3<double> s = p.s({material}, values(state, part)).col(0);
-  return position(state, part) + orientation(state, part) * s;  // Eq. (1)
+  const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  return world_point(state, part, material,
+                     m.local == nullptr ? NodeWeights() : m.local->weights(*m.part, material));
+}
+
+Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material,
+                                const NodeWeights& at) const {
+  const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  Vec3<double> p = m.part->s({material}, values(state, part)).col(0);
+  for (std::size_t i = 0; i < at.node.size(); ++i)
+    p += at.weight[i] * local_nodes(state, part).row(at.node[i]).transpose();
+  return position(state, part) + orientation(state, part) * p;  // Eq. (1)
+}
+
+Eigen::Map<const Nodes> Model::local_nodes(const State& state, int part) const {
+  const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  return {state.q.data() + m.q0 + 7 + m.n_s, m.local->n_nodes(), 3};
 }
 
 double Model::gap(const State& state, int joint) const {
@@ -314,8 +348,14 @@ double Model::gap(const State& state, int joint) const {
   std::array<Vec3<double>, kMaxJointPoints> x;
   for (std::size_t k = 0; k < m.at.size(); ++k) {
     const Point& point = m.joint->points()[k];
-    x[k] = point.part == nullptr ? point.world.value(state.time())
-                                 : world_point(state, m.at[k].part, point.material);
+    if (point.part == nullptr) {
+      x[k] = point.world.value(state.time());
+      continue;
+    }
+    const PartModel& of = parts_[static_cast<std::size_t>(m.at[k].part)];
+    x[k] = world_point(
+        state, m.at[k].part, point.material,
+        of.local == nullptr ? NodeWeights() : of.node_weights[static_cast<std::size_t>(m.at[k].port)]);
   }
   const VecMax<double, kMaxJointRows> C = m.joint->gap(state.time(), x.data());
   return m.joint->one_sided() ? std::max(0.0, -C[0]) : C.norm();

@@ -18,13 +18,14 @@ void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const Ve
   q.segment(m.q0 + 7, m.n_s) += h * v.tail(m.n_s);
 }
 
+void advance_whole_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h) {
+  advance_part(m, q, share_of(m, v), h);
+  q.segment(m.q0 + 7 + m.n_s, m.n_d()) += h * v.segment(m.v0 + 6 + m.n_s, m.n_d());
+}
+
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h) {
   for (const PartModel& m : model.parts())
-    if (m.q0 >= 0) {
-      advance_part(m, q, share_of(m, v), h);
-      if (m.local != nullptr)
-        q.segment(m.q0 + 7 + m.n_s, m.n_d()) += h * v.segment(m.v0 + 6 + m.n_s, m.n_d());
-    }
+    if (m.q0 >= 0) advance_whole_part(m, q, v, h);
 }
 
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v) {
@@ -37,6 +38,35 @@ VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<c
   VecMax<double> v = v_r;
   v.head<3>() = w.R * v_r.head<3>();
   return v;
+}
+
+void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
+                   Eigen::Ref<VecX<double>> x) {
+  x.head(6 + m.n_s) = share_of(m, v);
+  x.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
+  if (m.shared.empty()) return;
+  x.tail(x.size() - 6 - m.n_s) =
+      at_points(m.shared, Eigen::Map<const Nodes>(v.data() + m.v0 + 6 + m.n_s, m.local->n_nodes(), 3));
+}
+
+void give_velocity(const PartModel& m, const PartWorkspace<double>& w,
+                   const Eigen::Ref<const VecX<double>>& x, VecX<double>& v) {
+  if (m.local != nullptr) {
+    VecX<double> change(x.size());
+    take_velocity(m, w, v, change);
+    change = w.local->A_inverse * (x - change);
+    push_all_nodes(*m.local, m.shared, change, *w.local, v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+  }
+  share_of(m, v) = x.head(6 + m.n_s);
+  v.segment<3>(m.v0) = w.R * x.head<3>();
+}
+
+void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& x,
+                  double h, VecX<double>& q) {
+  advance_part(m, q, world_velocity(w, x.head(6 + m.n_s)), h);
+  if (m.local != nullptr)
+    push_all_nodes(*m.local, m.shared, w.local->A_inverse * (h * x), *w.local,
+                   q.segment(m.q0 + 7 + m.n_s, m.n_d()));
 }
 
 void normalise_rotations(const Model& model, VecX<double>& q) {

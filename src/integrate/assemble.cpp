@@ -126,7 +126,7 @@ class Assembly {
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       for (int k = 0; k < m.n_s; ++k) {
-        const double stiffness = m.part->K_s()(k, k), inertia = work_.parts[at(i)].inertia.M(6 + k, 6 + k);
+        const double stiffness = m.part->K_s()(k, k), inertia = mass_matrix(work_.parts[at(i)])(6 + k, 6 + k);
         if (stiffness > 0 && inertia > 0) least = std::min(least, stiffness / inertia);
       }
     }
@@ -139,11 +139,24 @@ class Assembly {
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];
-      MatX<double>& H = w.inertia.M;
+      MatX<double> H = w.local ? w.local->H0 : w.inertia.M;
       H.block<3, 3>(3, 3) *= dear;
       H.bottomRightCorner(m.n_s, m.n_s) += m.part->K_s() / eps_;
       w.factor.compute(H, m.inertia_floor);
       w.rigid = nullptr;
+      if (w.local) hold_nodes(w);
+    }
+  }
+
+  /// Nodes stay where they are on the parts: the metric is that of c, theta and q_s alone.
+  static void hold_nodes(PartWorkspace<double>& w) {
+    MatX<double>& A = w.local->A;
+    const Eigen::Index n_r = w.local->H0.rows();
+    A.setZero();
+    for (Eigen::Index k = 0; k < n_r; ++k) {
+      VecX<double> column = VecX<double>::Unit(n_r, k);
+      w.factor.solve(column);
+      A.col(k).head(n_r) = column;
     }
   }
 
@@ -238,9 +251,9 @@ class Assembly {
   }
 
   /// What takes the parameters of a part alone to rest.
-  VecMax<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
-    VecMax<double> x = VecMax<double>::Zero(6 + m.n_s);
-    x.tail(m.n_s) = -(m.part->K_s() * stretch(m)) / eps_;
+  VecX<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
+    VecX<double> x = VecX<double>::Zero(m.n_x());
+    x.segment(6, m.n_s) = -(m.part->K_s() * stretch(m)) / eps_;
     w.solve_mass(x);
     return x;
   }
@@ -275,7 +288,7 @@ class Assembly {
   void move(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x, double share) {
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);
-      advance_part(m, state_.q, world_velocity(group.workspace(p), group.share(x, p)), share);
+      advance_part(m, state_.q, world_velocity(group.workspace(p), group.share(x, p).head(6 + m.n_s)), share);
       for (int k = 0; k < m.n_s; ++k) {
         double& q = state_.q[m.q0 + 7 + k];
         const Range range = m.part->parameters().moving(k).limits;

@@ -103,7 +103,10 @@ class Sway {
 }  // namespace
 
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work) {
-  if (dynamics.model().islands().empty()) return 0;
+  const Model& model = dynamics.model();
+  const bool local = std::any_of(model.parts().begin(), model.parts().end(),
+                                 [](const PartModel& m) { return m.local != nullptr; });
+  if (model.islands().empty() || local) return 0;
   const double value = Sway(dynamics, state, work).largest();
   return value > 0 ? std::sqrt(value) : 0;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Cholesky>
+
 #include "settling.h"
 
 namespace pliant {
@@ -19,8 +21,13 @@ class Snapshot {
  public:
   Snapshot(const Group<double, Max>& group, State& state, GroupVectors<double, Max>& vectors)
       : group_(group), kept_(vectors) {
-    kept_.q.resize(group.size() + group.parts());
-    kept_.v.resize(group.size());
+    int n_q = 0, n_v = 0;
+    for (int i = 0; i < group.parts(); ++i) {
+      n_q += group.model(i).n_q();
+      n_v += group.model(i).n_v();
+    }
+    kept_.q.resize(n_q);
+    kept_.v.resize(n_v);
     exchange(state, [](auto&& kept, auto&& now) { kept = now; });
   }
   /// The state takes these, and they become what it had.
@@ -31,15 +38,32 @@ class Snapshot {
  private:
   template <class F>
   void exchange(State& state, F&& act) {
+    int q = 0, v = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
-      act(kept_.q.segment(group_.first(i) + i, 7 + m.n_s), state.q.segment(m.q0, 7 + m.n_s));
-      act(kept_.v.segment(group_.first(i), 6 + m.n_s), state.v.segment(m.v0, 6 + m.n_s));
+      act(kept_.q.segment(q, m.n_q()), state.q.segment(m.q0, m.n_q()));
+      act(kept_.v.segment(v, m.n_v()), state.v.segment(m.v0, m.n_v()));
+      q += m.n_q();
+      v += m.n_v();
     }
   }
   const Group<double, Max>& group_;
   GroupVectors<double, Max>& kept_;
 };
+
+/// A rigid motion is added to the velocities of a part that deforms locally, so that its P and L stay.
+void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
+                        const PartWorkspace<double>& to, State& state) {
+  const LocalMotion before = local_motion(*m.local, from.v_r, *from.local),
+                    now = local_motion(*m.local, to.v_r, *to.local);
+  const Vec3<double> P = from.R * before.momentum;
+  Vec<double, 6> missing;
+  missing << to.R.transpose() * P - now.momentum,
+      to.R.transpose() * (from.R * before.angular_momentum + (from.c - to.c).cross(P)) - now.angular_momentum;
+  const Vec<double, 6> rigid = local_inertia(*m.local, *to.local).ldlt().solve(missing);
+  state.v.segment<3>(m.v0) += to.R * rigid.head<3>();
+  state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
+}
 
 /// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
 /// them P and L. before: evaluated at the coordinates before; now: at those now.
@@ -49,6 +73,10 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
   for (int i = 0; i < group.parts(); ++i) {
     const PartModel& m = group.model(i);
     const PartWorkspace<double>&from = before.parts[at(group.part(i))], &to = now.parts[at(group.part(i))];
+    if (m.local != nullptr) {
+      keep_rigid_momenta(m, from, to, state);
+      continue;
+    }
     VecMax<double> momentum = from.inertia.M * from.v_r;
     const Vec3<double> P = from.R * momentum.head<3>();
     const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
@@ -71,8 +99,7 @@ const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
 template <int Max>
 void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& group, bool closed,
                   State& state, Workspace<double>& work, StepCounters& counters) {
-  GroupVectors<double, Max> own;
-  GroupVectors<double, Max>& kept = kept_vectors(group, work, own);
+  GroupVectors<double, Max>& kept = kept_vectors(group, work);
   Snapshot<Max> before(group, state, kept);
   Settling<Max> settling(dynamics, t, group, state, work, kept);
   const bool pushed = settling.coordinates();

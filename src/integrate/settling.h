@@ -62,14 +62,21 @@ inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
 
-/// The vectors of an island, or a part's own.
+/// The vectors of an island, or of the part alone that has its turn.
 template <int Max>
-GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work,
-                                        GroupVectors<double, Max>& own) {
+GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work) {
   if constexpr (Max == Eigen::Dynamic)
     return work.joints.vectors[group.number()];
   else
-    return own;
+    return work.alone;
+}
+
+/// The velocities x of a group in v.
+template <int Max>
+void take_velocities(const Group<double, Max>& group, const VecX<double>& v, VecMax<double, Max>& x) {
+  x.resize(group.size());
+  for (int i = 0; i < group.parts(); ++i)
+    take_velocity(group.model(i), group.workspace(i), v, group.share(x, i));
 }
 
 /// Change of the kinetic energy from velocities x to y of a group.
@@ -78,11 +85,10 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
                       const VecMax<double, Max>& y) {
   double sum = 0;
   for (int i = 0; i < group.parts(); ++i) {
-    const VecMax<double> change = group.share(y, i) - group.share(x, i);
-    const VecMax<double> middle = group.share(x, i) + 0.5 * change;
-    VecMax<double> momentum(middle.size());
-    momentum.noalias() = group.workspace(i).inertia.M * middle;
-    sum += change.dot(momentum);
+    const MatX<double>& M = group.workspace(i).inertia.M;
+    const auto before = group.share(x, i), after = group.share(y, i);
+    for (Eigen::Index k = 0; k < M.cols(); ++k)
+      sum += 0.5 * (before[k] + after[k]) * M.col(k).dot(after - before);
   }
   return sum;
 }
@@ -158,9 +164,7 @@ class Settling {
     }
     for (int i = 0; i < kMostIterations; ++i) {
       Vector &before = kept_.before, &joined = kept_.joined, &x = kept_.x;
-      group_.gather(before, [&](int p) {
-        return body_velocity(group_.workspace(p), share_of(group_.model(p), std::as_const(state_.v)));
-      });
+      take_velocities(group_, state_.v, before);
       x = before;
       const bool open = correct_joints(Rows::velocities, i, x);
       joined = x;
@@ -170,7 +174,7 @@ class Settling {
       joints += kinetic_change(group_, before, joined);
       one_sided += kinetic_change(group_, joined, x);
       for (int p = 0; p < group_.parts(); ++p)
-        share_of(group_.model(p), state_.v) = world_velocity(group_.workspace(p), group_.share(x, p));
+        give_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) { impulses += stays(row) ? 0 : 1; });
       if (island_ == nullptr) break;
@@ -222,7 +226,7 @@ class Settling {
       rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
       if (!open && rows.empty()) return pushed;
       for (int p = 0; p < group_.parts(); ++p)
-        advance_part(group_.model(p), state_.q, world_velocity(group_.workspace(p), group_.share(x, p)), 1);
+        advance_with(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
           pushed = pushed || !stays(row);
@@ -240,9 +244,11 @@ class Settling {
   /// act(kept coordinates, those of the state) for each part.
   template <class F>
   void for_each_coordinates(F&& act) const {
+    int first = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
-      act(kept_.q.segment(group_.first(i) + i, 7 + m.n_s), state_.q.segment(m.q0, 7 + m.n_s));
+      act(kept_.q.segment(first, m.n_q()), state_.q.segment(m.q0, m.n_q()));
+      first += m.n_q();
     }
   }
   /// Whether the way from the kept coordinates is no small part of what the parts move in a step.

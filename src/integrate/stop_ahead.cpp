@@ -74,12 +74,9 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
     constexpr int kMax = std::decay_t<decltype(group)>::kMax;
     const Island* island = group.island();
     if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
-    GroupVectors<double, kMax> own;
-    GroupVectors<double, kMax>& kept = kept_vectors(group, work, own);
+    GroupVectors<double, kMax>& kept = kept_vectors(group, work);
     auto &x = kept.x, &now = kept.before, &joined = kept.joined;
-    group.gather(x, [&](int i) {
-      return body_velocity(group.workspace(i), share_of(group.model(i), std::as_const(state.v)));
-    });
+    take_velocities(group, state.v, x);
     // The velocity that just reaches a limit, or the length of a string, at the end of the step.
     now = x;
     auto bound = [&](const OneSidedRow& row) {
@@ -105,8 +102,8 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
       if (island != nullptr) {
         for (int i = 0; i < group.parts(); ++i) {
           const PartModel& m = group.model(i);
-          q_end.segment(m.q0, 7 + m.n_s) = state.q.segment(m.q0, 7 + m.n_s);
-          advance_part(m, q_end, share_of(m, state.v), h);
+          q_end.segment(m.q0, m.n_q()) = state.q.segment(m.q0, m.n_q());
+          advance_whole_part(m, q_end, state.v, h);
         }
         dynamics.evaluate_joints(state.time() + h, q_end, state.v, state.joints, *island, ahead);
         now = x;
@@ -119,7 +116,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
       if (!rows.empty()) state.work[static_cast<int>(Work::limits)] += kinetic_change(group, joined, x);
       if (!open && rows.empty()) break;
       for (int i = 0; i < group.parts(); ++i)
-        share_of(group.model(i), state.v) = world_velocity(group.workspace(i), group.share(x, i));
+        give_velocity(group.model(i), group.workspace(i), group.share(x, i), state.v);
       if (!rows.empty())
         counters.limit_impulses += rows.for_each_pushed([&](const OneSidedRow& row, double) {
           if (row.part >= 0)

@@ -62,9 +62,7 @@ struct GroupVectors {
   VecMax<S, Max> before, joined, x;  ///< accelerations or velocities: without joints, with them, with all
   VecX<S> rows, lambda;              ///< of the joints
   VecX<S> correction, change;        ///< of lambda and of x, by Group::correct
-  /// Coordinates and velocities of a state.
-  VecMax<S, Max == Eigen::Dynamic ? Eigen::Dynamic : Max + 1> q;
-  VecMax<S, Max> v;
+  VecX<S> q, v;                      ///< coordinates and velocities of a state
 };
 
 /// What is recomputed at each evaluation. The rows of all joints stand in the order of the joints.

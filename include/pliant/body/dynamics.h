@@ -32,31 +32,49 @@ struct PartWorkspace {
   // limits and accelerations
   SymmetricFactor<S> factor;         ///< of M
   const PartModel* rigid = nullptr;  ///< instead of factor: a part whose M^-1 is constant
-  VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot)
+  VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), and the d_ddot at its joints
   std::vector<int> pressed;          ///< dynamic parameters that their limit holds back
   Counters counters;
 
   /// x = M^-1 x.
   template <class Vector>
   void solve_mass(Vector&& x) const {
-    if constexpr (std::is_same_v<S, double>)
+    if constexpr (std::is_same_v<S, double>) {
+      if (local) {
+        x = (local->A * x).eval();
+        return;
+      }
       if (rigid != nullptr) {
         x = (rigid->rigid_inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
         return;
       }
+    }
     factor.solve(x);
   }
   /// Whether a velocity has no inertia right now, and is held.
-  bool held(int k) const { return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k); }
-  bool any_held() const { return rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held(); }
+  bool held(int k) const {
+    return !local && (rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k));
+  }
+  bool any_held() const {
+    return !local && (rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held());
+  }
 };
+
+/// M over (c, theta, q_s) of a part.
+inline const MatX<double>& mass_matrix(const PartWorkspace<double>& w) {
+  return w.local ? w.local->H0 : w.inertia.M;
+}
+inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
+  return w.inertia.M;
+}
 
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
   ConstraintWorkspace<S> joints;
-  VecX<S> v_dot;         ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
-  Vec<S, kWorks> power;  ///< rates of the works of the ledger, W
+  GroupVectors<S, kMaxVelocities> alone;  ///< of a part alone that a limit pushes
+  VecX<S> v_dot;                          ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
+  Vec<S, kWorks> power;                   ///< rates of the works of the ledger, W
 };
 
 /// What a joint does to the part of its first side, world: a force (N) at its first point, and a torque (N m)

@@ -1,5 +1,6 @@
 // A group: parts whose velocities act on each other at once, the parts of an island or one part alone. Its
-// velocities v_r = (R^T c_dot, omega, q_s_dot) of part after part make one vector x. One-sided rows (limits
+// velocities v_r = (R^T c_dot, omega, q_s_dot) of part after part make one vector x; after those of a part
+// that deforms locally stand the d_dot of the points at which joints hold it. One-sided rows (limits
 // of parameters, strings) push on it while its joints hold.
 #pragma once
 
@@ -38,7 +39,7 @@ class Group {
   /// The number of its island.
   std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
-  /// x of what `of` gives for each of its parts.
+  /// x of what `of` gives for each of its parts: v_r, and 0 for the local velocities at joints.
   template <class F>
   void gather(Vector& x, F&& of) const {
     x.resize(size_);
@@ -68,7 +69,7 @@ class Group {
       return x;
     }
     for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
-      VecMax<S> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
+      VecMax<S, Max> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
       workspace(side.place).solve_mass(force);
       share(x, side.place) += force;
     }
@@ -153,7 +154,7 @@ class Group {
     });
     for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));
   }
-  int velocities(int part) const { return 6 + model_->parts()[at(part)].n_s; }
+  int velocities(int part) const { return model_->parts()[at(part)].n_x(); }
 
   const Model* model_;
   Workspace<S>* work_;

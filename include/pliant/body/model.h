@@ -23,7 +23,10 @@ struct PartModel {
   double drag;                                ///< nu, 1/s
   std::vector<Material<double>> ports;        ///< material points that forces act on
   std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
-  std::vector<NodeWeights> node_weights;      ///< of each port, of a part that deforms locally
+  // Of a part that deforms locally:
+  std::vector<NodeWeights> node_weights;      ///< of each port
+  std::vector<int> port_place;                ///< of each port among `shared`; -1: no joint is there
+  std::vector<NodeWeights> shared;            ///< points at which joints hold, each once
   VecX<double> inertia_floor;                 ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
@@ -34,6 +37,8 @@ struct PartModel {
   int n_d() const { return local == nullptr ? 0 : static_cast<int>(local->n_d()); }
   int n_q() const { return 7 + n_s + n_d(); }  ///< coordinates in q
   int n_v() const { return 6 + n_s + n_d(); }  ///< velocities in v
+  /// Velocities by which other parts know it (group.h): v_r, and the local ones at its joints.
+  int n_x() const { return 6 + n_s + 3 * static_cast<int>(shared.size()); }
 };
 
 /// Where an attachment is: a port of a part, or the world.
@@ -128,6 +133,8 @@ class Model {
   Eigen::Quaterniond orientation(const State& state, int part) const;
   /// A point of a part in the world.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
+  /// Displacements of the nodes of a part that deforms locally, body frame.
+  Eigen::Map<const Nodes> local_nodes(const State& state, int part) const;
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
   double gap(const State& state, int joint) const;
   /// "upper.c.x", "upper.bend.angle": the name of an entry of v (or of q, where they differ).
@@ -135,9 +142,12 @@ class Model {
   std::string coordinate_name(int i) const;
 
  private:
+  Vec3<double> world_point(const State& state, int part, const Material<double>& m,
+                           const NodeWeights& at) const;
   /// what: the spring or force that acts there, for messages.
   PortRef attach(const Point& point, const std::string& what);
   void add_joint(const Joint& joint);
+  void lay_sides();
   void lay_islands();
   /// A joint and which of its sides is on a part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;

@@ -40,6 +40,9 @@ struct LocalSettings {
 struct NodeWeights {
   std::vector<int> node;
   std::vector<double> weight;
+  friend bool operator==(const NodeWeights& a, const NodeWeights& b) {
+    return a.node == b.node && a.weight == b.weight;
+  }
 };
 
 class LocalDeformation {

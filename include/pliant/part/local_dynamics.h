@@ -26,7 +26,8 @@ struct LocalWorkspace {
   MatX<double> J;         ///< of all nodes along x, y, z of the first parameter, then of the second
   Nodes s1, s2;           ///< J q_s_dot, Jdot q_s_dot
   // mass
-  MatMax<double> H0, K;
+  MatX<double> H0;
+  MatMax<double> K;
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< of K
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   double condition = 1;                        ///< of K, scaled
@@ -36,6 +37,9 @@ struct LocalWorkspace {
   double damping = 0, drag = 0;  ///< their powers, W
   VecMax<double> kappa;
   VecX<double> d_ddot;
+  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+  // what pushes on v_r and on the shared points do, see local_compliance()
+  MatX<double> kappa_of, a_of, A, A_inverse;
   std::vector<NodalEnergy::Buffer> buffers;
 };
 
@@ -53,6 +57,19 @@ void push_nodes(const LocalDeformation& local, const NodeWeights& at, const Vec3
                 LocalWorkspace& w);
 /// accelerations. f_r: what acts on (c, theta, q_s) beside the nodes' own forces; becomes a_r.
 void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, LocalWorkspace& w);
+
+/// A = M^-1 as the joints of a part see it: what pushes g on (v_r, the points) do to (v_r, d_dot at the
+/// points), and its inverse where no points hold each other.
+void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
+                      LocalWorkspace& w);
+/// Adds to local velocities what such pushes do to all nodes.
+void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,
+                    const VecX<double>& g, const LocalWorkspace& w, Eigen::Ref<VecX<double>> d_dot);
+/// Values of nodes at points.
+VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values);
+
+/// M of rigid motion at the positions of the nodes, body frame: 6 x 6.
+Eigen::Matrix<double, 6, 6> local_inertia(const LocalDeformation& local, const LocalWorkspace& w);
 
 /// sum W^T a over nodes.
 VecMax<double> frame_share(const LocalDeformation& local, const Nodes& a, const LocalWorkspace& w);
