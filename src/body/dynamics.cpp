@@ -105,6 +105,8 @@ void masses(const PartModel& m, PartWorkspace<S>& w) {
   if constexpr (std::is_same_v<S, double>)
     if (m.local != nullptr) {
       local_masses(*m.part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
+      w.inertia.mass = m.part->total_mass();
+      w.inertia.moment = w.local->moment;
       return;
     }
   if constexpr (std::is_same_v<S, double>)

@@ -343,6 +343,11 @@ Eigen::Map<const Nodes> Model::local_nodes(const State& state, int part) const {
   return {state.q.data() + m.q0 + 7 + m.n_s, m.local->n_nodes(), 3};
 }
 
+Nodes Model::node_positions(const State& state, int part) const {
+  const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  return m.part->s(m.local->mesh().nodes, values(state, part)).transpose() + local_nodes(state, part);
+}
+
 double Model::gap(const State& state, int joint) const {
   const JointModel& m = joints_[static_cast<std::size_t>(joint)];
   std::array<Vec3<double>, kMaxJointPoints> x;

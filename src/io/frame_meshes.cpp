@@ -7,8 +7,8 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model) : model_(&model
     const Appearance& look = scene.appearance.at(i);
     if (!look.visible) continue;
     const Part& part = *model.parts()[i].part;
-    const bool rigid = model.parts()[i].n_s == 0;
-    shown_.push_back({i, Surface(part, look.resolution), rigid, {}});
+    const bool rigid = part.rigid();
+    shown_.push_back({i, Surface(part, part.local() == nullptr ? look.resolution : 1), rigid, {}});
     if (rigid) shown_.back().body = shown_.back().surface.body_mesh(part, part.parameters().rest());
     meshes_.push_back({part.name(), look.color, {}});
   }
@@ -21,6 +21,12 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
     const Vec3<double> c = model_->position(state, part);
     const Eigen::Quaterniond R = model_->orientation(state, part);
     TriangleMesh& mesh = meshes_[k].mesh;
+    if (const LocalDeformation* local = model_->parts()[shown.part].local) {
+      mesh = node_mesh(local->mesh(), model_->node_positions(state, part));
+      mesh.x = (R.toRotationMatrix() * mesh.x).colwise() + c;
+      mesh.normals = R.toRotationMatrix() * mesh.normals;
+      continue;
+    }
     if (!shown.rigid) {
       mesh = shown.surface.world_mesh(*model_->parts()[shown.part].part, model_->values(state, part), c, R);
       continue;
@@ -42,10 +48,11 @@ Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) {
     const int part = static_cast<int>(shown.part);
     const Part& solid = *model_->parts()[shown.part].part;
     const Mat3<double> turn = model_->orientation(state, part).toRotationMatrix();
-    const Eigen::Matrix3Xd x =
-        (turn * (shown.rigid ? shown.body.x : solid.s(shown.surface.material(), model_->values(state, part))))
-            .colwise() +
-        model_->position(state, part);
+    const Eigen::Matrix3Xd of_body =
+        solid.local() != nullptr
+            ? Eigen::Matrix3Xd(model_->node_positions(state, part).transpose())
+            : (shown.rigid ? shown.body.x : solid.s(shown.surface.material(), model_->values(state, part)));
+    const Eigen::Matrix3Xd x = (turn * of_body).colwise() + model_->position(state, part);
     box.extend(Vec3<double>(x.rowwise().minCoeff()));
     box.extend(Vec3<double>(x.rowwise().maxCoeff()));
   }
@@ -54,7 +61,10 @@ Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) {
 
 std::int64_t FrameMeshes::triangles() const {
   std::int64_t sum = 0;
-  for (const Shown& shown : shown_) sum += shown.surface.triangles().cols();
+  for (const Shown& shown : shown_) {
+    const LocalDeformation* local = model_->parts()[shown.part].local;
+    sum += local == nullptr ? shown.surface.triangles().cols() : local->mesh().triangles.cols();
+  }
   return sum;
 }
 

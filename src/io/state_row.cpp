@@ -16,16 +16,23 @@ const ParameterSpec& dynamic_parameter(const PartModel& part, int k) {
   return *part.part->parameters().moving(k).spec;
 }
 
+/// Of the k-th local coordinate.
+const char* local_unit(const PartModel& part, int k) {
+  return k < 3 * part.local->n_nodes() ? "m" : "1";
+}
+
 }  // namespace
 
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part) {
   std::vector<Column> columns;
-  for (int k = 0; k < 7 + part.n_s; ++k) {
+  for (int k = 0; k < part.n_q(); ++k) {
     Column column{model.coordinate_name(part.q0 + k), "", ""};
     if (k < 3)
       column.unit = "m", column.meaning = "position of the frame, world";
     else if (k < 7)
       column.unit = "1", column.meaning = "orientation, body to world";
+    else if (k >= 7 + part.n_s)
+      column.unit = local_unit(part, k - 7 - part.n_s), column.meaning = "local deformation, body frame";
     else
       column.unit = dynamic_parameter(part, k - 7).unit(),
       column.meaning = dynamic_parameter(part, k - 7).meaning;
@@ -36,12 +43,14 @@ std::vector<Column> coordinate_columns(const Model& model, const PartModel& part
 
 std::vector<Column> velocity_columns(const Model& model, const PartModel& part) {
   std::vector<Column> columns;
-  for (int k = 0; k < 6 + part.n_s; ++k) {
+  for (int k = 0; k < part.n_v(); ++k) {
     Column column{model.velocity_name(part.v0 + k), "", ""};
     if (k < 3)
       column.unit = "m/s", column.meaning = "velocity of the frame, world";
     else if (k < 6)
       column.unit = "rad/s", column.meaning = "angular velocity, body frame";
+    else if (k >= 6 + part.n_s)
+      column.unit = std::string(local_unit(part, k - 6 - part.n_s)) + "/s";
     else
       column.unit = std::string(dynamic_parameter(part, k - 6).unit()) + "/s";
     columns.push_back(std::move(column));

@@ -13,8 +13,8 @@ void add_axes(std::vector<Column>& columns, const std::string& stem, const char*
   for (const char* axis : kAxes) columns.push_back({stem + axis, unit, meaning});
 }
 
-void add_all(std::vector<Column>& columns, const std::vector<Column>& more) {
-  columns.insert(columns.end(), more.begin(), more.end());
+void add_some(std::vector<Column>& columns, const std::vector<Column>& more, int n) {
+  columns.insert(columns.end(), more.begin(), more.begin() + n);
 }
 
 void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
@@ -51,6 +51,7 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
     const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
     centre_shown_.push_back(part.q0 >= 0 &&
                             (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
+    local_shown_ = local_shown_ || part.local != nullptr;
   }
 }
 
@@ -60,8 +61,9 @@ std::vector<Column> TrajectoryTable::columns() const {
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
     const PartModel& part = model.parts()[i];
     if (part.q0 < 0) continue;
-    add_all(columns, coordinate_columns(model, part));
-    add_all(columns, velocity_columns(model, part));
+    // Nodes are told in q.npy and v.npy only.
+    add_some(columns, coordinate_columns(model, part), 7 + part.n_s);
+    add_some(columns, velocity_columns(model, part), 6 + part.n_s);
     if (centre_shown_[i]) add_axes(columns, part.part->name() + ".com", "m", "centre of mass, world");
   }
   for (const Track& track : scene_->tracks)
@@ -76,7 +78,8 @@ std::vector<Column> TrajectoryTable::columns() const {
   }
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
     columns.push_back({std::string("energy.") + energy, "J", ""});
-  columns.push_back({"energy.total", "J", "kinetic + gravity + elastic + springs"});
+  if (local_shown_) columns.push_back({"energy.local", "J", "elastic, of local deformation"});
+  columns.push_back({"energy.total", "J", "sum of the energies"});
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   columns.push_back(
       {"balance", "J", "energy.total - its value at time 0 - all works: the error of the method"});
@@ -111,8 +114,9 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
     if (has_torque(model.joints()[static_cast<std::size_t>(j)])) add_vector(numbers, wrench.torque);
     numbers.push_back(model.gap(state, j));
   }
-  numbers.insert(numbers.end(),
-                 {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs, ledger.energy()});
+  numbers.insert(numbers.end(), {ledger.kinetic, ledger.gravity, ledger.elastic, ledger.springs});
+  if (local_shown_) numbers.push_back(ledger.local);
+  numbers.push_back(ledger.energy());
   numbers.insert(numbers.end(), ledger.work.data(), ledger.work.data() + kWorks);
   numbers.push_back(ledger.balance);
   add_vector(numbers, ledger.momentum);

@@ -6,14 +6,20 @@
 #include <stdexcept>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/QR>
 
+#include <pliant/local/solid_mass.h>
 #include <pliant/part/part.h>
+#include <pliant/part/solid.h>
 #include <pliant/part/surface.h>
 
 namespace pliant {
 
 namespace {
+
+/// Corners of the edges of an element, in the order of its nodes.
+constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
 /// A third of the area of the triangles at each node.
 VecX<double> node_areas(const LocalMesh& mesh) {
@@ -80,16 +86,123 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   return best;
 }
 
+/// Weights of a point x in a shell: those of the point of its triangles that is nearest.
+NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
+  NodeWeights best;
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    std::array<Vec3<double>, 3> corner;
+    for (int k = 0; k < 3; ++k)
+      corner[static_cast<std::size_t>(k)] = mesh.X.row(mesh.triangles(k, t)).transpose();
+    const Vec3<double> weight = nearest_on_triangle(x, corner);
+    const double distance =
+        (x - weight[0] * corner[0] - weight[1] * corner[1] - weight[2] * corner[2]).squaredNorm();
+    if (distance >= least) continue;
+    least = distance;
+    best = {};
+    for (int k = 0; k < 3; ++k) {
+      if (weight[k] == 0) continue;
+      best.node.push_back(mesh.triangles(k, t));
+      best.weight.push_back(weight[k]);
+    }
+  }
+  return best;
+}
+
+/// Shape functions of an element of 4 or 10 nodes at barycentric coordinates L, and their slopes by L.
+VecX<double> shape_functions(const Vec<double, 4>& L, Eigen::Index n_nodes) {
+  if (n_nodes == 4) return L;
+  VecX<double> N(10);
+  for (int i = 0; i < 4; ++i) N[i] = L[i] * (2 * L[i] - 1);
+  for (int e = 0; e < 6; ++e) N[4 + e] = 4 * L[kEdges[e][0]] * L[kEdges[e][1]];
+  return N;
+}
+MatX<double> shape_slopes(const Vec<double, 4>& L, Eigen::Index n_nodes) {
+  if (n_nodes == 4) return MatX<double>::Identity(4, 4);
+  MatX<double> slope = MatX<double>::Zero(10, 4);
+  for (int i = 0; i < 4; ++i) slope(i, i) = 4 * L[i] - 1;
+  for (int e = 0; e < 6; ++e) {
+    slope(4 + e, kEdges[e][0]) = 4 * L[kEdges[e][1]];
+    slope(4 + e, kEdges[e][1]) = 4 * L[kEdges[e][0]];
+  }
+  return slope;
+}
+
+/// Weights of a point x in a solid: by the element in which it lies, or outside of which it lies least.
+NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
+  const Eigen::Index n = mesh.tetrahedra.rows();
+  Eigen::Index in = 0;
+  Vec<double, 4> L = Vec<double, 4>::Zero();
+  double inside = -std::numeric_limits<double>::infinity();
+  Eigen::Matrix4d corners;
+  corners.row(3).setOnes();
+  for (Eigen::Index t = 0; t < mesh.tetrahedra.cols(); ++t) {
+    for (int k = 0; k < 4; ++k)
+      corners.col(k).head<3>() = mesh.X.row(mesh.tetrahedra(k, t)).transpose();
+    const Vec<double, 4> at = corners.inverse() * x.homogeneous();
+    if (!(at.minCoeff() > inside)) continue;
+    inside = at.minCoeff();
+    in = t;
+    L = at;
+  }
+  MatX<double> X(n, 3);
+  for (Eigen::Index k = 0; k < n; ++k) X.row(k) = mesh.X.row(mesh.tetrahedra(k, in));
+  // Newton's method where the element is curved; straight ones are met at once.
+  constexpr int most = 10;
+  for (int i = 0; n > 4 && i < most; ++i) {
+    Eigen::Matrix4d slope;
+    slope.topRows<3>() = X.transpose() * shape_slopes(L, n);
+    slope.row(3).setOnes();
+    Vec<double, 4> miss;
+    miss << x - X.transpose() * shape_functions(L, n), 0;
+    L += slope.inverse() * miss;
+  }
+  NodeWeights at;
+  const VecX<double> N = shape_functions(L, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    at.node.push_back(mesh.tetrahedra(k, in));
+    at.weight.push_back(N[k]);
+  }
+  return at;
+}
+
+/// Triangles of a surface of 3 nodes a column, or of 6, each of which makes four.
+Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
+  if (faces.rows() == 3) return faces;
+  constexpr int quarter[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  Eigen::Matrix3Xi triangles(3, 4 * faces.cols());
+  for (Eigen::Index f = 0; f < faces.cols(); ++f)
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) triangles(k, 4 * f + i) = faces(quarter[i][k], f);
+  return triangles;
+}
+
+/// Nodes and elements at rest, with masses that stand in the right ratio.
+LocalMesh lay_mesh(const Part& part, const LocalSettings& settings) {
+  LocalMesh mesh;
+  if (part.shell()) {
+    const Surface surface(part, settings.resolution);
+    mesh.nodes = surface.material();
+    mesh.triangles = surface.triangles();
+  } else {
+    const Solid solid(part, settings.resolution,
+                      settings.order == 2 ? Solid::Order::quadratic : Solid::Order::linear);
+    mesh.nodes = solid.material();
+    mesh.triangles = flat_triangles(solid.boundary());
+    mesh.tetrahedra = solid.elements();
+  }
+  mesh.X = part.s(mesh.nodes, part.parameters().rest()).transpose();
+  mesh.mass = part.shell() ? node_areas(mesh) : lumped_mass(mesh.X, mesh.tetrahedra, 1);
+  mesh.density = part.total_mass() / mesh.mass.sum();
+  mesh.mass *= mesh.density;
+  return mesh;
+}
+
 }  // namespace
 
 LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settings)
     : alpha_(settings.alpha), beta_(settings.beta) {
-  const Surface surface(part, settings.resolution);
-  mesh_.nodes = surface.material();
-  mesh_.triangles = surface.triangles();
-  mesh_.X = part.s(mesh_.nodes, part.parameters().rest()).transpose();
-  mesh_.mass = node_areas(mesh_);
-  mesh_.mass *= part.total_mass() / mesh_.mass.sum();
+  mesh_ = lay_mesh(part, settings);
   match_moments(part.rest_inertia(), part.size(), mesh_.X, mesh_.mass);
   if (!(mesh_.mass.minCoeff() > 0))
     throw std::invalid_argument("part '" + part.name() + "': a mesh of resolution " +
@@ -125,27 +238,9 @@ LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settin
 }
 
 NodeWeights LocalDeformation::weights(const Part& part, const Material<double>& m) const {
-  NodeWeights best;
-  if (mesh_.shell() && m.w < 1) return best;
+  if (mesh_.shell() && m.w < 1) return {};
   const Vec3<double> x = part.s({m}, part.parameters().rest()).col(0);
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index t = 0; t < mesh_.triangles.cols(); ++t) {
-    std::array<Vec3<double>, 3> corner;
-    for (int k = 0; k < 3; ++k)
-      corner[static_cast<std::size_t>(k)] = mesh_.X.row(mesh_.triangles(k, t)).transpose();
-    const Vec3<double> weight = nearest_on_triangle(x, corner);
-    const double distance =
-        (x - weight[0] * corner[0] - weight[1] * corner[1] - weight[2] * corner[2]).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
-    best = {};
-    for (int k = 0; k < 3; ++k) {
-      if (weight[k] == 0) continue;
-      best.node.push_back(mesh_.triangles(k, t));
-      best.weight.push_back(weight[k]);
-    }
-  }
-  return best;
+  return mesh_.shell() ? weights_on_triangles(mesh_, x) : weights_in_elements(mesh_, x);
 }
 
 }  // namespace pliant

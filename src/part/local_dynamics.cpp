@@ -267,7 +267,7 @@ void local_masses(const Part& part, const LocalDeformation& local, const VecX<do
     for (int j = 0; j <= k; ++j) sums.JJ(j, k) = sums.JJ(k, j) = sum(JJ[static_cast<std::size_t>(j)]);
   }
   sums.mass = still.mass = sum(total);
-  sums.x = mx.total();
+  sums.x = w.moment = mx.total();
   sums.s = still.x = still.s = ms.total();
   sums.xs = xs.total();
   still.xs = ss.total();

@@ -233,6 +233,8 @@ Part& Part::deform_locally(LocalSettings settings) {
   if (!(settings.alpha >= 0) || !(settings.beta >= 0) || !std::isfinite(settings.alpha + settings.beta))
     refuse("the damping of its nodes, alpha " + text(settings.alpha) + " and beta " + text(settings.beta) +
            ", must not be negative");
+  if (settings.order != 1 && settings.order != 2)
+    refuse("elements of order " + std::to_string(settings.order) + " are not there; expected 1 or 2");
   local_settings_ = std::move(settings);
   return *this;
 }

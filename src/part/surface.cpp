@@ -113,21 +113,20 @@ int Surface::resolution_for(const Part& part, int triangles) {
   return std::clamp(static_cast<int>(std::lround(std::sqrt(triangles / per))), 1, 512);
 }
 
-TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>& values) const {
-  TriangleMesh mesh;
-  mesh.x = part.s(material_, values);
-  mesh.triangles = triangles_;
-  mesh.corners = triangles_;
-  std::vector<Vec3<double>> normals = part.normals(material_, values);
-  for (Eigen::Index t = 0; t < triangles_.cols(); ++t) {
-    const Vec3<double> a = mesh.x.col(triangles_(0, t)), b = mesh.x.col(triangles_(1, t)),
-                       c = mesh.x.col(triangles_(2, t));
+namespace {
+
+/// Gives a mesh its normals; corners whose face turns away from that of their vertex have one of their own.
+void set_normals(TriangleMesh& mesh, std::vector<Vec3<double>> normals) {
+  mesh.corners = mesh.triangles;
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
+                       c = mesh.x.col(mesh.triangles(2, t));
     const Vec3<double> face = (b - a).cross(c - a);
     const double area = face.norm();
     if (area == 0) continue;
     int added = -1;
     for (int k = 0; k < 3; ++k) {
-      const Vec3<double>& n = normals[static_cast<std::size_t>(triangles_(k, t))];
+      const Vec3<double>& n = normals[static_cast<std::size_t>(mesh.triangles(k, t))];
       if (n.dot(face) >= kCreaseCosine * area) continue;
       if (added < 0) {
         added = static_cast<int>(normals.size());
@@ -139,6 +138,38 @@ TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>&
   mesh.normals.resize(3, static_cast<Eigen::Index>(normals.size()));
   for (std::size_t i = 0; i < normals.size(); ++i)
     mesh.normals.col(static_cast<Eigen::Index>(i)) = normals[i];
+}
+
+}  // namespace
+
+TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>& values) const {
+  TriangleMesh mesh;
+  mesh.x = part.s(material_, values);
+  mesh.triangles = triangles_;
+  set_normals(mesh, part.normals(material_, values));
+  return mesh;
+}
+
+TriangleMesh node_mesh(const LocalMesh& nodes, const Eigen::Ref<const Nodes>& x) {
+  TriangleMesh mesh;
+  mesh.x = x.transpose();
+  mesh.triangles = nodes.triangles;
+  std::vector<Vec3<double>> normals(static_cast<std::size_t>(x.rows()), Vec3<double>::Zero());
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    const std::array<Vec3<double>, 3> corner{
+        mesh.x.col(mesh.triangles(0, t)), mesh.x.col(mesh.triangles(1, t)), mesh.x.col(mesh.triangles(2, t))};
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Weighted by the angle of the corner, so that the diagonals of a grid do not show.
+      const Vec3<double> e1 = corner[(k + 1) % 3] - corner[k], e2 = corner[(k + 2) % 3] - corner[k];
+      const Vec3<double> turn = e1.cross(e2);
+      const double area = turn.norm();
+      if (area > 0)
+        normals[static_cast<std::size_t>(mesh.triangles(static_cast<Eigen::Index>(k), t))] +=
+            std::atan2(area, e1.dot(e2)) / area * turn;
+    }
+  }
+  for (Vec3<double>& n : normals) n.normalize();
+  set_normals(mesh, std::move(normals));
   return mesh;
 }
 

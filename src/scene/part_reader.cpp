@@ -10,6 +10,7 @@
 
 #include "direction_reader.h"
 #include "json_write.h"
+#include "local_reader.h"
 #include "parameter_reader.h"
 
 namespace pliant {
@@ -58,6 +59,7 @@ std::unique_ptr<Part> PartReader::read() {
   part_->place(r_.vector3("position"), read_orientation(r_.object("orientation"), faults_));
   part_->move(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
+  if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), faults_, *part_);
   check_rigid();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
   if (known && faults_.errors() == before) prepare();
@@ -164,6 +166,11 @@ void PartReader::check_rigid() {
       faults_.value(r_.at("fixed"), because + "only frozen parameters in a part that does not move");
     if (r_.given("inertia"))
       faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
+  }
+  if (r_.given("local")) {
+    if (r_.boolean("fixed")) faults_.place(r_.at("local"), "a fixed part does not deform; expected no \"local\"");
+    if (r_.given("inertia"))
+      faults_.place(r_.at("inertia"), "a part that deforms locally takes its inertia from its density or mass");
   }
   if (!r_.boolean("fixed")) return;
   for (const char* key : {"velocity", "angular_velocity"})

@@ -6,6 +6,7 @@
 #include <pliant/scene/time_value.h>
 
 #include "joint_schema.h"
+#include "local_schema.h"
 
 namespace pliant {
 
@@ -111,6 +112,7 @@ Record part_record() {
        optional("stiffness_matrix", record(stiffness), "A full K_s over some parameters."),
        optional("material", name(), "Name of an entry of materials; keys given here take precedence."),
        optional("shell", boolean(), "Mass on the surface only; the density is then per area.", "false"),
+       optional("local", record(local_record()), "Local deformation; none when not given."),
        optional("mass", number(above(0), "kg"), "Total mass, instead of the density."),
        optional("inertia", record(inertia), "Mass and inertia of a rigid part."),
        optional("position", vector3("m"), "Origin of the body frame at time 0.", "[0, 0, 0]"),

@@ -135,6 +135,8 @@ class Model {
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   /// Displacements of the nodes of a part that deforms locally, body frame.
   Eigen::Map<const Nodes> local_nodes(const State& state, int part) const;
+  /// Positions of its nodes, body frame, m.
+  Nodes node_positions(const State& state, int part) const;
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
   double gap(const State& state, int joint) const;
   /// "upper.c.x", "upper.bend.angle": the name of an entry of v (or of q, where they differ).

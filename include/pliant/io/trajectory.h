@@ -47,6 +47,7 @@ class TrajectoryTable {
   const Simulation* simulation_;
   Workspace<double> work_;
   bool parts_shown_;
+  bool local_shown_ = false;        // whether any part deforms locally
   std::vector<bool> centre_shown_;  // of each part
 };
 

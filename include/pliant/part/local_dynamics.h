@@ -29,6 +29,7 @@ struct LocalWorkspace {
   MatX<double> H0;
   MatMax<double> K;
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< of K
+  Vec3<double> moment;                         ///< sum m p
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   double condition = 1;                        ///< of K, scaled
   // forces, N

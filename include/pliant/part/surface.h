@@ -33,6 +33,10 @@ class Surface {
   Eigen::Matrix3Xi triangles_;
 };
 
+/// The mesh of the nodes of a part that deforms locally, from their positions (one row a node): normals are
+/// those of the triangles around a vertex.
+TriangleMesh node_mesh(const LocalMesh& nodes, const Eigen::Ref<const Nodes>& x);
+
 /// Volume enclosed by a closed mesh, m^3.
 double enclosed_volume(const TriangleMesh& mesh);
 

@@ -1,0 +1,163 @@
+#include <pliant/part/local_laws.h>
+
+#include <stdexcept>
+
+#include <pliant/local/averaged_dilatation.h>
+#include <pliant/local/bending.h>
+#include <pliant/local/corotated.h>
+#include <pliant/local/linear_law.h>
+#include <pliant/local/linear_membrane.h>
+#include <pliant/local/loaded_membrane.h>
+#include <pliant/local/membrane.h>
+#include <pliant/local/neo_hookean.h>
+#include <pliant/local/pressure.h>
+#include <pliant/local/solid_energy.h>
+#include <pliant/local/st_venant_kirchhoff.h>
+
+namespace pliant {
+
+namespace {
+
+using Number = LocalLawInfo::Number;
+using Energy = std::unique_ptr<NodalEnergy>;
+
+const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
+const Number kPoissonShell{"nu", "1", "Poisson's number.", -1, true, 0.3, 0.5};
+const Number kPoissonSolid{"nu", "1", "Poisson's number, below 1/2.", -1, true, 0.3, 0.4999999};
+const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
+
+ShellMesh shell(const LocalMesh& mesh) {
+  return ShellMesh(mesh.X, mesh.triangles);
+}
+Sheet sheet(const double* values) {
+  return {values[0], values[1], values[2]};
+}
+
+template <class Law>
+Energy lay_membrane(const LocalMesh& mesh, const double* values) {
+  return std::make_unique<Membrane<Law>>(shell(mesh), sheet(values));
+}
+template <class Hinges>
+Energy lay_bending(const LocalMesh& mesh, const double* values) {
+  return std::make_unique<MidEdgeBending<Hinges>>(shell(mesh), sheet(values), mesh.density);
+}
+template <class Law>
+Energy lay_solid(const LocalMesh& mesh, const double* values) {
+  const Law law(Elasticity(values[0], values[1]));
+  if (mesh.tetrahedra.rows() == 4)
+    return std::make_unique<SolidEnergy<LinearTetrahedron, Law>>(mesh.X, mesh.tetrahedra, law);
+  return std::make_unique<SolidEnergy<QuadraticTetrahedron, Law>>(mesh.X, mesh.tetrahedra, law);
+}
+Energy lay_averaged(const LocalMesh& mesh, const double* values) {
+  const Elasticity material(values[0], values[1]);
+  if (mesh.tetrahedra.rows() == 4)
+    return std::make_unique<AveragedLinearSolid<LinearTetrahedron>>(mesh.X, mesh.tetrahedra, material);
+  return std::make_unique<AveragedLinearSolid<QuadraticTetrahedron>>(mesh.X, mesh.tetrahedra, material);
+}
+
+}  // namespace
+
+const std::vector<LocalLawInfo>& all_local_laws() {
+  static const std::vector<LocalLawInfo> all{
+      {"membrane",
+       "A thin elastic sheet that resists stretch, for small local deformation; quadratic in d.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LinearMembrane>(shell(mesh), sheet(values));
+       }},
+      {"st_venant_kirchhoff_membrane",
+       "A thin sheet that resists stretch from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_membrane<StVenantKirchhoffSheet>},
+      {"neo_hookean_membrane",
+       "A rubber sheet that resists stretch from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_membrane<NeoHookeanSheet>},
+      {"loaded_membrane",
+       "The membrane of Terzopoulos & Metaxas 1991 over the surface: 1/2 (w1 |grad d|^2 + w0 |d|^2) per area.",
+       true,
+       {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0}, {"w1", "N/m", "Resists its variation.", 0, false}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
+       }},
+      {"bending",
+       "A thin sheet that resists bending, for small local deformation; quadratic in d.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<LinearHinges>},
+      {"folding",
+       "A thin sheet that resists bending from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<FoldingHinges>},
+      {"pressure",
+       "A constant pressure in the shell, more than outside.",
+       true,
+       {{"p", "Pa", "Inside less outside.", -std::numeric_limits<double>::infinity(), true}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<ConstantPressure>(shell(mesh), values[0]);
+       }},
+      {"gas",
+       "A gas in the shell: p V^gamma stays.",
+       true,
+       {{"p0", "Pa", "Pressure in the shell at rest.", 0, false},
+        {"gamma", "1", "Ratio of its specific heats; 1: at constant temperature.", 1, false, 1.4},
+        {"p_ext", "Pa", "Pressure outside.", 0, false, 0.0}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         VecX<double> X(3 * mesh.X.rows());
+         X << mesh.X.col(0), mesh.X.col(1), mesh.X.col(2);
+         const double V0 = ConstantPressure(shell(mesh), 0).volume(X);
+         return std::make_unique<GasPressure>(shell(mesh), Gas{values[0], V0, values[1], values[2]});
+       }},
+      {"elastic",
+       "Linear elasticity, for small local deformation; quadratic in d.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<LinearLaw>},
+      {"elastic_averaged",
+       "The same with the dilatation averaged around nodes: it does not lock where nu is near 1/2.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_averaged},
+      {"st_venant_kirchhoff",
+       "St. Venant-Kirchhoff elasticity from rest to now, by any rotation.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<StVenantKirchhoff>},
+      {"neo_hookean",
+       "Rubber from rest to now, by any rotation.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<NeoHookean>},
+      {"corotated",
+       "Linear elasticity in a frame that turns with each element.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<Corotated>},
+  };
+  return all;
+}
+
+LocalSettings::Law local_law(const std::string& name, std::vector<double> values) {
+  std::string known;
+  for (const LocalLawInfo& info : all_local_laws()) {
+    known += std::string(" ") + info.name;
+    if (name != info.name) continue;
+    if (values.size() != info.numbers.size())
+      throw std::invalid_argument("law '" + name + "' takes " + std::to_string(info.numbers.size()) + " numbers");
+    const bool of_shell = info.shell;
+    const auto lay = info.lay;
+    return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+      if (mesh.shell() != of_shell)
+        throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") + ", not of " +
+                                    (of_shell ? "solids" : "shells"));
+      return lay(mesh, values.data());
+    };
+  }
+  throw std::invalid_argument("no law of local deformation '" + name + "'; there are:" + known);
+}
+
+}  // namespace pliant

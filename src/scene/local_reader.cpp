@@ -1,0 +1,62 @@
+#include "local_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <pliant/part/local_laws.h>
+
+namespace pliant {
+
+namespace {
+
+struct Dent {
+  Vec3<double> at, displacement, velocity;
+  double radius;
+  double share(const Vec3<double>& X) const { return std::exp(-((X - at) / radius).squaredNorm()); }
+};
+
+}  // namespace
+
+void read_local(const Reader& local, SceneFaults& faults, Part& part) {
+  const std::size_t before = faults.errors();
+  LocalSettings settings;
+  settings.resolution = static_cast<int>(local.integer("resolution"));
+  settings.order = static_cast<int>(local.integer("order"));
+  settings.alpha = local.number("alpha");
+  settings.beta = local.number("beta");
+  if (part.shell() && local.given("order"))
+    faults.place(local.at("order"), "a shell has triangles; expected no \"order\"");
+  for (const Reader& law : local.objects("laws")) {
+    const auto info = std::find_if(all_local_laws().begin(), all_local_laws().end(),
+                                   [&](const LocalLawInfo& i) { return i.name == law.name(); });
+    if (info == all_local_laws().end() || !law.complete()) continue;
+    if (info->shell != part.shell()) {
+      faults.place(law.at("type"), std::string("this is a law of ") + (info->shell ? "shells" : "solids") +
+                                       ", and the part is a " + (part.shell() ? "shell" : "solid") +
+                                       (info->shell ? "; expected \"shell\": true" : ""));
+      continue;
+    }
+    std::vector<double> values;
+    for (const LocalLawInfo::Number& n : info->numbers) values.push_back(law.number(n.key));
+    settings.energies.push_back(local_law(info->name, std::move(values)));
+  }
+  std::vector<Dent> dents;
+  for (const Reader& dent : local.objects("dents"))
+    if (dent.complete())
+      dents.push_back({dent.vector3("at"), dent.vector3("displacement"), dent.vector3("velocity"),
+                       dent.number("radius")});
+  if (!dents.empty()) {
+    auto sum_of = [dents](Vec3<double> Dent::*which) {
+      return [dents, which](const Vec3<double>& X) {
+        Vec3<double> sum = Vec3<double>::Zero();
+        for (const Dent& dent : dents) sum += dent.share(X) * dent.*which;
+        return sum;
+      };
+    };
+    settings.displacement = sum_of(&Dent::displacement);
+    settings.velocity = sum_of(&Dent::velocity);
+  }
+  if (faults.errors() == before) part.deform_locally(std::move(settings));
+}
+
+}  // namespace pliant
