@@ -25,23 +25,11 @@ LinearMembrane::LinearMembrane(const ShellMesh& mesh, const Sheet& sheet)
     }
 }
 
-LinearMembrane::Three LinearMembrane::stretch(const Triangle& triangle, const std::array<Vec3<Pack>, 3>& d) {
-  const Edges<Pack> change = edges_of(d);
-  Three q;
-  for (std::size_t k = 0; k < 3; ++k) q[k] = triangle.e[k].dot(change[k]);
-  return q;
-}
-
-LinearMembrane::Three LinearMembrane::tension(const Triangle& triangle, const Three& q) {
-  return {q[0] + triangle.s01 * q[1] + triangle.s20 * q[2], q[1] + triangle.s01 * q[0] + triangle.s12 * q[2],
-          q[2] + triangle.s20 * q[0] + triangle.s12 * q[1]};
-}
-
 double LinearMembrane::energy(const VecX<double>& x) const {
   double twice = 0;
   for (int b = 0; b < batches_.n_batches(); ++b) {
     const Triangle& triangle = triangles_[static_cast<std::size_t>(b)];
-    const Three q = stretch(triangle, batches_.corners(x, b)), tau = tension(triangle, q);
+    const Three q = triangle.stretch(batches_.corners(x, b)), tau = triangle.tension(q);
     const Pack work = q[0] * tau[0] + q[1] * tau[1] + q[2] * tau[2];
     for (int lane = 0; lane < batches_.lanes(b); ++lane) twice += work[lane];
   }
@@ -53,7 +41,7 @@ void LinearMembrane::add_force(const VecX<double>& x, VecX<double>& f, Buffer& b
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Triangle& triangle = triangles_[static_cast<std::size_t>(b)];
-    return corner_forces(tension(triangle, stretch(triangle, batches_.corners(x, b))), triangle.e);
+    return corner_forces(triangle.tension(triangle.stretch(batches_.corners(x, b))), triangle.e);
   });
 }
 

@@ -81,7 +81,7 @@ class ElementBatches {
   }
 
  private:
-  static constexpr int kBatchesInRange = 128, kNodesInRange = 512;
+  static constexpr int kBatchesInRange = 512, kNodesInRange = 2048;
 
   void add_corners(VecX<double>& f, const double* buffer, ThreadPool* pool) const;
 

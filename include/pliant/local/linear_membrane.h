@@ -22,14 +22,20 @@ class LinearMembrane final : public NodalEnergy {
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
 
  private:
+  using Three = std::array<Pack, 3>;
   struct Triangle {
     Edges<Pack> e;       ///< e_k sqrt(S_kk)
     Pack s01, s12, s20;  ///< S_kl / sqrt(S_kk S_ll)
-  };
-  using Three = std::array<Pack, 3>;
 
-  static Three stretch(const Triangle& triangle, const std::array<Vec3<Pack>, 3>& d);
-  static Three tension(const Triangle& triangle, const Three& q);
+    Three stretch(const std::array<Vec3<Pack>, 3>& d) const {
+      const Edges<Pack> change = edges_of(d);
+      return {e[0].dot(change[0]), e[1].dot(change[1]), e[2].dot(change[2])};
+    }
+    Three tension(const Three& q) const {
+      return {q[0] + s01 * q[1] + s20 * q[2], q[1] + s01 * q[0] + s12 * q[2], q[2] + s20 * q[0] + s12 * q[1]};
+    }
+  };
+
   template <class Visit>
   void each_element(Visit&& visit) const;
 
