@@ -16,6 +16,7 @@ constexpr double kNoArea = 1e-12;
 
 ShellMesh::ShellMesh(Nodes X, Eigen::Matrix3Xi triangles)
     : X_(std::move(X)), triangles_(std::move(triangles)) {
+  if (n_triangles() == 0) throw std::invalid_argument("the shell has no triangles");
   for (Eigen::Index i = 0; i < n_nodes(); ++i)
     if (!X_.row(i).allFinite())
       throw std::invalid_argument("node " + std::to_string(i) + " of the shell has no finite position");
