@@ -45,6 +45,15 @@ struct Pack {
     for (Vector& v : vectors) v = all - Vector{};  // minus 0 keeps the sign of a zero
   }
 
+  Pack(double a, double b, double c, double d) {
+#ifdef __AVX__
+    vectors[0] = Vector{a, b, c, d};
+#else
+    vectors[0] = Vector{a, b};
+    vectors[1] = Vector{c, d};
+#endif
+  }
+
   double operator[](int i) const {
     return vectors[i / kWidth][i % kWidth];
   }

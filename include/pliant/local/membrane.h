@@ -1,0 +1,50 @@
+// Membranes that deform by any amount, of the whole map from rest to now: constant-strain triangles with
+// tensions tau_k = dW/dq_k along the edges as they are now, q_k = (|e_k|^2 - |e_k|_rest^2)/2 (edge_strain.h).
+// Exact second derivatives:   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k,   dq_k = e_k . de_k.
+#pragma once
+
+#include <pliant/local/membrane_laws.h>
+#include <pliant/local/nodal_energy.h>
+
+namespace pliant {
+
+/// Law: StVenantKirchhoff or NeoHookean.
+template <class Law>
+class Membrane final : public NodalEnergy {
+ public:
+  /// Throws std::invalid_argument for a sheet that cannot be.
+  Membrane(const ShellMesh& mesh, const Sheet& sheet);
+
+  Of of() const override { return Of::position; }
+  /// Not finite where a triangle of a neo-Hookean membrane has lost its area.
+  double energy(const VecX<double>& x) const override;
+  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+                      ThreadPool* pool) const override;
+  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+
+ private:
+  struct Batch {
+    typename Law::Triangles law;
+    std::array<Pack, 3> rest;  ///< |e_k|^2 / 2
+
+    std::array<Pack, 3> strain(const Edges<Pack>& e) const {
+      return {0.5 * e[0].dot(e[0]) - rest[0], 0.5 * e[1].dot(e[1]) - rest[1], 0.5 * e[2].dot(e[2]) - rest[2]};
+    }
+  };
+  const Batch& batch(int b) const { return triangles_[static_cast<std::size_t>(b)]; }
+  template <class Visit>
+  void each_element(const VecX<double>& x, Visit&& visit) const;
+
+  ElementBatches<3> batches_;
+  std::vector<Batch> triangles_;
+};
+
+using StVenantKirchhoffMembrane = Membrane<StVenantKirchhoff>;
+using NeoHookeanMembrane = Membrane<NeoHookean>;
+
+extern template class Membrane<StVenantKirchhoff>;
+extern template class Membrane<NeoHookean>;
+
+}  // namespace pliant

@@ -1,0 +1,74 @@
+// Pressure in a closed shell: an energy E(V) of the volume that it encloses (m^3),
+//   V = 1/6 sum_T x_a . (x_b x x_c),   dE/dx = E' dV/dx,   K = E' d2V/dx2 + E'' (dV/dx) (dV/dx)^T.
+// Constant pressure p: E = -p V. A gas of p0 at V0, with p_ext outside (adiabatic; gamma = 1 isothermal):
+//   E = p0 V0/(gamma - 1) (V0/V)^(gamma - 1) + p_ext V.
+#pragma once
+
+#include <pliant/local/element_batches.h>
+#include <pliant/local/nodal_energy.h>
+#include <pliant/local/shell_edges.h>
+
+namespace pliant {
+
+class Pressure : public NodalEnergy {
+ public:
+  Of of() const final { return Of::position; }
+  double energy(const VecX<double>& x) const final;
+  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const final;
+  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+                      ThreadPool* pool) const final;
+  /// Leaves out w w^T with w = rank_one(x), which ties every node to every other.
+  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const final;
+  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const final;
+
+  /// w = sqrt(E'') dV/dx: K is what add_stiffness gives and w w^T. Nothing but zeros at constant pressure.
+  VecX<double> rank_one(const VecX<double>& x) const;
+  double volume(const VecX<double>& x) const;
+
+ protected:
+  struct Law {
+    double E, slope, curvature;  ///< E, E', E''
+  };
+  /// Throws std::invalid_argument unless the mesh is closed and encloses a volume.
+  explicit Pressure(const ShellMesh& mesh);
+
+ private:
+  virtual Law law(double V) const = 0;
+  template <class F>
+  double sum(double* parts, ThreadPool* pool, F&& f) const;
+  double volume(const VecX<double>& x, double* parts, ThreadPool* pool) const;
+  template <class Visit>
+  void each_element(const VecX<double>& x, Visit&& visit) const;
+
+  ElementBatches<3> batches_;
+  Eigen::Matrix4Xi edges_;  ///< a, b, c opposite on the left, d on the right
+};
+
+class ConstantPressure final : public Pressure {
+ public:
+  /// p: inside less outside, Pa; may be negative. Throws as Pressure, and when p is not finite.
+  ConstantPressure(const ShellMesh& mesh, double p);
+
+ private:
+  Law law(double V) const override;
+  double p_;
+};
+
+struct Gas {
+  double p0;         ///< Pa at V0
+  double V0;         ///< m^3
+  double gamma;      ///< ratio of the specific heats; 1: at constant temperature
+  double p_ext = 0;  ///< Pa outside
+};
+
+class GasPressure final : public Pressure {
+ public:
+  /// Throws as Pressure, and unless p0 >= 0, V0 > 0 and gamma >= 1. The energy is not finite where V <= 0.
+  GasPressure(const ShellMesh& mesh, const Gas& gas);
+
+ private:
+  Law law(double V) const override;
+  Gas gas_;
+};
+
+}  // namespace pliant
