@@ -35,7 +35,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   state.work += h * work_sum;
   hold_inertialess(dynamics.model(), work, state.v);
   normalise_rotations(dynamics.model(), state.q);
-  settle_frames(dynamics, state, work);
+  settle_frames(dynamics, t + h, state, work);
   settle_limits(dynamics, t + h, state, work, counters);
   settle_joints(dynamics, t + h, state, work, counters);
 }

@@ -17,7 +17,7 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   hold_inertialess(dynamics.model(), work, state.v);
   stop_ahead(dynamics, work, state, h, q_end_, ahead_, counters);
   advance_coordinates(dynamics.model(), state.q, state.v, h);
-  settle_frames(dynamics, state, work);
+  settle_frames(dynamics, state.time() + h, state, work);
   settle_on_limits(dynamics.model(), state);
   settle_joints(dynamics, state.time() + h, state, work, counters);
 }

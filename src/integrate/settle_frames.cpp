@@ -1,10 +1,13 @@
 // Reference conditions W^T d = 0 after a step (design 1.3). A change of (c, theta, q_s) by delta that leaves
 // every node where it is changes d by -G delta, and W^T d by -K^T delta:
 //   K^T delta = W^T d,   and of the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
+#include <sstream>
+
 #include <Eigen/Geometry>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_failure.h>
 
 namespace pliant {
 
@@ -13,6 +16,8 @@ namespace {
 /// Changes of the frame below this part of the size of the part are rounding.
 constexpr double kRounding = 1e-15;
 constexpr int kMostIterations = 8;
+/// Of K with H0 scaled to a unit diagonal (design 1.3).
+constexpr double kWorstCondition = 1e8;
 
 /// Rows of x, each turned by R.
 Nodes turned(const Nodes& x, const Mat3<double>& R) {
@@ -21,7 +26,7 @@ Nodes turned(const Nodes& x, const Mat3<double>& R) {
 
 }  // namespace
 
-void settle_frames(const Dynamics& dynamics, State& state, Workspace<double>& work) {
+void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
@@ -33,12 +38,19 @@ void settle_frames(const Dynamics& dynamics, State& state, Workspace<double>& wo
     const std::vector<int> part{static_cast<int>(i)};
     dynamics.evaluate_masses(state.q, state.v, part, work);
     PartWorkspace<double>& w = work.parts[i];
+    if (!(w.local->condition <= kWorstCondition)) {
+      std::ostringstream message;
+      message << "the motion of the nodes of part '" << m.part->name()
+              << "' no longer tells its frame and global parameters apart (condition " << w.local->condition
+              << "); freeze some of the parameters";
+      throw NumericalFailure(message.str(), t);
+    }
     const double size = m.part->size();
     const Nodes x_dot = turned(node_velocities(local, w.v_r, *w.local), w.R);
     Nodes p = nodes(w.local->x, n);
     for (int iteration = 0; iteration < kMostIterations; ++iteration) {
       const VecMax<double> unmet = frame_share(local, nodes(w.local->d, n), *w.local);
-      const VecMax<double> delta = w.local->factor.transpose().solve(unmet);
+      const VecMax<double> delta = w.local->solve_transposed(unmet);
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
       advance_part(m, state.q, world_velocity(w, delta), 1);
       const Vec3<double> turn = delta.segment<3>(3);
@@ -53,7 +65,7 @@ void settle_frames(const Dynamics& dynamics, State& state, Workspace<double>& wo
       dynamics.evaluate_masses(state.q, state.v, part, work);
     }
     const Nodes now = turned(x_dot, w.R.transpose());
-    const VecMax<double> v_r = w.local->factor.transpose().solve(frame_share(local, now, *w.local));
+    const VecMax<double> v_r = w.local->solve_transposed(frame_share(local, now, *w.local));
     share_of(m, state.v) = world_velocity(w, v_r);
     state.v.segment(m.v0 + 6 + m.n_s, 3 * n) =
         Eigen::Map<const VecX<double>>(Nodes(now - frame_velocities(local, v_r, *w.local)).data(), 3 * n);

@@ -26,7 +26,7 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       held_(static_cast<std::size_t>(model_.n_v())) {
   dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
   if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
-  settle_frames(dynamics_, state_, output_work_);
+  settle_frames(dynamics_, 0, state_, output_work_);
   if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
   for (const Island& island : model_.islands())
     take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);

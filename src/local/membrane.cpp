@@ -107,7 +107,7 @@ double Membrane<Law>::frequency_bound(const VecX<double>& x, const VecX<double>&
   return largest_of_elements([&](auto&& visit) { each_element(x, visit); }, M);
 }
 
-template class Membrane<StVenantKirchhoff>;
-template class Membrane<NeoHookean>;
+template class Membrane<StVenantKirchhoffSheet>;
+template class Membrane<NeoHookeanSheet>;
 
 }  // namespace pliant

@@ -137,8 +137,7 @@ NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Matrix4d corners;
   corners.row(3).setOnes();
   for (Eigen::Index t = 0; t < mesh.tetrahedra.cols(); ++t) {
-    for (int k = 0; k < 4; ++k)
-      corners.col(k).head<3>() = mesh.X.row(mesh.tetrahedra(k, t)).transpose();
+    for (int k = 0; k < 4; ++k) corners.col(k).head<3>() = mesh.X.row(mesh.tetrahedra(k, t)).transpose();
     const Vec<double, 4> at = corners.inverse() * x.homogeneous();
     if (!(at.minCoeff() > inside)) continue;
     inside = at.minCoeff();
@@ -217,6 +216,9 @@ LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settin
   VecX<double> own;
   for (const LocalSettings::Law& law : settings.energies) {
     energies_.push_back(law(mesh_));
+    if (beta_ > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
+      throw std::invalid_argument("part '" + part.name() +
+                                  "': beta of its nodes damps laws that are quadratic in d only; use alpha");
     const VecX<double> more = energies_.back()->own_inertia();
     if (more.size() == 0) continue;
     if (own.size() > 0)

@@ -293,8 +293,10 @@ void local_masses(const Part& part, const LocalDeformation& local, const VecX<do
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
     shape_rates(part, local, q_s, q_s_dot, w, P, w.rates);
   }
-  w.K = sums.matrix() - P.transpose();
-  w.factor.compute(w.K);
+  w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
+  const MatMax<double> K = sums.matrix() - P.transpose();
+  w.factor.compute(w.scale.asDiagonal() * K * w.scale.asDiagonal());
+  w.condition = 1 / w.factor.rcond();
   ++counters.mass_matrices;
 }
 
@@ -363,10 +365,10 @@ void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, Local
   const Eigen::Index n = local.n_nodes();
   const auto n_s = static_cast<int>(f_r.size()) - 6;
   w.kappa = generalised(w.x.data(), w.f_d.data(), w, n, n_s) - f_r;
-  w.kappa = w.factor.solve(w.kappa);
+  w.kappa = w.solve(w.kappa);
   w.force = w.f + w.f_d;
   VecMax<double> a = generalised(w.s.data(), w.force.data(), w, n, n_s) - w.H0 * w.kappa + w.rates;
-  a = w.factor.transpose().solve(a);
+  a = w.solve_transposed(a);
   f_r = a;
   w.d_ddot = local.mobility().cwiseProduct(w.force);
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
@@ -431,11 +433,9 @@ void local_compliance(const LocalDeformation& local, const std::vector<NodeWeigh
   MatX<double> right(n_r, n_r + n_p), above = MatX<double>::Zero(n_r, n_r + n_p);
   right << -MatX<double>::Identity(n_r, n_r), G.transpose();
   above.rightCols(n_p) = G0.transpose();
-  const MatX<double> K = w.K;
-  const Eigen::PartialPivLU<MatX<double>> factor(K);
-  w.kappa_of = factor.solve(right);
+  w.kappa_of = w.solve(right);
   above -= w.H0 * w.kappa_of;
-  w.a_of = factor.transpose().solve(above);
+  w.a_of = w.solve_transposed(above);
   w.A.resize(n_r + n_p, n_r + n_p);
   w.A.topRows(n_r) = w.a_of;
   w.A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;

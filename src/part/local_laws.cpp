@@ -3,16 +3,18 @@
 #include <stdexcept>
 
 #include <pliant/local/averaged_dilatation.h>
-#include <pliant/local/bending.h>
 #include <pliant/local/corotated.h>
+#include <pliant/local/elasticity.h>
 #include <pliant/local/linear_law.h>
 #include <pliant/local/linear_membrane.h>
 #include <pliant/local/loaded_membrane.h>
 #include <pliant/local/membrane.h>
+#include <pliant/local/membrane_laws.h>
 #include <pliant/local/neo_hookean.h>
 #include <pliant/local/pressure.h>
 #include <pliant/local/solid_energy.h>
 #include <pliant/local/st_venant_kirchhoff.h>
+#include <pliant/local/tetrahedron.h>
 
 namespace pliant {
 
@@ -36,10 +38,6 @@ Sheet sheet(const double* values) {
 template <class Law>
 Energy lay_membrane(const LocalMesh& mesh, const double* values) {
   return std::make_unique<Membrane<Law>>(shell(mesh), sheet(values));
-}
-template <class Hinges>
-Energy lay_bending(const LocalMesh& mesh, const double* values) {
-  return std::make_unique<MidEdgeBending<Hinges>>(shell(mesh), sheet(values), mesh.density);
 }
 template <class Law>
 Energy lay_solid(const LocalMesh& mesh, const double* values) {
@@ -77,22 +75,14 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        {kYoung, kPoissonShell, kThickness},
        lay_membrane<NeoHookeanSheet>},
       {"loaded_membrane",
-       "The membrane of Terzopoulos & Metaxas 1991 over the surface: 1/2 (w1 |grad d|^2 + w0 |d|^2) per area.",
+       "The membrane of Terzopoulos & Metaxas 1991 over the surface: 1/2 (w1 |grad d|^2 + w0 |d|^2) per "
+       "area.",
        true,
-       {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0}, {"w1", "N/m", "Resists its variation.", 0, false}},
+       {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0},
+        {"w1", "N/m", "Resists its variation.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
        }},
-      {"bending",
-       "A thin sheet that resists bending, for small local deformation; quadratic in d.",
-       true,
-       {kYoung, kPoissonShell, kThickness},
-       lay_bending<LinearHinges>},
-      {"folding",
-       "A thin sheet that resists bending from rest to now, by any rotation.",
-       true,
-       {kYoung, kPoissonShell, kThickness},
-       lay_bending<FoldingHinges>},
       {"pressure",
        "A constant pressure in the shell, more than outside.",
        true,
@@ -147,13 +137,14 @@ LocalSettings::Law local_law(const std::string& name, std::vector<double> values
     known += std::string(" ") + info.name;
     if (name != info.name) continue;
     if (values.size() != info.numbers.size())
-      throw std::invalid_argument("law '" + name + "' takes " + std::to_string(info.numbers.size()) + " numbers");
+      throw std::invalid_argument("law '" + name + "' takes " + std::to_string(info.numbers.size()) +
+                                  " numbers");
     const bool of_shell = info.shell;
     const auto lay = info.lay;
     return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
       if (mesh.shell() != of_shell)
-        throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") + ", not of " +
-                                    (of_shell ? "solids" : "shells"));
+        throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
+                                    ", not of " + (of_shell ? "solids" : "shells"));
       return lay(mesh, values.data());
     };
   }

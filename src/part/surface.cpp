@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
+
+#include "ball_pattern.h"
 
 namespace pliant {
 
@@ -11,54 +12,6 @@ namespace {
 
 /// Corners whose face turns away from the vertex normal by more than this get the normal of their face.
 constexpr double kCreaseCosine = 0.5;
-
-/// The ball pattern: rings of the upper cap, rings of the side, rings of the lower cap, on a grid of 2m x 2m
-/// cells a face.
-struct BallGrid {
-  int m;
-  std::map<std::array<int, 3>, int> index;  // cube lattice point -> vertex
-  std::vector<Vec3<double>> direction;
-
-  int vertex(int i, int j, int k) {
-    const auto [at, fresh] = index.try_emplace({i, j, k}, static_cast<int>(direction.size()));
-    if (fresh) direction.push_back(bend(i, j, k));
-    return at->second;
-  }
-
-  /// Azimuth by steps round the square ring through (i, j), of half side ring.
-  static double azimuth(int i, int j, int ring) {
-    if (ring == 0) return 0;
-    if (i == ring && std::abs(j) < ring) return kPi / 4 * j / ring;
-    if (j == ring) return kPi / 2 - kPi / 4 * i / ring;
-    if (i == -ring) return kPi - kPi / 4 * j / ring;
-    if (j == -ring) return -kPi / 2 + kPi / 4 * i / ring;
-    return kPi / 4 * j / ring;
-  }
-  static double exact(double x) { return std::abs(x) < 1e-15 ? 0.0 : x; }
-
-  Vec3<double> bend(int i, int j, int k) const {
-    const int ring = std::max(std::abs(i), std::abs(j));
-    // Elevation: caps from the pole down to 45 degrees, sides from -45 to 45.
-    const double u = std::abs(k) == m ? (k > 0 ? 1 : -1) * (kPi / 2 - kPi / 4 * ring / m) : kPi / 4 * k / m;
-    const double v = azimuth(i, j, ring);
-    double c = exact(std::cos(u)), s = exact(std::sin(u));
-    if (std::abs(k) == m && ring == m) {  // the rim belongs to the side
-      c = std::sqrt(0.5);
-      s = k > 0 ? c : -c;
-    }
-    double cv = exact(std::cos(v)), sv = exact(std::sin(v));
-    if (std::abs(i) == std::abs(j) && ring > 0) {  // the diagonals exactly
-      cv = std::copysign(std::sqrt(0.5), i);
-      sv = std::copysign(std::sqrt(0.5), j);
-    }
-    return {c * cv, c * sv, s};
-  }
-};
-
-void quad(std::vector<std::array<int, 3>>& triangles, int a, int b, int c, int d) {
-  triangles.push_back({a, b, c});
-  triangles.push_back({a, c, d});
-}
 
 }  // namespace
 
@@ -70,29 +23,10 @@ Surface::Surface(const Part& part, int resolution) {
   const ShapeFace& shape = part.shape();
   std::vector<std::array<int, 3>> triangles;
   if (shape.mesh() == MeshPattern::ball) {
-    const int m = resolution;
-    BallGrid grid{m, {}, {}};
-    for (int face = 0; face < 6; ++face) {
-      // Each face of the cube: its outward axis and two axes that turn counter-clockwise seen from outside.
-      const int axis = face / 2, sign = face % 2 == 0 ? 1 : -1;
-      const int right = (axis + 1) % 3, up = (axis + 2) % 3;
-      auto at = [&](int a, int b) {
-        std::array<int, 3> p{};
-        p[static_cast<std::size_t>(axis)] = sign * m;
-        p[static_cast<std::size_t>(right)] = sign * a;
-        p[static_cast<std::size_t>(up)] = b;
-        return grid.vertex(p[0], p[1], p[2]);
-      };
-      for (int a = -m; a < m; ++a)
-        for (int b = -m; b < m; ++b) {
-          // Diagonals run away from the middle of the face, so that the pattern is symmetric.
-          if ((a >= 0) == (b >= 0))
-            quad(triangles, at(a, b), at(a + 1, b), at(a + 1, b + 1), at(a, b + 1));
-          else
-            quad(triangles, at(a + 1, b), at(a + 1, b + 1), at(a, b + 1), at(a, b));
-        }
-    }
-    for (const Vec3<double>& g : grid.direction) material_.push_back(shape.mesh_label(g, rest.b.data()));
+    const BallSurface ball(resolution);
+    for (const LatticePoint& p : ball.points)
+      material_.push_back(shape.mesh_label(ball_direction(p), rest.b.data()));
+    triangles = ball.triangles;
   } else {
     const int round = 8 * resolution, tube = 4 * resolution;
     for (int j = 0; j < round; ++j)
@@ -100,7 +34,10 @@ Surface::Surface(const Part& part, int resolution) {
         material_.push_back(shape.mesh_label({2 * kPi * i / tube, 2 * kPi * j / round, 0}, rest.b.data()));
     auto at = [&](int i, int j) { return (j % round) * tube + i % tube; };
     for (int j = 0; j < round; ++j)
-      for (int i = 0; i < tube; ++i) quad(triangles, at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j));
+      for (int i = 0; i < tube; ++i) {
+        triangles.push_back({at(i, j), at(i, j + 1), at(i + 1, j + 1)});
+        triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
+      }
   }
   triangles_.resize(3, static_cast<Eigen::Index>(triangles.size()));
   for (std::size_t t = 0; t < triangles.size(); ++t)

@@ -1,6 +1,10 @@
 #include "local_schema.h"
 
+#include <cmath>
+
 #include <pliant/part/local_laws.h>
+
+#include "scene_faults.h"
 
 namespace pliant {
 
@@ -14,30 +18,31 @@ schema::Record local_record() {
       Range range = at_most(n.max);
       range.min = n.min;
       range.min_excluded = n.above && std::isfinite(n.min);
-      law.fields.push_back(n.fallback
-                               ? optional(n.key, number(range, n.unit), n.meaning, brief(*n.fallback))
-                               : required(n.key, number(range, n.unit), n.meaning, "1000"));
+      law.fields.push_back(n.fallback ? optional(n.key, number(range, n.unit), n.meaning, brief(*n.fallback))
+                                      : required(n.key, number(range, n.unit), n.meaning, "1000"));
     }
     laws.push_back(std::move(law));
   }
-  const Record dent{"dent",
-                    "A displacement of the nodes at time 0 around a place, displacement exp(-(r / radius)^2).",
-                    {required("at", vector3("m"), "The place, body frame at rest.", "[0, 0, 1]"),
-                     required("radius", number(above(0), "m"), "How far it reaches.", "0.2"),
-                     optional("displacement", vector3("m"), "At the place, body frame.", "[0, 0, 0]"),
-                     optional("velocity", vector3("m/s"), "The same of the velocity.", "[0, 0, 0]")}};
-  return {"local",
-          "Local deformation at the nodes of a mesh: of the surface of a shell, of the body of a solid.",
-          {optional("resolution", integer(between(1, 64)),
-                    "Edges along a quarter circle: 48 n^2 triangles of a shell, 48 n^3 tetrahedra of a solid.",
-                    "8"),
-           optional("order", integer(between(1, 2)),
-                    "Of the elements of a solid: 1 straight with 4 nodes, 2 curved with 10 nodes.", "1"),
-           required("laws", array(tagged("type", std::move(laws)), 1), "Its energies, which add up.",
-                    "[{\"type\": \"membrane\", \"E\": 1e5, \"thickness\": 0.001}]"),
-           optional("alpha", number(at_least(0), "1/s"), "Damping of the nodes in proportion to mass.", "0"),
-           optional("beta", number(at_least(0), "s"), "Damping of the nodes in proportion to stiffness.", "0"),
-           optional("dents", array(record(dent)), "Displacements and velocities at time 0.", "[]")}};
+  const Record dent{
+      "dent",
+      "A displacement of the nodes at time 0 around a place, displacement exp(-(r / radius)^2).",
+      {required("at", vector3("m"), "The place, body frame at rest.", "[0, 0, 1]"),
+       required("radius", number(above(0), "m"), "How far it reaches.", "0.2"),
+       optional("displacement", vector3("m"), "At the place, body frame.", "[0, 0, 0]"),
+       optional("velocity", vector3("m/s"), "The same of the velocity.", "[0, 0, 0]")}};
+  return {
+      "local",
+      "Local deformation at the nodes of a mesh: of the surface of a shell, of the body of a solid.",
+      {optional("resolution", integer(between(1, 64)),
+                "Edges along a quarter circle: 48 n^2 triangles of a shell, 48 n^3 tetrahedra of a solid.",
+                "8"),
+       optional("order", integer(between(1, 2)),
+                "Of the elements of a solid: 1 straight with 4 nodes, 2 curved with 10 nodes.", "1"),
+       required("laws", array(tagged("type", std::move(laws)), 1), "Its energies, which add up.",
+                "[{\"type\": \"membrane\", \"E\": 1e5, \"thickness\": 0.001}]"),
+       optional("alpha", number(at_least(0), "1/s"), "Damping of the nodes in proportion to mass.", "0"),
+       optional("beta", number(at_least(0), "s"), "Damping of the nodes in proportion to stiffness.", "0"),
+       optional("dents", array(record(dent)), "Displacements and velocities at time 0.", "[]")}};
 }
 
 }  // namespace pliant

@@ -168,9 +168,11 @@ void PartReader::check_rigid() {
       faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
   }
   if (r_.given("local")) {
-    if (r_.boolean("fixed")) faults_.place(r_.at("local"), "a fixed part does not deform; expected no \"local\"");
+    if (r_.boolean("fixed"))
+      faults_.place(r_.at("local"), "a fixed part does not deform; expected no \"local\"");
     if (r_.given("inertia"))
-      faults_.place(r_.at("inertia"), "a part that deforms locally takes its inertia from its density or mass");
+      faults_.place(r_.at("inertia"),
+                    "a part that deforms locally takes its inertia from its density or mass");
   }
   if (!r_.boolean("fixed")) return;
   for (const char* key : {"velocity", "angular_velocity"})

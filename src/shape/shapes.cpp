@@ -112,6 +112,15 @@ Material<double> Cone::label(const Vec3<double>& x, const Vec<double, 4>& a) {
   const double narrow = width > 1e-14 ? 1 / (width * w) : 0.0;
   return material_towards({x[0] / a[0] * narrow, x[1] / a[1] * narrow, z}, w);
 }
+Material<double> Cone::mesh_label(const Vec3<double>& g, const Vec<double, 4>& a) {
+  const double ring = std::hypot(g[0], g[1]);
+  const double tip = a[3] == -1 ? 1.0 : -1.0;
+  if (std::abs(a[3]) != 1 || ring == 0 || tip * g[2] <= -ring) return material_towards(g);
+  // From the rim at -45 degrees to the tip at 90, by even steps along z.
+  const double rise = (std::atan2(tip * g[2], ring) + kQuarter) / (3 * kQuarter);
+  const double k = tip * (2 * rise - 1), size = std::hypot(1.0, k);
+  return material_from(1 / size, k / size, g[0] / ring, g[1] / ring);
+}
 std::vector<Panel> Cone::profile(const Vec<double, 4>&, bool) {
   return rimmed_profile();
 }

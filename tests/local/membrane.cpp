@@ -49,8 +49,8 @@ void check_laws(double nu) {
 
 TEST_CASE("membranes: slopes, matrix, threads, bound, rest and rigid motion", "[local]") {
   for (const double nu : {-0.4, 0.0, 0.3, 0.5}) {
-    check_laws<StVenantKirchhoff>(nu);
-    check_laws<NeoHookean>(nu);
+    check_laws<StVenantKirchhoffSheet>(nu);
+    check_laws<NeoHookeanSheet>(nu);
   }
 }
 

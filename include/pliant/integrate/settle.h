@@ -28,8 +28,9 @@ void settle_on_limits(const Model& model, State& state);
 
 /// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
 /// projected back in the mass metric, and stopped by impulses.
-/// Parts that deform locally meet their reference conditions again; no node moves by it.
-void settle_frames(const Dynamics& dynamics, State& state, Workspace<double>& work);
+/// Parts that deform locally meet their reference conditions again, at time t (s); no node moves by it.
+/// Throws NumericalFailure where the conditions no longer tell the coordinates apart.
+void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
 
 void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
                    StepCounters& counters);

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// Law: StVenantKirchhoff or NeoHookean.
+/// Law: StVenantKirchhoffSheet or NeoHookeanSheet.
 template <class Law>
 class Membrane final : public NodalEnergy {
  public:
@@ -41,10 +41,10 @@ class Membrane final : public NodalEnergy {
   std::vector<Batch> triangles_;
 };
 
-using StVenantKirchhoffMembrane = Membrane<StVenantKirchhoff>;
-using NeoHookeanMembrane = Membrane<NeoHookean>;
+using StVenantKirchhoffMembrane = Membrane<StVenantKirchhoffSheet>;
+using NeoHookeanMembrane = Membrane<NeoHookeanSheet>;
 
-extern template class Membrane<StVenantKirchhoff>;
-extern template class Membrane<NeoHookean>;
+extern template class Membrane<StVenantKirchhoffSheet>;
+extern template class Membrane<NeoHookeanSheet>;
 
 }  // namespace pliant

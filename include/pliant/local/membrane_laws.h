@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-struct StVenantKirchhoff {
+struct StVenantKirchhoffSheet {
   static constexpr const char* name = "st_venant_kirchhoff";
 
   /// Constants of four triangles.
@@ -42,7 +42,7 @@ struct StVenantKirchhoff {
   };
 };
 
-struct NeoHookean {
+struct NeoHookeanSheet {
   static constexpr const char* name = "neo_hookean";
 
   struct Triangles {

@@ -27,8 +27,8 @@ struct LocalWorkspace {
   Nodes s1, s2;           ///< J q_s_dot, Jdot q_s_dot
   // mass
   MatX<double> H0;
-  MatMax<double> K;
-  Eigen::PartialPivLU<MatMax<double>> factor;  ///< of K
+  VecMax<double> scale;                        ///< of K: the diagonal of H0 becomes 1
+  Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale K scale
   Vec3<double> moment;                         ///< sum m p
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   double condition = 1;                        ///< of K, scaled
@@ -42,6 +42,18 @@ struct LocalWorkspace {
   // what pushes on v_r and on the shared points do, see local_compliance()
   MatX<double> kappa_of, a_of, A, A_inverse;
   std::vector<NodalEnergy::Buffer> buffers;
+
+  /// K^-1 b and K^-T b.
+  template <class B>
+  MatX<double> solve(const B& b) const {
+    const MatX<double> scaled = factor.solve(MatX<double>(scale.asDiagonal() * b));
+    return scale.asDiagonal() * scaled;
+  }
+  template <class B>
+  MatX<double> solve_transposed(const B& b) const {
+    const MatX<double> scaled = factor.transpose().solve(MatX<double>(scale.asDiagonal() * b));
+    return scale.asDiagonal() * scaled;
+  }
 };
 
 /// positions: s, J, p and u at the nodes.

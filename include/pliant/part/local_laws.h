@@ -16,8 +16,8 @@ struct LocalLawInfo {
     const char* key;
     const char* unit;
     const char* meaning;
-    double min;               ///< excluded where more than 0 is needed, see above
-    bool above;               ///< min itself is not allowed
+    double min;  ///< excluded where more than 0 is needed, see above
+    bool above;  ///< min itself is not allowed
     std::optional<double> fallback = {};
     double max = std::numeric_limits<double>::infinity();  ///< allowed itself
   };

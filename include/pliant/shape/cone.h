@@ -38,9 +38,8 @@ struct Cone {
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
-  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>&) {
-    return material_towards(g);
-  }
+  /// Of a cone with a tip the side is drawn over the end that has no face.
+  static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 4>& a);

@@ -1,0 +1,41 @@
+// Linear elasticity: of the gradient H of displacements, eps = (H + H^T)/2,
+//   W = lambda/2 (tr eps)^2 + mu eps:eps,   P = lambda tr(eps) I + 2 mu eps
+#pragma once
+
+#include <pliant/local/elasticity.h>
+#include <pliant/local/nodal_energy.h>
+#include <pliant/local/tensor.h>
+
+namespace pliant {
+
+struct LinearLaw {
+  static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
+  /// Whether the derivative of P is the same everywhere.
+  static constexpr bool constant = true;
+  double lambda, mu;
+
+  explicit LinearLaw(const Elasticity& material) : lambda(material.lambda()), mu(material.mu()) {}
+  LinearLaw(double lambda_, double mu_) : lambda(lambda_), mu(mu_) {}
+
+  template <class T>
+  T density(const Mat3<T>& H) const {
+    return contraction(stress(H), H) * T(0.5);
+  }
+  template <class T>
+  Mat3<T> stress(const Mat3<T>& H) const {
+    const T pressure = T(lambda) * trace(H);
+    Mat3<T> P;
+    for (int i = 0; i < 3; ++i) {
+      P(i, i) = pressure + T(2 * mu) * H(i, i);
+      const int j = (i + 1) % 3;
+      P(i, j) = P(j, i) = T(mu) * (H(i, j) + H(j, i));
+    }
+    return P;
+  }
+  template <class T>
+  Mat3<T> stress_along(const Mat3<T>&, const Mat3<T>& dH) const {
+    return stress(dH);
+  }
+};
+
+}  // namespace pliant

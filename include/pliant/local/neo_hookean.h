@@ -1,0 +1,53 @@
+// Neo-Hookean material without logarithms (Smith, De Goes & Kim 2018, their energy without the term that
+// keeps collapsed points from resting): of F = dx/dX, J = det F, C = cofactors of F = dJ/dF,
+//   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
+//   P = mu F + ((lambda + mu)(J - 1) - mu) C
+// At small strains that of lambda and mu. It is a polynomial: defined, and pushing back, for elements that
+// are turned inside out.
+#pragma once
+
+#include <pliant/local/elasticity.h>
+#include <pliant/local/nodal_energy.h>
+#include <pliant/local/tensor.h>
+
+namespace pliant {
+
+struct NeoHookean {
+  static constexpr NodalEnergy::Of of = NodalEnergy::Of::position;
+  static constexpr bool constant = false;
+  double lambda, mu;
+
+  explicit NeoHookean(const Elasticity& material) : lambda(material.lambda()), mu(material.mu()) {}
+
+  template <class T>
+  T density(const Mat3<T>& F) const {
+    const T growth = determinant(F, cofactors(F)) - T(1);
+    return T(mu / 2) * (contraction(F, F) - T(3)) + growth * (T((lambda + mu) / 2) * growth - T(mu));
+  }
+  template <class T>
+  Mat3<T> stress(const Mat3<T>& F) const {
+    const Mat3<T> C = cofactors(F);
+    const T push = pressure(F, C);
+    Mat3<T> P;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P(i, j) = T(mu) * F(i, j) + push * C(i, j);
+    return P;
+  }
+  template <class T>
+  Mat3<T> stress_along(const Mat3<T>& F, const Mat3<T>& dF) const {
+    const Mat3<T> C = cofactors(F), dC = mixed_cofactors(F, dF);
+    const T push = pressure(F, C), dpush = T(lambda + mu) * contraction(C, dF);
+    Mat3<T> dP;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) dP(i, j) = T(mu) * dF(i, j) + dpush * C(i, j) + push * dC(i, j);
+    return dP;
+  }
+
+ private:
+  template <class T>
+  T pressure(const Mat3<T>& F, const Mat3<T>& C) const {
+    return T(lambda + mu) * (determinant(F, C) - T(1)) - T(mu);
+  }
+};
+
+}  // namespace pliant

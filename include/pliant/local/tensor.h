@@ -1,0 +1,93 @@
+// 3x3 tensors of any scalar, of Pack above all, in plain loops that compilers unroll.
+#pragma once
+
+#include <pliant/math/pack.h>
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// A B.
+template <class T>
+Mat3<T> product(const Mat3<T>& A, const Mat3<T>& B) {
+  Mat3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = A(i, 0) * B(0, j) + A(i, 1) * B(1, j) + A(i, 2) * B(2, j);
+  return C;
+}
+/// A B^T.
+template <class T>
+Mat3<T> product_transposed(const Mat3<T>& A, const Mat3<T>& B) {
+  Mat3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = A(i, 0) * B(j, 0) + A(i, 1) * B(j, 1) + A(i, 2) * B(j, 2);
+  return C;
+}
+/// A^T B.
+template <class T>
+Mat3<T> transposed_product(const Mat3<T>& A, const Mat3<T>& B) {
+  Mat3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) C(i, j) = A(0, i) * B(0, j) + A(1, i) * B(1, j) + A(2, i) * B(2, j);
+  return C;
+}
+/// A : B.
+template <class T>
+T contraction(const Mat3<T>& A, const Mat3<T>& B) {
+  T sum = A(0, 0) * B(0, 0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i + j > 0) sum += A(i, j) * B(i, j);
+  return sum;
+}
+template <class T>
+T trace(const Mat3<T>& A) {
+  return A(0, 0) + A(1, 1) + A(2, 2);
+}
+/// a A.
+template <class T>
+Mat3<T> scaled(const T& a, const Mat3<T>& A) {
+  Mat3<T> B;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) B(i, j) = a * A(i, j);
+  return B;
+}
+/// The bilinear form whose value at (A, A) is twice the matrix of cofactors of A.
+template <class T>
+Mat3<T> mixed_cofactors(const Mat3<T>& A, const Mat3<T>& B) {
+  Mat3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int r = (i + 1) % 3, s = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
+      C(i, j) = A(r, k) * B(s, l) - A(r, l) * B(s, k) + B(r, k) * A(s, l) - B(r, l) * A(s, k);
+    }
+  return C;
+}
+/// det(A) A^-T.
+template <class T>
+Mat3<T> cofactors(const Mat3<T>& A) {
+  Mat3<T> C;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int r = (i + 1) % 3, s = (i + 2) % 3, k = (j + 1) % 3, l = (j + 2) % 3;
+      C(i, j) = A(r, k) * A(s, l) - A(r, l) * A(s, k);
+    }
+  return C;
+}
+/// det A from A and its cofactors.
+template <class T>
+T determinant(const Mat3<T>& A, const Mat3<T>& cofactors_of_A) {
+  return A(0, 0) * cofactors_of_A(0, 0) + A(0, 1) * cofactors_of_A(0, 1) + A(0, 2) * cofactors_of_A(0, 2);
+}
+
+/// The least of the numbers that move together; not a number when one is not.
+inline double least_of(double x) {
+  return x;
+}
+inline double least_of(const Pack& x) {
+  double least = x[0];
+  for (int i = 1; i < Pack::kLanes; ++i)
+    if (!(x[i] >= least)) least = x[i];
+  return least;
+}
+
+}  // namespace pliant

@@ -1,0 +1,41 @@
+// The inside of a part as a mesh of tetrahedra (design 1.1), laid once, at the rest shape. Its boundary is
+// the Surface of the same resolution: nodes 0 .. n_surface - 1 are the vertices of that, in the same order.
+// Balls: the lattice of a cube, each cell cut into six tetrahedra round its diagonal away from the centre
+// (Freudenthal 1942, Kuhn 1960), mirrored in every octant; the shell r of it is the surface of resolution r
+// at w = r / resolution. Tori: rings of 4n points at w = n / resolution, n = resolution, resolution - 2, ...,
+// carried round the core ring, which is a line of nodes. A quadratic element has a node on each edge too: 0 1
+// 2 3, then 01 12 20 03 13 23. Those of the boundary are material points of the surface; those inside are
+// half way between the ends of the edge in the shape.
+#pragma once
+
+#include <vector>
+
+#include <pliant/part/part.h>
+
+namespace pliant {
+
+class Solid {
+ public:
+  enum class Order { linear, quadratic };
+
+  /// resolution: edges along a quarter of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
+  /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and where an
+  /// element is turned inside out or flat at the rest shape.
+  Solid(const Part& part, int resolution, Order order = Order::linear);
+
+  const std::vector<Material<double>>& material() const { return material_; }
+  /// Nodes of each element: 4 or 10 rows; positively oriented at the rest shape.
+  const Eigen::MatrixXi& elements() const { return elements_; }
+  /// Nodes of each triangle of the boundary: 3 rows, or 6 with the edges 01 12 20; those of the Surface.
+  const Eigen::MatrixXi& boundary() const { return boundary_; }
+  /// Corner nodes on the surface.
+  int n_surface() const { return n_surface_; }
+  int n_nodes() const { return static_cast<int>(material_.size()); }
+
+ private:
+  std::vector<Material<double>> material_;
+  Eigen::MatrixXi elements_, boundary_;
+  int n_surface_ = 0;
+};
+
+}  // namespace pliant

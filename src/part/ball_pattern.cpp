@@ -1,0 +1,78 @@
+#include "ball_pattern.h"
+
+#include <cmath>
+
+#include <pliant/shape/material.h>
+
+namespace pliant {
+
+namespace {
+
+/// Azimuth by steps round the square ring through (i, j), of half side ring.
+double azimuth(int i, int j, int ring) {
+  if (ring == 0) return 0;
+  if (i == ring && std::abs(j) < ring) return kPi / 4 * j / ring;
+  if (j == ring) return kPi / 2 - kPi / 4 * i / ring;
+  if (i == -ring) return kPi - kPi / 4 * j / ring;
+  if (j == -ring) return -kPi / 2 + kPi / 4 * i / ring;
+  return kPi / 4 * j / ring;
+}
+
+double exact(double x) {
+  return std::abs(x) < 1e-15 ? 0.0 : x;
+}
+
+}  // namespace
+
+Vec3<double> ball_direction(const LatticePoint& p) {
+  const auto [i, j, k] = p;
+  const int m = ball_shell(p), ring = std::max(std::abs(i), std::abs(j));
+  // Elevation: caps from the pole down to 45 degrees, sides from -45 to 45.
+  const double u = std::abs(k) == m ? (k > 0 ? 1 : -1) * (kPi / 2 - kPi / 4 * ring / m) : kPi / 4 * k / m;
+  const double v = azimuth(i, j, ring);
+  double c = exact(std::cos(u)), s = exact(std::sin(u));
+  if (std::abs(k) == m && ring == m) {  // the rim belongs to the side
+    c = std::sqrt(0.5);
+    s = k > 0 ? c : -c;
+  }
+  double cv = exact(std::cos(v)), sv = exact(std::sin(v));
+  if (std::abs(i) == std::abs(j) && ring > 0) {  // the diagonals exactly
+    cv = std::copysign(std::sqrt(0.5), i);
+    sv = std::copysign(std::sqrt(0.5), j);
+  }
+  return {c * cv, c * sv, s};
+}
+
+BallSurface::BallSurface(int m) {
+  auto vertex = [&](const LatticePoint& p) {
+    const auto [at, fresh] = index.try_emplace(p, static_cast<int>(points.size()));
+    if (fresh) points.push_back(p);
+    return at->second;
+  };
+  for (int face = 0; face < 6; ++face) {
+    // Each face of the cube: its outward axis and two axes that turn counter-clockwise seen from outside.
+    const int axis = face / 2, sign = face % 2 == 0 ? 1 : -1;
+    const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+    auto at = [&](int a, int b) {
+      LatticePoint p{};
+      p[static_cast<std::size_t>(axis)] = sign * m;
+      p[static_cast<std::size_t>(right)] = sign * a;
+      p[static_cast<std::size_t>(up)] = b;
+      return vertex(p);
+    };
+    auto quad = [&](int a, int b, int c, int d) {
+      triangles.push_back({a, b, c});
+      triangles.push_back({a, c, d});
+    };
+    for (int a = -m; a < m; ++a)
+      for (int b = -m; b < m; ++b) {
+        const int low = at(a, b), right_of = at(a + 1, b), high = at(a + 1, b + 1), above = at(a, b + 1);
+        if ((a >= 0) == (b >= 0))
+          quad(low, right_of, high, above);
+        else
+          quad(right_of, high, above, low);
+      }
+  }
+}
+
+}  // namespace pliant

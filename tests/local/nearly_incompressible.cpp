@@ -1,0 +1,141 @@
+// Nearly incompressible solids (N22): what locks, and that averaged dilatation does not.
+#include "catch.h"
+
+#include <cmath>
+#include <memory>
+
+#include <Eigen/Dense>
+
+#include <pliant/local/averaged_dilatation.h>
+#include <pliant/local/solid_mass.h>
+
+#include "solid_meshes.h"
+#include "sparse_modes.h"
+
+using namespace pliant;
+using test::Draws;
+using test::SolidMesh;
+using Order = Solid::Order;
+
+namespace {
+
+template <class Element>
+SolidMesh sphere(int resolution) {
+  return test::solid_mesh("sphere", {}, resolution, Element::n_nodes == 4 ? Order::linear : Order::quadratic);
+}
+
+/// Frequency of the spheroidal modes of order 2 of a free sphere, omega r / c_t (Lamb 1882; physics 8.3).
+double lamb_S2(double nu) {
+  const double slow = std::sqrt((1 - 2 * nu) / (2 * (1 - nu)));
+  auto j = [](unsigned l, double x) { return std::sph_bessel(l, x); };
+  auto miss = [&](double y) {
+    const double x = y * slow;
+    return ((2 - y * y / 2) * j(2, x) + 2 * x * j(3, x)) * ((3 - y * y / 2) * j(2, y) + y * j(3, y)) -
+           6 * (j(2, y) - y * j(3, y)) * (j(2, x) - x * j(3, x));
+  };
+  double low = 2.55, high = 2.75;
+  while (high - low > 1e-13) {
+    const double middle = (low + high) / 2;
+    (miss(low) * miss(middle) <= 0 ? high : low) = middle;
+  }
+  return low;
+}
+
+/// Largest relative errors of the five S2 modes, which are the lowest ten without the five of T2.
+template <class Element>
+double S2_error(const NodalEnergy& energy, const SolidMesh& mesh, double nu) {
+  const test::Sparse M = Element::n_nodes == 4
+                             ? test::in_space(lumped_mass(mesh.rest, mesh.elements, 1))
+                             : test::in_space(consistent_mass(mesh.rest, mesh.elements, 1), mesh.n());
+  const VecX<double> eta =
+      test::modes_near(test::stiffness_at(energy, VecX<double>::Zero(3 * mesh.n())), M, -2, 16, 6)
+          .values.tail<10>()
+          .cwiseSqrt();
+  const double exact = lamb_S2(nu);
+  return std::max(eta[9] / exact - 1, 1 - eta[5] / exact);
+}
+template <class Element>
+double plain_error(int resolution, double nu) {
+  const SolidMesh mesh = sphere<Element>(resolution);
+  return S2_error<Element>(
+      LinearSolid<Element>(mesh.rest, mesh.elements, LinearLaw(Elasticity(2 * (1 + nu), nu))), mesh, nu);
+}
+template <class Element>
+double averaged_error(int resolution, double nu) {
+  const SolidMesh mesh = sphere<Element>(resolution);
+  return S2_error<Element>(
+      AveragedLinearSolid<Element>(mesh.rest, mesh.elements, Elasticity(2 * (1 + nu), nu)), mesh, nu);
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion, threads, bound", "[solid]",
+                   LinearTetrahedron, QuadraticTetrahedron) {
+  const SolidMesh mesh = sphere<TestType>(TestType::n_nodes == 4 ? 2 : 1);
+  const Elasticity material(3, 0.48);
+  const AveragedLinearSolid<TestType> energy(mesh.rest, mesh.elements, material);
+  const LinearSolid<TestType> plain(mesh.rest, mesh.elements, LinearLaw(material));
+  Draws draws(2);
+  VecX<double> x(3 * mesh.n());
+  for (double& value : x) value = draws.uniform(-1, 1);
+  NodalEnergy::Buffer buffer;
+  auto force = [&](const NodalEnergy& of, const VecX<double>& at, ThreadPool* pool) {
+    VecX<double> f = VecX<double>::Zero(at.size());
+    of.add_force(at, f, buffer, pool);
+    return f;
+  };
+  const VecX<double> f = force(energy, x, nullptr);
+  CHECK(energy.energy(x) == Approx(-0.5 * x.dot(f)).epsilon(1e-13));
+  CHECK(energy.energy(x) < 0.9 * plain.energy(x));
+  const MatX<double> K = test::stiffness_at(energy, x), K_plain = test::stiffness_at(plain, x);
+  CHECK((K * x + f).norm() <= 1e-13 * f.norm());
+  CHECK((K - K.transpose()).norm() <= 1e-14 * K.norm());
+  // No stiffer in any direction.
+  CHECK(Eigen::SelfAdjointEigenSolver<MatX<double>>(K_plain - K).eigenvalues().minCoeff() >=
+        -1e-12 * K.norm());
+  // Uniform strains are what they are without averages, rigid motion among them.
+  Mat3<double> A;
+  A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
+  const VecX<double> uniform = test::affine(mesh.rest, A, {1, 2, 3});
+  CHECK(energy.energy(uniform) == Approx(plain.energy(uniform)).epsilon(1e-13));
+  const VecX<double> turn = test::affine(mesh.rest, skew(Vec3<double>(1, -2, 3)), {1, 2, 3});
+  CHECK(force(energy, turn, nullptr).norm() <= 1e-13 * K.norm());
+  const VecX<double> M = lumped_mass(mesh.rest, mesh.elements, 1).replicate(3, 1),
+                     root = M.cwiseSqrt().cwiseInverse();
+  CHECK(energy.frequency_bound(x, M) >=
+        Eigen::SelfAdjointEigenSolver<MatX<double>>(root.asDiagonal() * K * root.asDiagonal())
+            .eigenvalues()
+            .maxCoeff());
+
+  const SolidMesh fine = sphere<TestType>(TestType::n_nodes == 4 ? 5 : 3);
+  const AveragedLinearSolid<TestType> large(fine.rest, fine.elements, material);
+  VecX<double> y(3 * fine.n());
+  for (double& value : y) value = draws.uniform(-1, 1);
+  const VecX<double> once = force(large, y, nullptr);
+  for (int threads : {1, 2, 3}) {
+    ThreadPool pool(threads);
+    CHECK(force(large, y, &pool) == once);
+  }
+  CHECK_THROWS_WITH(AveragedLinearSolid<TestType>(mesh.rest, mesh.elements, Elasticity(1, -0.1)),
+                    test::has_text("0.4999"));
+}
+
+TEST_CASE("N22: a sphere of linear elements locks, with averaged dilatation it does not", "[solid]") {
+  CHECK(lamb_S2(0.3) == Approx(2.64622).margin(1e-5));
+  CHECK(lamb_S2(0.49) == Approx(2.66483).margin(1e-5));
+  CHECK(plain_error<LinearTetrahedron>(4, 0.3) < 0.05);
+  CHECK(plain_error<LinearTetrahedron>(4, 0.4999) > 0.1);
+  for (double nu : {0.49, 0.499, 0.4999}) {
+    INFO(nu);
+    CHECK(averaged_error<LinearTetrahedron>(4, nu) < 0.05);
+  }
+}
+
+TEST_CASE("N22: quadratic elements lock less, with averaged dilatation not at all", "[solid]") {
+  CHECK(plain_error<QuadraticTetrahedron>(2, 0.49) < 0.01);
+  CHECK(plain_error<QuadraticTetrahedron>(2, 0.4999) > 0.05);
+  for (double nu : {0.49, 0.499, 0.4999}) {
+    INFO(nu);
+    CHECK(averaged_error<QuadraticTetrahedron>(2, nu) < 0.002);
+  }
+}

@@ -1,0 +1,296 @@
+// Laws of the energies of tetrahedra: forces, derivatives, stiffness, patches, rigid motion, threads, bounds.
+#include <pliant/local/solid_energy.h>
+
+#include <cmath>
+
+#include <Eigen/Dense>
+
+#include <pliant/local/solid_mass.h>
+
+#include "../draws.h"
+#include "../worst.h"
+#include "catch.h"
+#include "solid_meshes.h"
+
+using namespace pliant;
+using test::affine;
+using test::Draws;
+using test::SolidMesh;
+
+namespace {
+
+const Elasticity kRubber(3.0, 0.3);
+
+/// A bent and tapered box: 48 elements of every orientation, or 8 x 48.
+SolidMesh crooked(int n_nodes) {
+  return test::solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
+                          n_nodes == 4 ? 2 : 1, n_nodes == 4 ? Solid::Order::linear : Solid::Order::quadratic,
+                          {"taper", "bend"});
+}
+SolidMesh ball(int n_nodes) {
+  return test::solid_mesh("sphere", {}, n_nodes == 4 ? 2 : 1,
+                          n_nodes == 4 ? Solid::Order::linear : Solid::Order::quadratic);
+}
+
+template <class Element, class Law>
+struct Kind {
+  using Energy = SolidEnergy<Element, Law>;
+  static constexpr int N = Element::n_nodes;
+  static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
+  static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
+  /// A state with strains of some tenths.
+  static VecX<double> state(const SolidMesh& mesh, double size = 0.05) {
+    Draws draws(3);
+    VecX<double> x = affine(mesh.rest, linear ? Mat3<double>::Zero().eval() : Mat3<double>::Identity().eval(),
+                            Vec3<double>::Zero());
+    for (double& value : x) value += draws.uniform(-size, size);
+    return x;
+  }
+  static VecX<double> direction(const SolidMesh& mesh) {
+    Draws draws(8);
+    VecX<double> dx(3 * mesh.n());
+    for (double& value : dx) value = draws.uniform(-1, 1);
+    return dx;
+  }
+};
+
+template <class Energy>
+VecX<double> force(const Energy& energy, const VecX<double>& x, ThreadPool* pool = nullptr) {
+  NodalEnergy::Buffer buffer;
+  VecX<double> f = VecX<double>::Zero(x.size());
+  energy.add_force(x, f, buffer, pool);
+  return f;
+}
+template <class Energy>
+VecX<double> derivative(const Energy& energy, const VecX<double>& x, const VecX<double>& dx,
+                        ThreadPool* pool = nullptr) {
+  NodalEnergy::Buffer buffer;
+  VecX<double> f = VecX<double>::Zero(x.size());
+  energy.add_derivative(x, dx, f, buffer, pool);
+  return f;
+}
+template <class Energy>
+MatX<double> stiffness(const Energy& energy, const VecX<double>& x) {
+  std::vector<Eigen::Triplet<double>> entries;
+  energy.add_stiffness(x, entries);
+  MatX<double> K = MatX<double>::Zero(x.size(), x.size());
+  for (const auto& entry : entries) K(entry.row(), entry.col()) += entry.value();
+  return K;
+}
+/// Fourth-order central difference.
+template <class F>
+auto difference(F&& f, double h) -> decltype(f(h)) {
+  return ((8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h));
+}
+std::vector<bool> inside(const SolidMesh& mesh) {
+  std::vector<bool> is(static_cast<std::size_t>(mesh.n()), true);
+  for (Eigen::Index i = 0; i < mesh.boundary.size(); ++i)
+    is[static_cast<std::size_t>(mesh.boundary(i))] = false;
+  return is;
+}
+double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
+  const VecX<double> root = M.cwiseSqrt().cwiseInverse();
+  const MatX<double> A = root.asDiagonal() * K * root.asDiagonal();
+  return Eigen::SelfAdjointEigenSolver<MatX<double>>(A, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+}
+
+}  // namespace
+
+#define PLIANT_ALL_KINDS                                                                        \
+  (Kind<LinearTetrahedron, LinearLaw>), (Kind<LinearTetrahedron, StVenantKirchhoff>),           \
+      (Kind<LinearTetrahedron, NeoHookean>), (Kind<LinearTetrahedron, Corotated>),              \
+      (Kind<QuadraticTetrahedron, LinearLaw>), (Kind<QuadraticTetrahedron, StVenantKirchhoff>), \
+      (Kind<QuadraticTetrahedron, NeoHookean>), (Kind<QuadraticTetrahedron, Corotated>)
+
+TEMPLATE_TEST_CASE("forces are gradients of the energy, derivatives those of the forces", "[solid]",
+                   PLIANT_ALL_KINDS) {
+  const SolidMesh mesh = crooked(TestType::N);
+  const auto energy = TestType::make(mesh);
+  const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
+  const VecX<double> f = force(energy, x), df = derivative(energy, x, dx);
+  const double slope = difference([&](double h) { return energy.energy(x + h * dx); }, 1e-4);
+  CHECK(slope == Approx(-f.dot(dx)).epsilon(1e-9));
+  const VecX<double> change =
+      difference([&](double h) -> VecX<double> { return force(energy, x + h * dx); }, 1e-4);
+  CHECK((change - df).norm() <= 1e-9 * df.norm());
+  CHECK(energy.energy(x) > 0);
+}
+
+TEMPLATE_TEST_CASE("the assembled stiffness is the derivative, and symmetric", "[solid]", PLIANT_ALL_KINDS) {
+  const SolidMesh mesh = crooked(TestType::N);
+  const auto energy = TestType::make(mesh);
+  const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
+  const MatX<double> K = stiffness(energy, x);
+  CHECK((K * dx + derivative(energy, x, dx)).norm() <= 1e-13 * (K * dx).norm());
+  CHECK((K - K.transpose()).norm() <= 1e-14 * K.norm());
+  if (TestType::linear) CHECK((K * x + force(energy, x)).norm() <= 1e-13 * (K * x).norm());
+}
+
+TEMPLATE_TEST_CASE("at rest every law is that of linear elasticity", "[solid]", PLIANT_ALL_KINDS) {
+  const SolidMesh mesh = crooked(TestType::N);
+  using Linear =
+      Kind<std::conditional_t<TestType::N == 4, LinearTetrahedron, QuadraticTetrahedron>, LinearLaw>;
+  const VecX<double> rest = TestType::state(mesh, 0);
+  const MatX<double> K = stiffness(TestType::make(mesh), rest);
+  const MatX<double> linear = stiffness(Linear::make(mesh), Linear::state(mesh, 0));
+  CHECK((K - linear).norm() <= 1e-13 * linear.norm());
+  CHECK(force(TestType::make(mesh), rest).norm() <= 1e-13 * linear.norm());
+}
+
+TEMPLATE_TEST_CASE("a uniform strain stresses all elements alike", "[solid]", PLIANT_ALL_KINDS) {
+  Mat3<double> A;
+  A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
+  if (!TestType::linear) A += Mat3<double>::Identity();
+  for (const SolidMesh& mesh : {crooked(TestType::N), ball(TestType::N)}) {
+    const auto energy = TestType::make(mesh);
+    const VecX<double> x = affine(mesh.rest, A, {0.3, -0.2, 0.1});
+    const VecX<double> f = force(energy, x);
+    const std::vector<bool> is_inside = inside(mesh);
+    test::Worst unbalanced;
+    for (int i = 0; i < mesh.n(); ++i)
+      if (is_inside[static_cast<std::size_t>(i)]) unbalanced.note(nodes(f, mesh.n()).row(i).norm());
+    CHECK(unbalanced <= 1e-14 * f.norm());
+    double volume = 0;
+    for (int e = 0; e < energy.n_elements(); ++e) volume += energy.volume(e);
+    CHECK(energy.energy(x) == Approx(volume * energy.law().density(A)).epsilon(1e-13));
+    // The work of the boundary: sum of f_a X_a^T = -V P.
+    const Mat3<double> stress = nodes(f, mesh.n()).transpose() * mesh.rest;
+    CHECK((stress + volume * energy.law().stress(A)).norm() <= 1e-13 * stress.norm());
+  }
+}
+
+TEMPLATE_TEST_CASE("rigid motion strains nothing", "[solid]", PLIANT_ALL_KINDS) {
+  const SolidMesh mesh = crooked(TestType::N);
+  const auto energy = TestType::make(mesh);
+  const double scale = stiffness(energy, TestType::state(mesh, 0)).norm();
+  const Mat3<double> turn =
+      TestType::linear ? skew(Vec3<double>(0.3, -0.5, 0.8))
+                       : Eigen::AngleAxisd(2.4, Vec3<double>(1, 2, -1).normalized()).toRotationMatrix();
+  const VecX<double> x = affine(mesh.rest, turn, {3, 1, -2});
+  CHECK(force(energy, x).norm() <= 1e-13 * scale);
+  CHECK(std::abs(energy.energy(x)) <= 1e-13 * scale);
+  // No force and no torque from inside, however deformed.
+  const VecX<double> deformed = TestType::state(mesh), f = force(energy, deformed);
+  CHECK(nodes(f, mesh.n()).colwise().sum().norm() <= 1e-13 * f.norm());
+  Vec3<double> torque = Vec3<double>::Zero();
+  for (int i = 0; i < mesh.n(); ++i) {
+    Vec3<double> at = mesh.rest.row(i);
+    if (!TestType::linear) at = nodes(deformed, mesh.n()).row(i);
+    torque += at.cross(Vec3<double>(nodes(f, mesh.n()).row(i)));
+  }
+  CHECK(torque.norm() <= 1e-12 * f.norm());
+}
+
+TEMPLATE_TEST_CASE("the same bits for any number of threads", "[solid]", PLIANT_ALL_KINDS) {
+  const SolidMesh mesh = test::solid_mesh("sphere", {}, TestType::N == 4 ? 5 : 3,
+                                          TestType::N == 4 ? Solid::Order::linear : Solid::Order::quadratic);
+  const auto energy = TestType::make(mesh);
+  const VecX<double> x = TestType::state(mesh, 0.01), dx = TestType::direction(mesh);
+  const VecX<double> f = force(energy, x), df = derivative(energy, x, dx);
+  for (int threads : {1, 2, 3}) {
+    ThreadPool pool(threads);
+    CHECK(force(energy, x, &pool) == f);
+    CHECK(derivative(energy, x, dx, &pool) == df);
+  }
+}
+
+TEMPLATE_TEST_CASE("the bound of frequencies holds, and is not far away", "[solid]", PLIANT_ALL_KINDS) {
+  for (const SolidMesh& mesh : {crooked(TestType::N), ball(TestType::N)}) {
+    const auto energy = TestType::make(mesh);
+    const VecX<double> M = lumped_mass(mesh.rest, mesh.elements, 2.5).replicate(3, 1);
+    for (double size : {0.0, 0.03}) {
+      const VecX<double> x = TestType::state(mesh, size);
+      const double exact = largest_frequency(stiffness(energy, x), M), bound = energy.frequency_bound(x, M);
+      CHECK(bound >= exact);
+      CHECK(bound <= 4 * exact);
+    }
+    VecX<double> massless = M;
+    massless[7] = 0;
+    CHECK(energy.frequency_bound(TestType::state(mesh, 0), massless) == kInfinity);
+  }
+}
+
+TEST_CASE("elements that are turned inside out: refused, or pushed back", "[solid]") {
+  const SolidMesh mesh = ball(4);
+  Mat3<double> mirror = Mat3<double>::Identity();
+  mirror(2, 2) = -0.5;
+  const VecX<double> x = affine(mesh.rest, mirror, Vec3<double>::Zero());
+  const auto corotated = Kind<LinearTetrahedron, Corotated>::make(mesh);
+  CHECK_THROWS_AS(force(corotated, x), InvertedElement);
+  CHECK_THROWS_WITH(force(corotated, x), test::has_text("inside out"));
+  ThreadPool pool(2);
+  CHECK_THROWS_AS(force(corotated, x, &pool), InvertedElement);
+  const auto neo_hookean = Kind<LinearTetrahedron, NeoHookean>::make(mesh);
+  const VecX<double> f = force(neo_hookean, x);
+  // The force on the top node points up again.
+  Eigen::Index top = 0;
+  mesh.rest.col(2).maxCoeff(&top);
+  CHECK(f.allFinite());
+  CHECK(nodes(f, mesh.n())(top, 2) > 0);
+  mirror(2, 2) = -1;
+  CHECK(neo_hookean.energy(affine(mesh.rest, mirror, Vec3<double>::Zero())) > neo_hookean.energy(x));
+}
+
+TEST_CASE("rotations nearest to strong deformations", "[solid]") {
+  Draws draws(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Mat3<double> R =
+        Eigen::AngleAxisd(draws.uniform(-kPi, kPi), draws.vector(1).normalized()).toRotationMatrix();
+    const Mat3<double> Q =
+        Eigen::AngleAxisd(draws.uniform(-kPi, kPi), draws.vector(1).normalized()).toRotationMatrix();
+    const Vec3<double> stretch{std::exp(draws.uniform(-3, 3)), std::exp(draws.uniform(-3, 3)),
+                               std::exp(draws.uniform(-3, 3))};
+    const Mat3<double> F = R * Q * stretch.asDiagonal() * Q.transpose();
+    CHECK((nearest_rotation(F) - R).norm() <= 1e-12);
+  }
+}
+
+TEST_CASE("materials and elements that cannot be are refused", "[solid]") {
+  CHECK_THROWS_WITH(Elasticity(0, 0.3), test::has_text("not a positive number"));
+  CHECK_THROWS_WITH(Elasticity(kInfinity, 0.3), test::has_text("not a positive number"));
+  CHECK_THROWS_WITH(Elasticity(1, 0.5), test::has_text("averaged dilatation"));
+  CHECK_THROWS_WITH(Elasticity(1, 0.51), test::has_text("below 0.5"));
+  CHECK_THROWS_WITH(Elasticity(1, -1), test::has_text("above -1"));
+  SolidMesh mesh = ball(4);
+  CHECK_THROWS_WITH(LinearSolid<QuadraticTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),
+                    test::has_text("10 nodes"));
+  mesh.elements(2, 3) += mesh.n();
+  CHECK_THROWS_WITH(LinearSolid<LinearTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),
+                    test::has_text("no node"));
+  mesh.elements(2, 3) -= mesh.n();
+  std::swap(mesh.elements(0, 5), mesh.elements(1, 5));
+  CHECK_THROWS_WITH(LinearSolid<LinearTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),
+                    test::has_text("elements 4 to 7"));
+}
+
+TEST_CASE("masses: sums, moments, positive", "[solid]") {
+  for (int n : {4, 10}) {
+    const SolidMesh mesh = ball(n);
+    const VecX<double> lumped = lumped_mass(mesh.rest, mesh.elements, 3);
+    Eigen::SparseMatrix<double> M(mesh.n(), mesh.n());
+    const auto entries = consistent_mass(mesh.rest, mesh.elements, 3);
+    M.setFromTriplets(entries.begin(), entries.end());
+    const VecX<double> ones = VecX<double>::Ones(mesh.n());
+    CHECK(lumped.minCoeff() > 0);
+    CHECK(lumped.sum() == Approx(ones.dot(M * ones)).epsilon(1e-14));
+    if (n == 4) CHECK((lumped - M * ones).norm() <= 1e-14 * lumped.norm());
+    if (n == 10) CHECK((M * ones).minCoeff() < 0);
+    // Linear functions are in the space: the moments of the mesh are exact, here by twice as fine a rule.
+    const VecX<double> z = mesh.rest.col(2);
+    double moment = 0;
+    for (Eigen::Index e = 0; e < mesh.elements.cols(); ++e) {
+      Vec3<double> X[10];
+      for (int a = 0; a < n; ++a) X[a] = mesh.rest.row(mesh.elements(a, e));
+      for (const TetrahedronPoint& at : kTetrahedronMassRule) {
+        double height = 0;
+        for (int a = 0; a < n; ++a)
+          height += (n == 4 ? LinearTetrahedron::N(at)[a % 4] : QuadraticTetrahedron::N(at)[a]) * X[a][2];
+        const double J = n == 4 ? LinearTetrahedron::gradient<double>(at, X).determinant()
+                                : QuadraticTetrahedron::gradient<double>(at, X).determinant();
+        moment += 3 * at.weight * J * height * height;
+      }
+    }
+    CHECK(z.dot(M * z) == Approx(moment).epsilon(1e-12));
+  }
+  CHECK_THROWS_WITH(lumped_mass(Nodes(1, 3), Eigen::MatrixXi(8, 1), 1), test::has_text("8 nodes"));
+}

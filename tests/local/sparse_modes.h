@@ -1,0 +1,75 @@
+// Eigenvalues of K u = lambda M u next to a shift, by inverse subspace iteration.
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+
+#include <pliant/local/nodal_energy.h>
+
+#include "../draws.h"
+
+namespace pliant::test {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+inline Sparse sparse(const std::vector<Eigen::Triplet<double>>& entries, Eigen::Index n) {
+  Sparse A(n, n);
+  A.setFromTriplets(entries.begin(), entries.end());
+  return A;
+}
+inline Sparse stiffness_at(const NodalEnergy& energy, const VecX<double>& x) {
+  std::vector<Eigen::Triplet<double>> entries;
+  energy.add_stiffness(x, entries);
+  return sparse(entries, x.size());
+}
+/// A matrix over nodes for each of the three directions.
+inline Sparse in_space(const std::vector<Eigen::Triplet<double>>& entries, int n) {
+  std::vector<Eigen::Triplet<double>> all;
+  for (const auto& entry : entries)
+    for (int i = 0; i < 3; ++i) all.emplace_back(i * n + entry.row(), i * n + entry.col(), entry.value());
+  return sparse(all, 3 * n);
+}
+inline Sparse in_space(const VecX<double>& masses) {
+  return Sparse(VecX<double>(masses.replicate(3, 1)).asDiagonal());
+}
+
+struct Modes {
+  VecX<double> values;  ///< in rising order
+  MatX<double> vectors;
+};
+
+/// The `wanted` modes whose values are nearest to the shift, which must not be an eigenvalue.
+inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int wanted, int spare = 8) {
+  const Sparse A = K - shift * M;
+  const Eigen::SimplicialLDLT<Sparse> factor(A);
+  if (factor.info() != Eigen::Success) throw std::runtime_error("no factor of K - shift M");
+  const Eigen::Index n = K.rows(), block = std::min<Eigen::Index>(n, wanted + spare);
+  Draws draws(4);
+  MatX<double> X(n, block);
+  for (double& value : X.reshaped()) value = draws.uniform(-1, 1);
+  VecX<double> last = VecX<double>::Zero(wanted);
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    MatX<double> Y = factor.solve(M * X);
+    for (Eigen::Index k = 0; k < block; ++k) Y.col(k).normalize();
+    const MatX<double> k = Y.transpose() * (K * Y), m = Y.transpose() * (M * Y);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<MatX<double>> small(k, m);
+    X = Y * small.eigenvectors();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(block));
+    for (Eigen::Index i = 0; i < block; ++i) order[static_cast<std::size_t>(i)] = i;
+    auto away = [&](Eigen::Index i) { return std::abs(small.eigenvalues()[i] - shift); };
+    std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return away(a) < away(b); });
+    order.resize(static_cast<std::size_t>(wanted));
+    std::sort(order.begin(), order.end());
+    const Modes modes{small.eigenvalues()(order), X(Eigen::all, order)};
+    if ((modes.values - last).lpNorm<Eigen::Infinity>() <= 1e-9 * modes.values.lpNorm<Eigen::Infinity>())
+      return modes;
+    last = modes.values;
+  }
+  throw std::runtime_error("modes do not settle");
+}
+
+}  // namespace pliant::test

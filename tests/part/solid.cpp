@@ -1,0 +1,250 @@
+// Solid meshes of parts: closed, conforming, bounded by the surface mesh, without slivers, of the right
+// volume.
+#include "catch.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <Eigen/LU>
+
+#include <pliant/local/tetrahedron.h>
+#include <pliant/part/folds.h>
+#include <pliant/part/solid.h>
+#include <pliant/part/surface.h>
+
+#include "random_state.h"
+#include "worst.h"
+
+using namespace pliant;
+using test::Draws;
+using Order = Solid::Order;
+
+namespace {
+
+using Triangle = std::array<int, 3>;
+/// The triangle from its least node, turned the same way.
+Triangle turned(Triangle t) {
+  while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
+  return t;
+}
+std::set<Triangle> triangle_set(const Eigen::MatrixXi& triangles) {
+  std::set<Triangle> all;
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t)
+    all.insert(turned({triangles(0, t), triangles(1, t), triangles(2, t)}));
+  return all;
+}
+/// Faces of the elements, seen from outside, that are not also the other side of another.
+std::set<Triangle> open_faces(const Eigen::MatrixXi& elements, bool& conforming) {
+  constexpr std::array<Triangle, 4> faces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  std::set<Triangle> all;
+  conforming = true;
+  for (Eigen::Index t = 0; t < elements.cols(); ++t)
+    for (const Triangle& f : faces)
+      conforming =
+          all.insert(turned({elements(f[0], t), elements(f[1], t), elements(f[2], t)})).second && conforming;
+  std::set<Triangle> open;
+  for (const Triangle& f : all)
+    if (all.count(turned({f[0], f[2], f[1]})) == 0) open.insert(f);
+  return open;
+}
+
+struct Geometry {
+  double volume = 0, least_quality = kInfinity, least_jacobian = kInfinity;
+};
+/// Quality: 12 (3 V)^(2/3) over the sum of the squares of the six edges; 1 for a regular tetrahedron.
+/// Jacobian: least over mean of an element.
+Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
+  Geometry g;
+  for (Eigen::Index t = 0; t < solid.elements().cols(); ++t) {
+    std::array<Vec3<double>, 10> x;
+    for (Eigen::Index k = 0; k < solid.elements().rows(); ++k)
+      x[static_cast<std::size_t>(k)] = s.col(solid.elements()(k, t));
+    const double V =
+        LinearTetrahedron::gradient<double>(LinearTetrahedron::rule[0], x.data()).determinant() / 6;
+    double squares = 0, curved = 0, least = kInfinity;
+    for (const auto& [a, b] : kTetrahedronEdges) squares += (x[a] - x[b]).squaredNorm();
+    g.least_quality = std::min(g.least_quality, V > 0 ? 12 * std::cbrt(9 * V * V) / squares : 0.0);
+    if (solid.elements().rows() == 10)
+      for (const TetrahedronPoint& at : kTetrahedronMassRule) {
+        const double J = QuadraticTetrahedron::gradient<double>(at, x.data()).determinant();
+        curved += at.weight * J;
+        least = std::min(least, J);
+      }
+    g.volume += solid.elements().rows() == 10 ? curved : V;
+    g.least_jacobian = std::min(g.least_jacobian, least / (6 * curved));
+  }
+  return g;
+}
+
+/// A part with its chain at moderate values of rest.
+std::unique_ptr<Part> moderate_part(const std::string& shape, const std::vector<std::string>& chain) {
+  std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
+  Draws draws(11);
+  for (int trial = 0; trial < 1000; ++trial) {
+    Part::Named values;
+    for (int i = part->parameters().n_shape(); i < part->parameters().size(); ++i) {
+      const Parameter& p = part->parameters()[i];
+      const double value = p.rest_value() + draws.uniform(-0.3, 0.3);
+      values.emplace_back(p.name, std::min(std::max(value, p.spec->frozen.min), p.spec->frozen.max));
+    }
+    part->rest(values);
+    if (!folds(*part, part->parameters().rest())) return part;
+  }
+  throw std::runtime_error("no shape without folds found");
+}
+Eigen::Matrix3Xd rest_positions(const Part& part, const Solid& solid) {
+  return part.s(solid.material(), part.parameters().rest());
+}
+double quality(const Part& part, int resolution) {
+  const Solid solid(part, resolution);
+  return geometry(solid, rest_positions(part, solid)).least_quality;
+}
+
+}  // namespace
+
+TEST_CASE("solid meshes conform, and their boundary is the surface mesh", "[solid]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : test::usual_chains())
+      for (int resolution : {1, 2, 3, 6}) {
+        const std::unique_ptr<Part> part = moderate_part(face->name(), chain);
+        INFO(test::describe(face->name(), chain) << " " << resolution);
+        const Solid solid(*part, resolution);
+        const Surface surface(*part, resolution);
+        const Eigen::Matrix3Xd s = rest_positions(*part, solid);
+        bool conforming = false;
+        const std::set<Triangle> open = open_faces(solid.elements(), conforming);
+        CHECK(conforming);
+        CHECK(open == triangle_set(surface.triangles()));
+        CHECK(solid.boundary() == surface.triangles());
+        const TriangleMesh mesh = surface.body_mesh(*part, part->parameters().rest());
+        REQUIRE(solid.n_surface() == mesh.x.cols());
+        CHECK(s.leftCols(solid.n_surface()) == mesh.x);
+        const Geometry g = geometry(solid, s);
+        CHECK(g.volume == Approx(enclosed_volume(mesh)).epsilon(1e-12));
+        CHECK(g.least_quality > 0.02);
+        CHECK(solid.elements().minCoeff() == 0);
+        CHECK(solid.elements().maxCoeff() == solid.n_nodes() - 1);
+        if (face->mesh() == MeshPattern::ball) {
+          const int side = 2 * resolution + 1;
+          CHECK(solid.n_nodes() == side * side * side);
+          CHECK(solid.elements().cols() == 48 * resolution * resolution * resolution);
+        }
+      }
+}
+
+TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[solid]") {
+  // A cell of the cubic lattice itself has 0.756.
+  for (int resolution : {1, 2, 3, 8, 12}) {
+    INFO(resolution);
+    for (const char* round : {"sphere", "cylinder", "box"})
+      CHECK(quality(*make_part("part", round, {}, 1), resolution) > 0.6);
+    CHECK(quality(*make_part("part", "capsule", {}, 1), resolution) > 0.35);
+    CHECK(quality(*make_part("part", "cone", {}, 1), resolution) > 0.32);
+    CHECK(quality(*make_part("part", "supertoroid", {}, 1), resolution) > 0.35);
+    for (const char* shape : {"superellipsoid", "superellipsoid_radial"})
+      for (double eps1 : {0.1, 0.3, 1.0, 1.5, 2.0})
+        for (double eps2 : {0.1, 0.5, 1.0, 2.0}) {
+          INFO(shape << " " << eps1 << " " << eps2);
+          std::unique_ptr<Part> part = make_part("part", shape, {}, 1);
+          part->rest({{"eps1", eps1}, {"eps2", eps2}});
+          CHECK(quality(*part, resolution) > 0.3);
+          CHECK_NOTHROW(Solid(*part, resolution > 8 ? 8 : resolution, Order::quadratic));
+        }
+  }
+}
+
+TEST_CASE("the surface of a cone with a tip has no triangles without an area", "[solid]") {
+  for (double t : {-1.0, 1.0}) {
+    std::unique_ptr<Part> part = make_part("part", "cone", {}, 1);
+    part->rest({{"t", t}});
+    const TriangleMesh mesh = Surface(*part, 6).body_mesh(*part, part->parameters().rest());
+    double least = kInfinity;
+    for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
+      const Vec3<double> a = mesh.x.col(mesh.triangles(0, i)), b = mesh.x.col(mesh.triangles(1, i)),
+                         c = mesh.x.col(mesh.triangles(2, i));
+      least = std::min(least, (b - a).cross(c - a).norm() / 2);
+    }
+    CHECK(least > 1e-3);
+    part->prepare();
+    CHECK(enclosed_volume(mesh) == Approx(part->total_mass()).epsilon(0.02));
+  }
+}
+
+TEST_CASE("volumes of solid meshes converge: second order, fourth with quadratic elements", "[solid]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : {std::vector<std::string>{}, {"taper", "bend"}, {"twist"}}) {
+      const std::unique_ptr<Part> part = moderate_part(face->name(), chain);
+      part->prepare();
+      auto error = [&](int resolution, Order order) {
+        const Solid solid(*part, resolution, order);
+        return geometry(solid, rest_positions(*part, solid)).volume / part->total_mass() - 1;
+      };
+      INFO(test::describe(face->name(), chain));
+      const double linear = error(10, Order::linear), quadratic = error(10, Order::quadratic);
+      CHECK(std::abs(linear) < 0.02);
+      if (std::abs(linear) > 1e-12)
+        CHECK(std::log2(error(5, Order::linear) / linear) == Approx(2).margin(0.15));
+      CHECK(std::abs(quadratic) < 2e-4);
+      // The tip of a cone has no curvature to follow.
+      if (std::abs(quadratic) > 1e-12)
+        CHECK(std::log2(std::abs(error(5, Order::quadratic) / quadratic)) >
+              (part->shape().name() == std::string("cone") ? 2.9 : 3.5));
+    }
+}
+
+TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in the shape", "[solid]") {
+  for (const auto& face : all_shapes())
+    for (const std::vector<std::string>& chain : {std::vector<std::string>{}, {"taper", "bend"}}) {
+      const std::unique_ptr<Part> part = moderate_part(face->name(), chain);
+      const ParameterValues<double> rest = part->parameters().rest();
+      INFO(test::describe(face->name(), chain));
+      for (int resolution : {2, 3}) {
+        const Solid solid(*part, resolution, Order::quadratic), corners(*part, resolution);
+        CHECK(solid.elements().topRows<4>() == corners.elements());
+        CHECK(geometry(solid, rest_positions(*part, solid)).least_jacobian > 0.2);
+        const int n = solid.n_nodes();
+        // Corners, then edges: Euler's formula for a ball, 1, or a solid torus, 0.
+        const auto elements = static_cast<int>(solid.elements().cols()),
+                   triangles = static_cast<int>(solid.boundary().cols());
+        const int faces = (4 * elements + triangles) / 2, edges = n - corners.n_nodes();
+        CHECK(corners.n_nodes() - edges + faces - elements == (face->mesh() == MeshPattern::ball ? 1 : 0));
+        std::set<int> on_surface;
+        for (int i = 0; i < solid.n_surface(); ++i) on_surface.insert(i);
+        for (Eigen::Index t = 0; t < solid.boundary().cols(); ++t)
+          for (int k = 3; k < 6; ++k) on_surface.insert(solid.boundary()(k, t));
+        const Eigen::Matrix3Xd s = rest_positions(*part, solid);
+        test::Worst off_surface, off_middle;
+        for (int i : on_surface) off_surface.note(std::abs(part->inside_outside(s.col(i), rest)));
+        auto e = [&](int i) {
+          return part->shape().e(solid.material()[static_cast<std::size_t>(i)], rest.b.data());
+        };
+        for (Eigen::Index t = 0; t < solid.elements().cols(); ++t)
+          for (int k = 0; k < 6; ++k) {
+            const auto& [a, b] = kTetrahedronEdges[static_cast<std::size_t>(k)];
+            const int node = solid.elements()(4 + k, t);
+            if (on_surface.count(node) > 0) continue;
+            const Vec3<double> middle = (e(solid.elements()(static_cast<Eigen::Index>(a), t)) +
+                                         e(solid.elements()(static_cast<Eigen::Index>(b), t))) /
+                                        2;
+            off_middle.note((e(node) - middle).norm());
+          }
+        CHECK(off_surface < 1e-11);
+        CHECK(off_middle < 1e-12);
+      }
+    }
+}
+
+TEST_CASE("solid meshes that cannot be are refused", "[solid]") {
+  const std::unique_ptr<Part> box = make_part("brick", "box", {"taper", "bend"}, 1);
+  CHECK_THROWS_WITH(Solid(*box, 0), test::has_text("from 1 to 64"));
+  CHECK_THROWS_WITH(Solid(*box, 65), test::has_text("'brick'"));
+  box->rest({{"taper.tx", -1}, {"taper.ty", -1}});
+  CHECK_THROWS_WITH(Solid(*box, 4), test::has_text("flat"));
+  const std::unique_ptr<Part> spikes = make_part("spikes", "superellipsoid", {}, 1);
+  spikes->rest({{"eps1", 5}, {"eps2", 5}});
+  CHECK_THROWS_WITH(Solid(*spikes, 4, Order::quadratic), test::has_text("turned inside out"));
+  const std::unique_ptr<Part> ring = make_part("ring", "supertoroid", {}, 1);
+  CHECK_THROWS_WITH(Solid(*ring, 1, Order::quadratic), test::has_text("finer"));
+  CHECK_NOTHROW(Solid(*ring, 2, Order::quadratic));
+}
