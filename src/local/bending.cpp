@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/SparseCholesky>
+
 #include <pliant/local/element_matrix.h>
 #include <pliant/math/dual.h>
 
@@ -12,6 +14,8 @@ namespace pliant {
 namespace {
 
 constexpr int kBatchesInRange = 256;
+/// Angles of less than this are the rounding of a flat mesh.
+constexpr double kFlat = 1e-12;
 
 /// Q of a triangle with the edges e.
 Mat3<double> bending_stiffness(const Edges<double>& e, const Sheet& sheet) {
@@ -69,16 +73,27 @@ HingeCorners<Pack> gradient_change(const HingeCorners<Pack>& x, const HingeCorne
 
 }  // namespace
 
-LinearHinges::LinearHinges(const ElementBatches<4>& batches, const VecX<double>& X) {
-  for (int b = 0; b < batches.n_batches(); ++b) gradients_.push_back(hinge_gradient(batches.corners(X, b)));
+LinearHinges::LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles,
+                           const VecX<double>& X) {
+  for (int b = 0; b < hinges.n_batches(); ++b) gradients_.push_back(hinge_gradient(hinges.corners(X, b)));
+  for (int b = 0; b < triangles.n_batches(); ++b) edges_.push_back(edges_of(triangles.corners(X, b)));
 }
 
 Pack LinearHinges::angle(int batch, const HingeCorners<Pack>& d) const {
   return dot(gradients_[static_cast<std::size_t>(batch)], d);
 }
 
-FoldingHinges::FoldingHinges(const ElementBatches<4>& batches, const VecX<double>& X) {
-  for (int b = 0; b < batches.n_batches(); ++b) rest_.push_back(hinge_sin_cos(batches.corners(X, b)));
+FoldingHinges::FoldingHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles,
+                             const VecX<double>& X) {
+  for (int b = 0; b < hinges.n_batches(); ++b) rest_.push_back(hinge_sin_cos(hinges.corners(X, b)));
+  for (int b = 0; b < triangles.n_batches(); ++b)
+    rest_strain_.push_back(half_squares(edges_of(triangles.corners(X, b))));
+}
+
+std::array<Pack, 3> FoldingHinges::strain(int batch, const std::array<Vec3<Pack>, 3>& x) const {
+  std::array<Pack, 3> q = half_squares(edges_of(x));
+  for (std::size_t k = 0; k < 3; ++k) q[k] -= rest_strain_[static_cast<std::size_t>(batch)][k];
+  return q;
 }
 
 Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
@@ -95,7 +110,8 @@ MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet
       corners_(mesh.triangles()),
       edges_(shell_edges(mesh)),
       batches_(hinge_corners(mesh, edges_), mesh.n_nodes()),
-      hinges_(batches_, mesh.X().reshaped()),
+      corner_batches_(mesh.triangles(), mesh.n_nodes()),
+      hinges_(batches_, corner_batches_, mesh.X().reshaped()),
       triangles_(static_cast<std::size_t>((mesh.n_triangles() + Pack::kLanes - 1) / Pack::kLanes)),
       moment_places_(edges_.size()),
       own_inertia_(VecX<double>::Zero(static_cast<Eigen::Index>(edges_.size()))) {
@@ -132,25 +148,105 @@ MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet
     moment_places_[e][0] = attach(edge.left, edge.left_corner, 1);
     if (edge.inside()) moment_places_[e][1] = attach(edge.right, edge.right_corner, -1);
   }
+  set_coupling(mesh);
+}
+
+/// C, from the curvature at rest, b = 1/A sum_k alpha_k |e_k| n_k n_k^T with the normals at the edges where
+/// they make the least of 1/2 sum alpha Q alpha. As a triangle is strained by eps, alpha_k measures along an
+/// edge that moves:
+///   kappa = 1/A sum_k (dalpha_k + alpha_k n_k.eps n_k) |e_k| n_k n_k^T - (b eps + eps b)/2.
+template <class Hinges>
+void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh) {
+  std::vector<double> angles(static_cast<std::size_t>(n_angles()), 0.0), m(n_moments());
+  const VecX<double> X = mesh.X().reshaped();
+  for (int b = 0; b < batches_.n_batches(); ++b) {
+    const math::SinCos<Pack> theta = hinge_sin_cos(batches_.corners(X, b));
+    for (int lane = 0; lane < Pack::kLanes; ++lane)
+      angles[static_cast<std::size_t>(Pack::kLanes * b + lane)] =
+          std::atan2(theta.sin[lane], theta.cos[lane]);
+  }
+  const Three none{0.0, 0.0, 0.0};
+  for (Triangles& of : triangles_) of.C = {none, none, none};
+  curved_ = std::any_of(angles.begin(), angles.end(), [](double a) { return std::abs(a) > kFlat; });
+  if (!curved_) return;
+  VecX<double> phi = VecX<double>::Zero(own_inertia_.size()),
+               f = VecX<double>::Zero(3 * n_nodes_ + phi.size());
+  fill_moments(angles.data(), phi.data(), m.data(), nullptr, [&](int) { return none; });
+  add_own_forces(f, m.data());
+  if (f.norm() > 0) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int t = 0; t < corners_.cols(); ++t) {
+      const Triangles& of = triangles_[static_cast<std::size_t>(t / Pack::kLanes)];
+      const auto lane = static_cast<std::size_t>(t % Pack::kLanes);
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t l = 0; l < 3; ++l) {
+          const Pack& Q = k == l ? of.Q_diagonal[k] : of.Q_off[3 - k - l];
+          entries.emplace_back(of.edge[k][lane], of.edge[l][lane],
+                               (of.side[k] * of.side[l] * Q)[t % Pack::kLanes]);
+        }
+    }
+    Eigen::SparseMatrix<double> K(phi.size(), phi.size());
+    K.setFromTriplets(entries.begin(), entries.end());
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
+    phi = factor.solve(f.tail(phi.size()));
+  }
+  for (int t = 0; t < Pack::kLanes * static_cast<int>(triangles_.size()); ++t) {
+    Triangles& of = triangles_[static_cast<std::size_t>(t / Pack::kLanes)];
+    const int lane = t % Pack::kLanes;
+    const Edges<double> e = edges_of(mesh, std::min(t, static_cast<int>(corners_.cols()) - 1));
+    const std::array<Mat3<double>, 3> B = edge_strains(e);
+    const Three rest = turns(of, angles.data(), phi.data(), none);
+    const Vec3<double> normal = e[0].cross(e[1]).normalized();
+    const double area = 0.5 * e[0].cross(e[1]).norm();
+    std::array<Mat3<double>, 3> across;  // n_k n_k^T
+    Mat3<double> b = Mat3<double>::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3<double> n = e[k].cross(normal).normalized();
+      across[k] = n * n.transpose();
+      b += rest[k][lane] * e[k].norm() / area * across[k];
+    }
+    for (std::size_t l = 0; l < 3; ++l) {
+      Mat3<double> kappa = -0.5 * (b * B[l] + B[l] * b);
+      for (std::size_t k = 0; k < 3; ++k)
+        kappa += rest[k][lane] * across[k].cwiseProduct(B[l]).sum() * e[k].norm() / area * across[k];
+      // Its parts along n_k n_k^T, by -(e_i e_j + e_j e_i)/(8 A^2), which is dual to t_k t_k.
+      for (std::size_t k = 0; k < 3; ++k)
+        of.C[k][l].set(lane, -e[k].norm() * e[(k + 1) % 3].dot(kappa * e[(k + 2) % 3]) / (4 * area));
+    }
+  }
 }
 
 template <class Hinges>
 typename MidEdgeBending<Hinges>::Places MidEdgeBending<Hinges>::places(Buffer& buffer, int copies) const {
-  const std::size_t corners = batches_.buffer_size(), angles = static_cast<std::size_t>(copies * n_angles());
+  const std::size_t corners = std::max(batches_.buffer_size(), corner_batches_.buffer_size()),
+                    angles = static_cast<std::size_t>(copies * n_angles());
   buffer.numbers.resize(corners + angles + static_cast<std::size_t>(copies) * n_moments());
   double* numbers = buffer.numbers.data();
   return {numbers, numbers + corners, numbers + corners + angles};
 }
 
-/// alpha of a batch of triangles.
 template <class Hinges>
 typename MidEdgeBending<Hinges>::Three MidEdgeBending<Hinges>::turns(const Triangles& of,
-                                                                     const double* angles,
-                                                                     const double* phi) const {
+                                                                     const double* angles, const double* phi,
+                                                                     const Three& q) {
   Three alpha;
   for (std::size_t k = 0; k < 3; ++k)
-    alpha[k] = 0.5 * gather(angles, of.angle[k]) + of.side[k] * gather(phi, of.edge[k]);
+    alpha[k] = 0.5 * gather(angles, of.angle[k]) + of.side[k] * gather(phi, of.edge[k]) + of.C[k][0] * q[0] +
+               of.C[k][1] * q[1] + of.C[k][2] * q[2];
   return alpha;
+}
+
+template <class Hinges>
+typename MidEdgeBending<Hinges>::Three MidEdgeBending<Hinges>::tensions(const Triangles& of, const Three& m) {
+  Three tau;
+  for (std::size_t l = 0; l < 3; ++l) tau[l] = of.C[0][l] * m[0] + of.C[1][l] * m[1] + of.C[2][l] * m[2];
+  return tau;
+}
+
+template <class Hinges>
+typename MidEdgeBending<Hinges>::Three MidEdgeBending<Hinges>::moments_at(int batch, const double* m) const {
+  const double* from = m + 3 * Pack::kLanes * batch;
+  return {load(from), load(from + Pack::kLanes), load(from + 2 * Pack::kLanes)};
 }
 
 template <class Hinges>
@@ -174,12 +270,13 @@ void MidEdgeBending<Hinges>::fill_angles(double* angles, ThreadPool* pool, F&& f
 }
 
 template <class Hinges>
+template <class F>
 void MidEdgeBending<Hinges>::fill_moments(const double* angles, const double* phi, double* to,
-                                          ThreadPool* pool) const {
+                                          ThreadPool* pool, F&& strain) const {
   for_ranges(static_cast<int>(triangles_.size()), kBatchesInRange, pool, [&](int first, int last) {
     for (int b = first; b < last; ++b) {
       const Triangles& of = triangles_[static_cast<std::size_t>(b)];
-      const Three m = moments(of, turns(of, angles, phi));
+      const Three m = moments(of, turns(of, angles, phi, strain(b)));
       for (int k = 0; k < 3; ++k) store(m[static_cast<std::size_t>(k)], to + (3 * b + k) * Pack::kLanes);
     }
   });
@@ -208,8 +305,11 @@ double MidEdgeBending<Hinges>::energy(const VecX<double>& x) const {
   std::vector<double> angles(static_cast<std::size_t>(n_angles()));
   fill_angles(angles.data(), nullptr, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
   double twice = 0;
-  for (const Triangles& of : triangles_) {
-    const Three alpha = turns(of, angles.data(), x.data() + 3 * n_nodes_), m = moments(of, alpha);
+  for (int b = 0; b < corner_batches_.n_batches(); ++b) {
+    const Triangles& of = triangles_[static_cast<std::size_t>(b)];
+    const Three alpha = turns(of, angles.data(), x.data() + 3 * n_nodes_,
+                              hinges_.strain(b, corner_batches_.corners(x, b))),
+                m = moments(of, alpha);
     twice += sum(alpha[0] * m[0] + alpha[1] * m[1] + alpha[2] * m[2]);
   }
   return 0.5 * twice;
@@ -220,10 +320,16 @@ void MidEdgeBending<Hinges>::add_force(const VecX<double>& x, VecX<double>& f, B
                                        ThreadPool* pool) const {
   const Places at = places(buffer, 1);
   fill_angles(at.angles, pool, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
-  fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool);
+  fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool,
+               [&](int b) { return hinges_.strain(b, corner_batches_.corners(x, b)); });
   batches_.add(f, at.corners, pool, [&](int b) {
     return times(-hinge_moment(b, at.moments), hinges_.gradient(b, batches_.corners(x, b)));
   });
+  if (curved_)
+    corner_batches_.add(f, at.corners, pool, [&](int b) {
+      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, at.moments)),
+                           hinges_.edges(b, corner_batches_.corners(x, b)));
+    });
   add_own_forces(f, at.moments);
 }
 
@@ -239,8 +345,11 @@ void MidEdgeBending<Hinges>::add_derivative(const VecX<double>& x, const VecX<do
     fill_angles(d_angles, pool, [&](int b) {
       return dot(hinges_.gradient(b, batches_.corners(x, b)), batches_.corners(dx, b));
     });
-    fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool);
-    fill_moments(d_angles, dx.data() + 3 * n_nodes_, d_moments, pool);
+    fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool,
+                 [&](int b) { return hinges_.strain(b, corner_batches_.corners(x, b)); });
+    fill_moments(d_angles, dx.data() + 3 * n_nodes_, d_moments, pool, [&](int b) {
+      return strain_change(edges_of(corner_batches_.corners(x, b)), edges_of(corner_batches_.corners(dx, b)));
+    });
     batches_.add(f, at.corners, pool, [&](int b) {
       const Corners now = batches_.corners(x, b);
       Corners df = times(-hinge_moment(b, d_moments), hinges_.gradient(b, now));
@@ -249,6 +358,16 @@ void MidEdgeBending<Hinges>::add_derivative(const VecX<double>& x, const VecX<do
       for (std::size_t k = 0; k < 4; ++k) df[k] += turned[k];
       return df;
     });
+    if (curved_)
+      corner_batches_.add(f, at.corners, pool, [&](int b) {
+        const Triangles& of = triangles_[static_cast<std::size_t>(b)];
+        TriangleCorners df =
+            corner_forces(tensions(of, moments_at(b, d_moments)), edges_of(corner_batches_.corners(x, b)));
+        const TriangleCorners turned =
+            corner_forces(tensions(of, moments_at(b, at.moments)), edges_of(corner_batches_.corners(dx, b)));
+        for (std::size_t k = 0; k < 3; ++k) df[k] += turned[k];
+        return df;
+      });
     add_own_forces(f, d_moments);
   }
 }
@@ -265,7 +384,11 @@ void MidEdgeBending<Hinges>::each_element(const VecX<double>& x, Visit&& visit) 
     const auto batch = static_cast<std::size_t>(t / Pack::kLanes);
     const int lane = t % Pack::kLanes;
     const Triangles& of = triangles_[batch];
-    const Three alpha = turns(of, angles.data(), x.data() + 3 * n_nodes_), m = moments(of, alpha);
+    const int b = static_cast<int>(batch);
+    const TriangleCorners at_corners = corner_batches_.corners(x, b);
+    const Edges<Pack> along = hinges_.edges(b, at_corners);
+    const Three alpha = turns(of, angles.data(), x.data() + 3 * n_nodes_, hinges_.strain(b, at_corners)),
+                m = moments(of, alpha), tau = tensions(of, m);
     ElementMatrix<kCoordinates> element{{}, Eigen::Matrix<double, kCoordinates, kCoordinates>::Zero()};
     Eigen::Matrix<double, 3, kCoordinates> G = Eigen::Matrix<double, 3, kCoordinates>::Zero();
     Mat3<double> Q;
@@ -287,7 +410,7 @@ void MidEdgeBending<Hinges>::each_element(const VecX<double>& x, Visit&& visit) 
         const Corners now = batches_.corners(x, hinge), gradient = hinges_.gradient(hinge, now);
         for (std::size_t c = 0; c < 4; ++c)
           for (int axis = 0; axis < 3; ++axis) {
-            G(k, 3 * place[c] + axis) = 0.5 * gradient[c][axis][at];
+            G(k, 3 * place[c] + axis) += 0.5 * gradient[c][axis][at];
             if constexpr (Hinges::kOf == Of::position) {
               Corners unit;
               for (Vec3<Pack>& u : unit) u.setConstant(Pack(0.0));
@@ -305,6 +428,24 @@ void MidEdgeBending<Hinges>::each_element(const VecX<double>& x, Visit&& visit) 
         element.at[static_cast<std::size_t>(9 + 3 * k + axis)] = across + axis * n;
       }
       element.at[static_cast<std::size_t>(18 + k)] = 3 * n + e;
+    }
+    for (int l = 0; l < 3; ++l) {
+      const auto edge = static_cast<std::size_t>(l);
+      const int to = 3 * ((l + 2) % 3), from = 3 * ((l + 1) % 3);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (int k = 0; k < 3; ++k) {
+          const double slope = of.C[static_cast<std::size_t>(k)][edge][lane] * along[edge][axis][lane];
+          G(k, to + axis) += slope;
+          G(k, from + axis) -= slope;
+        }
+        if constexpr (Hinges::kOf == Of::position) {
+          const double tension = tau[edge][lane];
+          element.K(to + axis, to + axis) += tension;
+          element.K(from + axis, from + axis) += tension;
+          element.K(to + axis, from + axis) -= tension;
+          element.K(from + axis, to + axis) -= tension;
+        }
+      }
     }
     element.K += G.transpose() * Q * G;
     visit(element);

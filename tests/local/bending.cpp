@@ -46,6 +46,15 @@ void check_laws() {
                     random_vector(draws, 3 * large.n_nodes() + more.own_inertia().size(), 0.005));
 }
 
+/// phi for which no moment is left over at the edges, the nodes held.
+VecX<double> relaxed(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_nodes) {
+  const Eigen::Index own = x.size() - 3 * n_nodes;
+  const Eigen::SparseMatrix<double> K = stiffness(bending, x).bottomRightCorner(own, own);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
+  x.tail(own) += factor.solve(force(bending, x).tail(own));
+  return x;
+}
+
 }  // namespace
 
 TEST_CASE("bending: slopes, matrix, threads, bound, rest", "[local]") {
@@ -179,6 +188,31 @@ TEST_CASE("bending: an irregular sheet rolled half round has the energy of the c
   INFO("errors " << error[0] << ", " << error[1] << ", " << error[2]);
   CHECK(error[2] <= 0.005);
   CHECK(std::log2(error[0] / error[2]) >= 2 * 1.7);
+}
+
+TEST_CASE("bending: on a sphere it converges to the energy of Koiter and Sanders", "[local]") {
+  // Displacements w Y along the normal and u grad Y along the sphere turn normals by grad (u - w) Y:
+  // E = D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
+  const int n = 2;
+  const double b = n * (n + 1), nu = 0.3;
+  for (const bool along : {false, true}) {
+    double error[3];
+    for (int k = 0; k < 3; ++k) {
+      const ShellMesh mesh = icosphere(2 + k, 1);
+      const Sheet sheet{12 * (1 - nu * nu), nu, 1};
+      const LinearBending bending(mesh, sheet, 1);
+      const VecX<double> area = sphere_areas(mesh), d = harmonic_fields(mesh, n).col(along ? 1 : 0);
+      // grad Y/n in the column: int |grad Y|^2 = b int Y^2.
+      const double square = thrice(area).dot(d.cwiseAbs2()) * (along ? n * n / b : 1);
+      const double scale = along ? 1.0 / n : 1;
+      const VecX<double> x =
+          relaxed(bending, with_own(d, VecX<double>::Zero(bending.own_inertia().size())), mesh.n_nodes());
+      error[k] = std::abs(bending.energy(x) / (0.5 * b * (b - 1 + nu) * square * scale * scale) - 1);
+    }
+    INFO((along ? "along" : "across") << ": errors " << error[0] << ", " << error[1] << ", " << error[2]);
+    CHECK(error[2] <= 0.012);
+    CHECK(std::log2(error[1] / error[2]) >= 1.9);
+  }
 }
 
 namespace {

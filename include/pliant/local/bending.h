@@ -6,8 +6,10 @@
 // dtheta: change of the angle between the triangles since rest. Each triangle is bent by the constant
 // curvature
 //   kappa = 1/A sum_k alpha_k |e_k| n_k n_k^T,   n_k across edge k, outwards;   E = 1/2 sum_T alpha Q alpha.
-// It converges on any mesh; angles alone do not. phi is no part of any motion of the nodes: it has inertia
-// (rotary, rho t^3/12) but no momentum, and rigid motion leaves it alone. Free edges are free of moment.
+// alpha also has what the strain of the triangle itself turns, C q (edge_strain.h), so that kappa is the
+// change of Koiter and Sanders. It converges on any mesh; angles alone do not. phi is no part of any motion
+// of the nodes: it has inertia (rotary, rho t^3/12) but no momentum, and rigid motion leaves it alone. Free
+// edges have no moment.
 #pragma once
 
 #include <pliant/local/edge_strain.h>
@@ -38,8 +40,10 @@ class MidEdgeBending final : public NodalEnergy {
  private:
   using Three = std::array<Pack, 3>;
   using Corners = HingeCorners<Pack>;
+  using TriangleCorners = ElementBatches<3>::Corners;
   struct Triangles {
     Three Q_diagonal, Q_off;  ///< Q_00 Q_11 Q_22, Q_12 Q_20 Q_01
+    std::array<Three, 3> C;   ///< C_kl
     Three side;               ///< 1 where the triangle is on the left of its edge, -1 on the right
     std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< numbers of phi and of dtheta
   };
@@ -51,10 +55,17 @@ class MidEdgeBending final : public NodalEnergy {
   int n_angles() const { return Pack::kLanes * batches_.n_batches() + 1; }
   std::size_t n_moments() const { return 3 * Pack::kLanes * triangles_.size(); }
 
-  Three turns(const Triangles& triangles, const double* angles, const double* phi) const;
+  void set_coupling(const ShellMesh& mesh);
+  /// alpha of a batch of triangles that are strained by q.
+  static Three turns(const Triangles& triangles, const double* angles, const double* phi, const Three& q);
   static Three moments(const Triangles& triangles, const Three& alpha);
-  /// angles -> moments of all triangles.
-  void fill_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool) const;
+  /// C^T m.
+  static Three tensions(const Triangles& triangles, const Three& m);
+  Three moments_at(int batch, const double* m) const;
+  /// angles and strains, strain(batch), -> moments of all triangles.
+  template <class F>
+  void fill_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
+                    F&& strain) const;
   template <class F>
   void fill_angles(double* angles, ThreadPool* pool, F&& f) const;
   /// dE/dtheta of the edges of a batch.
@@ -68,38 +79,50 @@ class MidEdgeBending final : public NodalEnergy {
   std::vector<ShellEdge> edges_;
   int n_inside_ = 0;  ///< edges between two triangles
   ElementBatches<4> batches_;
+  ElementBatches<3> corner_batches_;
+  bool curved_ = false;  ///< at rest; C = 0 on a flat mesh
   Hinges hinges_;
   std::vector<Triangles> triangles_;
   std::vector<std::array<int, 2>> moment_places_;  ///< of an edge: on its left, on its right
   VecX<double> own_inertia_;
 };
 
-/// Angles that are linear in the displacements: dtheta = dtheta/dx(rest) . d.
+/// Angles and strains that are linear in the displacements: dtheta = dtheta/dx(rest) . d.
 class LinearHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::displacement;
-  LinearHinges(const ElementBatches<4>& batches, const VecX<double>& X);
+  LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
   Pack angle(int batch, const HingeCorners<Pack>& d) const;
   const HingeCorners<Pack>& gradient(int batch, const HingeCorners<Pack>&) const {
     return gradients_[static_cast<std::size_t>(batch)];
   }
+  std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& d) const {
+    return strain_change(edges(batch, d), edges_of(d));
+  }
+  const Edges<Pack>& edges(int batch, const std::array<Vec3<Pack>, 3>&) const {
+    return edges_[static_cast<std::size_t>(batch)];
+  }
 
  private:
   std::vector<HingeCorners<Pack>> gradients_;
+  std::vector<Edges<Pack>> edges_;
 };
 
-/// Angles of the positions as they are, less those at rest.
+/// Angles and strains of the positions as they are, less those at rest.
 class FoldingHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::position;
-  FoldingHinges(const ElementBatches<4>& batches, const VecX<double>& X);
+  FoldingHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
   Pack angle(int batch, const HingeCorners<Pack>& x) const;
   HingeCorners<Pack> gradient(int, const HingeCorners<Pack>& x) const { return hinge_gradient(x); }
+  std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& x) const;
+  Edges<Pack> edges(int, const std::array<Vec3<Pack>, 3>& x) const { return edges_of(x); }
 
  private:
   std::vector<math::SinCos<Pack>> rest_;
+  std::vector<std::array<Pack, 3>> rest_strain_;
 };
 
 using LinearBending = MidEdgeBending<LinearHinges>;
