@@ -47,10 +47,6 @@ Pack gather(const double* from, const std::array<int, Pack::kLanes>& at) {
   return {from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
 }
 
-Pack dot(const HingeCorners<Pack>& a, const HingeCorners<Pack>& b) {
-  return a[0].dot(b[0]) + a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]);
-}
-
 HingeCorners<Pack> times(const Pack& factor, const HingeCorners<Pack>& a) {
   return {factor * a[0], factor * a[1], factor * a[2], factor * a[3]};
 }
@@ -72,37 +68,6 @@ HingeCorners<Pack> gradient_change(const HingeCorners<Pack>& x, const HingeCorne
 }
 
 }  // namespace
-
-LinearHinges::LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles,
-                           const VecX<double>& X) {
-  for (int b = 0; b < hinges.n_batches(); ++b) gradients_.push_back(hinge_gradient(hinges.corners(X, b)));
-  for (int b = 0; b < triangles.n_batches(); ++b) edges_.push_back(edges_of(triangles.corners(X, b)));
-}
-
-Pack LinearHinges::angle(int batch, const HingeCorners<Pack>& d) const {
-  return dot(gradients_[static_cast<std::size_t>(batch)], d);
-}
-
-FoldingHinges::FoldingHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles,
-                             const VecX<double>& X) {
-  for (int b = 0; b < hinges.n_batches(); ++b) rest_.push_back(hinge_sin_cos(hinges.corners(X, b)));
-  for (int b = 0; b < triangles.n_batches(); ++b)
-    rest_strain_.push_back(half_squares(edges_of(triangles.corners(X, b))));
-}
-
-std::array<Pack, 3> FoldingHinges::strain(int batch, const std::array<Vec3<Pack>, 3>& x) const {
-  std::array<Pack, 3> q = half_squares(edges_of(x));
-  for (std::size_t k = 0; k < 3; ++k) q[k] -= rest_strain_[static_cast<std::size_t>(batch)][k];
-  return q;
-}
-
-Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
-  const math::SinCos<Pack>& rest = rest_[static_cast<std::size_t>(batch)];
-  const math::SinCos<Pack> now = hinge_sin_cos(x);
-  // Of the difference, so that half a turn from rest is what must not be reached.
-  const Pack s = now.sin * rest.cos - now.cos * rest.sin, c = now.cos * rest.cos + now.sin * rest.sin;
-  return {std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])};
-}
 
 template <class Hinges>
 MidEdgeBending<Hinges>::MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet, double area_density)

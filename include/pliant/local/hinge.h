@@ -36,4 +36,10 @@ HingeCorners<T> hinge_gradient(const HingeCorners<T>& x) {
   return {left * T(1.0 - c_foot) + right * T(1.0 - d_foot), left * c_foot + right * d_foot, -left, -right};
 }
 
+/// Sum of the products of corners.
+template <class T>
+T dot(const HingeCorners<T>& a, const HingeCorners<T>& b) {
+  return a[0].dot(b[0]) + a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]);
+}
+
 }  // namespace pliant
