@@ -4,6 +4,17 @@
 
 namespace pliant {
 
+std::array<Mat3<double>, 3> edge_strains(const Edges<double>& e) {
+  const Vec3<double> twice_area = e[0].cross(e[1]);
+  const Vec3<double> normal = twice_area.normalized();
+  std::array<Mat3<double>, 3> B;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3<double> t_i = e[(k + 1) % 3].cross(normal), t_j = e[(k + 2) % 3].cross(normal);
+    B[k] = -(t_i * t_j.transpose() + t_j * t_i.transpose()) / (2 * twice_area.squaredNorm());
+  }
+  return B;
+}
+
 Vec3<double> edge_traces(const Edges<double>& e) {
   const double four_area2 = e[0].cross(e[1]).squaredNorm();  // (2A)^2
   return -Vec3<double>(e[1].dot(e[2]), e[2].dot(e[0]), e[0].dot(e[1])) / four_area2;

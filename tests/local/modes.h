@@ -2,8 +2,12 @@
 // on the sphere to begin with.
 #pragma once
 
+#include <algorithm>
 #include <complex>
+#include <utility>
+#include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
@@ -12,21 +16,33 @@
 
 namespace pliant::test {
 
-/// The values of omega^2 on the space that `rounds` inverse iterations at `shift` make of the columns of U.
-inline VecX<double> ritz_values(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double shift,
-                                MatX<double> U, int rounds) {
+/// Mean omega^2 of the `count` modes below 2 `near` that lie most in the space of the columns of U, after
+/// inverse iterations of U and V at `near`; V holds what would mix in.
+inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double near,
+                            const MatX<double>& U, const MatX<double>& V, int count) {
   Eigen::SparseMatrix<double> A = K;
-  for (Eigen::Index i = 0; i < M.size(); ++i) A.coeffRef(i, i) -= shift * M[i];
+  for (Eigen::Index i = 0; i < M.size(); ++i) A.coeffRef(i, i) -= near * M[i];
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(A);
+  MatX<double> modes(M.size(), U.cols() + V.cols());
+  modes << U, V;
   VecX<double> values;
-  for (int round = 0; round <= rounds; ++round) {
-    if (round > 0) U = factor.solve(MatX<double>(M.asDiagonal() * U));
-    const MatX<double> small_K = U.transpose() * (K * U), small_M = U.transpose() * M.asDiagonal() * U;
+  for (int round = 0; round < 3; ++round) {
+    modes = factor.solve(MatX<double>(M.asDiagonal() * modes));
+    const MatX<double> small_K = modes.transpose() * (K * modes),
+                       small_M = modes.transpose() * M.asDiagonal() * modes;
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatX<double>> solver(small_K, small_M);
     values = solver.eigenvalues();
-    U = U * solver.eigenvectors();
+    modes = modes * solver.eigenvectors();
   }
-  return values;
+  const MatX<double> along = U.transpose() * M.asDiagonal() * modes,
+                     within = MatX<double>(U.transpose() * M.asDiagonal() * U).ldlt().solve(along);
+  std::vector<std::pair<double, double>> found;
+  for (Eigen::Index i = 0; i < values.size() && values[i] < 2 * near; ++i)
+    found.emplace_back(along.col(i).dot(within.col(i)), values[i]);
+  std::sort(found.rbegin(), found.rend());
+  double sum = 0;
+  for (int i = 0; i < count; ++i) sum += found.at(static_cast<std::size_t>(i)).second;
+  return sum / count;
 }
 
 /// Fields on the sphere of the surface harmonics Y of degree n: Y along the normal, and the slope of Y, for

@@ -25,6 +25,19 @@ inline Edges<double> edges_of(const ShellMesh& mesh, Eigen::Index t) {
   return edges_of<double>({mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)});
 }
 
+/// How q changes while the edges e change by de.
+template <class T>
+std::array<T, 3> strain_change(const Edges<T>& e, const Edges<T>& de) {
+  return {e[0].dot(de[0]), e[1].dot(de[1]), e[2].dot(de[2])};
+}
+/// |e_k|^2/2.
+template <class T>
+std::array<T, 3> half_squares(const Edges<T>& e) {
+  return {0.5 * e[0].dot(e[0]), 0.5 * e[1].dot(e[1]), 0.5 * e[2].dot(e[2])};
+}
+
+/// B_k.
+std::array<Mat3<double>, 3> edge_strains(const Edges<double>& e);
 /// tr B_k, 1/m^2.
 Vec3<double> edge_traces(const Edges<double>& e);
 /// S of the energy 1/2 q S q of a triangle of the sheet, N/m^3.

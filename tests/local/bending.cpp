@@ -1,0 +1,285 @@
+// Bending by mid-edge normals: exact for constant curvature, blind to rigid motion, convergent on irregular
+// meshes of plates, rolled sheets, and the laws of every energy.
+#include <pliant/local/bending.h>
+
+#include "catch.h"
+#include "modes.h"
+
+using namespace pliant;
+using namespace pliant::test;
+
+namespace {
+
+constexpr Sheet kSheet{7e4, 0.3, 0.02};
+constexpr double kMass = 54;  // kg/m^2
+
+/// Local coordinates: nodes from a field, own coordinates as given or none.
+VecX<double> with_own(const VecX<double>& nodal, const VecX<double>& own) {
+  VecX<double> x(nodal.size() + own.size());
+  x << nodal, own;
+  return x;
+}
+VecX<double> rest(const ShellMesh& mesh) {
+  return field(mesh, [](const Vec3<double>& X) { return X; });
+}
+VecX<double> all_masses(const NodalEnergy& bending, const ShellMesh& mesh) {
+  return with_own(kMass * thrice(node_areas(mesh)), bending.own_inertia());
+}
+
+template <class Bending>
+void check_laws() {
+  const ShellMesh small = icosphere(1, 0.7), large = icosphere(4, 0.7);
+  const Bending bending(small, kSheet, kMass), more(large, kSheet, kMass);
+  const bool linear = bending.of() == NodalEnergy::Of::displacement;
+  const Eigen::Index own = bending.own_inertia().size();
+  Draws draws(1);
+  const VecX<double> at_rest = with_own((linear ? 0.0 : 1.0) * rest(small), VecX<double>::Zero(own));
+  const VecX<double> x = at_rest + random_vector(draws, at_rest.size(), 0.05);
+  CHECK(bending.energy(at_rest) == 0);
+  CHECK(force(bending, at_rest).norm() == 0);
+  check_slopes(bending, x, linear ? 0.1 : 2e-3);
+  check_stiffness(bending, x);
+  check_bound(bending, at_rest, all_masses(bending, small), 2);
+  check_bound(bending, x, all_masses(bending, small), 3);
+  check_threads(more,
+                with_own((linear ? 0.0 : 1.0) * rest(large), VecX<double>::Zero(more.own_inertia().size())) +
+                    random_vector(draws, 3 * large.n_nodes() + more.own_inertia().size(), 0.005));
+}
+
+/// phi for which no moment is left over at the edges, the nodes held.
+VecX<double> relaxed(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_nodes) {
+  const Eigen::Index own = x.size() - 3 * n_nodes;
+  const Eigen::SparseMatrix<double> K = stiffness(bending, x).bottomRightCorner(own, own);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
+  x.tail(own) += factor.solve(force(bending, x).tail(own));
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("bending: slopes, matrix, threads, bound, rest", "[local]") {
+  SECTION("linear") {
+    check_laws<LinearBending>();
+  }
+  SECTION("folding") {
+    check_laws<FoldingBending>();
+  }
+}
+
+TEST_CASE("bending: rigid motion strains nothing, own coordinates carry no momentum", "[local]") {
+  Draws draws(2);
+  const ShellMesh mesh = icosphere(2, 0.7);
+  const LinearBending linear(mesh, kSheet, kMass);
+  const FoldingBending folding(mesh, kSheet, kMass);
+  const Eigen::Index own = linear.own_inertia().size();
+  const VecX<double> phi = random_vector(draws, own, 0.1);
+  const Vec3<double> c(0.3, -0.2, 0.1), w(0.4, 0.1, -0.5);
+  const Mat3<double> R = Eigen::AngleAxisd(2.1, Vec3<double>(1, -2, 0.5).normalized()).toRotationMatrix();
+  const VecX<double> small =
+      field(mesh, [&](const Vec3<double>& X) -> Vec3<double> { return c + w.cross(X); });
+  const VecX<double> large = field(mesh, [&](const Vec3<double>& X) -> Vec3<double> { return c + R * X; });
+  const VecX<double> none = VecX<double>::Zero(small.size());
+  const VecX<double> push = force(linear, with_own(none, phi));
+  CHECK((force(linear, with_own(small, phi)) - push).norm() <= 1e-12 * push.norm());
+  CHECK(folding.energy(with_own(large, phi)) ==
+        Approx(folding.energy(with_own(rest(mesh), phi))).epsilon(1e-12));
+  CHECK(linear.energy(with_own(small, phi)) == Approx(linear.energy(with_own(none, phi))).epsilon(1e-12));
+  // What phi pushes at the nodes has no resultant.
+  const auto at = nodes(push, mesh.n_nodes());
+  Vec3<double> turn = Vec3<double>::Zero();
+  for (Eigen::Index i = 0; i < mesh.n_nodes(); ++i)
+    turn += Vec3<double>(mesh.X().row(i)).cross(Vec3<double>(at.row(i)));
+  CHECK(at.colwise().sum().norm() <= 1e-12 * push.norm());
+  CHECK(turn.norm() <= 1e-12 * push.norm());
+  CHECK(linear.own_inertia().sum() ==
+        Approx(kMass * node_areas(mesh).sum() * kSheet.thickness * kSheet.thickness / 12));
+}
+
+TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]") {
+  Draws draws(3);
+  const double a = 2, b = 1.5, xx = 0.3, yy = -0.2, xy = 0.25;  // second derivatives of w
+  const ShellMesh mesh = irregular_sheet(7, 5, a, b, draws);
+  const auto w = [&](const Vec3<double>& X) {
+    return 0.5 * xx * X[0] * X[0] + 0.5 * yy * X[1] * X[1] + xy * X[0] * X[1];
+  };
+  const VecX<double> d = field(mesh, [&](const Vec3<double>& X) { return Vec3<double>(0, 0, w(X)); });
+  for (const double nu : {-0.5, 0.0, 0.3, 0.5}) {
+    const Sheet sheet{7e4, nu, 0.02};
+    const LinearBending bending(mesh, sheet, kMass);
+    const std::vector<ShellEdge> edges = shell_edges(mesh);
+    // The slope of w outwards across an edge at its middle, less that of a triangle.
+    VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const Vec3<double> p = mesh.X().row(edges[e].a), q = mesh.X().row(edges[e].b), middle = 0.5 * (p + q);
+      const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));  // away from the left
+      const Vec3<double> slope(xx * middle[0] + xy * middle[1], yy * middle[1] + xy * middle[0], 0);
+      const auto turn =
+          [&](int t) {  // of the mid-edge normal against the triangle's; a normal is (-slope, 1)
+            const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
+            Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
+                                 .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
+            m /= m[2];
+            return -slope.dot(across) - m.dot(across);
+          };
+      const double left = turn(edges[e].left);
+      phi[static_cast<Eigen::Index>(e)] = edges[e].inside() ? 0.5 * (left + turn(edges[e].right)) : left;
+    }
+    const VecX<double> x = with_own(d, phi), f = force(bending, x);
+    const double trace = xx + yy, square = xx * xx + yy * yy + 2 * xy * xy;
+    CHECK(bending.energy(x) ==
+          Approx(0.5 * sheet.bending_stiffness() * (nu * trace * trace + (1 - nu) * square) * a * b)
+              .epsilon(1e-12));
+    const double largest = f.lpNorm<Eigen::Infinity>();
+    const Eigen::Index n = mesh.n_nodes();
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      if (edges[e].inside()) CHECK(std::abs(f[3 * n + static_cast<Eigen::Index>(e)]) <= 1e-12 * largest);
+    // A node across a boundary edge turns the normal there, whose moment nothing balances.
+    std::vector<bool> across(static_cast<std::size_t>(n), false);
+    for (const ShellEdge& edge : edges)
+      if (!edge.inside())
+        across[static_cast<std::size_t>(mesh.triangles()(edge.left_corner, edge.left))] = true;
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (!across[static_cast<std::size_t>(i)] && std::abs(mesh.X()(i, 0)) < 0.499 * a &&
+          std::abs(mesh.X()(i, 1)) < 0.499 * b)
+        CHECK(std::abs(f[2 * n + i]) <= 1e-12 * largest);
+  }
+}
+
+TEST_CASE("bending: for small displacements the folding energy is the linear one", "[local]") {
+  Draws draws(4);
+  const ShellMesh mesh = icosphere(1, 0.7);
+  const LinearBending linear(mesh, kSheet, kMass);
+  const FoldingBending folding(mesh, kSheet, kMass);
+  const Eigen::Index own = linear.own_inertia().size();
+  const VecX<double> dx = random_vector(draws, 3 * mesh.n_nodes() + own), f = force(linear, dx);
+  CHECK((derivative(folding, with_own(rest(mesh), VecX<double>::Zero(own)), dx) - f).norm() <=
+        1e-12 * f.norm());
+}
+
+TEST_CASE("bending: an irregular sheet rolled half round has the energy of the cylinder", "[local]") {
+  const double a = 1, b = 0.6, r = a / kPi;
+  double error[3];
+  for (int k = 0; k < 3; ++k) {
+    Draws draws(5);
+    const ShellMesh mesh = irregular_sheet(10 << k, 6 << k, a, b, draws);
+    const FoldingBending bending(mesh, kSheet, kMass);
+    const auto roll = [&](const Vec3<double>& X) {
+      return Vec3<double>(r * std::sin(X[0] / r), X[1], r * std::cos(X[0] / r));
+    };
+    // From a triangle's normal to that of the cylinder at the middle of its edge k, about the edge.
+    const auto turn = [&](int t, int corner) {
+      const std::array<Vec3<double>, 3> X{mesh.corner(t, corner), mesh.corner(t, (corner + 1) % 3),
+                                          mesh.corner(t, (corner + 2) % 3)};
+      const Vec3<double> e = (roll(X[2]) - roll(X[1])).normalized(), own = e.cross(roll(X[0]) - roll(X[1]));
+      const double angle = 0.5 * (X[1][0] + X[2][0]) / r;
+      const Vec3<double> normal(std::sin(angle), 0, std::cos(angle));
+      return std::atan2(e.dot(own.cross(normal)), own.dot(normal) - own.dot(e) * e.dot(normal));
+    };
+    const std::vector<ShellEdge> edges = shell_edges(mesh);
+    VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const double left = turn(edges[e].left, edges[e].left_corner);
+      phi[static_cast<Eigen::Index>(e)] =
+          edges[e].inside() ? 0.5 * (left - turn(edges[e].right, edges[e].right_corner)) : left;
+    }
+    const double expected = 0.5 * kSheet.bending_stiffness() / (r * r) * a * b;
+    error[k] = std::abs(bending.energy(with_own(field(mesh, roll), phi)) / expected - 1);
+  }
+  INFO("errors " << error[0] << ", " << error[1] << ", " << error[2]);
+  CHECK(error[2] <= 0.005);
+  CHECK(std::log2(error[0] / error[2]) >= 2 * 1.7);
+}
+
+TEST_CASE("bending: on a sphere it converges to the energy of Koiter and Sanders", "[local]") {
+  // Displacements w Y along the normal and u grad Y along the sphere turn normals by grad (u - w) Y:
+  // E = D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
+  const int n = 2;
+  const double b = n * (n + 1), nu = 0.3;
+  for (const bool along : {false, true}) {
+    double error[3];
+    for (int k = 0; k < 3; ++k) {
+      const ShellMesh mesh = icosphere(2 + k, 1);
+      const Sheet sheet{12 * (1 - nu * nu), nu, 1};
+      const LinearBending bending(mesh, sheet, 1);
+      const VecX<double> area = sphere_areas(mesh), d = harmonic_fields(mesh, n).col(along ? 1 : 0);
+      // grad Y/n in the column: int |grad Y|^2 = b int Y^2.
+      const double square = thrice(area).dot(d.cwiseAbs2()) * (along ? n * n / b : 1);
+      const double scale = along ? 1.0 / n : 1;
+      const VecX<double> x =
+          relaxed(bending, with_own(d, VecX<double>::Zero(bending.own_inertia().size())), mesh.n_nodes());
+      error[k] = std::abs(bending.energy(x) / (0.5 * b * (b - 1 + nu) * square * scale * scale) - 1);
+    }
+    INFO((along ? "along" : "across") << ": errors " << error[0] << ", " << error[1] << ", " << error[2]);
+    CHECK(error[2] <= 0.012);
+    CHECK(std::log2(error[1] / error[2]) >= 1.9);
+  }
+}
+
+namespace {
+
+/// Deflection of a square plate of side 1 under q = 1 with D = 1: in the middle, and its integral.
+struct Deflection {
+  double middle, integral;
+};
+Deflection plate(int n, bool clamped, std::uint64_t seed) {
+  Draws draws(seed);
+  const ShellMesh drawn = irregular_sheet(n, n, 1, 1, draws);
+  Nodes X = drawn.X();
+  const Eigen::Index center = (n / 2) * (n + 1) + n / 2;
+  X.row(center).setZero();
+  const ShellMesh mesh(X, drawn.triangles());
+  const Sheet sheet{12 * (1 - 0.3 * 0.3) * 1e6, 0.3, 0.01};
+  const LinearBending bending(mesh, sheet, 1);
+  const std::vector<ShellEdge> edges = shell_edges(mesh);
+  const Eigen::Index nodes = mesh.n_nodes(), own = static_cast<Eigen::Index>(edges.size());
+  const auto on_boundary = [&](Eigen::Index i) { return X.row(i).cwiseAbs().maxCoeff() > 0.4999; };
+  // Coordinates that are left: z inside, phi; a clamped edge has phi = -z/height of the corner across.
+  std::vector<Eigen::Index> column(static_cast<std::size_t>(nodes), -1);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Index n_free = 0;
+  for (Eigen::Index i = 0; i < nodes; ++i)
+    if (!on_boundary(i))
+      entries.emplace_back(2 * nodes + i, column[static_cast<std::size_t>(i)] = n_free++, 1);
+  for (Eigen::Index e = 0; e < own; ++e) {
+    const ShellEdge& edge = edges[static_cast<std::size_t>(e)];
+    const auto across = static_cast<Eigen::Index>(mesh.triangles()(edge.left_corner, edge.left));
+    if (edge.inside() || !clamped) {
+      entries.emplace_back(3 * nodes + e, n_free++, 1);
+    } else if (!on_boundary(across)) {
+      const double length = (X.row(edge.b) - X.row(edge.a)).norm();
+      entries.emplace_back(3 * nodes + e, column[static_cast<std::size_t>(across)],
+                           -length / (2 * mesh.area(edge.left)));
+    }
+  }
+  Eigen::SparseMatrix<double> T(3 * nodes + own, n_free);
+  T.setFromTriplets(entries.begin(), entries.end());
+  VecX<double> F = VecX<double>::Zero(3 * nodes + own);
+  F.segment(2 * nodes, nodes) = node_areas(mesh);
+  const Eigen::SparseMatrix<double> K = T.transpose() * stiffness(bending, VecX<double>::Zero(F.size())) * T;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
+  const VecX<double> u = T * factor.solve(T.transpose() * F);
+  return {u[2 * nodes + center], F.dot(u)};
+}
+
+}  // namespace
+
+TEST_CASE("bending: plates on irregular meshes converge with the square of the edge", "[local]") {
+  double integral = 0;  // Navier's series
+  for (int m = 1; m < 60; m += 2)
+    for (int n = 1; n < 60; n += 2)
+      integral += 64 / (std::pow(kPi, 8) * m * m * n * n * std::pow(m * m + n * n, 2));
+  double middle[3], whole[3], clamped[3];
+  for (int k = 0; k < 3; ++k) {
+    const Deflection supported = plate(8 << k, false, 6);
+    middle[k] = std::abs(supported.middle / 0.00406235266 - 1);
+    whole[k] = std::abs(supported.integral / integral - 1);
+    clamped[k] = std::abs(plate(8 << k, true, 6).middle / 0.00126531909 - 1);
+  }
+  INFO("supported, middle " << middle[0] << ", " << middle[1] << ", " << middle[2]);
+  INFO("supported, whole " << whole[0] << ", " << whole[1] << ", " << whole[2]);
+  INFO("clamped, middle " << clamped[0] << ", " << clamped[1] << ", " << clamped[2]);
+  for (const double* error : {middle, whole, clamped}) {
+    CHECK(error[2] <= 0.03);
+    CHECK(std::log2(error[0] / error[2]) >= 2 * 1.8);
+  }
+}
