@@ -5,12 +5,13 @@
 
 #include <Eigen/Dense>
 
+#include <pliant/local/make_solid_energy.h>
 #include <pliant/local/solid_mass.h>
 
-#include "../draws.h"
-#include "../worst.h"
 #include "catch.h"
+#include "draws.h"
 #include "solid_meshes.h"
+#include "worst.h"
 
 using namespace pliant;
 using test::affine;
@@ -261,6 +262,31 @@ TEST_CASE("materials and elements that cannot be are refused", "[solid]") {
   std::swap(mesh.elements(0, 5), mesh.elements(1, 5));
   CHECK_THROWS_WITH(LinearSolid<LinearTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),
                     test::has_text("elements 4 to 7"));
+}
+
+TEST_CASE("energies by name of law are those of their types", "[solid]") {
+  for (int n : {4, 10}) {
+    const SolidMesh mesh = ball(n);
+    const VecX<double> x = Kind<LinearTetrahedron, NeoHookean>::state(mesh);
+    auto made = [&](SolidLaw law) {
+      return force(*make_solid_energy(law, mesh.rest, mesh.elements, kRubber), x);
+    };
+    auto same = [&](SolidLaw name, auto law) {
+      using Law = decltype(law);
+      if (n == 4)
+        CHECK(made(name) == force(SolidEnergy<LinearTetrahedron, Law>(mesh.rest, mesh.elements, law), x));
+      else
+        CHECK(made(name) == force(SolidEnergy<QuadraticTetrahedron, Law>(mesh.rest, mesh.elements, law), x));
+    };
+    same(SolidLaw::linear, LinearLaw(kRubber));
+    same(SolidLaw::st_venant_kirchhoff, StVenantKirchhoff(kRubber));
+    same(SolidLaw::neo_hookean, NeoHookean(kRubber));
+    same(SolidLaw::corotated, Corotated(kRubber));
+    CHECK((made(SolidLaw::averaged_linear) - made(SolidLaw::linear)).norm() >
+          1e-3 * made(SolidLaw::linear).norm());
+  }
+  CHECK_THROWS_WITH(make_solid_energy(SolidLaw::linear, Nodes(8, 3), Eigen::MatrixXi(8, 1), kRubber),
+                    test::has_text("4 or 10"));
 }
 
 TEST_CASE("masses: sums, moments, positive", "[solid]") {

@@ -36,8 +36,8 @@ class AveragedLinearSolid final : public NodalEnergy {
   static constexpr bool kNodal = N == 4;
   /// int of div d over the elements of a pack.
   Pack spread(const VecX<double>& x, int pack) const;
-  /// lambda theta of the patches of an element, their mean.
-  void pressures(const VecX<double>& x, double* spreads, double* pressure, ThreadPool* pool) const;
+  /// lambda theta of all patches. sums: room for corners_.buffer_size(1) numbers.
+  void pressures(const VecX<double>& x, double* sums, double* pressure, ThreadPool* pool) const;
   const Pack* gradients(int pack) const {
     return gradients_.data() + static_cast<std::ptrdiff_t>(pack) * 3 * N;
   }
