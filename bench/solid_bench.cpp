@@ -42,7 +42,9 @@ template <class Element, class Law>
 long operations() {
   using bench::Counted;
   constexpr int N = Element::n_nodes;
-  const Mesh mesh = sphere(2, N == 4 ? Solid::Order::linear : Solid::Order::quadratic);
+  const Mesh mesh = sphere(1, N == 4    ? Solid::Order::linear
+                              : N == 10 ? Solid::Order::quadratic
+                                        : Solid::Order::enriched);
   Vec3<Counted> x[N], f[N];
   for (int a = 0; a < N; ++a) x[a] = mesh.rest.row(mesh.elements(a, 0)).transpose().template cast<Counted>();
   for (Vec3<Counted>& force : f) force.setConstant(Counted(0.0));
@@ -138,6 +140,8 @@ int main(int argc, char** argv) {
       measure_all<LinearTetrahedron>(sphere(resolution, Solid::Order::linear), machine, file);
     for (int resolution : {2, 4, 10})
       measure_all<QuadraticTetrahedron>(sphere(resolution, Solid::Order::quadratic), machine, file);
+    for (int resolution : {2, 4, 8})
+      measure_all<EnrichedTetrahedron>(sphere(resolution, Solid::Order::enriched), machine, file);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "solid_bench: %s\n", e.what());
     return 1;

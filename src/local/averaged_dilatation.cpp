@@ -143,5 +143,6 @@ double AveragedLinearSolid<Element>::frequency_bound(const VecX<double>& x, cons
 
 template class AveragedLinearSolid<LinearTetrahedron>;
 template class AveragedLinearSolid<QuadraticTetrahedron>;
+template class AveragedLinearSolid<EnrichedTetrahedron>;
 
 }  // namespace pliant

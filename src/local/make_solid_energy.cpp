@@ -37,7 +37,9 @@ std::unique_ptr<NodalEnergy> make_solid_energy(SolidLaw law, const Nodes& rest,
     return make<LinearTetrahedron>(law, rest, elements, material);
   if (elements.rows() == QuadraticTetrahedron::n_nodes)
     return make<QuadraticTetrahedron>(law, rest, elements, material);
-  throw std::invalid_argument("elements of solids have 4 or 10 nodes, not " +
+  if (elements.rows() == EnrichedTetrahedron::n_nodes)
+    return make<EnrichedTetrahedron>(law, rest, elements, material);
+  throw std::invalid_argument("elements of solids have 4, 10 or 15 nodes, not " +
                               std::to_string(elements.rows()));
 }
 

@@ -10,7 +10,8 @@ namespace pliant {
 
 enum class SolidLaw { linear, averaged_linear, st_venant_kirchhoff, neo_hookean, corotated };
 
-/// rest: positions of the nodes, m. elements: 4 or 10 rows. Throws std::invalid_argument as the energies do.
+/// rest: positions of the nodes, m. elements: 4, 10 or 15 rows. Throws std::invalid_argument as the energies
+/// do.
 std::unique_ptr<NodalEnergy> make_solid_energy(SolidLaw law, const Nodes& rest,
                                                const Eigen::MatrixXi& elements, const Elasticity& material);
 
