@@ -24,9 +24,8 @@ class AveragedLinearSolid final : public NodalEnergy {
   Of of() const override { return Of::displacement; }
   double energy(const VecX<double>& x) const override;
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  void add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override {
-    (void)x;
     add_force(dx, f, buffer, pool);
   }
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
