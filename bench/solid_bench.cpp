@@ -42,7 +42,9 @@ template <class Element, class Law>
 long operations() {
   using bench::Counted;
   constexpr int N = Element::n_nodes;
-  const Mesh mesh = sphere(2, N == 4 ? Solid::Order::linear : Solid::Order::quadratic);
+  const Mesh mesh = sphere(1, N == 4    ? Solid::Order::linear
+                              : N == 10 ? Solid::Order::quadratic
+                                        : Solid::Order::enriched);
   Vec3<Counted> x[N], f[N];
   for (int a = 0; a < N; ++a) x[a] = mesh.rest.row(mesh.elements(a, 0)).transpose().template cast<Counted>();
   for (Vec3<Counted>& force : f) force.setConstant(Counted(0.0));
@@ -73,8 +75,10 @@ void measure(const Row& row, const NodalEnergy& energy, const Mesh& mesh, const 
   VecX<double> f = VecX<double>::Zero(x.size());
   NodalEnergy::Buffer buffer;
   const auto elements = static_cast<double>(mesh.elements.cols());
-  const double bytes =
-      static_cast<double>(row.bytes) + 76.0 * static_cast<double>(mesh.rest.rows()) / elements;
+  energy.add_force(x, f, buffer, nullptr);
+  const double bytes = static_cast<double>(row.bytes) + (76.0 * static_cast<double>(mesh.rest.rows()) +
+                                                         16.0 * static_cast<double>(buffer.numbers.size())) /
+                                                            elements;
   for (int threads : {1, 2}) {
     ThreadPool pool(threads);
     const double time =
@@ -94,7 +98,7 @@ void measure(const Row& row, const NodalEnergy& energy, const Mesh& mesh, const 
 
 template <class Element>
 constexpr long bytes_of() {
-  return 80 * static_cast<long>(Element::rule.size()) + Element::n_nodes * (4 + 24 + 24 + 4);
+  return 80 * static_cast<long>(Element::rule.size()) + Element::n_nodes * 8;
 }
 
 template <class Element, class Law>
@@ -111,7 +115,7 @@ void measure_all(const Mesh& mesh, const Machine& machine, bench::TableFile& fil
   constexpr long N = Element::n_nodes;
   const AveragedLinearSolid<Element> averaged(mesh.rest, mesh.elements, kMaterial);
   measure({"averaged_linear", N, operations<Element, LinearLaw>() + 9 * N,
-           bytes_of<Element>() + N * (2 * 24 + 2 * 4 + 24 + 24 + 4)},
+           bytes_of<Element>() + N * (2 * 24 + 2 * 8)},
           averaged, mesh, machine, file);
   measure_law<Element, StVenantKirchhoff>("st_venant_kirchhoff", mesh, machine, file);
   measure_law<Element, NeoHookean>("neo_hookean", mesh, machine, file);
@@ -136,6 +140,8 @@ int main(int argc, char** argv) {
       measure_all<LinearTetrahedron>(sphere(resolution, Solid::Order::linear), machine, file);
     for (int resolution : {2, 4, 10})
       measure_all<QuadraticTetrahedron>(sphere(resolution, Solid::Order::quadratic), machine, file);
+    for (int resolution : {2, 4, 8})
+      measure_all<EnrichedTetrahedron>(sphere(resolution, Solid::Order::enriched), machine, file);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "solid_bench: %s\n", e.what());
     return 1;

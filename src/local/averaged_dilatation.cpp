@@ -22,8 +22,12 @@ AveragedLinearSolid<Element>::AveragedLinearSolid(const Nodes& rest, const Eigen
     for (Vec3<Pack>& of_corner : b) of_corner.setConstant(Pack(0.0));
     for (const TetrahedronPoint& at : Element::rule)
       Element::push(at, scaled(Pack(at.weight), cofactors(Element::gradient(at, X))), b);
-    for (const Vec3<Pack>& of_corner : b)
-      for (int r = 0; r < 3; ++r) gradients_.push_back(of_corner[r]);
+    for (Vec3<Pack>& of_corner : b)
+      for (int r = 0; r < 3; ++r) {
+        for (int lane = 0; lane < Pack::kLanes; ++lane)
+          if (pack * Pack::kLanes + lane >= corners_.n_elements()) of_corner[r].set(lane, 0);
+        gradients_.push_back(of_corner[r]);
+      }
   }
   volume_.assign(static_cast<std::size_t>(kNodal ? corners_.n_nodes() : corners_.n_elements()), 0.0);
   for (int e = 0; e < corners_.n_elements(); ++e)
@@ -46,65 +50,63 @@ Pack AveragedLinearSolid<Element>::spread(const VecX<double>& x, int pack) const
 }
 
 template <class Element>
-void AveragedLinearSolid<Element>::pressures(const VecX<double>& x, double* spreads, double* pressure,
+void AveragedLinearSolid<Element>::pressures(const VecX<double>& x, double* sums, double* pressure,
                                              ThreadPool* pool) const {
-  for_ranges(pool, corners_.n_packs(), ElementCorners<N>::kPacks, [&](int first, int last) {
-    for (int pack = first; pack < last; ++pack) {
-      const Pack q = spread(x, pack);
-      std::memcpy(spreads + static_cast<std::ptrdiff_t>(pack) * Pack::kLanes, &q, sizeof q);
-    }
-  });
-  for_ranges(pool, static_cast<int>(volume_.size()), ElementCorners<N>::kNodes, [&](int first, int last) {
-    for (int c = first; c < last; ++c) {
-      double q = 0;
-      if constexpr (kNodal)
-        corners_.for_elements(c, [&](int e) { q += spreads[e] / N; });
-      else
-        q = spreads[c];
-      // A node without elements has no patch.
-      pressure[c] =
-          volume_[static_cast<std::size_t>(c)] > 0 ? lambda_ * q / volume_[static_cast<std::size_t>(c)] : 0;
-    }
-  });
+  auto of_patch = [&](int c, double q) {
+    const double V = volume_[static_cast<std::size_t>(c)];
+    pressure[c] = V > 0 ? lambda_ * q / V : 0;  // a node without elements has no patch
+  };
+  if constexpr (kNodal)
+    corners_.template sum<1>(
+        sums, pool,
+        [&](int pack, Pack(*pushes)[1]) {
+          const Pack share = spread(x, pack) * Pack(1.0 / N);
+          for (int a = 0; a < N; ++a) pushes[a][0] = share;
+        },
+        [&](int node, const double* q) { of_patch(node, *q); });
+  else
+    for_ranges(pool, corners_.n_packs(), ElementCorners<N>::kPacks, [&](int first, int last) {
+      for (int pack = first; pack < last; ++pack) {
+        const Pack q = spread(x, pack);
+        for (int lane = 0; lane < Pack::kLanes; ++lane) {
+          const int e = pack * Pack::kLanes + lane;
+          if (e < corners_.n_elements()) of_patch(e, q[lane]);
+        }
+      }
+    });
 }
 
 template <class Element>
 void AveragedLinearSolid<Element>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
                                              ThreadPool* pool) const {
-  const std::size_t pushes = corners_.buffer_size(),
-                    spreads = static_cast<std::size_t>(corners_.n_packs()) * Pack::kLanes;
-  buffer.numbers.resize(std::max(buffer.numbers.size(), pushes + spreads + volume_.size()));
+  const std::size_t sums = corners_.buffer_size();
+  buffer.numbers.resize(std::max(buffer.numbers.size(), sums + volume_.size()));
   shear_.add_force(x, f, buffer, pool);
-  double* pressure = buffer.numbers.data() + pushes + spreads;
-  pressures(x, buffer.numbers.data() + pushes, pressure, pool);
-  for_ranges(pool, corners_.n_packs(), ElementCorners<N>::kPacks, [&](int first, int last) {
-    for (int pack = first; pack < last; ++pack) {
-      Pack p(0.0);
-      for (int lane = 0; lane < Pack::kLanes; ++lane) {
-        const int e = std::min(pack * Pack::kLanes + lane, corners_.n_elements() - 1);
-        if constexpr (kNodal) {
-          double sum = 0;
-          for (int a = 0; a < N; ++a) sum += pressure[corners_.node(e, a)];
-          p.set(lane, sum / N);
-        } else {
-          p.set(lane, pressure[e]);
-        }
+  double* pressure = buffer.numbers.data() + sums;
+  pressures(x, buffer.numbers.data(), pressure, pool);
+  corners_.subtract_sums(buffer.numbers.data(), f.data(), pool, [&](int pack, Pack(*pushes)[3]) {
+    double p[Pack::kLanes];
+    for (int lane = 0; lane < Pack::kLanes; ++lane) {
+      const int e = std::min(pack * Pack::kLanes + lane, corners_.n_elements() - 1);
+      if constexpr (kNodal) {
+        p[lane] = 0;
+        for (int a = 0; a < N; ++a) p[lane] += pressure[corners_.node(e, a)] / N;
+      } else {
+        p[lane] = pressure[e];
       }
-      const Pack* b = gradients(pack);
-      Vec3<Pack> push[N];
-      for (int a = 0; a < N; ++a)
-        for (int r = 0; r < 3; ++r) push[a][r] = p * b[3 * a + r];
-      ElementCorners<N>::put(push, pack, buffer.numbers.data());
     }
+    Pack of_elements;
+    std::memcpy(&of_elements, p, sizeof p);
+    const Pack* b = gradients(pack);
+    for (int a = 0; a < N; ++a)
+      for (int r = 0; r < 3; ++r) pushes[a][r] = of_elements * b[3 * a + r];
   });
-  corners_.subtract_sums(buffer.numbers.data(), f.data(), pool);
 }
 
 template <class Element>
 double AveragedLinearSolid<Element>::energy(const VecX<double>& x) const {
-  std::vector<double> spreads(static_cast<std::size_t>(corners_.n_packs()) * Pack::kLanes),
-      pressure(volume_.size());
-  pressures(x, spreads.data(), pressure.data(), nullptr);
+  std::vector<double> sums(corners_.buffer_size(1)), pressure(volume_.size());
+  pressures(x, sums.data(), pressure.data(), nullptr);
   double twice = 0;
   for (std::size_t c = 0; c < volume_.size(); ++c)
     if (lambda_ != 0) twice += volume_[c] * pressure[c] * pressure[c] / lambda_;
@@ -116,17 +118,19 @@ void AveragedLinearSolid<Element>::add_stiffness(const VecX<double>& x,
                                                  std::vector<Eigen::Triplet<double>>& K) const {
   shear_.add_stiffness(x, K);
   const int n = corners_.n_nodes();
+  std::vector<std::vector<int>> patches(volume_.size());
+  for (int e = 0; e < corners_.n_elements(); ++e)
+    if (kNodal)
+      for (int a = 0; a < N; ++a) patches[static_cast<std::size_t>(corners_.node(e, a))].push_back(e);
+    else
+      patches[static_cast<std::size_t>(e)].push_back(e);
   for (std::size_t c = 0; c < volume_.size(); ++c) {
     std::map<int, double> b;  // over coordinates
-    auto add = [&](int e, double share) {
+    for (int e : patches[c])
       for (int a = 0; a < N; ++a)
         for (int r = 0; r < 3; ++r)
-          b[r * n + corners_.node(e, a)] += share * gradients(e / Pack::kLanes)[3 * a + r][e % Pack::kLanes];
-    };
-    if constexpr (kNodal)
-      corners_.for_elements(static_cast<int>(c), [&](int e) { add(e, 1.0 / N); });
-    else
-      add(static_cast<int>(c), 1);
+          b[r * n + corners_.node(e, a)] +=
+              gradients(e / Pack::kLanes)[3 * a + r][e % Pack::kLanes] / (kNodal ? N : 1);
     for (const auto& [i, b_i] : b)
       for (const auto& [j, b_j] : b) K.emplace_back(i, j, lambda_ * b_i * b_j / volume_[c]);
   }
@@ -139,5 +143,6 @@ double AveragedLinearSolid<Element>::frequency_bound(const VecX<double>& x, cons
 
 template class AveragedLinearSolid<LinearTetrahedron>;
 template class AveragedLinearSolid<QuadraticTetrahedron>;
+template class AveragedLinearSolid<EnrichedTetrahedron>;
 
 }  // namespace pliant

@@ -47,24 +47,21 @@ template <int Fields, class Stress>
 void SolidEnergy<Element, Law>::add(const std::array<const double*, Fields>& fields, VecX<double>& f,
                                     Buffer& buffer, ThreadPool* pool, Stress&& stress) const {
   buffer.numbers.resize(std::max(buffer.numbers.size(), corners_.buffer_size()));
-  for_ranges(pool, corners_.n_packs(), ElementCorners<N>::kPacks, [&](int first, int last) {
-    Vec3<Pack> x[Fields][N];
-    for (int pack = first; pack < last; ++pack) {
-      Vec3<Pack> pushes[N];
-      for (Vec3<Pack>& push : pushes) push.setConstant(Pack(0.0));
-      for (std::size_t k = 0; k < Fields; ++k) corners_.gather(fields[k], pack, x[k]);
-      const Point* point = points(pack);
-      for (const TetrahedronPoint& at : Element::rule) {
-        Mat3<Pack> G[Fields];
-        for (int k = 0; k < Fields; ++k) G[k] = product(Element::gradient(at, x[k]), point->inverse);
-        const Mat3<Pack> P = scaled(point->weight, stress(G));
-        Element::push(at, product_transposed(P, point->inverse), pushes);
-        ++point;
-      }
-      ElementCorners<N>::put(pushes, pack, buffer.numbers.data());
+  corners_.subtract_sums(buffer.numbers.data(), f.data(), pool, [&](int pack, Pack(*pushes)[3]) {
+    Vec3<Pack> x[Fields][N], pushed[N];
+    for (Vec3<Pack>& push : pushed) push.setConstant(Pack(0.0));
+    for (std::size_t k = 0; k < Fields; ++k) corners_.gather(fields[k], pack, x[k]);
+    const Point* point = points(pack);
+    for (const TetrahedronPoint& at : Element::rule) {
+      Mat3<Pack> G[Fields];
+      for (int k = 0; k < Fields; ++k) G[k] = product(Element::gradient(at, x[k]), point->inverse);
+      const Mat3<Pack> P = scaled(point->weight, stress(G));
+      Element::push(at, product_transposed(P, point->inverse), pushed);
+      ++point;
     }
+    for (int a = 0; a < N; ++a)
+      for (int r = 0; r < 3; ++r) pushes[a][r] = pushed[a][r];
   });
-  corners_.subtract_sums(buffer.numbers.data(), f.data(), pool);
 }
 
 template <class Element, class Law>

@@ -34,15 +34,28 @@ void for_all_masses(const Nodes& rest, const Eigen::MatrixXi& elements, double d
     for_element_masses<LinearTetrahedron>(rest, elements, density, add);
   else if (elements.rows() == QuadraticTetrahedron::n_nodes)
     for_element_masses<QuadraticTetrahedron>(rest, elements, density, add);
+  else if (elements.rows() == EnrichedTetrahedron::n_nodes)
+    for_element_masses<EnrichedTetrahedron>(rest, elements, density, add);
   else
     throw std::invalid_argument("elements of " + std::to_string(elements.rows()) +
-                                " nodes have no masses; 4 or 10 do");
+                                " nodes have no masses; 4, 10 or 15 do");
 }
 
 }  // namespace
 
 VecX<double> lumped_mass(const Nodes& rest, const Eigen::MatrixXi& elements, double density) {
   VecX<double> mass = VecX<double>::Zero(rest.rows());
+  if (elements.rows() == EnrichedTetrahedron::n_nodes) {
+    Vec3<double> X[EnrichedTetrahedron::n_nodes];
+    for (Eigen::Index e = 0; e < elements.cols(); ++e) {
+      for (int a = 0; a < EnrichedTetrahedron::n_nodes; ++a) X[a] = rest.row(elements(a, e)).transpose();
+      for (int a = 0; a < EnrichedTetrahedron::n_nodes; ++a) {
+        const TetrahedronPoint& node = kEnrichedNodes[static_cast<std::size_t>(a)];
+        mass[elements(a, e)] += density * node.weight * EnrichedTetrahedron::gradient(node, X).determinant();
+      }
+    }
+    return mass;
+  }
   for_all_masses(rest, elements, density, [&](Eigen::Index e, const auto& M) {
     const double scale = M.sum() / M.trace();
     for (Eigen::Index a = 0; a < elements.rows(); ++a) mass[elements(a, e)] += scale * M(a, a);

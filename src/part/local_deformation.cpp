@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include <pliant/local/solid_mass.h>
+#include <pliant/local/tetrahedron.h>
 #include <pliant/part/part.h>
 #include <pliant/part/solid.h>
 #include <pliant/part/surface.h>
@@ -17,9 +18,6 @@
 namespace pliant {
 
 namespace {
-
-/// Corners of the edges of an element, in the order of its nodes.
-constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
 /// A third of the area of the triangles at each node.
 VecX<double> node_areas(const LocalMesh& mesh) {
@@ -109,30 +107,37 @@ NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   return best;
 }
 
-/// Shape functions of an element of 4 or 10 nodes at barycentric coordinates L, and their slopes by L.
-VecX<double> shape_functions(const Vec<double, 4>& L, Eigen::Index n_nodes) {
-  if (n_nodes == 4) return L;
-  VecX<double> N(10);
-  for (int i = 0; i < 4; ++i) N[i] = L[i] * (2 * L[i] - 1);
-  for (int e = 0; e < 6; ++e) N[4 + e] = 4 * L[kEdges[e][0]] * L[kEdges[e][1]];
-  return N;
-}
-MatX<double> shape_slopes(const Vec<double, 4>& L, Eigen::Index n_nodes) {
-  if (n_nodes == 4) return MatX<double>::Identity(4, 4);
-  MatX<double> slope = MatX<double>::Zero(10, 4);
-  for (int i = 0; i < 4; ++i) slope(i, i) = 4 * L[i] - 1;
-  for (int e = 0; e < 6; ++e) {
-    slope(4 + e, kEdges[e][0]) = 4 * L[kEdges[e][1]];
-    slope(4 + e, kEdges[e][1]) = 4 * L[kEdges[e][0]];
+/// Weights of a point x in an element, from barycentric coordinates nearby.
+template <class Element>
+NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<double>& x,
+                       std::array<double, 4> L) {
+  std::array<Vec3<double>, Element::n_nodes> X;
+  for (int k = 0; k < Element::n_nodes; ++k)
+    X[static_cast<std::size_t>(k)] = mesh.X.row(mesh.tetrahedra(k, element)).transpose();
+  // Newton's method where the element is curved; straight ones are met at once.
+  constexpr int most = 10;
+  for (int i = 0; i < most; ++i) {
+    const TetrahedronPoint at{L, 0};
+    const auto N = Element::N(at);
+    Vec3<double> miss = x;
+    for (int k = 0; k < Element::n_nodes; ++k) miss -= N[k] * X[static_cast<std::size_t>(k)];
+    const Vec3<double> step = Element::gradient(at, X.data()).inverse() * miss;
+    L[0] -= step.sum();
+    for (std::size_t k = 0; k < 3; ++k) L[k + 1] += step[static_cast<Eigen::Index>(k)];
   }
-  return slope;
+  NodeWeights at;
+  const auto N = Element::N({L, 0});
+  for (int k = 0; k < Element::n_nodes; ++k) {
+    at.node.push_back(mesh.tetrahedra(k, element));
+    at.weight.push_back(N[k]);
+  }
+  return at;
 }
 
 /// Weights of a point x in a solid: by the element in which it lies, or outside of which it lies least.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
-  const Eigen::Index n = mesh.tetrahedra.rows();
   Eigen::Index in = 0;
-  Vec<double, 4> L = Vec<double, 4>::Zero();
+  std::array<double, 4> L{};
   double inside = -std::numeric_limits<double>::infinity();
   Eigen::Matrix4d corners;
   corners.row(3).setOnes();
@@ -142,37 +147,20 @@ NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
     if (!(at.minCoeff() > inside)) continue;
     inside = at.minCoeff();
     in = t;
-    L = at;
+    Eigen::Map<Vec<double, 4>>(L.data()) = at;
   }
-  MatX<double> X(n, 3);
-  for (Eigen::Index k = 0; k < n; ++k) X.row(k) = mesh.X.row(mesh.tetrahedra(k, in));
-  // Newton's method where the element is curved; straight ones are met at once.
-  constexpr int most = 10;
-  for (int i = 0; n > 4 && i < most; ++i) {
-    Eigen::Matrix4d slope;
-    slope.topRows<3>() = X.transpose() * shape_slopes(L, n);
-    slope.row(3).setOnes();
-    Vec<double, 4> miss;
-    miss << x - X.transpose() * shape_functions(L, n), 0;
-    L += slope.inverse() * miss;
-  }
-  NodeWeights at;
-  const VecX<double> N = shape_functions(L, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    at.node.push_back(mesh.tetrahedra(k, in));
-    at.weight.push_back(N[k]);
-  }
-  return at;
+  if (mesh.tetrahedra.rows() == 4) return weights_in<LinearTetrahedron>(mesh, in, x, L);
+  return weights_in<EnrichedTetrahedron>(mesh, in, x, L);
 }
 
-/// Triangles of a surface of 3 nodes a column, or of 6, each of which makes four.
+/// Triangles of a surface of 3 nodes a column, or of 7 (see Solid), each of which makes six.
 Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
   if (faces.rows() == 3) return faces;
-  constexpr int quarter[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-  Eigen::Matrix3Xi triangles(3, 4 * faces.cols());
+  constexpr int round[7] = {0, 3, 1, 4, 2, 5, 0}, middle = 6;
+  Eigen::Matrix3Xi triangles(3, 6 * faces.cols());
   for (Eigen::Index f = 0; f < faces.cols(); ++f)
-    for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < 3; ++k) triangles(k, 4 * f + i) = faces(quarter[i][k], f);
+    for (int i = 0; i < 6; ++i)
+      triangles.col(6 * f + i) << faces(round[i], f), faces(round[i + 1], f), faces(middle, f);
   return triangles;
 }
 
@@ -185,7 +173,7 @@ LocalMesh lay_mesh(const Part& part, const LocalSettings& settings) {
     mesh.triangles = surface.triangles();
   } else {
     const Solid solid(part, settings.resolution,
-                      settings.order == 2 ? Solid::Order::quadratic : Solid::Order::linear);
+                      settings.order == 2 ? Solid::Order::enriched : Solid::Order::linear);
     mesh.nodes = solid.material();
     mesh.triangles = flat_triangles(solid.boundary());
     mesh.tetrahedra = solid.elements();

@@ -2,19 +2,14 @@
 
 #include <stdexcept>
 
-#include <pliant/local/averaged_dilatation.h>
-#include <pliant/local/corotated.h>
-#include <pliant/local/elasticity.h>
-#include <pliant/local/linear_law.h>
+#include <pliant/local/bending.h>
+#include <pliant/local/hinges.h>
 #include <pliant/local/linear_membrane.h>
 #include <pliant/local/loaded_membrane.h>
+#include <pliant/local/make_solid_energy.h>
 #include <pliant/local/membrane.h>
 #include <pliant/local/membrane_laws.h>
-#include <pliant/local/neo_hookean.h>
 #include <pliant/local/pressure.h>
-#include <pliant/local/solid_energy.h>
-#include <pliant/local/st_venant_kirchhoff.h>
-#include <pliant/local/tetrahedron.h>
 
 namespace pliant {
 
@@ -39,18 +34,13 @@ template <class Law>
 Energy lay_membrane(const LocalMesh& mesh, const double* values) {
   return std::make_unique<Membrane<Law>>(shell(mesh), sheet(values));
 }
-template <class Law>
-Energy lay_solid(const LocalMesh& mesh, const double* values) {
-  const Law law(Elasticity(values[0], values[1]));
-  if (mesh.tetrahedra.rows() == 4)
-    return std::make_unique<SolidEnergy<LinearTetrahedron, Law>>(mesh.X, mesh.tetrahedra, law);
-  return std::make_unique<SolidEnergy<QuadraticTetrahedron, Law>>(mesh.X, mesh.tetrahedra, law);
+template <class Hinges>
+Energy lay_bending(const LocalMesh& mesh, const double* values) {
+  return std::make_unique<MidEdgeBending<Hinges>>(shell(mesh), sheet(values), mesh.density);
 }
-Energy lay_averaged(const LocalMesh& mesh, const double* values) {
-  const Elasticity material(values[0], values[1]);
-  if (mesh.tetrahedra.rows() == 4)
-    return std::make_unique<AveragedLinearSolid<LinearTetrahedron>>(mesh.X, mesh.tetrahedra, material);
-  return std::make_unique<AveragedLinearSolid<QuadraticTetrahedron>>(mesh.X, mesh.tetrahedra, material);
+template <SolidLaw law>
+Energy lay_solid(const LocalMesh& mesh, const double* values) {
+  return make_solid_energy(law, mesh.X, mesh.tetrahedra, Elasticity(values[0], values[1]));
 }
 
 }  // namespace
@@ -83,6 +73,16 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
        }},
+      {"bending",
+       "A thin sheet that resists bending, for small local deformation; quadratic in d.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<LinearHinges>},
+      {"folding",
+       "A thin sheet that resists bending from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<FoldingHinges>},
       {"pressure",
        "A constant pressure in the shell, more than outside.",
        true,
@@ -106,27 +106,27 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        "Linear elasticity, for small local deformation; quadratic in d.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<LinearLaw>},
+       lay_solid<SolidLaw::linear>},
       {"elastic_averaged",
        "The same with the dilatation averaged around nodes: it does not lock where nu is near 1/2.",
        false,
        {kYoung, kPoissonSolid},
-       lay_averaged},
+       lay_solid<SolidLaw::averaged_linear>},
       {"st_venant_kirchhoff",
        "St. Venant-Kirchhoff elasticity from rest to now, by any rotation.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<StVenantKirchhoff>},
+       lay_solid<SolidLaw::st_venant_kirchhoff>},
       {"neo_hookean",
        "Rubber from rest to now, by any rotation.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<NeoHookean>},
+       lay_solid<SolidLaw::neo_hookean>},
       {"corotated",
        "Linear elasticity in a frame that turns with each element.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<Corotated>},
+       lay_solid<SolidLaw::corotated>},
   };
   return all;
 }

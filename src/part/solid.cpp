@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <Eigen/LU>
 
@@ -23,17 +25,12 @@ namespace {
 /// Least volume of an element, in units of the cube of its longest edge.
 constexpr double kFlat = 1e-9;
 
-using Edge = std::pair<int, int>;
-Edge edge_of(int a, int b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
 /// Corner nodes and elements, the vertices of the surface first.
 struct Corners {
   std::vector<Material<double>> material;
   std::vector<std::array<int, 4>> elements;
-  /// The material point of the surface between two vertices of it.
-  std::function<Material<double>(int, int)> between;
+  /// The material point of the surface amid vertices of an edge or a triangle of it.
+  std::function<Material<double>(const std::vector<int>&)> amid;
 };
 
 /// The material point in a direction of the mesh pattern, at the radius w.
@@ -81,9 +78,11 @@ Corners lay_ball(const Labels& label, const Surface& surface, int m) {
           corners.elements.push_back(element);
         } while (std::next_permutation(axes.begin(), axes.end()));
       }
-  corners.between = [label, points = ball.points](int a, int b) {
-    const LatticePoint &p = points[static_cast<std::size_t>(a)], &q = points[static_cast<std::size_t>(b)];
-    return label(ball_direction({p[0] + q[0], p[1] + q[1], p[2] + q[2]}), 1);
+  corners.amid = [label, points = ball.points](const std::vector<int>& vertices) {
+    LatticePoint sum{};
+    for (int v : vertices)
+      for (std::size_t r = 0; r < 3; ++r) sum[r] += points[static_cast<std::size_t>(v)][r];
+    return label(ball_direction(sum), 1);
   };
   return corners;
 }
@@ -159,12 +158,16 @@ Corners lay_torus(const Labels& label, const Surface& surface, int m) {
         corners.elements.push_back(element);
       }
     }
-  corners.between = [label, round, tube](int a, int b) {
-    // Twice the middle of two numbers at most one step apart on a circle of n.
-    auto middle = [](int p, int q, int n) { return std::abs(p - q) <= 1 ? p + q : p + q + n; };
-    return label(
-        {kPi * middle(a % tube, b % tube, tube) / tube, kPi * middle(a / tube, b / tube, round) / round, 0},
-        1);
+  corners.amid = [label, round, tube](const std::vector<int>& vertices) {
+    // The mean of numbers next to each other on circles of `tube` and `round`.
+    const int from = vertices[0];
+    double along = 0, across = 0;
+    auto step = [](int p, int q, int n) { return std::remainder(q - p, n); };
+    for (int v : vertices) {
+      across += step(from % tube, v % tube, tube) / static_cast<double>(vertices.size());
+      along += step(from / tube, v / tube, round) / static_cast<double>(vertices.size());
+    }
+    return label({2 * kPi * (from % tube + across) / tube, 2 * kPi * (from / tube + along) / round, 0}, 1);
   };
   return corners;
 }
@@ -180,7 +183,18 @@ double least_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>
   return least / (longest * longest * longest);
 }
 
-/// Barycentric points in thirds and sixths: corners, edges, faces and inside.
+/// The size of the bubble of a face or the middle of an enriched element.
+Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
+  Vec3<double> size;
+  for (int r = 0; r < 3; ++r) {
+    double face[4], middle;
+    EnrichedTetrahedron::bubbles(x, r, face, middle);
+    size[r] = node == 14 ? middle : face[node - 10];
+  }
+  return size;
+}
+
+/// Barycentric points in quarters: corners, edges, faces and inside.
 std::vector<TetrahedronPoint> spread_points() {
   std::vector<TetrahedronPoint> points;
   constexpr int n = 4;
@@ -206,43 +220,66 @@ Solid::Solid(const Part& part, int resolution, Order order) {
   Corners corners = shape.mesh() == MeshPattern::ball ? lay_ball(label, surface, resolution)
                                                       : lay_torus(label, surface, resolution);
   material_ = std::move(corners.material);
-  const bool quadratic = order == Order::quadratic;
-  elements_.resize(quadratic ? 10 : 4, static_cast<Eigen::Index>(corners.elements.size()));
-  boundary_.resize(quadratic ? 6 : 3, surface.triangles().cols());
+  const bool enriched = order == Order::enriched, quadratic = order == Order::quadratic || enriched;
+  elements_.resize(enriched ? 15 : quadratic ? 10 : 4, static_cast<Eigen::Index>(corners.elements.size()));
+  boundary_.resize(enriched ? 7 : quadratic ? 6 : 3, surface.triangles().cols());
   boundary_.topRows<3>() = surface.triangles();
 
-  std::map<Edge, int> on_edge;
-  auto node_on = [&](int p, int q, auto&& place) {
-    const auto [at, fresh] = on_edge.try_emplace(edge_of(p, q), n_nodes());
-    if (fresh) material_.push_back(place(at->first.first, at->first.second));
+  std::map<std::vector<int>, int> amid;  // the node amid nodes of an edge or a face
+  auto node_amid = [&](std::vector<int> ends, auto&& place) {
+    std::sort(ends.begin(), ends.end());
+    const auto [at, fresh] = amid.try_emplace(ends, n_nodes());
+    if (fresh) material_.push_back(place(at->first));
     return at->second;
   };
-  auto halfway = [&](int p, int q) {
-    return shape.label(0.5 * (shape.e(material_[static_cast<std::size_t>(p)], a) +
-                              shape.e(material_[static_cast<std::size_t>(q)], a)),
-                       a);
+  auto e = [&](int node) { return shape.e(material_[static_cast<std::size_t>(node)], a); };
+  auto halfway = [&](const std::vector<int>& ends) {
+    return shape.label(0.5 * (e(ends[0]) + e(ends[1])), a);
   };
   if (quadratic)
-    for (Eigen::Index t = 0; t < boundary_.cols(); ++t)
+    for (Eigen::Index t = 0; t < boundary_.cols(); ++t) {
       for (int k = 0; k < 3; ++k)
-        boundary_(3 + k, t) = node_on(boundary_(k, t), boundary_((k + 1) % 3, t), corners.between);
+        boundary_(3 + k, t) = node_amid({boundary_(k, t), boundary_((k + 1) % 3, t)}, corners.amid);
+      if (enriched)
+        boundary_(6, t) = node_amid({boundary_(0, t), boundary_(1, t), boundary_(2, t)}, corners.amid);
+    }
   for (std::size_t t = 0; t < corners.elements.size(); ++t) {
     const std::array<int, 4>& corner = corners.elements[t];
-    const auto column = static_cast<Eigen::Index>(t);
-    for (int k = 0; k < 4; ++k) elements_(k, column) = corner[static_cast<std::size_t>(k)];
-    if (quadratic)
-      for (std::size_t e = 0; e < 6; ++e)
-        elements_(static_cast<Eigen::Index>(4 + e), column) =
-            node_on(corner[kTetrahedronEdges[e][0]], corner[kTetrahedronEdges[e][1]], halfway);
+    auto element = elements_.col(static_cast<Eigen::Index>(t));
+    for (int k = 0; k < 4; ++k) element[k] = corner[static_cast<std::size_t>(k)];
+    if (!quadratic) continue;
+    for (std::size_t k = 0; k < 6; ++k)
+      element[static_cast<Eigen::Index>(4 + k)] =
+          node_amid({corner[kTetrahedronEdges[k][0]], corner[kTetrahedronEdges[k][1]]}, halfway);
+    if (!enriched) continue;
+    // Faces inside and the middle: where the bubbles vanish.
+    std::array<Vec3<double>, 15> x;
+    for (std::size_t k = 0; k < 10; ++k) x[k] = e(element[static_cast<Eigen::Index>(k)]);
+    auto without_bubble = [&](std::size_t node) {
+      x[node].setZero();
+      const Vec3<double> size = bubble_sizes(x.data(), node);
+      return Vec3<double>(-size);
+    };
+    for (std::size_t f = 0; f < 4; ++f) {
+      std::vector<int> face(corner.begin(), corner.end());
+      face.erase(face.begin() + static_cast<std::ptrdiff_t>(f));
+      const int node =
+          node_amid(face, [&](const std::vector<int>&) { return shape.label(without_bubble(10 + f), a); });
+      element[static_cast<Eigen::Index>(10 + f)] = node;
+      x[10 + f] = e(node);
+    }
+    element[14] = n_nodes();
+    material_.push_back(shape.label(without_bubble(14), a));
   }
 
   const Eigen::Matrix3Xd s = part.s(material_, rest);
   const std::vector<TetrahedronPoint> points = spread_points();
   for (Eigen::Index t = 0; t < elements_.cols(); ++t) {
-    std::array<Vec3<double>, 10> x;
+    std::array<Vec3<double>, 15> x;
     for (Eigen::Index k = 0; k < elements_.rows(); ++k)
       x[static_cast<std::size_t>(k)] = s.col(elements_(k, t));
-    const double least = quadratic
+    const double least = enriched ? least_jacobian<EnrichedTetrahedron>(x.data(), points)
+                         : quadratic
                              ? least_jacobian<QuadraticTetrahedron>(x.data(), points)
                              : least_jacobian<LinearTetrahedron>(x.data(), {LinearTetrahedron::rule[0]});
     if (least > kFlat) continue;

@@ -15,13 +15,12 @@
 using namespace pliant;
 using test::Draws;
 using test::SolidMesh;
-using Order = Solid::Order;
 
 namespace {
 
 template <class Element>
 SolidMesh sphere(int resolution) {
-  return test::solid_mesh("sphere", {}, resolution, Element::n_nodes == 4 ? Order::linear : Order::quadratic);
+  return test::solid_mesh("sphere", {}, resolution, test::order_of(Element::n_nodes));
 }
 
 /// Frequency of the spheroidal modes of order 2 of a free sphere, omega r / c_t (Lamb 1882; physics 8.3).
@@ -70,7 +69,7 @@ double averaged_error(int resolution, double nu) {
 }  // namespace
 
 TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion, threads, bound", "[solid]",
-                   LinearTetrahedron, QuadraticTetrahedron) {
+                   LinearTetrahedron, QuadraticTetrahedron, EnrichedTetrahedron) {
   const SolidMesh mesh = sphere<TestType>(TestType::n_nodes == 4 ? 2 : 1);
   const Elasticity material(3, 0.48);
   const AveragedLinearSolid<TestType> energy(mesh.rest, mesh.elements, material);

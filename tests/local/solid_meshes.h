@@ -11,6 +11,13 @@
 
 namespace pliant::test {
 
+/// The order of elements of so many nodes.
+inline Solid::Order order_of(int n_nodes) {
+  return n_nodes == 4    ? Solid::Order::linear
+         : n_nodes == 10 ? Solid::Order::quadratic
+                         : Solid::Order::enriched;
+}
+
 struct SolidMesh {
   Nodes rest;
   Eigen::MatrixXi elements, boundary;

@@ -10,7 +10,7 @@
 
 #include <pliant/local/nodal_energy.h>
 
-#include "../draws.h"
+#include "draws.h"
 
 namespace pliant::test {
 

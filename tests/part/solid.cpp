@@ -149,7 +149,8 @@ TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[s
           std::unique_ptr<Part> part = make_part("part", shape, {}, 1);
           part->rest({{"eps1", eps1}, {"eps2", eps2}});
           CHECK(quality(*part, resolution) > 0.3);
-          CHECK_NOTHROW(Solid(*part, resolution > 8 ? 8 : resolution, Order::quadratic));
+          CHECK_NOTHROW(Solid(*part, resolution > 3 ? 3 : resolution, Order::quadratic));
+          CHECK_NOTHROW(Solid(*part, resolution > 3 ? 3 : resolution, Order::enriched));
         }
   }
 }
@@ -233,6 +234,41 @@ TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in th
         CHECK(off_middle < 1e-12);
       }
     }
+}
+
+TEST_CASE("enriched elements: those of the quadratic mesh with nodes on faces and in the middle", "[solid]") {
+  for (const auto& face : all_shapes()) {
+    INFO(face->name());
+    const std::unique_ptr<Part> part = moderate_part(face->name(), {"taper", "bend"});
+    const Solid solid(*part, 2, Order::enriched), quadratic(*part, 2, Order::quadratic);
+    const auto elements = static_cast<int>(solid.elements().cols()),
+               triangles = static_cast<int>(solid.boundary().cols());
+    CHECK(solid.n_nodes() == quadratic.n_nodes() + (4 * elements + triangles) / 2 + elements);
+    CHECK(solid.boundary().topRows<3>() == quadratic.boundary().topRows<3>());
+    const Eigen::Matrix3Xd s = rest_positions(*part, solid), of_quadratic = rest_positions(*part, quadratic);
+    test::Worst moved, off_surface, off_middle;
+    double longest = 0;
+    for (Eigen::Index t = 0; t < elements; ++t) {
+      std::array<Vec3<double>, 15> x;
+      for (Eigen::Index k = 0; k < 15; ++k) x[static_cast<std::size_t>(k)] = s.col(solid.elements()(k, t));
+      for (Eigen::Index k = 0; k < 10; ++k)
+        moved.note((s.col(solid.elements()(k, t)) - of_quadratic.col(quadratic.elements()(k, t))).norm());
+      for (const auto& [a, b] : kTetrahedronEdges) longest = std::max(longest, (x[a] - x[b]).norm());
+      // Where the quadratic map has them, but for what the surface and the chain bend.
+      for (int r = 0; r < 3; ++r) {
+        double bubble[4], middle = 0;
+        EnrichedTetrahedron::bubbles(x.data(), r, bubble, middle);
+        for (double size : bubble) off_middle.note(std::abs(size));
+        off_middle.note(std::abs(middle));
+      }
+    }
+    for (Eigen::Index t = 0; t < triangles; ++t)
+      off_surface.note(
+          std::abs(part->inside_outside(s.col(solid.boundary()(6, t)), part->parameters().rest())));
+    CHECK(moved <= 1e-14);
+    CHECK(off_surface <= 1e-11);
+    CHECK(off_middle <= 0.03 * longest);
+  }
 }
 
 TEST_CASE("solid meshes that cannot be are refused", "[solid]") {

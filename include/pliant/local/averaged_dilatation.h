@@ -1,7 +1,8 @@
 // What keeps nearly incompressible solids from locking: the dilatation enters by means over patches c,
 //   E = lambda/2 sum_c V_c theta_c^2,   V_c theta_c = int over c of div d
 // instead of point by point. 4 nodes: a patch is a node with a quarter of each element around it (nodal
-// pressure, Bonet & Burton 1998); 10 nodes: the element. By Jensen no more than the energy with the
+// pressure, Bonet & Burton 1998); 10 and 15
+// nodes: the element. By Jensen no more than the energy with the
 // dilatation itself.
 #pragma once
 
@@ -23,9 +24,8 @@ class AveragedLinearSolid final : public NodalEnergy {
   Of of() const override { return Of::displacement; }
   double energy(const VecX<double>& x) const override;
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  void add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override {
-    (void)x;
     add_force(dx, f, buffer, pool);
   }
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
@@ -36,8 +36,8 @@ class AveragedLinearSolid final : public NodalEnergy {
   static constexpr bool kNodal = N == 4;
   /// int of div d over the elements of a pack.
   Pack spread(const VecX<double>& x, int pack) const;
-  /// lambda theta of the patches of an element, their mean.
-  void pressures(const VecX<double>& x, double* spreads, double* pressure, ThreadPool* pool) const;
+  /// lambda theta of all patches. sums: room for corners_.buffer_size(1) numbers.
+  void pressures(const VecX<double>& x, double* sums, double* pressure, ThreadPool* pool) const;
   const Pack* gradients(int pack) const {
     return gradients_.data() + static_cast<std::ptrdiff_t>(pack) * 3 * N;
   }
@@ -51,5 +51,6 @@ class AveragedLinearSolid final : public NodalEnergy {
 
 extern template class AveragedLinearSolid<LinearTetrahedron>;
 extern template class AveragedLinearSolid<QuadraticTetrahedron>;
+extern template class AveragedLinearSolid<EnrichedTetrahedron>;
 
 }  // namespace pliant

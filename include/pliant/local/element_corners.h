@@ -1,6 +1,7 @@
-// Which nodes the corners of elements are: elements in packs of four, one a lane, and for each node the
-// corners that meet there, in the order of the elements. Elements write what they push into a buffer, three
-// numbers a corner; then every node sums its own, so that neither threads nor their number change a bit.
+// Which nodes the corners of elements are, and sums over the corners that meet in a node. Elements come in
+// packs of four, one a lane, and packs in blocks of a fixed size: a block sums what its elements push on each
+// of its own nodes, in the order of the elements; then every node sums its blocks. Neither threads nor their
+// number change a bit, and little passes through memory.
 #pragma once
 
 #include <algorithm>
@@ -36,9 +37,10 @@ class ElementCorners {
   int n_nodes() const { return n_nodes_; }
   int n_elements() const { return n_elements_; }
   int n_packs() const { return static_cast<int>(nodes_.size()) / (N * Pack::kLanes); }
-  /// Packs and nodes that a thread takes at once.
-  static constexpr int kPacks = 64, kNodes = 512;
-  std::size_t buffer_size() const { return nodes_.size() * 3; }
+  /// Numbers that sums of R components need room for.
+  std::size_t buffer_size(int R = 3) const { return block_nodes_ * static_cast<std::size_t>(R); }
+  /// Packs of a block, and nodes that a thread takes at once.
+  static constexpr int kPacks = 128, kNodes = 512;
 
   int node(int element, int corner) const {
     return nodes_[static_cast<std::size_t>((element / Pack::kLanes * N + corner) * Pack::kLanes +
@@ -55,38 +57,50 @@ class ElementCorners {
         std::memcpy(&corners[a][r], four, sizeof four);
       }
   }
-  /// Writes what the corners of a pack push into the buffer.
-  static void put(const Vec3<Pack>* pushes, int pack, double* buffer) {
-    std::memcpy(buffer + static_cast<std::ptrdiff_t>(pack) * N * 3 * Pack::kLanes, pushes,
-                N * sizeof(Vec3<Pack>));
-  }
-  /// f -= sums over the corners of each node.
-  void subtract_sums(const double* buffer, double* f, ThreadPool* pool) const {
+  /// push(pack, pushes) gives R numbers for each corner of a pack, pushes[a][r]; take(node, sum) gets their
+  /// sums. What lanes without an element push must be 0.
+  template <int R, class Push, class Take>
+  void sum(double* buffer, ThreadPool* pool, Push&& push, Take&& take) const {
+    for_ranges(pool, n_packs(), kPacks, [&](int first, int last) {
+      const auto block = static_cast<std::size_t>(first / kPacks);
+      double* sums = buffer + R * block_first_[block];
+      std::fill(sums, buffer + R * block_first_[block + 1], 0.0);
+      for (int pack = first; pack < last; ++pack) {
+        Pack pushes[N][R];
+        push(pack, pushes);
+        const int* to = local_.data() + static_cast<std::ptrdiff_t>(pack) * N * Pack::kLanes;
+        for (int a = 0; a < N; ++a, to += Pack::kLanes)
+          for (int r = 0; r < R; ++r) {
+            double four[Pack::kLanes];
+            std::memcpy(four, &pushes[a][r], sizeof four);
+            for (int lane = 0; lane < Pack::kLanes; ++lane) sums[R * to[lane] + r] += four[lane];
+          }
+      }
+    });
     for_ranges(pool, n_nodes_, kNodes, [&](int first, int last) {
       for (int i = first; i < last; ++i) {
-        double sum[3]{};
-        for (int k = first_[static_cast<std::size_t>(i)]; k < first_[static_cast<std::size_t>(i) + 1]; ++k) {
-          const double* push = buffer + slots_[static_cast<std::size_t>(k)];
-          for (int r = 0; r < 3; ++r) sum[r] += push[r * Pack::kLanes];
-        }
-        for (int r = 0; r < 3; ++r) f[r * static_cast<std::ptrdiff_t>(n_nodes_) + i] -= sum[r];
+        double total[R]{};
+        for (int k = first_[static_cast<std::size_t>(i)]; k < first_[static_cast<std::size_t>(i) + 1]; ++k)
+          for (int r = 0; r < R; ++r) total[r] += buffer[R * slots_[static_cast<std::size_t>(k)] + r];
+        take(i, total);
       }
     });
   }
-  /// f(element) for every element that has the node.
-  template <class F>
-  void for_elements(int node, F&& f) const {
-    for (int k = first_[static_cast<std::size_t>(node)]; k < first_[static_cast<std::size_t>(node) + 1];
-         ++k) {
-      const int slot = slots_[static_cast<std::size_t>(k)], lane = slot % Pack::kLanes;
-      f(slot / (3 * N * Pack::kLanes) * Pack::kLanes + lane);
-    }
+  /// f -= sums of vectors, f: coordinates of all nodes.
+  template <class Push>
+  void subtract_sums(double* buffer, double* f, ThreadPool* pool, Push&& push) const {
+    sum<3>(buffer, pool, push, [&](int node, const double* total) {
+      for (int r = 0; r < 3; ++r) f[r * static_cast<std::ptrdiff_t>(n_nodes_) + node] -= total[r];
+    });
   }
 
  private:
   int n_nodes_, n_elements_;
-  std::vector<int> nodes_;          // pack, corner, lane; the last pack is filled up with its last element
-  std::vector<int> first_, slots_;  // of node i: slots_[first_[i]] .. slots_[first_[i + 1] - 1]
+  std::vector<int> nodes_, local_;  // pack, corner, lane: node, and its number in the block; the last pack
+                                    // is filled up with its last element
+  std::vector<std::size_t> block_first_;  // of a block's nodes among those of all blocks
+  std::size_t block_nodes_ = 0;           // of all blocks
+  std::vector<int> first_, slots_;        // of node i: slots_[first_[i]] .. slots_[first_[i + 1] - 1]
 };
 
 template <int N>
@@ -102,16 +116,27 @@ ElementCorners<N>::ElementCorners(const Eigen::MatrixXi& elements, int n_nodes)
     for (int a = 0; a < N; ++a)
       for (int lane = 0; lane < Pack::kLanes; ++lane)
         nodes_.push_back(elements(a, std::min(pack * Pack::kLanes + lane, n_elements_ - 1)));
+  std::vector<int> owner;  // node of each slot
+  std::vector<int> seen(static_cast<std::size_t>(n_nodes),
+                        -1);  // slot of a node in the last block that has it
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (i % (static_cast<std::size_t>(kPacks) * N * Pack::kLanes) == 0) block_first_.push_back(owner.size());
+    int& slot = seen[static_cast<std::size_t>(nodes_[i])];
+    if (slot < static_cast<int>(block_first_.back())) {
+      slot = static_cast<int>(owner.size());
+      owner.push_back(nodes_[i]);
+    }
+    local_.push_back(slot - static_cast<int>(block_first_.back()));
+  }
+  block_nodes_ = owner.size();
+  block_first_.push_back(block_nodes_);
   first_.assign(static_cast<std::size_t>(n_nodes) + 1, 0);
-  for (int e = 0; e < n_elements_; ++e)
-    for (int a = 0; a < N; ++a) ++first_[static_cast<std::size_t>(node(e, a)) + 1];
+  for (int node_of : owner) ++first_[static_cast<std::size_t>(node_of) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  slots_.resize(static_cast<std::size_t>(first_.back()));
+  slots_.resize(owner.size());
   std::vector<int> next(first_.begin(), first_.end() - 1);
-  for (int e = 0; e < n_elements_; ++e)
-    for (int a = 0; a < N; ++a)
-      slots_[static_cast<std::size_t>(next[static_cast<std::size_t>(node(e, a))]++)] =
-          (e / Pack::kLanes * N + a) * 3 * Pack::kLanes + e % Pack::kLanes;
+  for (std::size_t slot = 0; slot < owner.size(); ++slot)
+    slots_[static_cast<std::size_t>(next[static_cast<std::size_t>(owner[slot])]++)] = static_cast<int>(slot);
 }
 
 }  // namespace pliant

@@ -70,7 +70,11 @@ using LinearSolid = SolidEnergy<Element, LinearLaw>;
   prefix template class SolidEnergy<QuadraticTetrahedron, LinearLaw>;         \
   prefix template class SolidEnergy<QuadraticTetrahedron, StVenantKirchhoff>; \
   prefix template class SolidEnergy<QuadraticTetrahedron, NeoHookean>;        \
-  prefix template class SolidEnergy<QuadraticTetrahedron, Corotated>;
+  prefix template class SolidEnergy<QuadraticTetrahedron, Corotated>;         \
+  prefix template class SolidEnergy<EnrichedTetrahedron, LinearLaw>;          \
+  prefix template class SolidEnergy<EnrichedTetrahedron, StVenantKirchhoff>;  \
+  prefix template class SolidEnergy<EnrichedTetrahedron, NeoHookean>;         \
+  prefix template class SolidEnergy<EnrichedTetrahedron, Corotated>;
 PLIANT_SOLID_ENERGIES(extern)
 
 }  // namespace pliant

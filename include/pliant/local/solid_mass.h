@@ -1,7 +1,8 @@
 // Masses of the nodes of tetrahedra, from a density per rest volume (kg/m^3): M_ab = int of density N_a N_b.
 //   lumped       4 nodes: a quarter of each element to each corner (row sums); 10 nodes, whose row sums are
 //                negative at corners: the diagonal of M scaled to the mass of the element (Hinton, Rock &
-//                Zienkiewicz 1976)
+//                Zienkiewicz 1976), which costs them their order; 15 nodes: the weights of the element's own
+//                rule
 //   consistent   M itself, for modes
 #pragma once
 
@@ -13,7 +14,7 @@
 
 namespace pliant {
 
-/// kg, one a node. elements: 4 or 10 rows, else std::invalid_argument.
+/// kg, one a node. elements: 4, 10 or 15 rows, else std::invalid_argument.
 VecX<double> lumped_mass(const Nodes& rest, const Eigen::MatrixXi& elements, double density);
 
 /// Entries over nodes, kg; the same for each direction.

@@ -2,8 +2,11 @@
 // = 1..3.
 //   4 nodes    N_a = L_a
 //   10 nodes   N_a = L_a (2 L_a - 1) at corners, 4 L_a L_b on the edges 01 12 20 03 13 23
+//   15 nodes   those, and bubbles 27 L_a L_b L_c on faces (the one without corner f is node 10 + f) and
+//              256 L_0 L_1 L_2 L_3 in the middle: what masses at the nodes need to be positive and of fourth
+//              order (Geevers, Mulder & van der Vegt 2018)
 // Rules: weights over the reference tetrahedron (volume 1/6). Stiffness: exact to degree 1 and 3, so that a
-// uniform stress is in balance on curved elements as well. Mass: degree 5 (Walkington 2000).
+// uniform stress is in balance on curved elements as well, 5 with bubbles. Mass: degree 5 (Walkington 2000).
 #pragma once
 
 #include <array>
@@ -125,5 +128,106 @@ struct QuadraticTetrahedron {
     }
   }
 };
+
+struct EnrichedTetrahedron {
+  static constexpr int n_nodes = 15;
+  static constexpr std::array<TetrahedronPoint, 14> rule = kTetrahedronMassRule;
+
+  static Vec<double, 15> N(const TetrahedronPoint& at) {
+    const Vec<double, 10> quadratic = QuadraticTetrahedron::N(at);
+    const double all = at.L[0] * at.L[1] * at.L[2] * at.L[3];
+    Vec<double, 15> n;
+    for (int a = 0; a < n_nodes; ++a) {
+      Vec3<double> unit[n_nodes];
+      for (Vec3<double>& x : unit) x.setZero();
+      unit[a][0] = 1;
+      double face[4], middle;
+      bubbles(unit, 0, face, middle);
+      n[a] = (a < 10 ? quadratic[a] : 0) + 256 * all * middle;
+      for (std::size_t f = 0; f < 4; ++f) n[a] += face[f] * 27 * others(at, f);
+    }
+    return n;
+  }
+
+  template <class T>
+  static Mat3<T> gradient(const TetrahedronPoint& at, const Vec3<T>* x) {
+    Mat3<T> D = QuadraticTetrahedron::gradient(at, x);
+    for (int r = 0; r < 3; ++r) {
+      T face[4], middle, along[4];
+      bubbles(x, r, face, middle);
+      for (std::size_t c = 0; c < 4; ++c) {
+        along[c] = middle * T(256 * others(at, c));
+        for (std::size_t f = 0; f < 4; ++f)
+          if (f != c) along[c] += face[f] * T(27 * others(at, c, f));
+      }
+      for (int k = 0; k < 3; ++k) D(r, k) += along[k + 1] - along[0];
+    }
+    return D;
+  }
+  template <class T>
+  static void push(const TetrahedronPoint& at, const Mat3<T>& Q, Vec3<T>* f) {
+    QuadraticTetrahedron::push(at, Q, f);
+    for (int r = 0; r < 3; ++r) {
+      const T along[4]{-(Q(r, 0) + Q(r, 1) + Q(r, 2)), Q(r, 0), Q(r, 1), Q(r, 2)};
+      // On the sizes of the bubbles, and from these on the nodes: the transpose of bubbles().
+      T middle(0.0), corners(0.0), edges(0.0), face[4];
+      for (std::size_t c = 0; c < 4; ++c) middle += along[c] * T(256 * others(at, c));
+      for (std::size_t g = 0; g < 4; ++g) {
+        face[g] = middle * T(-27.0 / 64);
+        for (std::size_t c = 0; c < 4; ++c)
+          if (c != g) face[g] += along[c] * T(27 * others(at, c, g));
+        f[10 + g][r] += face[g];
+        corners += face[g];
+      }
+      edges = corners * T(-4.0 / 9) - middle * T(0.25);
+      corners = corners * T(1.0 / 9) + middle * T(0.125);
+      f[14][r] += middle;
+      for (std::size_t c = 0; c < 4; ++c) f[c][r] += corners - face[c] * T(1.0 / 9);
+      for (std::size_t e = 0; e < 6; ++e)
+        f[4 + e][r] += edges + (face[kTetrahedronEdges[e][0]] + face[kTetrahedronEdges[e][1]]) * T(4.0 / 9);
+    }
+  }
+
+  /// Sizes of the bubbles: what the values at faces and in the middle add to the quadratic function.
+  template <class T>
+  static void bubbles(const Vec3<T>* x, int r, T* face, T& middle) {
+    T corners = x[0][r] + x[1][r] + x[2][r] + x[3][r], edges(0.0), faces(0.0);
+    for (std::size_t e = 0; e < 6; ++e) edges += x[4 + e][r];
+    for (std::size_t f = 0; f < 4; ++f) {
+      T around = edges;  // the three edges of the face
+      for (std::size_t e = 0; e < 6; ++e)
+        if (kTetrahedronEdges[e][0] == f || kTetrahedronEdges[e][1] == f) around -= x[4 + e][r];
+      face[f] = x[10 + f][r] + (corners - x[f][r]) * T(1.0 / 9) - around * T(4.0 / 9);
+      faces += face[f];
+    }
+    middle = x[14][r] + corners * T(0.125) - edges * T(0.25) - faces * T(27.0 / 64);
+  }
+
+ private:
+  /// The product of the coordinates but L_c, or but L_c and L_f.
+  static constexpr double others(const TetrahedronPoint& at, std::size_t c, std::size_t f = 4) {
+    double product = 1;
+    for (std::size_t d = 0; d < 4; ++d)
+      if (d != c && d != f) product *= at.L[d];
+    return product;
+  }
+};
+
+/// Nodes of the enriched element, weighed by what they carry of its mass.
+inline constexpr std::array<TetrahedronPoint, 15> kEnrichedNodes = [] {
+  std::array<TetrahedronPoint, 15> nodes{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    nodes[c].L[c] = 1;
+    nodes[c].weight = 17.0 / 5040;
+    nodes[10 + c] = {{1.0 / 3, 1.0 / 3, 1.0 / 3, 1.0 / 3}, 9.0 / 560};
+    nodes[10 + c].L[c] = 0;
+  }
+  for (std::size_t e = 0; e < 6; ++e) {
+    for (std::size_t end : kTetrahedronEdges[e]) nodes[4 + e].L[end] = 0.5;
+    nodes[4 + e].weight = 2.0 / 315;
+  }
+  nodes[14] = {{0.25, 0.25, 0.25, 0.25}, 16.0 / 315};
+  return nodes;
+}();
 
 }  // namespace pliant

@@ -20,7 +20,7 @@ struct LocalMesh {
   std::vector<Material<double>> nodes;
   Nodes X;                     ///< where they are at rest, body frame, m
   Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise from outside
-  Eigen::MatrixXi tetrahedra;  ///< 4 or 10 nodes a column, see Solid; none of a shell
+  Eigen::MatrixXi tetrahedra;  ///< 4 or 15 nodes a column, see Solid; none of a shell
   VecX<double> mass;           ///< of each node, kg
   double density = 0;          ///< kg/m^3; of a shell kg/m^2
   bool shell() const { return tetrahedra.cols() == 0; }
@@ -29,7 +29,7 @@ struct LocalMesh {
 /// How a part is to deform locally.
 struct LocalSettings {
   int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
-  int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 10 nodes
+  int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes
   /// Lays an energy on the mesh (part/local_laws.h has those that scenes know).
   using Law = std::function<std::unique_ptr<NodalEnergy>(const LocalMesh&)>;
   std::vector<Law> energies;

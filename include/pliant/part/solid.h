@@ -16,7 +16,7 @@ namespace pliant {
 
 class Solid {
  public:
-  enum class Order { linear, quadratic };
+  enum class Order { linear, quadratic, enriched };
 
   /// resolution: edges along a quarter of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
   /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and where an
@@ -24,9 +24,10 @@ class Solid {
   Solid(const Part& part, int resolution, Order order = Order::linear);
 
   const std::vector<Material<double>>& material() const { return material_; }
-  /// Nodes of each element: 4 or 10 rows; positively oriented at the rest shape.
+  /// Nodes of each element: 4, 10 or 15 rows; positively oriented at the rest shape.
   const Eigen::MatrixXi& elements() const { return elements_; }
-  /// Nodes of each triangle of the boundary: 3 rows, or 6 with the edges 01 12 20; those of the Surface.
+  /// Nodes of each triangle of the boundary: 3 rows; 6 with the edges 01 12 20; 7 with the one on the face.
+  /// The triangles are those of the Surface.
   const Eigen::MatrixXi& boundary() const { return boundary_; }
   /// Corner nodes on the surface.
   int n_surface() const { return n_surface_; }
