@@ -52,7 +52,7 @@ class ElementBatches {
     return at;
   }
   /// Numbers in the corner buffer.
-  std::size_t buffer_size() const { return nodes_.size() * K * 3 * Pack::kLanes; }
+  std::size_t buffer_size() const { return nodes_.size() * static_cast<std::size_t>(kBatchSize); }
 
   /// The three coordinates of the corners of a batch, from local coordinates (nodes.h).
   Corners corners(const VecX<double>& x, int batch) const {
@@ -72,7 +72,7 @@ class ElementBatches {
     for_ranges(n_batches(), kBatchesInRange, pool, [&](int first, int last) {
       for (int b = first; b < last; ++b) {
         const Corners force = push(b);
-        double* to = buffer + static_cast<std::ptrdiff_t>(b) * K * 3 * Pack::kLanes;
+        double* to = buffer + b * kBatchSize;
         for (std::size_t k = 0; k < K; ++k)
           for (int i = 0; i < 3; ++i, to += Pack::kLanes) store(force[k][i], to);
       }
@@ -81,6 +81,7 @@ class ElementBatches {
   }
 
  private:
+  static constexpr std::ptrdiff_t kBatchSize = std::ptrdiff_t{3} * K * Pack::kLanes;
   static constexpr int kBatchesInRange = 512, kNodesInRange = 2048;
 
   void add_corners(VecX<double>& f, const double* buffer, ThreadPool* pool) const;
@@ -122,7 +123,7 @@ void ElementBatches<K>::add_corners(VecX<double>& f, const double* buffer, Threa
       double sum[3] = {0, 0, 0};
       for (int p = first_[static_cast<std::size_t>(i)]; p < first_[static_cast<std::size_t>(i) + 1]; ++p) {
         const double* from = buffer + places_[static_cast<std::size_t>(p)];
-        for (int c = 0; c < 3; ++c) sum[c] += from[c * Pack::kLanes];
+        for (int c = 0; c < 3; ++c) sum[c] += from[static_cast<std::ptrdiff_t>(c) * Pack::kLanes];
       }
       for (int c = 0; c < 3; ++c) out[c * n + i] += sum[c];
     }
