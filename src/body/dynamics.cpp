@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <pliant/body/one_sided_rows.h>
+#include <pliant/local/corotated.h>
 
 namespace pliant {
 
@@ -149,7 +150,11 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
     if (m.local != nullptr) {
       w.f.setZero(6 + n);
       if (n > 0) elastic_forces<S>(m, t, w);
-      local_forces(*m.local, w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
+      try {
+        local_forces(*m.local, w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
+      } catch (const InvertedElement& failure) {
+        throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
+      }
       w.power[static_cast<int>(Work::damping)] += w.local->damping;
       w.power[static_cast<int>(Work::drag)] += w.local->drag;
       return;

@@ -7,6 +7,7 @@
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/local/corotated.h>
 
 namespace pliant {
 
@@ -56,6 +57,9 @@ void Simulation::step(double h) {
     message << "a step of " << h << " s is too long for the motion: " << failure.what()
             << ", but not after steps of " << h / kShorter << " s";
     throw NumericalFailure(message.str(), state_.time());
+  } catch (const InvertedElement& failure) {
+    state_ = last_good_;
+    throw NumericalFailure(failure.what(), state_.time());
   } catch (...) {
     state_ = last_good_;
     throw;

@@ -31,9 +31,9 @@ void read_local(const Reader& local, SceneFaults& faults, Part& part) {
                                    [&](const LocalLawInfo& i) { return i.name == law.name(); });
     if (info == all_local_laws().end() || !law.complete()) continue;
     if (info->shell != part.shell()) {
-      faults.place(law.at("type"), std::string("this is a law of ") + (info->shell ? "shells" : "solids") +
-                                       ", and the part is a " + (part.shell() ? "shell" : "solid") +
-                                       (info->shell ? "; expected \"shell\": true" : ""));
+      faults.place(law.json(), std::string("this is a law of ") + (info->shell ? "shells" : "solids") +
+                                   ", and the part is a " + (part.shell() ? "shell" : "solid") +
+                                   (info->shell ? "; expected \"shell\": true" : ""));
       continue;
     }
     std::vector<double> values;
