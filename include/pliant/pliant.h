@@ -6,6 +6,7 @@
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/deform/all_deforms.h>
 #include <pliant/integrate/simulation.h>
+#include <pliant/part/local_laws.h>
 #include <pliant/part/registry.h>
 #include <pliant/part/solid.h>
 #include <pliant/part/surface.h>
