@@ -151,3 +151,71 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
   CHECK(test::observed_order(errors) >= 3.9);
   CHECK(errors.back() <= 1e-7);
 }
+
+TEST_CASE(
+    "a shell twists through 2.5 rad per half length, and its conditions still tell its coordinates apart",
+    "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Cylinder, Chain<Twist>>>("tube", 2);
+  part.make_shell()
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.6}})
+      .stiffness({{"twist.angle", 2}})
+      .initial({{"twist.angle", 2.5}});
+  LocalSettings settings = net(3, 20);
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * rush(X); };
+  part.deform_locally(settings);
+  Simulation simulation(body, "rk4");
+  const double start = simulation.ledger().energy();
+  double least = 3, most = -3;
+  for (int i = 0; i < 1500; ++i) {
+    simulation.step(1e-3);
+    least = std::min(least, simulation.state().q[7]);
+    most = std::max(most, simulation.state().q[7]);
+  }
+  CHECK(most >= 2.4);
+  CHECK(least <= -1.5);
+  CHECK(simulation.ledger().energy() == Approx(start).epsilon(1e-6));
+}
+
+TEST_CASE("N66: a soft shell has the same bits on any number of threads", "[local]") {
+  std::vector<std::uint64_t> bits;
+  for (const int threads : {1, 2, 3}) {
+    MultiBody body;
+    tumbling(body, 3);
+    Simulation simulation(body, "rk4", threads);
+    test::run(simulation, 0.05, 10);
+    bits.push_back(hash(simulation.state()));
+  }
+  CHECK(bits[0] == bits[1]);
+  CHECK(bits[0] == bits[2]);
+}
+
+TEST_CASE("N20: the largest stable step of a soft shell is on the safe side, and not far from the edge",
+          "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Sphere>>("ball", 1);
+  part.make_shell().rest({{"r", 0.5}});
+  LocalSettings settings = net(2, 20);
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * rush(X); };
+  part.deform_locally(settings);
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    const double step = largest_stable_step(Simulation(body, method));
+    auto grows = [&](double h) {
+      Simulation simulation(body, method);
+      const double start = simulation.ledger().energy();
+      try {
+        for (int i = 0; i < 2000; ++i) {
+          simulation.step(h);
+          if (!(simulation.ledger().energy() < 100 * start)) return true;
+        }
+      } catch (const NumericalFailure&) {
+        return true;
+      }
+      return false;
+    };
+    CHECK_FALSE(grows(0.98 * step));
+    CHECK(grows(3 * step));
+  }
+}
