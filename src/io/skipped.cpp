@@ -3,16 +3,17 @@
 namespace pliant {
 
 std::vector<std::string> skipped_work(const Model& model) {
-  int fixed = 0, rigid = 0, frozen = 0, moving = 0;
+  int fixed = 0, rigid = 0, frozen = 0, moving = 0, local = 0;
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) {
       ++fixed;
       continue;
     }
     ++moving;
-    if (part.n_s == 0)
+    if (part.local != nullptr) ++local;
+    if (part.part->rigid())
       ++rigid;
-    else
+    else if (part.n_s > 0)
       frozen += part.part->parameters().size() - part.n_s;
   }
   std::vector<std::string> skipped;
@@ -23,7 +24,10 @@ std::vector<std::string> skipped_work(const Model& model) {
   if (frozen > 0)
     skipped.push_back("rows and columns of frozen parameters in parts that deform: " +
                       std::to_string(frozen));
-  if (moving > 0) skipped.push_back("meshes and elements: no part deforms locally");
+  if (moving > 0 && local == 0) skipped.push_back("meshes and elements: no part deforms locally");
+  if (local > 0 && local < moving)
+    skipped.push_back("meshes and elements of parts that do not deform locally: " +
+                      std::to_string(moving - local));
   if (model.joints().empty()) skipped.push_back("C_q and lambda: there are no joints");
   if (moving > 1 && model.springs().empty() && model.joints().empty())
     skipped.push_back("coupling: no spring or joint ties the parts");
