@@ -476,10 +476,18 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!joint.driven) continue;
     S done(0.0);  // lambda C_q v, on the parts
     for (const JointSide& side : joint.sides) {
-      const VecX<S>& v_r = work.parts[at(side.part)].v_r;
-      for (int r = 0; r < joint.rows; ++r)
-        for (int i = 0; i < v_r.size(); ++i)
-          done += lambda[r] * joints.Cq[side.offset + r * v_r.size() + i] * v_r[i];
+      const PartModel& part = model.parts()[at(side.part)];
+      const PartWorkspace<S>& w = work.parts[at(side.part)];
+      const int n = velocities(part);
+      auto add = [&](const VecX<S>& v, int first) {
+        for (int r = 0; r < joint.rows; ++r)
+          for (int i = 0; i < v.size(); ++i)
+            done += lambda[r] * joints.Cq[side.offset + r * n + first + i] * v[i];
+      };
+      add(w.v_r, 0);
+      if constexpr (std::is_same_v<S, double>)
+        if (part.local != nullptr)
+          add(at_points(part.shared, nodes(w.local->d_dot, part.local->n_nodes())), 6 + part.n_s);
     }
     power[static_cast<int>(Work::anchors)] += done - closing;
   }

@@ -31,10 +31,6 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
 void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
   const auto d = nodes(w.local->d, m.local->n_nodes()), d_dot = nodes(w.local->d_dot, m.local->n_nodes());
   for (std::size_t k = 0; k < m.ports.size(); ++k) {
-    if (m.n_s == 0) {
-      w.ports[k].p = m.rigid_ports[k].p;
-      w.ports[k].p1.setZero();
-    }
     const NodeWeights& at = m.node_weights[k];
     for (std::size_t i = 0; i < at.node.size(); ++i) {
       w.ports[k].p += at.weight[i] * d.row(at.node[i]).transpose();
@@ -78,6 +74,7 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
     for (std::size_t k = 0; k < n_ports; ++k) {
       w.ports[k].p = m.rigid_ports[k].p.template cast<S>();
       w.ports[k].p1.setConstant(S(0.0));
+      w.ports[k].p2.setConstant(S(0.0));
       w.ports[k].J.resize(3, 0);
     }
   } else {

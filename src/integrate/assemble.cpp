@@ -139,7 +139,8 @@ class Assembly {
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];
-      MatX<double> H = w.local ? w.local->H0 : w.inertia.M;
+      if (w.local) w.inertia.M = w.local->H0;
+      MatX<double>& H = w.inertia.M;
       H.block<3, 3>(3, 3) *= dear;
       H.bottomRightCorner(m.n_s, m.n_s) += m.part->K_s() / eps_;
       w.factor.compute(H, m.inertia_floor);
@@ -148,10 +149,15 @@ class Assembly {
     }
   }
 
-  /// Nodes stay where they are on the parts: the metric is that of c, theta and q_s alone.
+  /// Nodes stay where they are on the parts: the metric is that of c, theta and q_s, and of nodes that
+  /// nothing moves.
   static void hold_nodes(PartWorkspace<double>& w) {
-    MatX<double>& A = w.local->A;
+    constexpr double immovable = 1e12;
+    MatX<double>&A = w.local->A, &M = w.inertia.M;
     const Eigen::Index n_r = w.local->H0.rows();
+    const MatX<double> H = M;
+    M = immovable * H.diagonal().maxCoeff() * MatX<double>::Identity(A.rows(), A.cols());
+    M.topLeftCorner(n_r, n_r) = H;
     A.setZero();
     for (Eigen::Index k = 0; k < n_r; ++k) {
       VecX<double> column = VecX<double>::Unit(n_r, k);

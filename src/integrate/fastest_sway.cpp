@@ -104,6 +104,7 @@ class Sway {
 
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
+  // The accelerations of nodes have no derivative: their elasticity has a bound of its own.
   const bool local = std::any_of(model.parts().begin(), model.parts().end(),
                                  [](const PartModel& m) { return m.local != nullptr; });
   if (model.islands().empty() || local) return 0;

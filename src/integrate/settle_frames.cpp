@@ -28,6 +28,7 @@ Nodes turned(const Nodes& x, const Mat3<double>& R) {
 
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
+  if (!state.q.allFinite() || !state.v.allFinite()) return;
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.local == nullptr) continue;
@@ -48,10 +49,16 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
     const double size = m.part->size();
     const Nodes x_dot = turned(node_velocities(local, w.v_r, *w.local), w.R);
     Nodes p = nodes(w.local->x, n);
-    for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+    for (int iteration = 0;; ++iteration) {
       const VecMax<double> unmet = frame_share(local, nodes(w.local->d, n), *w.local);
       const VecMax<double> delta = w.local->solve_transposed(unmet);
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
+      if (iteration == kMostIterations) {
+        std::ostringstream message;
+        message << "a step of " << state.h << " s is too long: the nodes of part '" << m.part->name()
+                << "' move so far in it that the frame does not follow them";
+        throw NumericalFailure(message.str(), t);
+      }
       advance_part(m, state.q, world_velocity(w, delta), 1);
       const Vec3<double> turn = delta.segment<3>(3);
       const double angle = turn.norm();

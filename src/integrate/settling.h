@@ -330,7 +330,7 @@ class Settling {
       Vector x = Vector::Zero(group_.size());
       for (const JointSide& side : joint.sides) {
         const int n = static_cast<int>(group_.share(x, side.place).size());
-        VecMax<double> force = work_.joints.Cq.segment(side.offset + r * n, n);
+        VecX<double> force = work_.joints.Cq.segment(side.offset + r * n, n);
         group_.workspace(side.place).solve_mass(force);
         group_.share(x, side.place) += force;
       }

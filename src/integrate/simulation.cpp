@@ -80,7 +80,9 @@ bool Simulation::shorter_steps_pass(double h) {
       state_.h = h / kShorter;
       advance(h / kShorter);
     }
-  } catch (const UnsatisfiableModel&) {
+  } catch (const StepFailure&) {
+    return false;
+  } catch (const InvertedElement&) {
     return false;
   }
   return state_.q.allFinite() && state_.v.allFinite();

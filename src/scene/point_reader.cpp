@@ -118,7 +118,8 @@ std::optional<Material<double>> PointReader::material(const Part& part, const Js
   if (place) {
     Material<double> m = part.label(*place, part.parameters().rest());
     if (by_direction || m.w - 1 < kFarOutside) {
-      m.w = by_direction ? value.w : std::min(m.w, 1.0);
+      m.w =
+          by_direction ? value.w : (std::abs(m.w - 1) < kFarOutside && part.shell() ? 1 : std::min(m.w, 1.0));
       return m;
     }
   }

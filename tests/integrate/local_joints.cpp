@@ -108,3 +108,80 @@ TEST_CASE("a soft shell on a string: it goes taut, and the gap stays closed", "[
   }
   CHECK(taut);
 }
+
+TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a hand that moves its joint",
+          "[local][joints]") {
+  std::vector<double> balance;
+  for (const int steps : {100, 200, 400}) {
+    MultiBody body;
+    auto& part = body.add<Primitive<Ellipsoid>>("ball", 2.0);
+    part.make_shell()
+        .rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})
+        .place({0, 0, -0.6})
+        .damping(0.3, 1e-3, 0.2);
+    part.stiffness({{"a1", 500}, {"a2", 500}, {"a3", 400}});
+    LocalSettings settings = test::net(3, 60);
+    settings.velocity = test::rush;
+    settings.alpha = 0.4;
+    settings.beta = 2e-3;
+    part.deform_locally(settings);
+    const TimeVector hand(test::wave(0, 0.1, 3), test::wave(0, 0.05, 4), TimeFunction(0.0));
+    body.ball("hand", world(hand), point(part, kPi / 2, 0));
+    body.spring("spring", world(1, 0, -1), point(part, 0.3, 0.4), 30, 0.5);
+    Simulation simulation(body, "rk4");
+    for (int i = 0; i < steps; ++i) simulation.step(1.0 / steps);
+    const Ledger end = simulation.ledger();
+    balance.push_back(std::abs(end.balance));
+    for (const Work work : {Work::damping, Work::drag, Work::spring_damping}) {
+      CAPTURE(static_cast<int>(work));
+      CHECK(end.work[static_cast<int>(work)] < 0);
+    }
+    CHECK(std::abs(end.work[static_cast<int>(Work::anchors)]) > 0.01);
+  }
+  CAPTURE(balance[0], balance[1], balance[2]);
+  CHECK(test::observed_order(balance) >= 3.7);
+  CHECK(balance.back() <= 1e-4);
+}
+
+TEST_CASE("a soft shell at a step that is too long: the part is named, and the step", "[local]") {
+  MultiBody body;
+  balloon(body, "ball", {0, 0, 0}, false);
+  Simulation simulation(body, "rk4");
+  const double h = 20 * largest_stable_step(simulation);
+  std::string what;
+  try {
+    for (int i = 0; i < 1000; ++i) simulation.step(h);
+  } catch (const NumericalFailure& failure) {
+    what = failure.what();
+  }
+  CHECK_THAT(what, test::has_text("too long") || test::has_text("largest stable step"));
+  CHECK_THAT(what, test::has_text("'ball'") || test::has_text("ball."));
+}
+
+TEST_CASE("assembly before time 0 by both solvers, with soft shells and without", "[local][assembly]") {
+  for (const bool local : {false, true}) {
+    std::vector<VecX<double>> places;
+    for (const auto solver : {JointSolver::Choice::blocks, JointSolver::Choice::augmented}) {
+      MultiBody body;
+      body.joint_solver.choice = solver;
+      body.stabilization.assemble_first = true;
+      std::vector<Part*> parts;
+      for (int i = 0; i < 3; ++i) {
+        auto& part = body.add<Primitive<Ellipsoid>>("part" + std::to_string(i), 2.0);
+        part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).stiffness({{"a1", 500}, {"a3", 400}});
+        part.place({0.3 * i, 1.0 * i, 0.5 * i});
+        if (local) part.deform_locally(test::net(2, 60));
+        parts.push_back(&part);
+      }
+      body.ball("foot", world(0, 0, 0), point(*parts[0], -kPi / 2, 0));
+      body.ball("one", point(*parts[0], kPi / 2, 0), point(*parts[1], -kPi / 2, 0));
+      body.ball("two", point(*parts[1], kPi / 2, 0), point(*parts[2], -kPi / 2, 0));
+      body.ball("head", world(0.5, 0.5, 3.9), point(*parts[2], kPi / 2, 0));
+      const Simulation simulation(body, "rk4");
+      CHECK(widest(simulation) <= 1e-9);
+      places.push_back(simulation.state().q);
+    }
+    CAPTURE(local);
+    CHECK((places[0] - places[1]).norm() <= 1e-6 * places[0].norm());
+  }
+}

@@ -24,7 +24,7 @@ struct PartWorkspace {
   std::vector<PointJet<S>> ports;           ///< body frame
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< world
   // mass
-  Inertia<S> inertia;  ///< Eq. (11)
+  Inertia<S> inertia;  ///< Eq. (11); of a part that deforms locally M is that of its velocities in a group
   // forces, body frame, on v_r
   VecX<S> f;
   Vec<S, kWorks> power;

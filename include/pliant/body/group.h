@@ -39,7 +39,7 @@ class Group {
   /// The number of its island.
   std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
-  /// x of what `of` gives for each of its parts: v_r, and 0 for the local velocities at joints.
+  /// x of what `of` gives for each of its parts, all of its velocities in x.
   template <class F>
   void gather(Vector& x, F&& of) const {
     x.resize(size_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 
 #include <pliant/math/pack.h>
 #include <pliant/math/types.h>
