@@ -55,8 +55,9 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
       if (iteration == kMostIterations) {
         std::ostringstream message;
-        message << "a step of " << state.h << " s is too long: the nodes of part '" << m.part->name()
-                << "' move so far in it that the frame does not follow them";
+        message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
+                << m.part->name() << "' are so far from the shape of its parameters that its frame does not "
+                << "follow them";
         throw NumericalFailure(message.str(), t);
       }
       advance_part(m, state.q, world_velocity(w, delta), 1);

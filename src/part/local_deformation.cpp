@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
@@ -225,6 +226,13 @@ LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settin
   };
   initial_ = at_nodes(settings.displacement);
   initial_rate_ = at_nodes(settings.velocity);
+  const double farthest = nodes(initial_, n_nodes()).rowwise().norm().maxCoeff();
+  if (!(farthest <= part.size()) || !initial_rate_.allFinite()) {
+    std::ostringstream message;
+    message << "part '" << part.name() << "': at time 0 nodes are displaced by " << farthest
+            << " m; expected no more than its size, " << part.size() << " m, and finite velocities";
+    throw std::invalid_argument(message.str());
+  }
 }
 
 NodeWeights LocalDeformation::weights(const Part& part, const Material<double>& m) const {
