@@ -188,6 +188,7 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
+    if (m.island < 0 && m.n_s == 0) return;  // nothing can push on it at once
     local_compliance(*m.local, m.shared, *w.local);
     w.inertia.M = w.local->A_inverse;
     return;

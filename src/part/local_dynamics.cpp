@@ -1,108 +1,12 @@
 #include <pliant/part/local_dynamics.h>
 
-#include <Eigen/Eigenvalues>
-
-#include <pliant/local/four_nodes.h>
+#include "node_sums.h"
 
 namespace pliant {
 
+using namespace node_sums;
+
 namespace {
-
-/// sum a b^T over nodes, and sums of vectors, four lanes wide.
-struct OuterSum {
-  Pack lanes[3][3];
-  OuterSum() {
-    for (auto& row : lanes)
-      for (Pack& x : row) x = Pack(0.0);
-  }
-  void add(const Vec3<Pack>& a, const Vec3<Pack>& b) {
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) lanes[i][j] += a[i] * b[j];
-  }
-  Mat3<double> total() const {
-    Mat3<double> m;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) m(i, j) = sum(lanes[i][j]);
-    return m;
-  }
-};
-struct VectorSum {
-  Vec3<Pack> lanes = Vec3<Pack>::Constant(Pack(0.0));
-  void add(const Vec3<Pack>& a) {
-    for (int r = 0; r < 3; ++r) lanes[r] += a[r];
-  }
-  Vec3<double> total() const { return {sum(lanes[0]), sum(lanes[1]), sum(lanes[2])}; }
-};
-
-Vec3<Pack> times(const Pack& m, const Vec3<Pack>& a) {
-  return {m * a[0], m * a[1], m * a[2]};
-}
-Vec3<Pack> spread(const Vec3<double>& a) {
-  return {Pack(a[0]), Pack(a[1]), Pack(a[2])};
-}
-Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Pack dot(const Vec3<Pack>& a, const Vec3<Pack>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-/// The axial vector of a matrix: sum of a x b for sum a b^T.
-Vec3<double> axial(const Mat3<double>& ab) {
-  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
-}
-
-bool any(const VecX<double>& x) {
-  return (x.array() != 0).any();
-}
-
-/// The columns of J of parameter c.
-const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
-  return w.J.data() + 3 * n * c;
-}
-
-/// G v at nodes: v_c + omega x p + J v_s.
-struct FrameMotion {
-  Vec3<Pack> c, omega;
-  const VecMax<double>& v;
-  const LocalWorkspace& w;
-  Eigen::Index n;
-
-  FrameMotion(const VecMax<double>& all, const LocalWorkspace& work, Eigen::Index n_nodes)
-      : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
-  Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, cross(omega, p)); }
-  Vec3<Pack> shape(const FourNodes& four) const {
-    Vec3<Pack> sum = Vec3<Pack>::Constant(Pack(0.0));
-    for (int k = 6; k < v.size(); ++k) {
-      const Vec3<Pack> J = four.load(column(w, n, k - 6), n);
-      for (int r = 0; r < 3; ++r) sum[r] += J[r] * Pack(v[k]);
-    }
-    return sum;
-  }
-};
-
-/// sum G^T F over nodes at positions x (p, or s).
-VecMax<double> generalised(const double* x, const double* F, const LocalWorkspace& w, Eigen::Index n,
-                           int n_s) {
-  VecMax<double> f(6 + n_s);
-  VectorSum force, torque;
-  for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> at = four.load(x, n), push = four.load(F, n);
-    force.add(push);
-    torque.add(cross(at, push));
-  });
-  f.head<3>() = force.total();
-  f.segment<3>(3) = torque.total();
-  for (int k = 0; k < n_s; ++k) {
-    Pack along(0.0);
-    for_each_four(
-        n, [&](const FourNodes& four) { along += dot(four.load(column(w, n, k), n), four.load(F, n)); });
-    f[6 + k] = sum(along);
-  }
-  return f;
-}
 
 /// H = sum m [I, -[x]x, J]^T [I, -[s]x, J], from its sums: of m, m x, m s, m x s^T and those with J.
 struct FrameSums {
@@ -259,7 +163,7 @@ void local_masses(const Part& part, const LocalDeformation& local, const VecX<do
       J.add(mJ);
       xJ.add(four.load(w.x.data(), n), mJ);
       sJ.add(four.load(w.s.data(), n), mJ);
-      for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += dot(mJ, four.load(column(w, n, j), n));
+      for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += mJ.dot(four.load(column(w, n, j), n));
     });
     sums.J.col(k) = J.total();
     sums.x_J.col(k) = axial(xJ.total());
@@ -313,17 +217,17 @@ void local_forces(const LocalDeformation& local, const VecX<double>& v_r, const 
   for_each_four(n, [&](const FourNodes& four) {
     const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.u.data(), n);
     const Pack m = four.load(local.inertia().data());
-    const Vec3<Pack> spin = cross(frame.omega, p);
+    const Vec3<Pack> spin = frame.omega.cross(p);
     Vec3<Pack> turn;  // omega x p + 2 u
     for (int r = 0; r < 3; ++r) turn[r] = spin[r] + u[r] + u[r];
-    Vec3<Pack> b = cross(frame.omega, turn);
+    Vec3<Pack> b = frame.omega.cross(turn);
     if (curved) b = plus(b, four.load(w.s2.data(), n));
     Vec3<Pack> force;
     for (int r = 0; r < 3; ++r) force[r] = m * (gravity[r] - b[r]);
     if (nu > 0) {
       const Vec3<Pack> velocity = plus(plus(frame.c, spin), u);
       for (int r = 0; r < 3; ++r) force[r] -= m * Pack(nu) * velocity[r];
-      square += m * dot(velocity, velocity);
+      square += m * velocity.dot(velocity);
     }
     four.store(w.f.data(), n, force);
   });
@@ -385,97 +289,6 @@ void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, Local
   });
 }
 
-VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values) {
-  VecX<double> x = VecX<double>::Zero(3 * static_cast<Eigen::Index>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < points[k].node.size(); ++i)
-      x.segment<3>(3 * static_cast<Eigen::Index>(k)) +=
-          points[k].weight[i] * values.row(points[k].node[i]).transpose();
-  return x;
-}
-
-namespace {
-
-/// G of points, from positions of nodes: 3 rows each.
-MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, const LocalWorkspace& w,
-                      Eigen::Index n, Eigen::Index n_r) {
-  const auto n_p = static_cast<Eigen::Index>(points.size());
-  MatX<double> G(3 * n_p, n_r);
-  const VecX<double> at = at_points(points, Eigen::Map<const Nodes>(x, n, 3));
-  for (Eigen::Index k = 0; k < n_p; ++k) {
-    G.block<3, 3>(3 * k, 0).setIdentity();
-    G.block<3, 3>(3 * k, 3) = -skew(Vec3<double>(at.segment<3>(3 * k)));
-  }
-  for (Eigen::Index k = 6; k < n_r; ++k)
-    G.col(k) = at_points(points, Eigen::Map<const Nodes>(column(w, n, static_cast<int>(k) - 6), n, 3));
-  return G;
-}
-
-/// Inverse of A, whose rows may depend on each other where points lie close together.
-MatX<double> inverse_of(const MatX<double>& A) {
-  constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
-  const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scale.asDiagonal() * A * scale.asDiagonal());
-  VecX<double> inverse = eigen.eigenvalues();
-  for (double& value : inverse) value = value > smallest ? 1 / value : 0;
-  const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
-  return V * inverse.asDiagonal() * V.transpose();
-}
-
-}  // namespace
-
-void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
-                      LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes(), n_r = w.H0.rows(),
-                     n_p = 3 * static_cast<Eigen::Index>(points.size());
-  const MatX<double> G = frame_at(points, w.x.data(), w, n, n_r),
-                     G0 = frame_at(points, w.s.data(), w, n, n_r);
-  MatX<double> right(n_r, n_r + n_p), above = MatX<double>::Zero(n_r, n_r + n_p);
-  right << -MatX<double>::Identity(n_r, n_r), G.transpose();
-  above.rightCols(n_p) = G0.transpose();
-  w.kappa_of = w.solve(right);
-  above -= w.H0 * w.kappa_of;
-  w.a_of = w.solve_transposed(above);
-  w.A.resize(n_r + n_p, n_r + n_p);
-  w.A.topRows(n_r) = w.a_of;
-  w.A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;
-  for (std::size_t a = 0; a < points.size(); ++a)
-    for (std::size_t b = 0; b < points.size(); ++b)
-      for (std::size_t i = 0; i < points[a].node.size(); ++i)
-        for (std::size_t j = 0; j < points[b].node.size(); ++j) {
-          if (points[a].node[i] != points[b].node[j]) continue;
-          const double share =
-              points[a].weight[i] * points[b].weight[j] * local.mobility()[points[a].node[i]];
-          for (int r = 0; r < 3; ++r)
-            w.A(n_r + 3 * static_cast<Eigen::Index>(a) + r, n_r + 3 * static_cast<Eigen::Index>(b) + r) +=
-                share;
-        }
-  w.A = (0.5 * (w.A + w.A.transpose())).eval();
-  w.A_inverse = inverse_of(w.A);
-}
-
-void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,
-                    const VecX<double>& g, const LocalWorkspace& w, Eigen::Ref<VecX<double>> d_dot) {
-  const Eigen::Index n = local.n_nodes();
-  const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;
-  const FrameMotion pull(kappa, w, n), frame(a, w, n);
-  for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> by_kappa = plus(pull.rigid(four.load(w.s.data(), n)), pull.shape(four)),
-                     by_frame = plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four));
-    Vec3<Pack> v = four.load(d_dot.data(), n);
-    for (int r = 0; r < 3; ++r) v[r] -= by_kappa[r] + by_frame[r];
-    four.store(d_dot.data(), n, v);
-  });
-  const Eigen::Index n_r = w.H0.rows();
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < points[k].node.size(); ++i) {
-      const int node = points[k].node[i];
-      for (int r = 0; r < 3; ++r)
-        d_dot[node + r * n] +=
-            points[k].weight[i] * local.mobility()[node] * g[n_r + 3 * static_cast<Eigen::Index>(k) + r];
-    }
-}
-
 Eigen::Matrix<double, 6, 6> local_inertia(const LocalDeformation& local, const LocalWorkspace& w) {
   FrameSums sums;
   const Nodes x = nodes(w.x, local.n_nodes());
@@ -521,9 +334,9 @@ LocalMotion local_motion(const LocalDeformation& local, const VecX<double>& v_r,
     const Vec3<Pack> p = four.load(w.x.data(), n);
     const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.u.data(), n));
     const Vec3<Pack> momentum = times(m, velocity);
-    twice += dot(momentum, velocity);
+    twice += momentum.dot(velocity);
     P.add(momentum);
-    L.add(cross(p, momentum));
+    L.add(p.cross(momentum));
     moment.add(times(m, p));
   });
   const Eigen::Index own = local.n_d() - 3 * n;

@@ -1,0 +1,101 @@
+// Sums over the nodes of a part, four lanes wide, and motions of all of them.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <pliant/local/four_nodes.h>
+#include <pliant/part/local_dynamics.h>
+
+namespace pliant::node_sums {
+
+/// sum a b^T over nodes, and sums of vectors, four lanes wide.
+struct OuterSum {
+  Pack lanes[3][3];
+  OuterSum() {
+    for (auto& row : lanes)
+      for (Pack& x : row) x = Pack(0.0);
+  }
+  void add(const Vec3<Pack>& a, const Vec3<Pack>& b) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) lanes[i][j] += a[i] * b[j];
+  }
+  Mat3<double> total() const {
+    Mat3<double> m;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) m(i, j) = sum(lanes[i][j]);
+    return m;
+  }
+};
+struct VectorSum {
+  Vec3<Pack> lanes = Vec3<Pack>::Constant(Pack(0.0));
+  void add(const Vec3<Pack>& a) {
+    for (int r = 0; r < 3; ++r) lanes[r] += a[r];
+  }
+  Vec3<double> total() const { return {sum(lanes[0]), sum(lanes[1]), sum(lanes[2])}; }
+};
+
+inline Vec3<Pack> times(const Pack& m, const Vec3<Pack>& a) {
+  return {m * a[0], m * a[1], m * a[2]};
+}
+inline Vec3<Pack> spread(const Vec3<double>& a) {
+  return {Pack(a[0]), Pack(a[1]), Pack(a[2])};
+}
+inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+/// The axial vector of a matrix: sum of a x b for sum a b^T.
+inline Vec3<double> axial(const Mat3<double>& ab) {
+  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
+}
+
+inline bool any(const VecX<double>& x) {
+  return (x.array() != 0).any();
+}
+
+/// The columns of J of parameter c.
+inline const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
+  return w.J.data() + 3 * n * c;
+}
+
+/// G v at nodes: v_c + omega x p + J v_s.
+struct FrameMotion {
+  Vec3<Pack> c, omega;
+  const VecMax<double>& v;
+  const LocalWorkspace& w;
+  Eigen::Index n;
+
+  FrameMotion(const VecMax<double>& all, const LocalWorkspace& work, Eigen::Index n_nodes)
+      : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
+  Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, omega.cross(p)); }
+  Vec3<Pack> shape(const FourNodes& four) const {
+    Vec3<Pack> sum = Vec3<Pack>::Constant(Pack(0.0));
+    for (int k = 6; k < v.size(); ++k) {
+      const Vec3<Pack> J = four.load(column(w, n, k - 6), n);
+      for (int r = 0; r < 3; ++r) sum[r] += J[r] * Pack(v[k]);
+    }
+    return sum;
+  }
+};
+
+/// sum G^T F over nodes at positions x (p, or s).
+inline VecMax<double> generalised(const double* x, const double* F, const LocalWorkspace& w, Eigen::Index n,
+                                  int n_s) {
+  VecMax<double> f(6 + n_s);
+  VectorSum force, torque;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> at = four.load(x, n), push = four.load(F, n);
+    force.add(push);
+    torque.add(at.cross(push));
+  });
+  f.head<3>() = force.total();
+  f.segment<3>(3) = torque.total();
+  for (int k = 0; k < n_s; ++k) {
+    Pack along(0.0);
+    for_each_four(
+        n, [&](const FourNodes& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });
+    f[6 + k] = sum(along);
+  }
+  return f;
+}
+
+}  // namespace pliant::node_sums
