@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <pliant/body/one_sided_rows.h>
-#include <pliant/local/corotated.h>
+#include <pliant/local/inverted_element.h>
 
 namespace pliant {
 

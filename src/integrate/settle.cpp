@@ -66,7 +66,8 @@ void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
 }
 
 /// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
-/// them P and L. before: evaluated at the coordinates before; now: at those now.
+/// them P and L; of a part that deforms locally, whose nodes keep their velocities, P and L alone. before:
+/// evaluated at the coordinates before; now: at those now.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {

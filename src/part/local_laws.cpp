@@ -19,8 +19,8 @@ using Number = LocalLawInfo::Number;
 using Energy = std::unique_ptr<NodalEnergy>;
 
 const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
-const Number kPoissonShell{"nu", "1", "Poisson's number.", -1, true, 0.3, 0.5};
-const Number kPoissonSolid{"nu", "1", "Poisson's number, below 1/2.", -1, true, 0.3, 0.4999999};
+const Number kPoissonShell{"nu", "1", "Poisson's ratio.", -1, true, 0.3, 0.5};
+const Number kPoissonSolid{"nu", "1", "Poisson's ratio, below 1/2.", -1, true, 0.3, 0.4999999};
 const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
 
 ShellMesh shell(const LocalMesh& mesh) {
