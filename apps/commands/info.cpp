@@ -50,10 +50,7 @@ void print_part(const pliant::PartModel& model) {
   else
     std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s()
               << " dynamic parameters; " << frozen << " frozen"
-              << (part.n_d() > 0 ? "; " + std::to_string(part.n_d()) + " local, of " +
-                                       std::to_string(part.local()->n_nodes()) + " nodes"
-                                 : "")
-              << ")\n";
+              << (part.local() != nullptr ? "; " + part.local()->description() : "") << ")\n";
   const pliant::Inertia<double>& inertia = part.rest_inertia();
   const Vec3<double> centre =
       inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);

@@ -8,6 +8,7 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/part/nodal_deformation.h>
 
 namespace pliant {
 
@@ -32,8 +33,6 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.local == nullptr) continue;
-    const LocalDeformation& local = *m.local;
-    const Eigen::Index n = local.n_nodes();
     auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
     if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) continue;
     const std::vector<int> part{static_cast<int>(i)};
@@ -46,12 +45,16 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
               << "); freeze some of the parameters";
       throw NumericalFailure(message.str(), t);
     }
+    if (m.local->nodal() == nullptr) continue;
+    const NodalDeformation& local = *m.local->nodal();
+    const NodalWorkspace& now = NodalDeformation::of(*w.local);
+    const Eigen::Index n = local.n_nodes();
     const double size = m.part->size();
-    const Nodes x_dot = turned(node_velocities(local, w.v_r, *w.local), w.R);
-    Nodes p = nodes(w.local->x, n);
+    const Nodes x_dot = turned(local.node_velocities(w.v_r, now), w.R);
+    Nodes p = nodes(now.x, n);
     for (int iteration = 0;; ++iteration) {
-      const VecMax<double> unmet = frame_share(local, nodes(w.local->d, n), *w.local);
-      const VecMax<double> delta = w.local->solve_transposed(unmet);
+      const VecMax<double> unmet = local.frame_share(nodes(now.d, n), now);
+      const VecMax<double> delta = now.solve_transposed(unmet);
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
       if (iteration == kMostIterations) {
         std::ostringstream message;
@@ -69,14 +72,14 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
       p = turned(p.rowwise() - delta.head<3>().transpose(), back);
       // Where the nodes would be with the displacements of before tells the reference shape.
       dynamics.evaluate_masses(state.q, state.v, part, work);
-      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - w.local->s;
+      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
       dynamics.evaluate_masses(state.q, state.v, part, work);
     }
-    const Nodes now = turned(x_dot, w.R.transpose());
-    const VecMax<double> v_r = w.local->solve_transposed(frame_share(local, now, *w.local));
+    const Nodes u = turned(x_dot, w.R.transpose());
+    const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
     share_of(m, state.v) = world_velocity(w, v_r);
     state.v.segment(m.v0 + 6 + m.n_s, 3 * n) =
-        Eigen::Map<const VecX<double>>(Nodes(now - frame_velocities(local, v_r, *w.local)).data(), 3 * n);
+        Eigen::Map<const VecX<double>>(Nodes(u - local.frame_velocities(v_r, now)).data(), 3 * n);
   }
 }
 

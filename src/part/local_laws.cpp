@@ -141,12 +141,16 @@ LocalSettings::Law local_law(const std::string& name, std::vector<double> values
                                   " numbers");
     const bool of_shell = info.shell;
     const auto lay = info.lay;
-    return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
-      if (mesh.shell() != of_shell)
-        throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
-                                    ", not of " + (of_shell ? "solids" : "shells"));
-      return lay(mesh, values.data());
-    };
+    std::optional<Elasticity> linear;
+    if (name == "elastic") linear.emplace(values[0], values[1]);
+    return LocalSettings::Law(
+        [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+          if (mesh.shell() != of_shell)
+            throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
+                                        ", not of " + (of_shell ? "solids" : "shells"));
+          return lay(mesh, values.data());
+        },
+        name, linear);
   }
   throw std::invalid_argument("no law of local deformation '" + name + "'; there are:" + known);
 }

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/local/four_nodes.h>
-#include <pliant/part/local_dynamics.h>
+#include <pliant/part/nodal_deformation.h>
 
 namespace pliant::node_sums {
 
@@ -53,7 +53,7 @@ inline bool any(const VecX<double>& x) {
 }
 
 /// The columns of J of parameter c.
-inline const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
+inline const double* column(const NodalWorkspace& w, Eigen::Index n, int c) {
   return w.J.data() + 3 * n * c;
 }
 
@@ -61,10 +61,10 @@ inline const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
 struct FrameMotion {
   Vec3<Pack> c, omega;
   const VecMax<double>& v;
-  const LocalWorkspace& w;
+  const NodalWorkspace& w;
   Eigen::Index n;
 
-  FrameMotion(const VecMax<double>& all, const LocalWorkspace& work, Eigen::Index n_nodes)
+  FrameMotion(const VecMax<double>& all, const NodalWorkspace& work, Eigen::Index n_nodes)
       : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
   Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, omega.cross(p)); }
   Vec3<Pack> shape(const FourNodes& four) const {
@@ -78,7 +78,7 @@ struct FrameMotion {
 };
 
 /// sum G^T F over nodes at positions x (p, or s).
-inline VecMax<double> generalised(const double* x, const double* F, const LocalWorkspace& w, Eigen::Index n,
+inline VecMax<double> generalised(const double* x, const double* F, const NodalWorkspace& w, Eigen::Index n,
                                   int n_s) {
   VecMax<double> f(6 + n_s);
   VectorSum force, torque;

@@ -302,7 +302,7 @@ void Part::prepare() {
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
-  if (local_settings_) local_ = std::make_unique<LocalDeformation>(*this, *local_settings_);
+  if (local_settings_) local_ = make_local_deformation(*this, *local_settings_);
   prepared_ = true;
 }
 

@@ -8,7 +8,6 @@
 #include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
 #include <pliant/math/thread_pool.h>
-#include <pliant/part/local_dynamics.h>
 
 namespace pliant {
 

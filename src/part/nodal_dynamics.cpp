@@ -1,4 +1,4 @@
-#include <pliant/part/local_dynamics.h>
+#include <pliant/part/nodal_deformation.h>
 
 #include "node_sums.h"
 
@@ -34,8 +34,8 @@ struct FrameSums {
 };
 
 /// P and 2 Wdot^T d_dot + Wddot^T d of the global parameters, from derivatives of the jets along each.
-void shape_rates(const Part& part, const LocalDeformation& local, const VecX<double>& q_s,
-                 const VecX<double>& q_s_dot, const LocalWorkspace& w, MatMax<double>& P,
+void shape_rates(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
+                 const VecX<double>& q_s_dot, const NodalWorkspace& w, MatMax<double>& P,
                  VecMax<double>& rates) {
   using D = Dual<1>;
   const auto n_s = static_cast<int>(q_s.size());
@@ -86,13 +86,15 @@ void shape_rates(const Part& part, const LocalDeformation& local, const VecX<dou
 
 }  // namespace
 
-void local_positions(const Part& part, const LocalDeformation& local, const VecX<double>& q_s,
-                     const VecX<double>& q_s_dot, LocalWorkspace& w, Counters& counters) {
-  const Eigen::Index n = local.n_nodes();
+void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                                 LocalWorkspace& work, Counters& counters) const {
+  NodalWorkspace& w = of(work);
+  const VecX<double> q_s_dot = v_r.tail(q_s.size());
+  const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
-  w.x.resize(local.n_d());
+  w.x.resize(n_d());
   if (n_s == 0) {
-    if (w.s.rows() != n) w.s = local.mesh().X;
+    if (w.s.rows() != n) w.s = mesh_.X;
     nodes(w.x, n) = w.s + nodes(w.d, n);
     w.u = nodes(w.d_dot, n);
   } else {
@@ -104,11 +106,11 @@ void local_positions(const Part& part, const LocalDeformation& local, const VecX
     const ParameterValues<double> values = part.parameters().expand<double>(q_s, q_s_dot);
     constexpr int kBlock = 8;
     std::array<Jet<Pack>, kBlock> jets;
-    const auto packs = static_cast<int>(local.packs().size());
+    const auto packs = static_cast<int>(packs_.size());
     for (int first = 0; first < packs; first += kBlock) {
       const int count = std::min(kBlock, packs - first);
       JetBatch<Pack> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
-      part.jets(values, local.packs().data() + first, batch);
+      part.jets(values, packs_.data() + first, batch);
       for (int i = 0; i < count; ++i) {
         const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n);
         const Jet<Pack>& jet = jets[static_cast<std::size_t>(i)];
@@ -126,15 +128,17 @@ void local_positions(const Part& part, const LocalDeformation& local, const VecX
     nodes(w.x, n) = w.s + nodes(w.d, n);
     w.u = w.s1 + nodes(w.d_dot, n);
   }
-  const Eigen::Index own = local.n_d() - 3 * n;
+  const Eigen::Index own = n_d() - 3 * n;
   w.x.tail(own) = w.d.tail(own);
 }
 
-void local_masses(const Part& part, const LocalDeformation& local, const VecX<double>& q_s,
-                  const VecX<double>& q_s_dot, LocalWorkspace& w, Counters& counters) {
-  const Eigen::Index n = local.n_nodes();
+void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                              LocalWorkspace& work, Counters& counters) const {
+  NodalWorkspace& w = of(work);
+  const VecX<double> q_s_dot = v_r.tail(q_s.size());
+  const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
-  const double* mass = local.inertia().data();
+  const double* mass = inertia_.data();
   FrameSums sums;
   sums.J.resize(3, n_s);
   sums.x_J.resize(3, n_s);
@@ -195,7 +199,7 @@ void local_masses(const Part& part, const LocalDeformation& local, const VecX<do
     // J x d = d (J cross) : sum m J x d = sum m s x J - sum m x cross J.
     P.block(3, 6, 3, n_s) = sums.s_J - sums.x_J;
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
-    shape_rates(part, local, q_s, q_s_dot, w, P, w.rates);
+    shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
   }
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   const MatMax<double> K = sums.matrix() - P.transpose();
@@ -204,19 +208,20 @@ void local_masses(const Part& part, const LocalDeformation& local, const VecX<do
   ++counters.mass_matrices;
 }
 
-void local_forces(const LocalDeformation& local, const VecX<double>& v_r, const Vec3<double>& g, double nu,
-                  LocalWorkspace& w, ThreadPool* pool) {
-  const Eigen::Index n = local.n_nodes(), n_d = local.n_d();
+void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
+                              ThreadPool* pool) const {
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes(), size = n_d();
   const VecMax<double> v = v_r;
   const FrameMotion frame(v, w, n);
   const Vec3<Pack> gravity = spread(g);
   const bool curved = w.s2.rows() == n;
   Pack square(0.0);
-  w.f.resize(n_d);
-  w.f.tail(n_d - 3 * n).setZero();
+  w.f.resize(size);
+  w.f.tail(size - 3 * n).setZero();
   for_each_four(n, [&](const FourNodes& four) {
     const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.u.data(), n);
-    const Pack m = four.load(local.inertia().data());
+    const Pack m = four.load(inertia_.data());
     const Vec3<Pack> spin = frame.omega.cross(p);
     Vec3<Pack> turn;  // omega x p + 2 u
     for (int r = 0; r < 3; ++r) turn[r] = spin[r] + u[r] + u[r];
@@ -232,41 +237,41 @@ void local_forces(const LocalDeformation& local, const VecX<double>& v_r, const 
     four.store(w.f.data(), n, force);
   });
   w.drag = -nu * sum(square);
-  w.f_d.setZero(n_d);
-  w.buffers.resize(local.energies().size());
+  w.f_d.setZero(size);
+  w.buffers.resize(energies_.size());
   w.damping = 0;
-  for (std::size_t k = 0; k < local.energies().size(); ++k) {
-    const NodalEnergy& energy = *local.energies()[k];
+  for (std::size_t k = 0; k < energies_.size(); ++k) {
+    const NodalEnergy& energy = *energies_[k];
     if (energy.of() == NodalEnergy::Of::displacement)
       energy.add_force(w.d, w.f_d, w.buffers[k], pool);
     else
       energy.add_force(w.x, w.f, w.buffers[k], pool);
   }
-  if (local.beta() > 0) {
+  if (beta() > 0) {
     VecX<double>& damping = w.force;
-    damping.setZero(n_d);
-    for (std::size_t k = 0; k < local.energies().size(); ++k) {
-      const NodalEnergy& energy = *local.energies()[k];
+    damping.setZero(size);
+    for (std::size_t k = 0; k < energies_.size(); ++k) {
+      const NodalEnergy& energy = *energies_[k];
       if (energy.of() == NodalEnergy::Of::displacement)
         energy.add_derivative(w.d, w.d_dot, damping, w.buffers[k], pool);
     }
-    w.damping += local.beta() * damping.dot(w.d_dot);
-    w.f_d += local.beta() * damping;
+    w.damping += beta() * damping.dot(w.d_dot);
+    w.f_d += beta() * damping;
   }
-  if (local.alpha() > 0) {
-    w.damping -= local.alpha() * w.d_dot.dot(local.inertia().cwiseProduct(w.d_dot));
-    w.f_d -= local.alpha() * local.inertia().cwiseProduct(w.d_dot);
+  if (alpha() > 0) {
+    w.damping -= alpha() * w.d_dot.dot(inertia_.cwiseProduct(w.d_dot));
+    w.f_d -= alpha() * inertia_.cwiseProduct(w.d_dot);
   }
 }
 
-void push_nodes(const LocalDeformation& local, const NodeWeights& at, const Vec3<double>& force,
-                LocalWorkspace& w) {
-  auto f = nodes(w.f_d, local.n_nodes());
+void NodalDeformation::push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const {
+  auto f = nodes(of(work).f_d, n_nodes());
   for (std::size_t i = 0; i < at.node.size(); ++i) f.row(at.node[i]) += at.weight[i] * force.transpose();
 }
 
-void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes();
+void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) const {
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(f_r.size()) - 6;
   w.kappa = generalised(w.x.data(), w.f_d.data(), w, n, n_s) - f_r;
   w.kappa = w.solve(w.kappa);
@@ -274,7 +279,7 @@ void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, Local
   VecMax<double> a = generalised(w.s.data(), w.force.data(), w, n, n_s) - w.H0 * w.kappa + w.rates;
   a = w.solve_transposed(a);
   f_r = a;
-  w.d_ddot = local.mobility().cwiseProduct(w.force);
+  w.d_ddot = mobility_.cwiseProduct(w.force);
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const FourNodes& four) {
     Vec3<Pack> d = four.load(w.d_ddot.data(), n);
@@ -289,10 +294,11 @@ void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, Local
   });
 }
 
-Eigen::Matrix<double, 6, 6> local_inertia(const LocalDeformation& local, const LocalWorkspace& w) {
+Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
   FrameSums sums;
-  const Nodes x = nodes(w.x, local.n_nodes());
-  const VecX<double>& m = local.mesh().mass;
+  const Nodes x = nodes(w.x, n_nodes());
+  const VecX<double>& m = mesh_.mass;
   sums.mass = m.sum();
   sums.x = sums.s = x.transpose() * m;
   sums.xs = x.transpose() * m.asDiagonal() * x;
@@ -303,14 +309,16 @@ Eigen::Matrix<double, 6, 6> local_inertia(const LocalDeformation& local, const L
   return sums.matrix();
 }
 
-VecMax<double> frame_share(const LocalDeformation& local, const Nodes& a, const LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes();
-  const Nodes ma = local.mesh().mass.asDiagonal() * a;
+VecMax<double> NodalDeformation::frame_share(const Nodes& a, const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  const Nodes ma = mesh_.mass.asDiagonal() * a;
   return generalised(w.s.data(), ma.data(), w, n, static_cast<int>(w.H0.rows()) - 6);
 }
 
-Nodes frame_velocities(const LocalDeformation& local, const VecMax<double>& v_r, const LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes();
+Nodes NodalDeformation::frame_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
   const FrameMotion frame(v_r, w, n);
   Nodes v(n, 3);
   for_each_four(n, [&](const FourNodes& four) {
@@ -319,18 +327,19 @@ Nodes frame_velocities(const LocalDeformation& local, const VecMax<double>& v_r,
   return v;
 }
 
-Nodes node_velocities(const LocalDeformation& local, const VecMax<double>& v_r, const LocalWorkspace& w) {
-  return frame_velocities(local, v_r, w) + nodes(w.d_dot, local.n_nodes());
+Nodes NodalDeformation::node_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const {
+  return frame_velocities(v_r, work) + nodes(work.d_dot, n_nodes());
 }
 
-LocalMotion local_motion(const LocalDeformation& local, const VecX<double>& v_r, const LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes();
+LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
   const VecMax<double> v = v_r;
   const FrameMotion frame(v, w, n);
   VectorSum P, L, moment;
   Pack twice(0.0);
   for_each_four(n, [&](const FourNodes& four) {
-    const Pack m = four.load(local.inertia().data());
+    const Pack m = four.load(inertia_.data());
     const Vec3<Pack> p = four.load(w.x.data(), n);
     const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.u.data(), n));
     const Vec3<Pack> momentum = times(m, velocity);
@@ -339,12 +348,29 @@ LocalMotion local_motion(const LocalDeformation& local, const VecX<double>& v_r,
     L.add(p.cross(momentum));
     moment.add(times(m, p));
   });
-  const Eigen::Index own = local.n_d() - 3 * n;
-  LocalMotion motion{0.5 * sum(twice), 0, P.total(), L.total(), moment.total()};
-  motion.kinetic += 0.5 * w.d_dot.tail(own).dot(local.inertia().tail(own).cwiseProduct(w.d_dot.tail(own)));
-  for (const auto& energy : local.energies())
-    motion.elastic += energy->energy(energy->of() == NodalEnergy::Of::displacement ? w.d : w.x);
-  return motion;
+  const Eigen::Index own = n_d() - 3 * n;
+  LocalMotion all{0.5 * sum(twice), 0, P.total(), L.total(), moment.total()};
+  all.kinetic += 0.5 * w.d_dot.tail(own).dot(inertia_.tail(own).cwiseProduct(w.d_dot.tail(own)));
+  for (const auto& energy : energies_)
+    all.elastic += energy->energy(energy->of() == NodalEnergy::Of::displacement ? w.d : w.x);
+  return all;
+}
+
+LocalDeformation::Bound NodalDeformation::stiffness_bound(const LocalWorkspace& work) const {
+  Bound bound;
+  for (const auto& energy : energies_) {
+    const bool linear = energy->of() == NodalEnergy::Of::displacement;
+    const double omega2 = energy->frequency_bound(linear ? work.d : of(work).x, inertia_);
+    bound.K += omega2;
+    if (linear) bound.D += beta() * omega2;
+  }
+  return bound;
+}
+
+double NodalDeformation::mobility(const NodeWeights& at) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < at.node.size(); ++k) sum += at.weight[k] * at.weight[k] * mobility_[at.node[k]];
+  return sum;
 }
 
 }  // namespace pliant

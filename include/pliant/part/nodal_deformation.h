@@ -1,0 +1,108 @@
+// Local deformation at the nodes of a mesh, q_d = d at the nodes, in the body frame of the part (design 1.3):
+//   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
+// With all forces F on the nodes, those F_d of them that act on d alone, and what acts on (c, theta, q_s)
+// beside the nodes,
+//   K kappa = sum G^T F_d - f_r,            K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
+//   m y = F - W kappa
+//   K^T a_r = sum W^T y + 2 sum Wdot^T ddot + sum Wddot^T d
+//   d_ddot = y - G a_r
+// with G = [I, -[p]x, J], p = s + d, and W = m G at d = 0. No matrix of mesh size is formed.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/LU>
+
+#include <pliant/part/local_deformation.h>
+#include <pliant/part/part.h>
+
+namespace pliant {
+
+struct NodalWorkspace final : LocalWorkspace {
+  // positions
+  VecX<double> x;  ///< positions p = s + d of the nodes, then the energies' own coordinates
+  Nodes s, u;      ///< reference shape; velocity J q_s_dot + d_dot
+  MatX<double> J;  ///< of all nodes along x, y, z of the first parameter, then of the second
+  Nodes s1, s2;    ///< J q_s_dot, Jdot q_s_dot
+  // mass
+  VecMax<double> scale;                        ///< of K: the diagonal of H0 becomes 1
+  Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale K scale
+  VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
+  // forces, N
+  VecX<double> f, f_d;  ///< on all that nodes do; on d alone, the rest being told in f_r
+  VecMax<double> kappa;
+  // what pushes on v_r and on the shared points do
+  MatX<double> kappa_of, a_of;
+  std::vector<NodalEnergy::Buffer> buffers;
+
+  /// K^-1 b and K^-T b.
+  template <class B>
+  MatX<double> solve(const B& b) const {
+    const MatX<double> scaled = factor.solve(MatX<double>(scale.asDiagonal() * b));
+    return scale.asDiagonal() * scaled;
+  }
+  template <class B>
+  MatX<double> solve_transposed(const B& b) const {
+    const MatX<double> scaled = factor.transpose().solve(MatX<double>(scale.asDiagonal() * b));
+    return scale.asDiagonal() * scaled;
+  }
+};
+
+class NodalDeformation final : public LocalDeformation {
+ public:
+  /// Throws std::invalid_argument when the mesh or an energy cannot be laid.
+  NodalDeformation(const Part& part, const LocalSettings& settings);
+
+  Eigen::Index n_nodes() const { return mesh().X.rows(); }
+  /// Diagonal of the mass matrix of the local coordinates: three a node, and those that energies have of
+  /// their own.
+  const VecX<double>& inertia() const { return inertia_; }
+  /// 1 / inertia.
+  const VecX<double>& mobility() const { return mobility_; }
+  const std::vector<Material<Pack>>& packs() const { return packs_; }
+  const std::vector<std::unique_ptr<NodalEnergy>>& energies() const { return energies_; }
+
+  std::string coordinate_name(Eigen::Index k) const override;
+  const char* unit(Eigen::Index k) const override;
+  std::string description() const override;
+  NodeWeights weights(const Part& part, const Material<double>& m) const override;
+  Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const override;
+  Nodes displacements(const double* q_d) const override;
+  const NodalDeformation* nodal() const override { return this; }
+
+  std::unique_ptr<LocalWorkspace> workspace() const override;
+  void positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, LocalWorkspace& work,
+                 Counters& counters) const override;
+  void masses(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, LocalWorkspace& work,
+              Counters& counters) const override;
+  void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
+              ThreadPool* pool) const override;
+  void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const override;
+  void accelerations(VecX<double>& f_r, LocalWorkspace& work) const override;
+  void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
+  void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
+                Eigen::Ref<VecX<double>> d_dot) const override;
+  Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const override;
+  LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
+  Bound stiffness_bound(const LocalWorkspace& work) const override;
+  double mobility(const NodeWeights& at) const override;
+
+  // Of a workspace that workspace() made.
+
+  static NodalWorkspace& of(LocalWorkspace& work) { return static_cast<NodalWorkspace&>(work); }
+  static const NodalWorkspace& of(const LocalWorkspace& work) {
+    return static_cast<const NodalWorkspace&>(work);
+  }
+  /// sum W^T a over nodes.
+  VecMax<double> frame_share(const Nodes& a, const LocalWorkspace& work) const;
+  /// G v_r of all nodes; and their velocities G v_r + d_dot, v_r having J q_s_dot in it.
+  Nodes frame_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const;
+  Nodes node_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const;
+
+ private:
+  std::vector<Material<Pack>> packs_;
+  VecX<double> inertia_, mobility_;
+  std::vector<std::unique_ptr<NodalEnergy>> energies_;
+};
+
+}  // namespace pliant
