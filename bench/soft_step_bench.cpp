@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include <pliant/part/local_laws.h>
+#include <pliant/part/nodal_deformation.h>
 #include <pliant/pliant.h>
 
 #include "timing.h"
@@ -27,7 +28,7 @@ void measure(int resolution, int threads) {
   euler.step(h);
   const State& state = rk4.state();
   const PartModel& m = rk4.model().parts()[0];
-  const NodalEnergy& membrane = *part.local()->energies()[0];
+  const NodalEnergy& membrane = *part.local()->nodal()->energies()[0];
   const auto triangles = static_cast<double>(part.local()->mesh().triangles.cols());
   const VecX<double> d = state.q.tail(m.n_d());
   VecX<double> f = VecX<double>::Zero(m.n_d());

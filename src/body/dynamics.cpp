@@ -538,15 +538,20 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
   }
 }
 
+void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part,
+                              Workspace<double>& work) const {
+  work.parts.resize(model_->parts().size());
+  const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
+  PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
+  positions<double>(m, q, v, w);
+  masses<double>(m, w);
+}
+
 void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                                Workspace<double>& work) const {
-  work.parts.resize(model_->parts().size());
   for (const int i : parts) {
-    const PartModel& m = model_->parts()[static_cast<std::size_t>(i)];
-    PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
-    positions<double>(m, q, v, w);
-    masses<double>(m, w);
-    take_factor(m, w);
+    evaluate_frame(q, v, i, work);
+    take_factor(model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)]);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <pliant/part/nodal_deformation.h>
@@ -25,7 +26,12 @@ void LocalDeformation::check_start(const Part& part, const Nodes& displacements,
 MatX<double> LocalDeformation::inverse_of(const MatX<double>& A) {
   constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
   const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scale.asDiagonal() * A * scale.asDiagonal());
+  const MatX<double> scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  constexpr double well_conditioned = 1e-8;
+  const Eigen::LLT<MatX<double>> factor(scaled);
+  if (factor.info() == Eigen::Success && factor.rcond() > well_conditioned)
+    return scale.asDiagonal() * factor.solve(MatX<double>(scale.asDiagonal()));
+  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scaled);
   VecX<double> inverse = eigen.eigenvalues();
   for (double& value : inverse) value = value > smallest ? 1 / value : 0;
   const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();

@@ -33,9 +33,52 @@ struct FrameSums {
   }
 };
 
+/// The sums at positions x of nodes, reference shape s.
+FrameSums frame_sums(const double* at_x, const double* at_s, const double* mass, const NodalWorkspace& w,
+                     Eigen::Index n, int n_s) {
+  FrameSums sums;
+  VectorSum mx, ms;
+  OuterSum xs;
+  Pack total(0.0);
+  for_each_four(n, [&](const FourNodes& four) {
+    const Pack m = four.load(mass);
+    const Vec3<Pack> x = four.load(at_x, n), m_s = times(m, four.load(at_s, n));
+    total += m;
+    mx.add(times(m, x));
+    ms.add(m_s);
+    xs.add(x, m_s);
+  });
+  sums.mass = sum(total);
+  sums.x = mx.total();
+  sums.s = ms.total();
+  sums.xs = xs.total();
+  sums.J.resize(3, n_s);
+  sums.x_J.resize(3, n_s);
+  sums.s_J.resize(3, n_s);
+  sums.JJ.resize(n_s, n_s);
+  for (int k = 0; k < n_s; ++k) {
+    VectorSum J;
+    OuterSum xJ, sJ;
+    std::array<Pack, kMaxGlobal> JJ;
+    JJ.fill(Pack(0.0));
+    for_each_four(n, [&](const FourNodes& four) {
+      const Vec3<Pack> mJ = times(four.load(mass), four.load(column(w, n, k), n));
+      J.add(mJ);
+      xJ.add(four.load(at_x, n), mJ);
+      sJ.add(four.load(at_s, n), mJ);
+      for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += mJ.dot(four.load(column(w, n, j), n));
+    });
+    sums.J.col(k) = J.total();
+    sums.x_J.col(k) = axial(xJ.total());
+    sums.s_J.col(k) = axial(sJ.total());
+    for (int j = 0; j <= k; ++j) sums.JJ(j, k) = sums.JJ(k, j) = sum(JJ[static_cast<std::size_t>(j)]);
+  }
+  return sums;
+}
+
 /// P and 2 Wdot^T d_dot + Wddot^T d of the global parameters, from derivatives of the jets along each.
 void shape_rates(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
-                 const VecX<double>& q_s_dot, const NodalWorkspace& w, MatMax<double>& P,
+                 const VecMax<double>& q_s_dot, const NodalWorkspace& w, MatMax<double>& P,
                  VecMax<double>& rates) {
   using D = Dual<1>;
   const auto n_s = static_cast<int>(q_s.size());
@@ -89,21 +132,20 @@ void shape_rates(const Part& part, const NodalDeformation& local, const VecX<dou
 void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
                                  LocalWorkspace& work, Counters& counters) const {
   NodalWorkspace& w = of(work);
-  const VecX<double> q_s_dot = v_r.tail(q_s.size());
+  const VecMax<double> q_s_dot = v_r.tail(q_s.size());
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
   w.x.resize(n_d());
   if (n_s == 0) {
     if (w.s.rows() != n) w.s = mesh_.X;
     nodes(w.x, n) = w.s + nodes(w.d, n);
-    w.u = nodes(w.d_dot, n);
   } else {
     const bool moving = any(q_s_dot);
     w.s.resize(n, 3);
     w.J.resize(3 * n, n_s);
     w.s1.setZero(n, 3);
     w.s2.setZero(n, 3);
-    const ParameterValues<double> values = part.parameters().expand<double>(q_s, q_s_dot);
+    const ParameterValues<double> values = part.parameters().expand<double>(VecMax<double>(q_s), q_s_dot);
     constexpr int kBlock = 8;
     std::array<Jet<Pack>, kBlock> jets;
     const auto packs = static_cast<int>(packs_.size());
@@ -135,54 +177,13 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
 void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
                               LocalWorkspace& work, Counters& counters) const {
   NodalWorkspace& w = of(work);
-  const VecX<double> q_s_dot = v_r.tail(q_s.size());
+  const VecMax<double> q_s_dot = v_r.tail(q_s.size());
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
   const double* mass = inertia_.data();
-  FrameSums sums;
-  sums.J.resize(3, n_s);
-  sums.x_J.resize(3, n_s);
-  sums.s_J.resize(3, n_s);
-  sums.JJ.resize(n_s, n_s);
-  FrameSums still = sums;  // the same with x = s
-  VectorSum mx, ms;
-  OuterSum xs, ss;
-  Pack total(0.0);
-  for_each_four(n, [&](const FourNodes& four) {
-    const Pack m = four.load(mass);
-    const Vec3<Pack> x = four.load(w.x.data(), n), s = four.load(w.s.data(), n), m_s = times(m, s);
-    total += m;
-    mx.add(times(m, x));
-    ms.add(m_s);
-    xs.add(x, m_s);
-    ss.add(s, m_s);
-  });
-  for (int k = 0; k < n_s; ++k) {
-    VectorSum J;
-    OuterSum xJ, sJ;
-    std::array<Pack, kMaxGlobal> JJ;
-    JJ.fill(Pack(0.0));
-    for_each_four(n, [&](const FourNodes& four) {
-      const Vec3<Pack> mJ = times(four.load(mass), four.load(column(w, n, k), n));
-      J.add(mJ);
-      xJ.add(four.load(w.x.data(), n), mJ);
-      sJ.add(four.load(w.s.data(), n), mJ);
-      for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += mJ.dot(four.load(column(w, n, j), n));
-    });
-    sums.J.col(k) = J.total();
-    sums.x_J.col(k) = axial(xJ.total());
-    sums.s_J.col(k) = axial(sJ.total());
-    for (int j = 0; j <= k; ++j) sums.JJ(j, k) = sums.JJ(k, j) = sum(JJ[static_cast<std::size_t>(j)]);
-  }
-  sums.mass = still.mass = sum(total);
-  sums.x = w.moment = mx.total();
-  sums.s = still.x = still.s = ms.total();
-  sums.xs = xs.total();
-  still.xs = ss.total();
-  still.J = sums.J;
-  still.x_J = still.s_J = sums.s_J;
-  still.JJ = sums.JJ;
-  w.H0 = still.matrix();
+  const FrameSums sums = frame_sums(w.x.data(), w.s.data(), mass, w, n, n_s);
+  w.moment = sums.x;
+  if (n_s > 0 || w.H0.rows() == 0) w.H0 = frame_sums(w.s.data(), w.s.data(), mass, w, n, n_s).matrix();
 
   w.rates.setZero(6 + n_s);
   MatMax<double> P = MatMax<double>::Zero(6 + n_s, 6 + n_s);
@@ -220,12 +221,12 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
   w.f.resize(size);
   w.f.tail(size - 3 * n).setZero();
   for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.u.data(), n);
+    const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.rates_of_p(n), n);
     const Pack m = four.load(inertia_.data());
-    const Vec3<Pack> spin = frame.omega.cross(p);
+    const Vec3<Pack> spin = cross(frame.omega, p);
     Vec3<Pack> turn;  // omega x p + 2 u
     for (int r = 0; r < 3; ++r) turn[r] = spin[r] + u[r] + u[r];
-    Vec3<Pack> b = frame.omega.cross(turn);
+    Vec3<Pack> b = cross(frame.omega, turn);
     if (curved) b = plus(b, four.load(w.s2.data(), n));
     Vec3<Pack> force;
     for (int r = 0; r < 3; ++r) force[r] = m * (gravity[r] - b[r]);
@@ -273,62 +274,102 @@ void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) co
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(f_r.size()) - 6;
-  w.kappa = generalised(w.x.data(), w.f_d.data(), w, n, n_s) - f_r;
-  w.kappa = w.solve(w.kappa);
-  w.force = w.f + w.f_d;
-  VecMax<double> a = generalised(w.s.data(), w.force.data(), w, n, n_s) - w.H0 * w.kappa + w.rates;
-  a = w.solve_transposed(a);
+  w.force.resize(n_d());
+  w.d_ddot.resize(n_d());
+  // sum G^T F_d and sum W^T y of all forces, y = F / m, in one pass over the nodes.
+  VecMax<double> of_d(6 + n_s), of_all(6 + n_s);
+  VectorSum f_d, f, torque_d, torque;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> on_d = four.load(w.f_d.data(), n), all = plus(on_d, four.load(w.f.data(), n));
+    f_d.add(on_d);
+    f.add(all);
+    torque_d.add(cross(four.load(w.x.data(), n), on_d));
+    torque.add(cross(four.load(w.s.data(), n), all));
+    four.store(w.force.data(), n, all);
+  });
+  of_d.head<3>() = f_d.total();
+  of_d.segment<3>(3) = torque_d.total();
+  of_all.head<3>() = f.total();
+  of_all.segment<3>(3) = torque.total();
+  for (int k = 0; k < n_s; ++k) {
+    of_d[6 + k] = along_column(w.f_d.data(), w, n, k);
+    of_all[6 + k] = along_column(w.force.data(), w, n, k);
+  }
+  w.kappa = w.solve(of_d - f_r);
+  const VecMax<double> a = w.solve_transposed(of_all - w.H0 * w.kappa + w.rates);
   f_r = a;
-  w.d_ddot = mobility_.cwiseProduct(w.force);
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const FourNodes& four) {
-    Vec3<Pack> d = four.load(w.d_ddot.data(), n);
-    const Vec3<Pack> p = four.load(w.x.data(), n), s = four.load(w.s.data(), n);
-    const Vec3<Pack> by_kappa = pull.rigid(s), by_frame = frame.rigid(p);
+    const Pack mobility = four.load(mobility_.data());
+    Vec3<Pack> d = times(mobility, four.load(w.force.data(), n));
+    const Vec3<Pack> by_kappa = pull.rigid(four.load(w.s.data(), n)),
+                     by_frame = frame.rigid(four.load(w.x.data(), n));
     for (int r = 0; r < 3; ++r) d[r] -= by_kappa[r] + by_frame[r];
     if (n_s > 0) {
-      const Vec3<Pack> k = pull.shape(four), f = frame.shape(four);
-      for (int r = 0; r < 3; ++r) d[r] -= k[r] + f[r];
+      const Vec3<Pack> k = pull.shape(four), shape = frame.shape(four);
+      for (int r = 0; r < 3; ++r) d[r] -= k[r] + shape[r];
     }
     four.store(w.d_ddot.data(), n, d);
   });
+  const Eigen::Index own = n_d() - 3 * n;
+  w.force.tail(own) = w.f.tail(own) + w.f_d.tail(own);
+  w.d_ddot.tail(own) = mobility_.tail(own).cwiseProduct(w.force.tail(own));
 }
 
 Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const LocalWorkspace& work) const {
   const NodalWorkspace& w = of(work);
-  FrameSums sums;
-  const Nodes x = nodes(w.x, n_nodes());
-  const VecX<double>& m = mesh_.mass;
-  sums.mass = m.sum();
-  sums.x = sums.s = x.transpose() * m;
-  sums.xs = x.transpose() * m.asDiagonal() * x;
-  sums.J.resize(3, 0);
-  sums.x_J.resize(3, 0);
-  sums.s_J.resize(3, 0);
-  sums.JJ.resize(0, 0);
-  return sums.matrix();
+  return frame_sums(w.x.data(), w.x.data(), inertia_.data(), w, n_nodes(), 0).matrix();
 }
 
-VecMax<double> NodalDeformation::frame_share(const Nodes& a, const LocalWorkspace& work) const {
+VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
+                                             const LocalWorkspace& work) const {
   const NodalWorkspace& w = of(work);
-  const Eigen::Index n = n_nodes();
-  const Nodes ma = mesh_.mass.asDiagonal() * a;
-  return generalised(w.s.data(), ma.data(), w, n, static_cast<int>(w.H0.rows()) - 6);
+  const Eigen::Index n = n_nodes(), n_s = w.H0.rows() - 6;
+  VecMax<double> share(6 + n_s);
+  VectorSum sum_a, s_a;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> ma = times(four.load(inertia_.data()), four.load(a.data(), n));
+    sum_a.add(ma);
+    s_a.add(cross(four.load(w.s.data(), n), ma));
+  });
+  share.head<3>() = sum_a.total();
+  share.segment<3>(3) = s_a.total();
+  for (int k = 0; k < n_s; ++k) {
+    Pack along(0.0);
+    for_each_four(n, [&](const FourNodes& four) {
+      along += four.load(inertia_.data()) * four.load(column(w, n, k), n).dot(four.load(a.data(), n));
+    });
+    share[6 + k] = sum(along);
+  }
+  return share;
 }
 
-Nodes NodalDeformation::frame_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const {
+void NodalDeformation::add_frame_velocities(const VecMax<double>& v_r, double sign,
+                                            const LocalWorkspace& work, Eigen::Ref<Nodes> v) const {
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
   const FrameMotion frame(v_r, w, n);
-  Nodes v(n, 3);
   for_each_four(n, [&](const FourNodes& four) {
-    four.store(v.data(), n, plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four)));
+    const Vec3<Pack> by_frame = plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four));
+    four.store(v.data(), n, plus(four.load(v.data(), n), times(Pack(sign), by_frame)));
   });
-  return v;
 }
 
-Nodes NodalDeformation::node_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const {
-  return frame_velocities(v_r, work) + nodes(work.d_dot, n_nodes());
+void NodalDeformation::move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p,
+                                  Nodes& u) const {
+  const Eigen::Index n = n_nodes();
+  const Vec3<Pack> from = spread(-shift),
+                   row[3] = {spread(turn.col(0)), spread(turn.col(1)), spread(turn.col(2))};
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> x = plus(four.load(p.data(), n), from), v = four.load(u.data(), n);
+    Vec3<Pack> x_now, v_now;
+    for (int r = 0; r < 3; ++r) {
+      x_now[r] = row[r].dot(x);
+      v_now[r] = row[r].dot(v);
+    }
+    four.store(p.data(), n, x_now);
+    four.store(u.data(), n, v_now);
+  });
 }
 
 LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspace& work) const {
@@ -341,11 +382,11 @@ LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspa
   for_each_four(n, [&](const FourNodes& four) {
     const Pack m = four.load(inertia_.data());
     const Vec3<Pack> p = four.load(w.x.data(), n);
-    const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.u.data(), n));
+    const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.rates_of_p(n), n));
     const Vec3<Pack> momentum = times(m, velocity);
     twice += momentum.dot(velocity);
     P.add(momentum);
-    L.add(p.cross(momentum));
+    L.add(cross(p, momentum));
     moment.add(times(m, p));
   });
   const Eigen::Index own = n_d() - 3 * n;

@@ -110,7 +110,8 @@ TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns 
       simulation.dynamics().accelerations(0, state.q, state.v, state, work);
       const PartWorkspace<double>& w = work.parts[0];
       const NodalDeformation& local = *shell.local()->nodal();
-      const Nodes a = local.frame_velocities(w.a_r, *w.local) + nodes(w.local->d_ddot, local.n_nodes());
+      Nodes a = nodes(w.local->d_ddot, local.n_nodes());
+      local.add_frame_velocities(w.a_r, 1, *w.local, a);
       Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
       for (Eigen::Index i = 0; i < a.rows(); ++i) {
         const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
@@ -144,7 +145,9 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
       const PartWorkspace<double>& w = work.parts[0];
       const NodalDeformation& local = *part.local()->nodal();
       const Eigen::Index n = local.n_nodes();
-      const Nodes v = local.node_velocities(w.v_r, *w.local) * w.R.transpose();
+      Nodes v = nodes(w.local->d_dot, local.n_nodes());
+      local.add_frame_velocities(w.v_r, 1, *w.local, v);
+      v *= w.R.transpose();
       const Nodes x =
           (nodes(NodalDeformation::of(*w.local).x, n) * w.R.transpose()).rowwise() + w.c.transpose();
       return std::make_pair(x, v);

@@ -127,6 +127,8 @@ class Dynamics {
   /// Frames, points, mass matrices and their factors of some parts.
   void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
+  /// Frame, points and mass matrix of a part, without its factor.
+  void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
   /// Energy of some parts and of the springs at them, J. work: any.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;

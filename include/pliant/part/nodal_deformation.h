@@ -21,7 +21,8 @@ namespace pliant {
 struct NodalWorkspace final : LocalWorkspace {
   // positions
   VecX<double> x;  ///< positions p = s + d of the nodes, then the energies' own coordinates
-  Nodes s, u;      ///< reference shape; velocity J q_s_dot + d_dot
+  Nodes s;         ///< reference shape
+  Nodes u;         ///< velocity J q_s_dot + d_dot; none where no parameter is dynamic, see rates_of_p()
   MatX<double> J;  ///< of all nodes along x, y, z of the first parameter, then of the second
   Nodes s1, s2;    ///< J q_s_dot, Jdot q_s_dot
   // mass
@@ -34,18 +35,27 @@ struct NodalWorkspace final : LocalWorkspace {
   // what pushes on v_r and on the shared points do
   MatX<double> kappa_of, a_of;
   std::vector<NodalEnergy::Buffer> buffers;
+  Nodes p_kept, u_kept;  ///< positions and velocities that the nodes keep while their frame is found
 
-  /// K^-1 b and K^-T b.
+  /// J q_s_dot + d_dot of n nodes.
+  const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
+  /// K^-1 b and K^-T b, with as many columns as b.
   template <class B>
-  MatX<double> solve(const B& b) const {
-    const MatX<double> scaled = factor.solve(MatX<double>(scale.asDiagonal() * b));
-    return scale.asDiagonal() * scaled;
+  auto solve(const B& b) const {
+    Solution<B> y = scale.asDiagonal() * b;
+    y = factor.solve(y).eval();
+    return Solution<B>(scale.asDiagonal() * y);
   }
   template <class B>
-  MatX<double> solve_transposed(const B& b) const {
-    const MatX<double> scaled = factor.transpose().solve(MatX<double>(scale.asDiagonal() * b));
-    return scale.asDiagonal() * scaled;
+  auto solve_transposed(const B& b) const {
+    Solution<B> y = scale.asDiagonal() * b;
+    y = factor.transpose().solve(y).eval();
+    return Solution<B>(scale.asDiagonal() * y);
   }
+
+ private:
+  template <class B>
+  using Solution = std::conditional_t<B::ColsAtCompileTime == 1, VecMax<double>, MatX<double>>;
 };
 
 class NodalDeformation final : public LocalDeformation {
@@ -94,10 +104,13 @@ class NodalDeformation final : public LocalDeformation {
     return static_cast<const NodalWorkspace&>(work);
   }
   /// sum W^T a over nodes.
-  VecMax<double> frame_share(const Nodes& a, const LocalWorkspace& work) const;
-  /// G v_r of all nodes; and their velocities G v_r + d_dot, v_r having J q_s_dot in it.
-  Nodes frame_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const;
-  Nodes node_velocities(const VecMax<double>& v_r, const LocalWorkspace& work) const;
+  VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
+  /// v += sign G v_r of all nodes.
+  void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
+                            Eigen::Ref<Nodes> v) const;
+  /// Places and velocities of all nodes as a frame sees them whose origin is shifted and which is turned,
+  /// both as the frame before saw it: p <- turn^T (p - shift), u <- turn^T u.
+  void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:
   std::vector<Material<Pack>> packs_;
