@@ -33,13 +33,8 @@ Model::Model(MultiBody& body) : body_(&body) {
     n_v_ += part->n_v();
     n_limits_ += m.n_s;
 
-    // Below this a diagonal entry of M counts as no inertia: rounding noise of a body of this mass and size.
-    const double mass = part->total_mass(), size = part->size();
     m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
-    for (int k = 0; k < m.n_s; ++k) {
-      const Parameter& p = part->parameters().moving(k);
-      m.inertia_floor[6 + k] = 1e-24 * mass * (p.spec->quantity == Quantity::length ? 1.0 : size * size);
-    }
+    for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part->inertia_floor(k);
     if (part->rigid()) {
       m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
       for (int k = 0; k < 6; ++k) {

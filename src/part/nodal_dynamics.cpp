@@ -202,8 +202,17 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
     shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
   }
+  MatMax<double> K = sums.matrix() - P.transpose();
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
-  const MatMax<double> K = sums.matrix() - P.transpose();
+  w.held.reset();
+  for (int k = 0; k < n_s; ++k) {
+    if (w.H0(6 + k, 6 + k) > part.inertia_floor(k)) continue;
+    w.held.set(static_cast<std::size_t>(6 + k));
+    K.row(6 + k).setZero();
+    K.col(6 + k).setZero();
+    K(6 + k, 6 + k) = w.scale[6 + k] = 1;
+    w.rates[6 + k] = 0;
+  }
   w.factor.compute(w.scale.asDiagonal() * K * w.scale.asDiagonal());
   w.condition = 1 / w.factor.rcond();
   ++counters.mass_matrices;

@@ -306,6 +306,12 @@ void Part::prepare() {
   prepared_ = true;
 }
 
+double Part::inertia_floor(int k) const {
+  constexpr double part_of_mass = 1e-24;
+  const bool length = parameters_.moving(k).spec->quantity == Quantity::length;
+  return part_of_mass * total_mass() * (length ? 1.0 : size_ * size_);
+}
+
 Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,
                          const ParameterValues<double>& values) const {
   Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(at.size()));

@@ -52,10 +52,12 @@ struct PartWorkspace {
   }
   /// Whether a velocity has no inertia right now, and is held.
   bool held(int k) const {
-    return !local && (rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k));
+    if (local) return local->held.test(static_cast<std::size_t>(k));
+    return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k);
   }
   bool any_held() const {
-    return !local && (rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held());
+    if (local) return local->held.any();
+    return rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held();
   }
 };
 

@@ -6,6 +6,7 @@
 // Material points see d through nodes: d = sum weight_i d_i, d_i the values that at_nodes() makes of q_d.
 #pragma once
 
+#include <bitset>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -53,9 +54,11 @@ struct LocalSettings {
 struct LocalWorkspace {
   virtual ~LocalWorkspace() = default;
 
-  VecX<double> d, d_dot;         ///< local coordinates and their rates
-  MatX<double> H0;               ///< M over (c, theta, q_s) at d = 0
-  Vec3<double> moment;           ///< sum m p
+  VecX<double> d, d_dot;  ///< local coordinates and their rates
+  MatX<double> H0;        ///< M over (c, theta, q_s) at d = 0
+  Vec3<double> moment;    ///< sum m p
+  /// Of (c, theta, q_s), those that move nothing right now; they have no acceleration.
+  std::bitset<kMaxVelocities> held;
   double condition = 1;          ///< of what tells (c, theta, q_s) and d apart; 1 at best
   double damping = 0, drag = 0;  ///< powers of the local damping, and of the drag, W
   VecX<double> force;            ///< on the local coordinates
