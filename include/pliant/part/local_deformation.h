@@ -3,6 +3,7 @@
 // reference conditions W^T d = 0 take that out (design 1.3). This is the face of every choice of S; one call
 // handles a whole part:
 //   nodal_deformation.h   d at the nodes of a mesh
+//   modal_deformation.h   d = sum Phi_j q_j of global modes
 // Material points see d through nodes: d = sum weight_i d_i, d_i the values that at_nodes() makes of q_d.
 #pragma once
 
@@ -39,6 +40,12 @@ struct LocalLaw {
 
 /// How a part is to deform locally.
 struct LocalSettings {
+  /// What S is made of: displacements of the nodes of a mesh; displacement polynomials over the body of a
+  /// solid; the lowest modes of a mesh.
+  enum class Basis { nodes, polynomial, modes };
+  Basis basis = Basis::nodes;
+  int degree = 4;      ///< of the polynomials, 1 to 10
+  int modes = 20;      ///< how many
   int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
   int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes
   using Law = LocalLaw;
@@ -63,6 +70,11 @@ struct LocalWorkspace {
   VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
   /// M^-1 as joints see it, see compliance(), and its inverse where no points hold each other.
   MatX<double> A, A_inverse;
+};
+
+/// q_j_ddot = -omega_j^2 q_j - D_j q_j_dot where nothing else acts on local coordinates.
+struct Oscillators {
+  VecX<double> omega2, damping;  ///< 1/s^2, 1/s
 };
 
 /// Energy of the motion and of the elasticity, J; momentum and angular momentum about the frame's origin,
@@ -99,6 +111,8 @@ class LocalDeformation {
   virtual Nodes displacements(const double* q_d) const = 0;
   /// The deformation by nodes, if it is one.
   virtual const NodalDeformation* nodal() const { return nullptr; }
+  /// What its coordinates are by themselves, where its elasticity is diagonal.
+  virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, stage after stage, body frame. v_r = (R^T c_dot, omega, q_s_dot). Each takes a workspace
   // that workspace() made; d and d_dot are the caller's to set.
