@@ -7,6 +7,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/QR>
+
+#include "mode_conditions.h"
 
 namespace pliant {
 
@@ -43,16 +46,21 @@ ModalDeformation::ModalDeformation(const Part& part, const LocalSettings& settin
         four[i] = basis_.points[std::min(first + i, basis_.points.size() - 1)];
       packs_.push_back(gather(four.data()));
     }
-  auto projected = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of) -> VecX<double> {
-    if (!of) return VecX<double>::Zero(n_modes());
+  // What is no sum of modes goes to the frame and the parameters, as far as they can have it.
+  const MatX<double> G = rest_frame(part, basis_);
+  auto take = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of, VecX<double>& on_modes,
+                  VecX<double>& on_frame) {
+    on_modes.setZero(n_modes());
+    if (!of) return;
     Nodes values(basis_.points_at_rest.rows(), 3);
     for (Eigen::Index k = 0; k < values.rows(); ++k)
       values.row(k) = of(basis_.points_at_rest.row(k).transpose()).transpose();
-    const Nodes force = basis_.mass.asDiagonal() * (basis_.project * values);
-    return basis_.B.transpose() * force.reshaped();
+    const VecX<double> d = Nodes(basis_.project * values).reshaped(), m = basis_.mass.replicate(3, 1);
+    on_modes = basis_.B.transpose() * m.cwiseProduct(d);
+    on_frame = (m.cwiseSqrt().asDiagonal() * G).colPivHouseholderQr().solve(m.cwiseSqrt().cwiseProduct(d));
   };
-  initial_ = projected(settings.displacement);
-  initial_rate_ = projected(settings.velocity);
+  take(settings.displacement, initial_, initial_frame_);
+  take(settings.velocity, initial_rate_, initial_frame_rate_);
   check_start(part, displacements(initial_.data()), initial_rate_);
   if (part.n_s() == 0) {
     basis_.points.clear();

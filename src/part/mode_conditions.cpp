@@ -9,11 +9,19 @@
 
 namespace pliant {
 
-MatX<double> rest_jacobian(const Part& part, const ModalBasis& basis) {
+MatX<double> rest_frame(const Part& part, const ModalBasis& basis) {
   const int n_s = part.n_s();
+  const Eigen::Index n = basis.mass.size();
   const auto n_points = static_cast<Eigen::Index>(basis.points.size());
-  MatX<double> J(3 * basis.mass.size(), n_s);
-  if (n_s == 0) return J;
+  MatX<double> G = MatX<double>::Zero(3 * n, 6 + n_s);
+  const VecX<double> one = basis.project.rowwise().sum();
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    G.col(i).segment(i * n, n) = one;
+    G.col(3 + i).segment(k * n, n) = basis.X.col(j);  // e_i x X
+    G.col(3 + i).segment(j * n, n) = -basis.X.col(k);
+  }
+  if (n_s == 0) return G;
   VecMax<double> q_s(n_s);
   for (int k = 0; k < n_s; ++k) q_s[k] = part.parameters().moving(k).rest_value();
   std::vector<PointJet<double>> jets;
@@ -23,24 +31,16 @@ MatX<double> rest_jacobian(const Part& part, const ModalBasis& basis) {
     Nodes values(n_points, 3);
     for (Eigen::Index i = 0; i < n_points; ++i)
       values.row(i) = jets[static_cast<std::size_t>(i)].J.col(k).transpose();
-    J.col(k) = Nodes(basis.project * values).reshaped();
+    G.col(6 + k) = Nodes(basis.project * values).reshaped();
   }
-  return J;
+  return G;
 }
 
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
   constexpr double dependent = 1e-9;
   const Eigen::Index n = basis.mass.size();
   const double mass = basis.mass[0];
-  MatX<double> W = MatX<double>::Zero(3 * n, 6 + part.n_s());
-  const VecX<double> one = basis.project.rowwise().sum();
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    W.col(i).segment(i * n, n) = one;
-    W.col(3 + i).segment(k * n, n) = basis.X.col(j);  // e_i x X
-    W.col(3 + i).segment(j * n, n) = -basis.X.col(k);
-  }
-  W.rightCols(part.n_s()) = rest_jacobian(part, basis);
+  MatX<double> W = rest_frame(part, basis);
   for (Eigen::Index c = 0; c < W.cols(); ++c)
     if (W.col(c).norm() > 0) W.col(c).normalize();
   Eigen::ColPivHouseholderQR<MatX<double>> qr(W);

@@ -5,8 +5,8 @@
 
 namespace pliant {
 
-/// Coefficients of J of the dynamic parameters at the rest shape: 3N x n_s.
-MatX<double> rest_jacobian(const Part& part, const ModalBasis& basis);
+/// G0 = [I, -[X]x, J] of the spectral nodes at the rest shape: 3N x (6 + n_s).
+MatX<double> rest_frame(const Part& part, const ModalBasis& basis);
 
 /// B and omega2 of a basis whose fields all carry the same mass and span the constant and X: all modes of the
 /// stiffness K (3N x 3N, N/m) under W^T d = 0.

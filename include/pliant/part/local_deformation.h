@@ -95,6 +95,10 @@ class LocalDeformation {
   /// Local coordinates and their rates at time 0.
   const VecX<double>& initial() const { return initial_; }
   const VecX<double>& initial_rate() const { return initial_rate_; }
+  /// Changes of (c, theta, q_s) at time 0 and of their rates, body frame, by displacements that the local
+  /// coordinates cannot tell; empty: none.
+  const VecX<double>& initial_frame() const { return initial_frame_; }
+  const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
   /// "d[17].x": the name of a local coordinate, and its unit.
@@ -151,7 +155,7 @@ class LocalDeformation {
   LocalDeformation(double alpha, double beta) : alpha_(alpha), beta_(beta) {}
 
   LocalMesh mesh_;
-  VecX<double> initial_, initial_rate_;
+  VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
   /// Of the A of compliance(), whose rows depend on each other where points lie close together.
   static MatX<double> inverse_of(const MatX<double>& A);
