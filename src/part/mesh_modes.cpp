@@ -181,8 +181,8 @@ ModalBasis lay_mesh_modes(const Part& part, const LocalSettings& settings) {
   if (3 * n_nodes > kMostCoordinates || numbers > kMostNumbers)
     throw std::invalid_argument(
         of + std::to_string(settings.modes) + " modes of a mesh of " + std::to_string(n_nodes) +
-        " nodes are too much to be told; expected " + std::to_string(kMostCoordinates / 3) +
-        " nodes at most, and a product below " + std::to_string(static_cast<long>(kMostNumbers / 3)));
+        " nodes are too much to be told; expected at most " + std::to_string(kMostCoordinates / 3) +
+        " nodes, and nodes times modes below " + std::to_string(static_cast<long>(kMostNumbers / 3)));
   const MeshElasticity elasticity = lay_elasticity(of, *mesh, settings);
   const MatX<double> Q = conditions(part, *mesh, elasticity.root);
   const Eigen::Index left = elasticity.root.size() - Q.cols();
