@@ -262,6 +262,25 @@ void Model::lay_couplings(Island& island, const SidesOfParts& sides_of) {
       }
 }
 
+namespace {
+/// What displacements at time 0 do to the frame and the parameters of a part.
+void displace_frame(const PartModel& m, State& state) {
+  const Mat3<double> R = m.part->R0().toRotationMatrix();
+  if (const VecX<double>& rate = m.local->initial_frame_rate(); rate.size() > 0) {
+    state.v.segment<3>(m.v0) += R * rate.head<3>();
+    state.v.segment(m.v0 + 3, 3 + m.n_s) += rate.tail(3 + m.n_s);
+  }
+  if (const VecX<double>& change = m.local->initial_frame(); change.size() > 0) {
+    const Vec3<double> turn = change.segment<3>(3);
+    const Eigen::Quaterniond now =
+        m.part->R0() * Eigen::Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()));
+    state.q.segment<3>(m.q0) += R * change.head<3>();
+    state.q.segment<4>(m.q0 + 3) << now.w(), now.x(), now.y(), now.z();
+    state.q.segment(m.q0 + 7, m.n_s) += change.tail(m.n_s);
+  }
+}
+}  // namespace
+
 State Model::initial_state() const {
   State state;
   state.q.setZero(n_q_);
@@ -284,6 +303,7 @@ State Model::initial_state() const {
     if (m.local == nullptr) continue;
     state.q.segment(m.q0 + 7 + m.n_s, m.n_d()) = m.local->initial();
     state.v.segment(m.v0 + 6 + m.n_s, m.n_d()) = m.local->initial_rate();
+    displace_frame(m, state);
   }
   note_limits(state);
   return state;

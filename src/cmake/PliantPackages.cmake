@@ -36,6 +36,12 @@ pliant_package(Eigen VERSION ${Eigen3_VERSION} TARGETS Eigen3::Eigen CLIENT "Eig
 find_package(Threads REQUIRED)
 pliant_package(Threads VERSION system TARGETS Threads::Threads CLIENT "Threads")
 
+# Header-only, and private to the modes of meshes: clients do not see it.
+find_package(spectra QUIET CONFIG PATHS /usr/share/spectra/cmake)
+set(Spectra_FOUND ${spectra_FOUND})
+pliant_require(Spectra_FOUND libspectra-dev "")
+pliant_package(Spectra VERSION "${spectra_VERSION}" TARGETS Spectra::Spectra)
+
 if(PLIANT_SUITESPARSE)
   find_package(CHOLMOD QUIET MODULE)
   pliant_require(CHOLMOD_FOUND libsuitesparse-dev PLIANT_SUITESPARSE)

@@ -16,6 +16,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   v_sum_.setZero(state.v.size());
   q_ = state.q;
   v_ = state.v;
+  free_.prepare(dynamics.model(), 0.5 * h);
   constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
   for (int stage = 0; stage < 4; ++stage) {
     dynamics.accelerations(t + node[stage] * h, q_, v_, state, work,
@@ -23,10 +24,17 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
     ++counters.evaluations;
     hold_inertialess(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);
+    free_.take_off(q_, v_, work.v_dot);
+    free_.take_off(q_dot_);
     q_sum_ += weight[stage] * q_dot_;
     v_sum_ += weight[stage] * work.v_dot;
     work_sum += weight[stage] * work.power;
     if (stage == 3) break;
+    if (!free_.empty() && stage != 1) {  // on to the next node
+      free_.move(state.q, state.v);
+      free_.move(q_sum_, v_sum_);
+      free_.move(q_dot_, work.v_dot);
+    }
     q_ = state.q + node[stage + 1] * h * q_dot_;
     v_ = state.v + node[stage + 1] * h * work.v_dot;
   }

@@ -12,11 +12,20 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   const double h = state.h;
   dynamics.accelerations(state.time(), state.q, state.v, state, work);
   ++counters.evaluations;
+  free_.prepare(dynamics.model(), h);
+  free_.take_off(state.q, state.v, work.v_dot);
   state.v += h * work.v_dot;
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
   stop_ahead(dynamics, work, state, h, q_end_, ahead_, counters);
-  advance_coordinates(dynamics.model(), state.q, state.v, h);
+  for (const PartModel& m : dynamics.model().parts()) {
+    if (m.q0 < 0) continue;
+    if (oscillates_freely(m))
+      advance_part(m, state.q, share_of(m, state.v), h);
+    else
+      advance_whole_part(m, state.q, state.v, h);
+  }
+  free_.move(state.q, state.v);
   settle_frames(dynamics, state.time() + h, state, work);
   settle_on_limits(dynamics.model(), state);
   settle_joints(dynamics, state.time() + h, state, work, counters);

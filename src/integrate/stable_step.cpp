@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <pliant/integrate/free_oscillation.h>
 #include <pliant/integrate/simulation.h>
 
 #include "fastest_sway.h"
@@ -88,8 +89,15 @@ double stable_step_of(const Integrator& method, const Linear& system) {
 LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w) {
   const PartModel& m = model.parts()[i];
   const Part& part = *m.part;
-  LocalDeformation::Bound bound = m.local->stiffness_bound(*w.local);
-  bound.D += m.local->alpha() + m.drag;
+  LocalDeformation::Bound bound;
+  const bool pulled = std::any_of(model.springs().begin(), model.springs().end(), [&](const SpringModel& s) {
+    return s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i);
+  });
+  if (!oscillates_freely(m) || pulled) {
+    bound = m.local->stiffness_bound(*w.local);
+    bound.D += m.local->alpha();
+  }
+  bound.D += m.drag;
   if (m.n_s > 0) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
     const double omega2 = (compliance * part.K_s()).eigenvalues().cwiseAbs().maxCoeff();

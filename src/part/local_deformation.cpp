@@ -6,12 +6,20 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <pliant/part/modal_deformation.h>
 #include <pliant/part/nodal_deformation.h>
 
 namespace pliant {
 
 std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings) {
-  return std::make_unique<NodalDeformation>(part, settings);
+  switch (settings.basis) {
+    case LocalSettings::Basis::polynomial:
+      return std::make_unique<ModalDeformation>(part, settings, lay_polynomials(part, settings));
+    case LocalSettings::Basis::modes:
+      return std::make_unique<ModalDeformation>(part, settings, lay_mesh_modes(part, settings));
+    default:
+      return std::make_unique<NodalDeformation>(part, settings);
+  }
 }
 
 void LocalDeformation::check_start(const Part& part, const Nodes& displacements, const VecX<double>& rates) {

@@ -32,11 +32,19 @@ schema::Record local_record() {
        optional("velocity", vector3("m/s"), "The same of the velocity.", "[0, 0, 0]")}};
   return {
       "local",
-      "Local deformation at the nodes of a mesh: of the surface of a shell, of the body of a solid.",
-      {optional("resolution", integer(between(1, 64)),
+      "Local deformation: of the surface of a shell, of the body of a solid.",
+      {optional("basis",
+                choice({{"nodes", "those of the nodes of a mesh, with any law"},
+                        {"polynomial", "polynomials over the body of a solid, with the law \"elastic\""},
+                        {"modes", "the lowest modes of a mesh, with laws that are quadratic in d"}}),
+                "What displacements are made of.", "\"nodes\""),
+       optional("degree", integer(between(1, 10)), "Of the polynomials.", "4"),
+       optional("modes", integer(between(1, 2000)), "How many of the lowest.", "20"),
+       optional("resolution", integer(between(1, 64)),
                 "Edges along a quarter circle: 48 n^2 triangles of a shell (a torus 64 n^2), some 48 n^3 "
-                "tetrahedra of a "
-                "solid.",
+                "tetrahedra "
+                "of a solid. "
+                "Polynomials are shown by that surface.",
                 "8"),
        optional("order", integer(between(1, 2)),
                 "Of the elements of a solid: 1 straight with 4 nodes, 2 curved with 15 nodes.", "1"),

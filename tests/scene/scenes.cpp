@@ -192,6 +192,8 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "limits_beyond_the_range",
                                         "limits_crossed",
                                         "local_and_fixed",
+                                        "local_basis",
+                                        "local_basis_too_large",
                                         "local_law_of_the_other_kind",
                                         "material_called_by_an_extension",
                                         "negative_size",

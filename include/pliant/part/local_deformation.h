@@ -3,6 +3,7 @@
 // reference conditions W^T d = 0 take that out (design 1.3). This is the face of every choice of S; one call
 // handles a whole part:
 //   nodal_deformation.h   d at the nodes of a mesh
+//   modal_deformation.h   d = sum Phi_j q_j of global modes
 // Material points see d through nodes: d = sum weight_i d_i, d_i the values that at_nodes() makes of q_d.
 #pragma once
 
@@ -40,6 +41,12 @@ struct LocalLaw {
 
 /// How a part is to deform locally.
 struct LocalSettings {
+  /// What S is made of: displacements of the nodes of a mesh; displacement polynomials over the body of a
+  /// solid; the lowest modes of a mesh.
+  enum class Basis { nodes, polynomial, modes };
+  Basis basis = Basis::nodes;
+  int degree = 4;      ///< of the polynomials, 1 to 10
+  int modes = 20;      ///< how many
   int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
   int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes
   using Law = LocalLaw;
@@ -68,6 +75,11 @@ struct LocalWorkspace {
   MatX<double> A, A_inverse;
 };
 
+/// q_j_ddot = -omega_j^2 q_j - D_j q_j_dot where nothing else acts on local coordinates.
+struct Oscillators {
+  VecX<double> omega2, damping;  ///< 1/s^2, 1/s
+};
+
 /// Energy of the motion and of the elasticity, J; momentum and angular momentum about the frame's origin,
 /// body frame; first moment sum m p.
 struct LocalMotion {
@@ -86,6 +98,10 @@ class LocalDeformation {
   /// Local coordinates and their rates at time 0.
   const VecX<double>& initial() const { return initial_; }
   const VecX<double>& initial_rate() const { return initial_rate_; }
+  /// Changes of (c, theta, q_s) at time 0 and of their rates, body frame, by displacements that the local
+  /// coordinates cannot tell; empty: none.
+  const VecX<double>& initial_frame() const { return initial_frame_; }
+  const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
   /// "d[17].x": the name of a local coordinate, and its unit.
@@ -102,6 +118,8 @@ class LocalDeformation {
   virtual Nodes displacements(const double* q_d) const = 0;
   /// The deformation by nodes, if it is one.
   virtual const NodalDeformation* nodal() const { return nullptr; }
+  /// What its coordinates are by themselves, where its elasticity is diagonal.
+  virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, stage after stage, body frame. v_r = (R^T c_dot, omega, q_s_dot). Each takes a workspace
   // that workspace() made; d and d_dot are the caller's to set.
@@ -140,7 +158,7 @@ class LocalDeformation {
   LocalDeformation(double alpha, double beta) : alpha_(alpha), beta_(beta) {}
 
   LocalMesh mesh_;
-  VecX<double> initial_, initial_rate_;
+  VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
   /// Of the A of compliance(), whose rows depend on each other where points lie close together.
   static MatX<double> inverse_of(const MatX<double>& A);

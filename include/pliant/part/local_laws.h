@@ -27,6 +27,7 @@ struct LocalLawInfo {
   std::vector<Number> numbers;
   /// values: of the numbers, in order. Throws std::invalid_argument where they make no energy.
   std::unique_ptr<NodalEnergy> (*lay)(const LocalMesh& mesh, const double* values);
+  bool quadratic = false;  ///< in d: modes know it
 };
 
 const std::vector<LocalLawInfo>& all_local_laws();

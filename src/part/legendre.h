@@ -1,0 +1,30 @@
+// Products P_i(x) P_j(y) P_k(z) of Legendre polynomials, i + j + k <= degree, over a box; by degree.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+class LegendreProducts {
+ public:
+  LegendreProducts(const Eigen::AlignedBox3d& box, int degree);
+
+  const Eigen::AlignedBox3d& box() const { return box_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
+  /// Values at points x (3 x n, m): n x size().
+  MatX<double> values(const Eigen::Matrix3Xd& x) const;
+  /// E with d/dx_axis of all products = E times all products, 1/m.
+  MatX<double> derivative(int axis) const;
+
+ private:
+  Eigen::AlignedBox3d box_;
+  int degree_;
+  std::vector<std::array<int, 3>> powers_;
+};
+
+}  // namespace pliant

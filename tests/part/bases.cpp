@@ -1,0 +1,229 @@
+// Global bases of local deformation: orthogonality, the modes of Lamb's sphere, of boxes and cylinders, of
+// meshes.
+#include "catch.h"
+
+#include <pliant/deform/all_deforms.h>
+#include <pliant/part/local_laws.h>
+#include <pliant/part/modal_deformation.h>
+#include <pliant/part/nodal_deformation.h>
+#include <pliant/part/registry.h>
+
+using namespace pliant;
+
+namespace {
+
+using Basis = LocalSettings::Basis;
+
+LocalSettings polynomials(int degree, double nu = 0.3) {
+  LocalSettings settings;
+  settings.basis = Basis::polynomial;
+  settings.degree = degree;
+  settings.resolution = 2;
+  settings.energies = {local_law("elastic", {2 * (1 + nu), nu})};  // mu = 1
+  return settings;
+}
+
+const ModalDeformation& modal(const Part& part) {
+  return dynamic_cast<const ModalDeformation&>(*part.local());
+}
+
+/// omega r / c_t of the modes of a unit sphere.
+VecX<double> etas(int degree, double nu = 0.3) {
+  const auto part = make_part("ball", "sphere", {}, 1);
+  part->rest({{"r", 1}}).deform_locally(polynomials(degree, nu));
+  part->prepare();
+  return modal(*part).basis().omega2.cwiseSqrt();
+}
+
+/// Relative error of the five modes of T2 and of S2, and of the three of S1.
+struct LambErrors {
+  double T2, S2, S1;
+};
+LambErrors lamb(int degree) {
+  const VecX<double> eta = etas(degree);
+  return {eta.segment(0, 5).mean() / 2.50113 - 1, eta.segment(5, 5).mean() / 2.64622 - 1,
+          eta.segment(10, 3).mean() / 3.52999 - 1};
+}
+
+std::string refusal(Part& part, const LocalSettings& settings) {
+  try {
+    part.deform_locally(settings);
+    part.prepare();
+  } catch (const std::invalid_argument& failure) {
+    return failure.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("modes are orthonormal over the mass, and to rigid motion and the fields of the parameters",
+          "[bases]") {
+  for (const Basis kind : {Basis::polynomial, Basis::modes})
+    for (const char* shape : {"ellipsoid", "superellipsoid", "cylinder", "cone", "supertoroid"}) {
+      CAPTURE(shape, static_cast<int>(kind));
+      const auto part = make_part("soft", shape, {"taper", "twist"}, 3);
+      part->rest({{"taper.tx", 0.2}, {"twist.angle", 0.3}}).make_dynamic({"a3", "twist.angle"});
+      LocalSettings settings = polynomials(3);
+      settings.basis = kind;
+      settings.modes = 12;
+      part->deform_locally(settings);
+      part->prepare();
+      const ModalBasis& basis = modal(*part).basis();
+      const Eigen::Index n = basis.B.cols();
+      const VecX<double> M = basis.mass.replicate(3, 1);
+      CHECK((basis.B.transpose() * M.asDiagonal() * basis.B - MatX<double>::Identity(n, n)).norm() <= 1e-11);
+      CHECK(basis.omega2.minCoeff() > 0);
+      CHECK(std::is_sorted(basis.omega2.begin(), basis.omega2.end()));
+
+      // W^T d by the points of the basis, which the phi are made of.
+      VecX<double> q_s(2);
+      q_s << part->parameters().moving(0).rest_value(), part->parameters().moving(1).rest_value();
+      std::vector<PointJet<double>> jets;
+      Counters unused;
+      part->points(basis.points, q_s, VecX<double>::Zero(2), jets, unused);
+      MatX<double> W(3 * basis.mass.size(), 8);
+      for (int c = 0; c < 8; ++c) {
+        Nodes field(basis.points_at_rest.rows(), 3);
+        for (Eigen::Index k = 0; k < field.rows(); ++k) {
+          const Vec3<double> X = basis.points_at_rest.row(k).transpose();
+          const Vec3<double> value = c < 3   ? Vec3<double>(Vec3<double>::Unit(c))
+                                     : c < 6 ? Vec3<double>(Vec3<double>::Unit(c - 3).cross(X))
+                                             : Vec3<double>(jets[static_cast<std::size_t>(k)].J.col(c - 6));
+          field.row(k) = value.transpose();
+        }
+        W.col(c) = M.asDiagonal() * Nodes(basis.project * field).reshaped();
+      }
+      W.colwise().normalize();
+      const double scale = std::sqrt(basis.mass[0]);
+      CHECK((W.transpose() * basis.B).cwiseAbs().maxCoeff() * scale <= 1e-10 * std::max(1.0, scale));
+    }
+}
+
+TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing, closer with every second degree",
+          "[bases]") {
+  const LambErrors three = lamb(3), four = lamb(4), five = lamb(5), six = lamb(6), seven = lamb(7);
+  CAPTURE(three.T2, four.T2, five.T2, six.T2, three.S2, four.S2, five.S2, seven.S2, four.S1, five.S1, six.S1);
+  CHECK(std::abs(four.T2) <= 1.7e-4);
+  CHECK(std::abs(five.S2) <= 8e-6);
+  CHECK(std::abs(six.T2) <= 4e-6);
+  CHECK(std::abs(seven.S2) <= 3e-6);
+  CHECK(std::abs(six.S1) <= 2e-5);
+  CHECK(std::abs(four.T2) <= 0.1 * std::abs(three.T2));
+  CHECK(std::abs(five.S2) <= 0.1 * std::abs(four.S2));
+  auto nearest = [](const VecX<double>& eta, double to) { return (eta.array() / to - 1).abs().minCoeff(); };
+  CHECK(nearest(etas(5), 4.99551) <= 1e-4);
+  CHECK(nearest(etas(7), 4.99551) <= 2e-6);
+}
+
+TEST_CASE("polynomials do not lock near nu_P = 1/2", "[bases]") {
+  const VecX<double> eta = etas(6, 0.49);
+  CHECK(eta.segment(0, 5).mean() == Approx(2.50113).epsilon(1e-5));
+  CHECK(eta.segment(5, 5).mean() == Approx(2.66483).epsilon(1e-4));
+  const VecX<double> harder = etas(7, 0.4999);
+  CHECK(harder.segment(0, 5).mean() == Approx(2.50113).epsilon(1e-5));
+  CHECK(harder.segment(5, 5).mean() == Approx(2.6656).epsilon(1e-3));
+}
+
+TEST_CASE("a long cylinder by polynomials: torsion, bending and stretching of a bar", "[bases]") {
+  const auto part = make_part("bar", "cylinder", {}, 1);
+  part->rest({{"a1", 1}, {"a2", 1}, {"a3", 5}}).deform_locally(polynomials(8));
+  part->prepare();
+  const VecX<double> omega = modal(*part).basis().omega2.cwiseSqrt();
+  auto nearest = [&](double to) { return (omega.array() / to - 1).abs().minCoeff(); };
+  // G = 1, rho = 1: torsion n pi c / L is exact; bending by Timoshenko's beam, L / r = 10.
+  CHECK(nearest(kPi / 10) <= 1e-6);
+  CHECK(nearest(2 * kPi / 10) <= 1e-4);
+  const double unit = std::sqrt(2.6 / 4) / 100;
+  CHECK(omega[0] == Approx(20.3813 * unit).epsilon(5e-3));
+  CHECK(omega[1] == Approx(omega[0]).epsilon(1e-6));
+}
+
+TEST_CASE("modes of a mesh are those of its elements, with its conditions", "[bases]") {
+  for (const bool shell : {false, true}) {
+    CAPTURE(shell);
+    auto lay = [&](Basis kind, int resolution, int modes) {
+      auto part = make_part("ball", "ellipsoid", {}, 2);
+      if (shell) part->make_shell();
+      part->rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).make_dynamic({"a1"});
+      LocalSettings settings;
+      settings.basis = kind;
+      settings.resolution = resolution;
+      settings.modes = modes;
+      settings.energies = {shell ? local_law("membrane", {1e3, 0.3, 0.01})
+                                 : local_law("elastic", {1e3, 0.3})};
+      part->deform_locally(settings);
+      part->prepare();
+      return part;
+    };
+    for (const int resolution : {2, 5}) {  // the dense solver, and the other
+      const auto nodal = lay(Basis::nodes, resolution, 0), part = lay(Basis::modes, resolution, 15);
+      const NodalDeformation& nodes_of = *nodal->local()->nodal();
+      const ModalBasis& basis = modal(*part).basis();
+      // K Phi = omega^2 M Phi but for forces along W.
+      const Eigen::Index n = nodes_of.n_nodes();
+      for (Eigen::Index j = 0; j < 15; ++j) {
+        const VecX<double> mode =
+            modal(*part).displacements(VecX<double>::Unit(15, j).eval().data()).reshaped();
+        VecX<double> f = VecX<double>::Zero(3 * n);
+        NodalEnergy::Buffer buffer;
+        nodes_of.energies()[0]->add_force(mode, f, buffer, nullptr);
+        f += basis.omega2[j] * nodes_of.inertia().cwiseProduct(mode);
+        // What is left is a sum of the columns of M G0: seven.
+        MatX<double> W = MatX<double>::Zero(3 * n, 7);
+        const Nodes& X = nodes_of.mesh().X;
+        for (int i = 0; i < 3; ++i) {
+          W.col(i).segment(i * n, n).setOnes();
+          W.col(3 + i).segment((i + 2) % 3 * n, n) = X.col((i + 1) % 3);
+          W.col(3 + i).segment((i + 1) % 3 * n, n) = -X.col((i + 2) % 3);
+        }
+        W.col(6).head(n) = X.col(0);
+        W = (nodes_of.inertia().asDiagonal() * W).eval();
+        CHECK((W.transpose() * mode).norm() <= 1e-10 * W.norm() * mode.norm());
+        f -= W * W.colPivHouseholderQr().solve(f);
+        CHECK(f.norm() <= 1e-7 * basis.omega2[j] * nodes_of.inertia().cwiseProduct(mode).norm());
+      }
+    }
+  }
+}
+
+TEST_CASE("weights of a material point make the displacement there", "[bases]") {
+  for (const Basis kind : {Basis::polynomial, Basis::modes}) {
+    const auto part = make_part("ball", "ellipsoid", {"taper"}, 2);
+    part->rest({{"taper.tx", 0.2}});
+    LocalSettings settings = polynomials(4);
+    settings.basis = kind;
+    settings.resolution = 3;
+    part->deform_locally(settings);
+    part->prepare();
+    const ModalDeformation& local = modal(*part);
+    const VecX<double> q = VecX<double>::LinSpaced(local.n_d(), -1, 1);
+    const Nodes shown = local.displacements(q.data());
+    VecX<double> buffer;
+    for (std::size_t k = 0; k < local.mesh().nodes.size(); k += 5) {
+      const NodeWeights at = local.weights(*part, local.mesh().nodes[k]);
+      const VecX<double> d = at_points({at}, local.at_nodes(q.data(), buffer));
+      CHECK((d - shown.row(static_cast<Eigen::Index>(k)).transpose()).norm() <= 1e-11 * shown.norm());
+    }
+  }
+}
+
+TEST_CASE("bases that cannot be laid are refused in words", "[bases]") {
+  const auto shell = make_part("skin", "sphere", {}, 1);
+  shell->make_shell();
+  LocalSettings settings = polynomials(4);
+  CHECK_THAT(refusal(*shell, settings), test::has_text("'skin'") && test::has_text("of solids"));
+  const auto ball = make_part("ball", "sphere", {}, 1);
+  settings.energies = {local_law("neo_hookean", {1e3, 0.3})};
+  CHECK_THAT(refusal(*ball, settings), test::has_text("'neo_hookean'"));
+  settings.basis = Basis::modes;
+  CHECK_THAT(refusal(*ball, settings), test::has_text("'neo_hookean'"));
+  settings.energies = {local_law("elastic", {1e3, 0.3})};
+  settings.resolution = 1;
+  settings.modes = 1000;
+  CHECK_THAT(refusal(*ball, settings), test::has_text("1000 modes"));
+  settings.resolution = 60;
+  CHECK_THAT(refusal(*ball, settings), test::has_text("nodes"));
+  settings = polynomials(11);
+  CHECK_THAT(refusal(*ball, settings), test::has_text("degree 11"));
+}
