@@ -84,21 +84,22 @@ double stable_step_of(const Integrator& method, const Linear& system) {
 }
 
 /// Bounds of K and D of the nodes of a part in mass-normalised coordinates: those of elasticity, of the
-/// global parameters, and of springs at nodes add up.
+/// global parameters, and of springs at nodes add up. implicit: the springs alone count.
 struct Bound {
   double K, D;
 };
-Bound bound_nodes(const Model& model, std::size_t i, const PartWorkspace<double>& w) {
+Bound bound_nodes(const Model& model, std::size_t i, const PartWorkspace<double>& w, bool implicit) {
   const PartModel& m = model.parts()[i];
   const Part& part = *m.part;
-  Bound bound{0, m.local->alpha() + m.drag};
+  Bound bound{0, m.drag + (implicit ? 0 : m.local->alpha())};
   for (const auto& energy : m.local->energies()) {
+    if (implicit) break;
     const bool linear = energy->of() == NodalEnergy::Of::displacement;
     const double omega2 = energy->frequency_bound(linear ? w.local->d : w.local->x, m.local->inertia());
     bound.K += omega2;
     if (linear) bound.D += m.local->beta() * omega2;
   }
-  if (m.n_s > 0) {
+  if (m.n_s > 0 && !implicit) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
     const double omega2 = (compliance * part.K_s()).eigenvalues().cwiseAbs().maxCoeff();
     bound.K += omega2;
@@ -126,6 +127,7 @@ double largest_stable_step(const Simulation& simulation) {
   Workspace<double> work;
   simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
   const std::size_t n = model.parts().size();
+  const bool implicit = simulation.integrator().local_is_implicit();
 
   // Groups of parts tied by springs.
   std::vector<std::size_t> joined(n);
@@ -165,9 +167,11 @@ double largest_stable_step(const Simulation& simulation) {
       const int at = first[i], n_v = 6 + m.n_s;
       const MatX<double>& M = mass_matrix(work.parts[i]);
       system.M.block(at, at, n_v, n_v) = M;
-      system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
-      system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
-          part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+      if (m.local == nullptr || !implicit) {
+        system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
+        system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
+            part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+      }
       system.D.block(at, at, n_v, n_v) += part.drag() * M;
       ours.insert(ours.end(), springs_at[i].begin(), springs_at[i].end());
     }
@@ -216,7 +220,7 @@ double largest_stable_step(const Simulation& simulation) {
     const double turning = state.v.segment<3>(m.v0 + 3).norm();
     if (turning > 0) smallest = std::min(smallest, kMostTurn / turning);
     if (m.local == nullptr) continue;
-    const Bound bound = bound_nodes(model, i, work.parts[i]);
+    const Bound bound = bound_nodes(model, i, work.parts[i], implicit);
     smallest = std::min(smallest, one(bound.K, bound.D));
   }
   for (const std::vector<std::size_t>& group : members) {

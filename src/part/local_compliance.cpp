@@ -35,8 +35,9 @@ MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, c
   return G;
 }
 
-/// Inverse of A, whose rows may depend on each other where points lie close together.
-MatX<double> inverse_of(const MatX<double>& A) {
+}  // namespace
+
+MatX<double> inverse_compliance(const MatX<double>& A) {
   constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
   const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scale.asDiagonal() * A * scale.asDiagonal());
@@ -45,8 +46,6 @@ MatX<double> inverse_of(const MatX<double>& A) {
   const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
   return V * inverse.asDiagonal() * V.transpose();
 }
-
-}  // namespace
 
 void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
                       LocalWorkspace& w) {
@@ -75,7 +74,7 @@ void local_compliance(const LocalDeformation& local, const std::vector<NodeWeigh
                 share;
         }
   w.A = (0.5 * (w.A + w.A.transpose())).eval();
-  w.A_inverse = inverse_of(w.A);
+  w.A_inverse = inverse_compliance(w.A);
 }
 
 void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,

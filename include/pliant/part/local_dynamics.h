@@ -75,6 +75,8 @@ void local_accelerations(const LocalDeformation& local, VecX<double>& f_r, Local
 /// points), and its inverse where no points hold each other.
 void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
                       LocalWorkspace& w);
+/// Inverse of such an A, whose rows may depend on each other where points lie close together.
+MatX<double> inverse_compliance(const MatX<double>& A);
 /// Adds to local velocities what such pushes do to all nodes.
 void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,
                     const VecX<double>& g, const LocalWorkspace& w, Eigen::Ref<VecX<double>> d_dot);
