@@ -16,7 +16,8 @@ namespace {
 using AllNodes = std::vector<std::unique_ptr<ImplicitNodes>>;
 
 /// What pushes do to the rates of a part, in the place of its mass.
-void take_metric(const ImplicitNodes* nodes, const PartWorkspace<double>& w, PartWorkspace<double>& filtered) {
+void take_metric(const ImplicitNodes* nodes, const PartWorkspace<double>& w,
+                 PartWorkspace<double>& filtered) {
   if (nodes != nullptr) {
     if (!filtered.local) filtered.local = std::make_unique<LocalWorkspace>();
     filtered.local->A = nodes->compliance();
@@ -92,7 +93,8 @@ void hold_rates(const Model& model, const AllNodes& nodes, const Workspace<doubl
   const ConstraintWorkspace<double>& joints = work.joints;
   for (std::size_t k = 0; k < model.islands().size(); ++k) {
     const Island& island = model.islands()[k];
-    if (std::none_of(island.parts.begin(), island.parts.end(), [&](int i) { return nodes[at(i)] != nullptr; }))
+    if (std::none_of(island.parts.begin(), island.parts.end(),
+                     [&](int i) { return nodes[at(i)] != nullptr; }))
       continue;
     filtered.joints.modes = joints.modes;
     filtered.joints.rank = joints.rank;
@@ -101,7 +103,8 @@ void hold_rates(const Model& model, const AllNodes& nodes, const Workspace<doubl
     filtered.joints.W_c.resize(model.islands().size());
     filtered.joints.W_closed.resize(model.islands().size());
     filtered.joints.vectors.resize(model.islands().size());
-    for (const int i : island.parts) take_metric(nodes[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
+    for (const int i : island.parts)
+      take_metric(nodes[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
     factor_joints<double>(model, island, filtered.parts, filtered.joints);
     hold_group(Group<double, Eigen::Dynamic>(model, filtered, island, false), joints.pushed[k], nodes, work,
                v_dot);

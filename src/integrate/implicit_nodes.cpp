@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -17,17 +17,18 @@ namespace {
 
 /// A pivot of S below this part of the mass that stands there tells of stiffness that pushes away, as in a
 /// sheet that buckles. S then gets more mass, at first and at most so many times M, each time by a factor.
-constexpr double kLeastPivot = 0.5, kMoreMass = 1, kMostMass = 1e12, kFactor = 4;
+constexpr double kLeastPivot = 0.5, kMoreMass = 1, kMostMass = 1e12, kDearer = 4;
 /// Change of the rest shape, in sizes of the part, that leaves no entry of K zero by chance.
 constexpr double kGeneric = 1e-7;
 
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Adds the entries of the lower triangle of the stiffness of the energies of one kind.
+/// add(row, column, value) for what the energies of one kind give the lower triangle of K. entries: any.
 template <class Add>
-void for_each_entry(const LocalDeformation& local, Of of, const VecX<double>& x, Add&& add) {
-  Entries entries;
+void for_each_entry(const LocalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
+                    Add&& add) {
+  entries.clear();
   for (const auto& energy : local.energies())
     if (energy->of() == of) energy->add_stiffness(x, entries);
   for (const Eigen::Triplet<double>& entry : entries)
@@ -80,65 +81,75 @@ void ImplicitNodes::lay_pattern() {
     near[i] += kGeneric * part_->part->size() * std::sin(static_cast<double>(i));
   Entries lower;
   for (int i = 0; i < n_d; ++i) lower.emplace_back(i, i, 0.0);
-  for_each_entry(local(), Of::displacement, rest_.d,
+  for_each_entry(local(), Of::displacement, rest_.d, entries_,
                  [&](int i, int j, double value) { lower.emplace_back(i, j, value); });
-  for_each_entry(local(), Of::position, near, [&](int i, int j, double) { lower.emplace_back(i, j, 0.0); });
+  for_each_entry(local(), Of::position, near, entries_,
+                 [&](int i, int j, double) { lower.emplace_back(i, j, 0.0); });
   K_.resize(n_d, n_d);
   K_.setFromTriplets(lower.begin(), lower.end());
   K_.makeCompressed();
 }
 
-int ImplicitNodes::factor_definite(double t) {
+/// Adds masses times a factor to the stiffness in S and factors it, with more mass where it must be.
+int ImplicitNodes::factor_definite(double factor, double t) {
   const VecX<double>& M = local().inertia();
   const VecX<double> stiffness = S_.diagonal();
   double more = 0;
-  for (int tries = 1; more <= kMostMass; ++tries, more = std::max(kMoreMass, kFactor * more)) {
-    for (Eigen::Index i = 0; i < M.size(); ++i)
-      diagonal(S_, i) = stiffness[i] + (1 + c_ * local().alpha() + more) * M[i];
+  for (int tries = 1; more <= kMostMass; ++tries, more = std::max(kMoreMass, kDearer * more)) {
+    for (Eigen::Index i = 0; i < M.size(); ++i) diagonal(S_, i) = stiffness[i] + (factor + more) * M[i];
     if (!factor_->factor(S_)) continue;
     bool sound = true;
     for (Eigen::Index i = 0; i < M.size() && sound; ++i)
       sound = factor_->pivots()[static_cast<std::size_t>(i)] >= kLeastPivot * M[i];
     if (sound) return tries;
   }
-  std::ostringstream message;
-  message << "the stiffness of the nodes of part '" << part_->part->name()
-          << "' cannot be factored: it is not finite, or pushes them away in a step as long as this";
-  throw NumericalFailure(message.str(), t);
+  throw NumericalFailure(
+      "the stiffness of the nodes of part '" + part_->part->name() + "' cannot be factored: it is not finite",
+      t);
 }
 
 int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
+  const bool fresh = follows_ || c != c_;
   int factorisations = 0;
-  const LocalWorkspace& now = *w.local;
-  if (follows_ || c != c_) {
-    const LocalWorkspace& at = follows_ ? now : rest_;
-    c_ = 0;
+  if (fresh) {
+    c_ = 0;  // should it fail
+    const std::string of_part = "the stiffness of the nodes of part '" + part_->part->name() + "'";
     try {
-      if (K_.size() == 0) lay_pattern();
-      S_ = K_;
-      if (follows_)
-        for_each_entry(local(), Of::position, at.x,
-                       [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
-      if (!S_.isCompressed()) S_.makeCompressed();
-      if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
-        factor_->analyse(S_);
-        analysed_ = S_.nonZeros();
-      }
-      S_.coeffs() *= c * (local().beta() + c);
-      c_ = c;
-      factorisations = factor_definite(t);
-      lay_border(at);
+      factorisations = factor(c, follows_ ? *w.local : rest_, t);
     } catch (const std::bad_alloc&) {
-      c_ = 0;
-      throw OutOfMemory("out of memory: the factor of the stiffness of the nodes of part '" +
-                        part_->part->name() + "', of " + std::to_string(local().n_d()) + " unknowns");
+      throw OutOfMemory("out of memory for the factor of " + of_part + ", of " +
+                        std::to_string(local().n_d()) + " unknowns");
+    } catch (const StepFailure&) {
+      throw;
+    } catch (const std::runtime_error& failure) {
+      throw NumericalFailure(of_part + " cannot be factored: " + failure.what(), t);
     }
+    c_ = c;
   }
-  lay_core(now);
+  if (fresh || frame_in_border()) lay_core(*w.local);
+  if (!frame_in_border() && !part_->shared.empty())
+    H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
   return factorisations;
 }
 
-void ImplicitNodes::lay_border(const LocalWorkspace& at) {
+int ImplicitNodes::factor(double c, const LocalWorkspace& at, double t) {
+  if (K_.size() == 0) lay_pattern();
+  S_ = K_;
+  if (follows_)
+    for_each_entry(local(), Of::position, at.x, entries_,
+                   [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
+  if (!S_.isCompressed()) S_.makeCompressed();
+  if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
+    factor_->analyse(S_);
+    analysed_ = S_.nonZeros();
+  }
+  S_.coeffs() *= c * (local().beta() + c);
+  const int factorisations = factor_definite(1 + c * local().alpha(), t);
+  lay_border(at, c);
+  return factorisations;
+}
+
+void ImplicitNodes::lay_border(const LocalWorkspace& at, double c) {
   const Eigen::Index n = local().n_nodes(), n_d = local().n_d(), n_s = part_->n_s;
   const VecX<double>& m = local().mesh().mass;
   const std::vector<VecX<double>> gas = rank_one(local(), at.x);
@@ -160,9 +171,9 @@ void ImplicitNodes::lay_border(const LocalWorkspace& at) {
     J.head(3 * n) = at.J.col(k);
     const VecX<double> P = stiffness_along(local(), at.x, J);
     K_elastic_.col(k) = at.J.transpose() * P.head(3 * n);
-    B_.col(n_r() + 6 + k) = c_ * c_ * P;
+    B_.col(n_r() + 6 + k) = c * c * P;
   }
-  for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c_ * gas[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_);
   core_fixed_ = -B_.transpose() * T_;
@@ -189,8 +200,6 @@ void ImplicitNodes::lay_core(const LocalWorkspace& now) {
     auto S_r = core.block(n_r(), n_r(), n_r(), n_r());
     S_r += now.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
-  } else if (!part_->shared.empty()) {
-    H0_inverse_ = now.H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
   }
   core_.compute(core);
 }
@@ -268,8 +277,10 @@ void ImplicitNodes::push(const VecX<double>& g, const Mat3<double>& R, VecX<doub
   if (frame_in_border()) right_.segment(n_r(), n_r()) = g.head(n_r());
   if (n_p > 0) right_ -= B_Z_ * g.tail(n_p);
   const VecX<double> z = core_.solve(right_);
-  add_to(R, frame_in_border() ? VecX<double>(z.segment(n_r(), n_r())) : VecX<double>(H0_inverse_ * g.head(n_r())),
-         v_dot);
+  add_to(
+      R,
+      frame_in_border() ? VecX<double>(z.segment(n_r(), n_r())) : VecX<double>(H0_inverse_ * g.head(n_r())),
+      v_dot);
   auto d_ddot = v_dot.segment(part_->v0 + n_r(), local().n_d());
   d_ddot -= T_ * z;
   if (n_p > 0) d_ddot += Z_ * g.tail(n_p);

@@ -1,7 +1,7 @@
-// A of a part that deforms locally, in (I - c A) k = r with c = gamma h: its linearised elasticity and damping
-// under the reference conditions. K is the stiffness over its local coordinates, of which w w^T is left out
-// (NodalEnergy::rank_one) and K_p is of energies of position; G = [I, -[s]x, J], W = M G. With the rates of
-// coordinates k_q = r_q + c k_v the change x = k_v - r_v of those of (v_r, d_dot) is
+// A of a part that deforms locally, in (I - c A) k = r with c = gamma h: its linearised elasticity and
+// damping under the reference conditions. K is the stiffness over its local coordinates, of which w w^T is
+// left out (NodalEnergy::rank_one) and K_p is of energies of position; G = [I, -[s]x, J], W = M G. With the
+// rates of coordinates k_q = r_q + c k_v the change x = k_v - r_v of those of (v_r, d_dot) is
 //   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - (K + w w^T) w_d - P w_r ]
 //   [ W^T      0             ] [ kappa ] = [ 0                                        ]
 //   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r w_r - P^T w_d           ]
@@ -46,8 +46,9 @@ class ImplicitNodes {
   /// Where x_r stands in the border; only global parameters have stiffness there.
   bool frame_in_border() const { return part_->n_s > 0; }
   void lay_pattern();
-  int factor_definite(double t);
-  void lay_border(const LocalWorkspace& at);
+  int factor(double c, const LocalWorkspace& at, double t);
+  int factor_definite(double factor, double t);
+  void lay_border(const LocalWorkspace& at, double c);
   void lay_core(const LocalWorkspace& now);
   /// Values of a vector, or of each column, over the local coordinates at the points of joints.
   MatX<double> at_joints(const MatX<double>& of_nodes) const;
@@ -55,10 +56,11 @@ class ImplicitNodes {
 
   const PartModel* part_;
   std::unique_ptr<SparseFactor> factor_;
-  LocalWorkspace rest_;      ///< the part at rest
-  bool follows_;             ///< whether it has energies of position
-  double c_ = 0;             ///< of the factor
+  LocalWorkspace rest_;        ///< the part at rest
+  bool follows_;               ///< whether it has energies of position
+  double c_ = 0;               ///< of the factor
   Eigen::Index analysed_ = 0;  ///< entries of the pattern that was analysed
+  std::vector<Eigen::Triplet<double>> entries_;
   SparseMatrix K_, S_;       ///< lower triangles of one pattern: stiffness of the energies of displacement, S
   MatX<double> B_, T_;       ///< border, S^-1 border
   MatX<double> Z_;           ///< S^-1 N^T, N that at_joints() applies
