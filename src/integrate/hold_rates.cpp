@@ -68,16 +68,21 @@ void hold_group(const Group<double, Max>& group, const std::vector<OneSidedRow>&
   for (int i = 0; i < group.parts(); ++i) {
     const VecX<double> change = group.share(before, i);
     const PartWorkspace<double>& w = work.parts[at(group.part(i))];
-    if (ImplicitNodes* of_part = nodes[at(group.part(i))].get())
-      of_part->push(group.workspace(i).inertia.M * change, w.R, v_dot);
-    else
-      share_of(group.model(i), v_dot) += world_velocity(w, change);
+    const PartModel& m = group.model(i);
+    share_of(m, v_dot) += world_velocity(w, change.head(6 + m.n_s));
+    if (const ImplicitNodes* of_part = nodes[at(group.part(i))].get())
+      of_part->push(group.workspace(i).inertia.M * change, v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
     for (const OneSidedRow& row : pushed)
-      if (row.part == i) v_dot[group.model(i).v0 + 6 + row.k] = 0;  // to the last bit
+      if (row.part == i) v_dot[m.v0 + 6 + row.k] = 0;  // to the last bit
   }
 }
 
 }  // namespace
+
+bool has_nodes(const Island& island, const AllNodes& nodes) {
+  return std::any_of(island.parts.begin(), island.parts.end(),
+                     [&](int i) { return nodes[at(i)] != nullptr; });
+}
 
 void hold_rates(const Model& model, const AllNodes& nodes, const Workspace<double>& work,
                 Workspace<double>& filtered, VecX<double>& v_dot) {
@@ -93,9 +98,7 @@ void hold_rates(const Model& model, const AllNodes& nodes, const Workspace<doubl
   const ConstraintWorkspace<double>& joints = work.joints;
   for (std::size_t k = 0; k < model.islands().size(); ++k) {
     const Island& island = model.islands()[k];
-    if (std::none_of(island.parts.begin(), island.parts.end(),
-                     [&](int i) { return nodes[at(i)] != nullptr; }))
-      continue;
+    if (!has_nodes(island, nodes)) continue;
     filtered.joints.modes = joints.modes;
     filtered.joints.rank = joints.rank;
     filtered.joints.Cq = joints.Cq;

@@ -10,6 +10,9 @@
 
 namespace pliant {
 
+/// Whether a part of an island has nodes that are stepped implicitly.
+bool has_nodes(const Island& island, const std::vector<std::unique_ptr<ImplicitNodes>>& nodes);
+
 /// nodes: of each part, none where rates are not changed; each as its filter left it. work: of the evaluation
 /// that gave the rates. filtered: any, kept from call to call.
 void hold_rates(const Model& model, const std::vector<std::unique_ptr<ImplicitNodes>>& nodes,

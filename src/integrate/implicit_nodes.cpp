@@ -213,11 +213,6 @@ MatX<double> ImplicitNodes::at_joints(const MatX<double>& of_nodes) const {
   return values;
 }
 
-void ImplicitNodes::add_to(const Mat3<double>& R, const VecX<double>& x_r, VecX<double>& v_dot) const {
-  v_dot.segment<3>(part_->v0) += R * x_r.head<3>();
-  v_dot.segment(part_->v0 + 3, n_r() - 3) += x_r.tail(n_r() - 3);
-}
-
 void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) {
   const Eigen::Index n_s = part_->n_s, n_d = local().n_d();
   const VecX<double>& M = local().inertia();
@@ -243,7 +238,8 @@ void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<double>& R, Vec
   change_.setZero();
   if (frame_in_border()) {
     change_.head(n_r()) = z.segment(n_r(), n_r());
-    add_to(R, change_.head(n_r()), v_dot);
+    v_dot.segment<3>(part_->v0) += R * change_.head<3>();
+    v_dot.segment(part_->v0 + 3, n_r() - 3) += change_.segment(3, n_r() - 3);
   }
   e_ = y_ - e_;
   k_v += e_;
@@ -271,18 +267,12 @@ MatX<double> ImplicitNodes::compliance() const {
   return 0.5 * (A + A.transpose());
 }
 
-void ImplicitNodes::push(const VecX<double>& g, const Mat3<double>& R, VecX<double>& v_dot) {
+void ImplicitNodes::push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const {
   const Eigen::Index n_p = g.size() - n_r();
-  right_.setZero(B_.cols());
-  if (frame_in_border()) right_.segment(n_r(), n_r()) = g.head(n_r());
-  if (n_p > 0) right_ -= B_Z_ * g.tail(n_p);
-  const VecX<double> z = core_.solve(right_);
-  add_to(
-      R,
-      frame_in_border() ? VecX<double>(z.segment(n_r(), n_r())) : VecX<double>(H0_inverse_ * g.head(n_r())),
-      v_dot);
-  auto d_ddot = v_dot.segment(part_->v0 + n_r(), local().n_d());
-  d_ddot -= T_ * z;
+  VecX<double> right = VecX<double>::Zero(B_.cols());
+  if (frame_in_border()) right.segment(n_r(), n_r()) = g.head(n_r());
+  if (n_p > 0) right -= B_Z_ * g.tail(n_p);
+  d_ddot -= T_ * core_.solve(right);
   if (n_p > 0) d_ddot += Z_ * g.tail(n_p);
 }
 

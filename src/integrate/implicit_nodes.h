@@ -21,7 +21,7 @@
 
 namespace pliant {
 
-class ImplicitNodes {
+class ImplicitNodes final : public LocalResponse {
  public:
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
@@ -35,10 +35,9 @@ class ImplicitNodes {
   /// x of the last filter() as a group knows the part (body/group.h): of v_r and of d_dot at its joints.
   const VecX<double>& change() const { return change_; }
 
-  /// What pushes on (v_r, the points at its joints) add to the rates of the same: x for S x = push.
-  MatX<double> compliance() const;
-  /// Adds what such pushes g do to the rates of all the part has.
-  void push(const VecX<double>& g, const Mat3<double>& R, VecX<double>& v_dot);
+  /// Of pushes on rates: x for S x = push.
+  MatX<double> compliance() const override;
+  void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const override;
 
  private:
   const LocalDeformation& local() const { return *part_->local; }
@@ -52,7 +51,6 @@ class ImplicitNodes {
   void lay_core(const LocalWorkspace& now);
   /// Values of a vector, or of each column, over the local coordinates at the points of joints.
   MatX<double> at_joints(const MatX<double>& of_nodes) const;
-  void add_to(const Mat3<double>& R, const VecX<double>& x_r, VecX<double>& v_dot) const;
 
   const PartModel* part_;
   std::unique_ptr<SparseFactor> factor_;

@@ -12,8 +12,40 @@
 namespace pliant {
 
 namespace {
+
 const double kGamma = 1 - std::sqrt(0.5);
-}
+
+/// While it lives, pushes move stiff parts as they do over a step. What brings a part onto a string or a
+/// limit would else move no more than the node that it pushes, and put energy without bound into its
+/// elasticity.
+class StepResponse {
+ public:
+  StepResponse(const Model& model, const std::vector<std::unique_ptr<ImplicitNodes>>& nodes,
+               Workspace<double>& work)
+      : work_(work) {
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (nodes[i] == nullptr) continue;
+      const PartModel& m = model.parts()[i];
+      PartWorkspace<double>& w = work.parts[i];
+      w.local->response = nodes[i].get();
+      local_compliance(*m.local, m.shared, *w.local);
+      w.inertia.M = w.local->A_inverse;
+    }
+    for (const Island& island : model.islands())
+      if (has_nodes(island, nodes)) factor_joints<double>(model, island, work.parts, work.joints);
+  }
+  ~StepResponse() {
+    for (PartWorkspace<double>& w : work_.parts)
+      if (w.local) w.local->response = nullptr;
+  }
+  StepResponse(const StepResponse&) = delete;
+  StepResponse& operator=(const StepResponse&) = delete;
+
+ private:
+  Workspace<double>& work_;
+};
+
+}  // namespace
 
 LinearlyImplicit::LinearlyImplicit() = default;
 LinearlyImplicit::~LinearlyImplicit() = default;
@@ -79,6 +111,7 @@ void LinearlyImplicit::step(const Dynamics& dynamics, State& state, Workspace<do
   hold_inertialess(model, work, state.v);
   normalise_rotations(model, state.q);
   settle_frames(dynamics, t + h, state, work);
+  const StepResponse response(model, nodes_, work);
   settle_limits(dynamics, t + h, state, work, counters);
   settle_joints(dynamics, t + h, state, work, counters);
 }

@@ -49,6 +49,11 @@ MatX<double> inverse_compliance(const MatX<double>& A) {
 
 void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
                       LocalWorkspace& w) {
+  if (w.response != nullptr) {
+    w.A = w.response->compliance();
+    w.A_inverse = inverse_compliance(w.A);
+    return;
+  }
   const Eigen::Index n = local.n_nodes(), n_r = w.H0.rows(),
                      n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = frame_at(points, w.x.data(), w, n, n_r),
@@ -79,6 +84,7 @@ void local_compliance(const LocalDeformation& local, const std::vector<NodeWeigh
 
 void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,
                     const VecX<double>& g, const LocalWorkspace& w, Eigen::Ref<VecX<double>> d_dot) {
+  if (w.response != nullptr) return w.response->push(g, d_dot);
   const Eigen::Index n = local.n_nodes();
   const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;
   const FrameMotion pull(kappa, w, n), frame(a, w, n);

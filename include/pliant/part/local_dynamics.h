@@ -17,6 +17,17 @@
 
 namespace pliant {
 
+/// What pushes on (v_r, the points at joints) do to a part in place of M^-1: of a method that steps its
+/// elasticity implicitly, over a step.
+class LocalResponse {
+ public:
+  virtual ~LocalResponse() = default;
+  /// See local_compliance().
+  virtual MatX<double> compliance() const = 0;
+  /// Adds what pushes g do to the local velocities of all nodes.
+  virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
+};
+
 /// What is recomputed at each evaluation, in the order of the stages.
 struct LocalWorkspace {
   // positions
@@ -41,6 +52,7 @@ struct LocalWorkspace {
   VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
   // what pushes on v_r and on the shared points do, see local_compliance()
   MatX<double> kappa_of, a_of, A, A_inverse;
+  const LocalResponse* response = nullptr;  ///< if there is one, it tells A
   std::vector<NodalEnergy::Buffer> buffers;
 
   /// K^-1 b and K^-T b.
