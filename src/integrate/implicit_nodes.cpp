@@ -111,11 +111,12 @@ int ImplicitNodes::factor_definite(double factor, double t) {
 int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
   const bool fresh = follows_ || c != c_;
   int factorisations = 0;
-  if (fresh) {
+  if (fresh || frame_in_border()) {
     c_ = 0;  // should it fail
     const std::string of_part = "the stiffness of the nodes of part '" + part_->part->name() + "'";
     try {
-      factorisations = factor(c, follows_ ? *w.local : rest_, t);
+      if (fresh) factorisations = factor(c, w.local->x, t);
+      lay_border(*w.local, c);
     } catch (const std::bad_alloc&) {
       throw OutOfMemory("out of memory for the factor of " + of_part + ", of " +
                         std::to_string(local().n_d()) + " unknowns");
@@ -132,11 +133,11 @@ int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
   return factorisations;
 }
 
-int ImplicitNodes::factor(double c, const LocalWorkspace& at, double t) {
+int ImplicitNodes::factor(double c, const VecX<double>& x, double t) {
   if (K_.size() == 0) lay_pattern();
   S_ = K_;
   if (follows_)
-    for_each_entry(local(), Of::position, at.x, entries_,
+    for_each_entry(local(), Of::position, x, entries_,
                    [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
   if (!S_.isCompressed()) S_.makeCompressed();
   if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
@@ -145,7 +146,15 @@ int ImplicitNodes::factor(double c, const LocalWorkspace& at, double t) {
   }
   S_.coeffs() *= c * (local().beta() + c);
   const int factorisations = factor_definite(1 + c * local().alpha(), t);
-  lay_border(at, c);
+  const std::vector<NodeWeights>& points = part_->shared;
+  if (points.empty()) return factorisations;
+  const Eigen::Index n = local().n_nodes();
+  Z_.setZero(local().n_d(), 3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t i = 0; i < points[k].node.size(); ++i)
+      for (int r = 0; r < 3; ++r)
+        Z_(points[k].node[i] + r * n, 3 * static_cast<Eigen::Index>(k) + r) += points[k].weight[i];
+  factor_->solve(Z_);
   return factorisations;
 }
 
@@ -178,14 +187,7 @@ void ImplicitNodes::lay_border(const LocalWorkspace& at, double c) {
   factor_->solve(T_);
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_gas).array() -= 1;
-  const std::vector<NodeWeights>& points = part_->shared;
-  if (points.empty()) return;
-  Z_.setZero(n_d, 3 * static_cast<Eigen::Index>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < points[k].node.size(); ++i)
-      for (int r = 0; r < 3; ++r)
-        Z_(points[k].node[i] + r * n, 3 * static_cast<Eigen::Index>(k) + r) += points[k].weight[i];
-  factor_->solve(Z_);
+  if (part_->shared.empty()) return;
   B_Z_ = B_.transpose() * Z_;
   T_at_ = at_joints(T_);
 }

@@ -7,8 +7,9 @@
 //   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r w_r - P^T w_d           ]
 //   [ c w^T             -1   ] [ zeta  ]   [ 0                                        ]
 // S = (1 + c alpha) M + (c beta + c^2) K is sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0, J],
-// w_. = (c^2 + c beta) r_v + c r_q. The columns beside S, "the border", are solved for when S is factored, so
-// that a stage costs one sparse solve.
+// w_. = (c^2 + c beta) r_v + c r_q. S is factored once while K stays; the few columns beside it, "the
+// border", are solved for with that factor, again at each step where global parameters change W. A stage then
+// costs one sparse solve.
 #pragma once
 
 #include <memory>
@@ -26,7 +27,8 @@ class ImplicitNodes final : public LocalResponse {
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
   /// Takes A at an evaluation of the part at time t. S is factored when c is another one than before; with
-  /// energies of position, whose stiffness changes, each time. Returns the factorisations done. Throws
+  /// energies of position, each time: with their stiffness at rest, steps of 10 times the explicit limit fail
+  /// where a part is bent or stretched far. Returns the factorisations done. Throws
   /// NumericalFailure, OutOfMemory.
   int prepare(const PartWorkspace<double>& w, double c, double t);
 
@@ -45,7 +47,7 @@ class ImplicitNodes final : public LocalResponse {
   /// Where x_r stands in the border; only global parameters have stiffness there.
   bool frame_in_border() const { return part_->n_s > 0; }
   void lay_pattern();
-  int factor(double c, const LocalWorkspace& at, double t);
+  int factor(double c, const VecX<double>& x, double t);
   int factor_definite(double factor, double t);
   void lay_border(const LocalWorkspace& at, double c);
   void lay_core(const LocalWorkspace& now);

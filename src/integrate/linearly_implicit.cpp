@@ -24,8 +24,8 @@ class StepResponse {
                Workspace<double>& work)
       : work_(work) {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (nodes[i] == nullptr) continue;
       const PartModel& m = model.parts()[i];
+      if (nodes[i] == nullptr || (m.island < 0 && m.n_s == 0)) continue;
       PartWorkspace<double>& w = work.parts[i];
       w.local->response = nodes[i].get();
       local_compliance(*m.local, m.shared, *w.local);
