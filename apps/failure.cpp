@@ -86,6 +86,8 @@ int reporting_failures(const std::function<int()>& task) {
     return kSignal + stop_signal();
   } catch (const ResourceFailure& error) {
     return tell(error.what(), kResources);
+  } catch (const pliant::OutOfMemory& error) {
+    return tell(error.what(), kResources);
   } catch (const std::bad_alloc&) {
     return tell("out of memory", kResources);
   } catch (const std::filesystem::filesystem_error& error) {

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include <pliant/integrate/linearly_implicit.h>
 #include <pliant/integrate/rk4.h>
 #include <pliant/integrate/semi_implicit_euler.h>
 
@@ -19,6 +20,9 @@ const std::vector<IntegratorInfo>& all_integrators() {
       {"semi_implicit_euler", 1, "the paper's: one evaluation a step; robust, first order",
        &make<SemiImplicitEuler>},
       {"rk4", 4, "classical Runge-Kutta: four evaluations a step; accurate for smooth motion", &make<Rk4>},
+      {"linearly_implicit", 2,
+       "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit it",
+       &make<LinearlyImplicit>},
   };
   return all;
 }

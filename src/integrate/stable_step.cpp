@@ -85,20 +85,21 @@ double stable_step_of(const Integrator& method, const Linear& system) {
 }
 
 /// Bounds of K and D of a part that deforms locally in mass-normalised coordinates: those of elasticity, of
-/// the global parameters, and of springs at its points add up.
-LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w) {
+/// the global parameters, and of springs at its points add up. implicit: the springs alone count.
+LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w,
+                                      bool implicit) {
   const PartModel& m = model.parts()[i];
   const Part& part = *m.part;
   LocalDeformation::Bound bound;
   const bool pulled = std::any_of(model.springs().begin(), model.springs().end(), [&](const SpringModel& s) {
     return s.a.part == static_cast<int>(i) || s.b.part == static_cast<int>(i);
   });
-  if (!oscillates_freely(m) || pulled) {
+  if (!implicit && (!oscillates_freely(m) || pulled)) {
     bound = m.local->stiffness_bound(*w.local);
     bound.D += m.local->alpha();
   }
   bound.D += m.drag;
-  if (m.n_s > 0) {
+  if (m.n_s > 0 && !implicit) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
     const double omega2 = (compliance * part.K_s()).eigenvalues().cwiseAbs().maxCoeff();
     bound.K += omega2;
@@ -123,6 +124,7 @@ double largest_stable_step(const Simulation& simulation) {
   Workspace<double> work;
   simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
   const std::size_t n = model.parts().size();
+  const bool implicit = simulation.integrator().local_is_implicit();
 
   // Groups of parts tied by springs.
   std::vector<std::size_t> joined(n);
@@ -162,9 +164,11 @@ double largest_stable_step(const Simulation& simulation) {
       const int at = first[i], n_v = 6 + m.n_s;
       const MatX<double>& M = mass_matrix(work.parts[i]);
       system.M.block(at, at, n_v, n_v) = M;
-      system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
-      system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
-          part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+      if (m.local == nullptr || !implicit) {
+        system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
+        system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
+            part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+      }
       system.D.block(at, at, n_v, n_v) += part.drag() * M;
       ours.insert(ours.end(), springs_at[i].begin(), springs_at[i].end());
     }
@@ -213,7 +217,7 @@ double largest_stable_step(const Simulation& simulation) {
     const double turning = state.v.segment<3>(m.v0 + 3).norm();
     if (turning > 0) smallest = std::min(smallest, kMostTurn / turning);
     if (m.local == nullptr) continue;
-    const LocalDeformation::Bound bound = bound_locally(model, i, work.parts[i]);
+    const LocalDeformation::Bound bound = bound_locally(model, i, work.parts[i], implicit);
     smallest = std::min(smallest, one(bound.K, bound.D));
   }
   for (const std::vector<std::size_t>& group : members) {

@@ -206,6 +206,7 @@ void Run::write_record() {
   record_.step_counters.steps = counted_steps_.steps + session.steps;
   record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
   record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
+  record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
   record_.counters = counted_work_;
   record_.counters += simulation_->counters();
   for (const std::string& held : simulation_->held())

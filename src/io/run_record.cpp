@@ -95,6 +95,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["work"] = {{"steps", r.step_counters.steps},
                   {"evaluations", r.step_counters.evaluations},
                   {"limit_impulses", r.step_counters.limit_impulses},
+                  {"factorisations", r.step_counters.factorisations},
                   {"jacobian_points", r.counters.jacobian_points},
                   {"rate_points", r.counters.rate_points},
                   {"mass_matrices", r.counters.mass_matrices},
@@ -156,6 +157,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     work.at("steps").get_to(r.step_counters.steps);
     work.at("evaluations").get_to(r.step_counters.evaluations);
     work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
+    r.step_counters.factorisations = work.value("factorisations", 0L);  // older runs had none
     work.at("jacobian_points").get_to(r.counters.jacobian_points);
     work.at("rate_points").get_to(r.counters.rate_points);
     work.at("mass_matrices").get_to(r.counters.mass_matrices);

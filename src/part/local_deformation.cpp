@@ -31,7 +31,9 @@ void LocalDeformation::check_start(const Part& part, const Nodes& displacements,
   throw std::invalid_argument(message.str());
 }
 
-MatX<double> LocalDeformation::inverse_of(const MatX<double>& A) {
+namespace {
+
+MatX<double> inverse_of(const MatX<double>& A) {
   constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
   const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const MatX<double> scaled = scale.asDiagonal() * A * scale.asDiagonal();
@@ -44,6 +46,25 @@ MatX<double> LocalDeformation::inverse_of(const MatX<double>& A) {
   for (double& value : inverse) value = value > smallest ? 1 / value : 0;
   const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
   return V * inverse.asDiagonal() * V.transpose();
+}
+
+}  // namespace
+
+void LocalWorkspace::take_compliance(MatX<double> of_pushes) {
+  A = std::move(of_pushes);
+  A_inverse = inverse_of(A);
+}
+
+void LocalDeformation::compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const {
+  work.take_compliance(work.response != nullptr ? work.response->compliance() : own_compliance(points, work));
+}
+
+void LocalDeformation::push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                                const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
+  if (work.response != nullptr)
+    work.response->push(g, d_dot);
+  else
+    own_push_all(points, g, work, d_dot);
 }
 
 VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values) {

@@ -247,7 +247,8 @@ MatX<double> ModalDeformation::modes_at(const NodeWeights& at) const {
   return P;
 }
 
-void ModalDeformation::compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const {
+MatX<double> ModalDeformation::own_compliance(const std::vector<NodeWeights>& points,
+                                              LocalWorkspace& work) const {
   ModalWorkspace& w = of(work);
   const Eigen::Index n_r = w.M_rr.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   w.P.resize(n_p, n_modes());
@@ -255,14 +256,13 @@ void ModalDeformation::compliance(const std::vector<NodeWeights>& points, LocalW
     w.P.middleRows<3>(3 * static_cast<Eigen::Index>(k)) = modes_at(points[k]);
   w.C_P.noalias() = w.C * w.P.transpose();
   const MatX<double> inverse = w.solve(MatX<double>::Identity(n_r, n_r)), coupled = inverse * w.C_P;
-  w.A.resize(n_r + n_p, n_r + n_p);
-  w.A << inverse, -coupled, -coupled.transpose(), w.P * w.P.transpose() + w.C_P.transpose() * coupled;
-  w.A = (0.5 * (w.A + w.A.transpose())).eval();
-  w.A_inverse = inverse_of(w.A);
+  MatX<double> A(n_r + n_p, n_r + n_p);
+  A << inverse, -coupled, -coupled.transpose(), w.P * w.P.transpose() + w.C_P.transpose() * coupled;
+  return 0.5 * (A + A.transpose());
 }
 
-void ModalDeformation::push_all(const std::vector<NodeWeights>&, const VecX<double>& g,
-                                const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
+void ModalDeformation::own_push_all(const std::vector<NodeWeights>&, const VecX<double>& g,
+                                    const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
   const ModalWorkspace& w = of(work);
   const Eigen::Index n_r = w.M_rr.rows();
   const VecX<double> on_points = g.tail(g.size() - n_r);

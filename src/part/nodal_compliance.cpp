@@ -26,7 +26,8 @@ MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, c
 
 }  // namespace
 
-void NodalDeformation::compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const {
+MatX<double> NodalDeformation::own_compliance(const std::vector<NodeWeights>& points,
+                                              LocalWorkspace& work) const {
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes(), n_r = w.H0.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = frame_at(points, w.x.data(), w, n, n_r),
@@ -37,9 +38,9 @@ void NodalDeformation::compliance(const std::vector<NodeWeights>& points, LocalW
   w.kappa_of = w.solve(right);
   above -= w.H0 * w.kappa_of;
   w.a_of = w.solve_transposed(above);
-  w.A.resize(n_r + n_p, n_r + n_p);
-  w.A.topRows(n_r) = w.a_of;
-  w.A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;
+  MatX<double> A(n_r + n_p, n_r + n_p);
+  A.topRows(n_r) = w.a_of;
+  A.bottomRows(n_p) = -G0 * w.kappa_of - G * w.a_of;
   for (std::size_t a = 0; a < points.size(); ++a)
     for (std::size_t b = 0; b < points.size(); ++b)
       for (std::size_t i = 0; i < points[a].node.size(); ++i)
@@ -47,15 +48,14 @@ void NodalDeformation::compliance(const std::vector<NodeWeights>& points, LocalW
           if (points[a].node[i] != points[b].node[j]) continue;
           const double share = points[a].weight[i] * points[b].weight[j] * mobility_[points[a].node[i]];
           for (int r = 0; r < 3; ++r)
-            w.A(n_r + 3 * static_cast<Eigen::Index>(a) + r, n_r + 3 * static_cast<Eigen::Index>(b) + r) +=
+            A(n_r + 3 * static_cast<Eigen::Index>(a) + r, n_r + 3 * static_cast<Eigen::Index>(b) + r) +=
                 share;
         }
-  w.A = (0.5 * (w.A + w.A.transpose())).eval();
-  w.A_inverse = inverse_of(w.A);
+  return 0.5 * (A + A.transpose());
 }
 
-void NodalDeformation::push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
-                                const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
+void NodalDeformation::own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                                    const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
   const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;

@@ -33,7 +33,7 @@ bool bounded(const Build& build, const char* method, double h) {
 }
 
 void check_limit(const std::string& what, const Build& build) {
-  for (const char* method : {"semi_implicit_euler", "rk4"}) {
+  for (const char* method : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     MultiBody body;
     body.gravity.setZero();
     build(body);

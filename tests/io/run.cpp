@@ -63,7 +63,7 @@ std::unique_ptr<Scene> scene_for(const std::string& integrator) {
 
 TEST_CASE("N66: any number of threads gives the same bytes") {
   const NewFolder folder;
-  for (const char* integrator : {"semi_implicit_euler", "rk4"}) {
+  for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     std::string first;
     for (const int threads : {1, 2, 3}) {
       const fs::path out = folder / (std::string(integrator) + std::to_string(threads));
@@ -78,7 +78,7 @@ TEST_CASE(
     "N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken "
     "one") {
   const NewFolder folder;
-  for (const char* integrator : {"semi_implicit_euler", "rk4"}) {
+  for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     const fs::path unbroken = folder / (std::string(integrator) + "_unbroken");
     REQUIRE(run(*scene_for(integrator), unbroken));
     for (const long first : {0L, 1L, 19L, 20L, 57L, 199L}) {

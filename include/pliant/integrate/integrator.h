@@ -14,6 +14,7 @@ struct StepCounters {
   long steps = 0;
   long evaluations = 0;  ///< of the accelerations
   long limit_impulses = 0;
+  long factorisations = 0;  ///< of the stiffness of nodes
 };
 
 class Integrator {
@@ -27,6 +28,9 @@ class Integrator {
   /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
   /// step is stable while it is at most 1.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
+  /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
+  /// the step free.
+  virtual bool local_is_implicit() const { return false; }
 };
 
 struct IntegratorInfo {

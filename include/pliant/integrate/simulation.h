@@ -71,7 +71,9 @@ class Simulation {
 /// Baumgarte's terms where a gap is left to them, and by the turning of the parts (half a radian a step);
 /// infinite when nothing is stiff and nothing turns. Parts tied by springs are taken together, as far as that
 /// is cheap; beyond, one by one, each spring counted twice. Elasticity counts as if there were no joints,
-/// which only slow it down. Both are on the safe side.
+/// which only slow it down. Both are on the safe side. A method that takes local elasticity implicitly is
+/// bounded by neither that nor the stiffness of global parameters of such parts, but by springs at their
+/// nodes as if these were free.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

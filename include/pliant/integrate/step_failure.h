@@ -1,8 +1,10 @@
 // Why a step could not be done. The simulation still holds the last good state.
 #pragma once
 
+#include <new>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace pliant {
 
@@ -20,6 +22,16 @@ class NumericalFailure : public StepFailure {
 /// Joints contradict each other; the message names them and the gap.
 class UnsatisfiableModel : public StepFailure {
   using StepFailure::StepFailure;
+};
+
+/// What a step needs does not fit in memory.
+class OutOfMemory : public std::bad_alloc {
+ public:
+  explicit OutOfMemory(std::string what) : what_(std::move(what)) {}
+  const char* what() const noexcept override { return what_.c_str(); }
+
+ private:
+  std::string what_;
 };
 
 }  // namespace pliant

@@ -36,8 +36,11 @@ class NodalEnergy {
   /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
   virtual void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
-  /// Adds the entries of K(x).
+  /// Adds the entries of K(x), but for w w^T with w = rank_one(x), which ties every coordinate to every
+  /// other.
   virtual void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
+  /// Empty where add_stiffness leaves nothing out.
+  virtual VecX<double> rank_one(const VecX<double>& /*x*/) const { return {}; }
   /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over
   /// all coordinates.
   virtual double frequency_bound(const VecX<double>& x, const VecX<double>& M) const = 0;

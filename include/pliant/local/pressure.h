@@ -17,12 +17,11 @@ class Pressure : public NodalEnergy {
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const final;
   void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const final;
-  /// Leaves out w w^T with w = rank_one(x), which ties every node to every other.
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const final;
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const final;
 
-  /// w = sqrt(E'') dV/dx: K is what add_stiffness gives and w w^T. Nothing but zeros at constant pressure.
-  VecX<double> rank_one(const VecX<double>& x) const;
+  /// w = sqrt(E'') dV/dx. Nothing but zeros at constant pressure.
+  VecX<double> rank_one(const VecX<double>& x) const final;
   double volume(const VecX<double>& x) const;
 
  protected:

@@ -56,6 +56,17 @@ struct LocalSettings {
   double alpha = 0, beta = 0;  ///< D = alpha M + beta K of the local coordinates, 1/s and s
 };
 
+/// What pushes on (v_r, the points at joints) do to a part in place of M^-1: of a method that steps its
+/// elasticity implicitly, over a step.
+class LocalResponse {
+ public:
+  virtual ~LocalResponse() = default;
+  /// See LocalDeformation::compliance().
+  virtual MatX<double> compliance() const = 0;
+  /// Adds to d_dot what pushes g do to the local coordinates.
+  virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
+};
+
 /// What is recomputed at each evaluation, in the order of the stages; what one choice of S needs beside it is
 /// in a type of its own.
 struct LocalWorkspace {
@@ -73,6 +84,10 @@ struct LocalWorkspace {
   VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
   /// M^-1 as joints see it, see compliance(), and its inverse where no points hold each other.
   MatX<double> A, A_inverse;
+  const LocalResponse* response = nullptr;  ///< if there is one, it tells A
+
+  /// Takes A, whose rows depend on each other where points lie close together, and its inverse.
+  void take_compliance(MatX<double> of_pushes);
 };
 
 /// q_j_ddot = -omega_j^2 q_j - D_j q_j_dot where nothing else acts on local coordinates.
@@ -138,10 +153,10 @@ class LocalDeformation {
   virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work) const = 0;
   /// A = M^-1 as the joints of a part see it: what pushes g on (v_r, the points) do to (v_r, d_dot at the
   /// points).
-  virtual void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const = 0;
+  void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
   /// Adds to d_dot what such pushes do to the local coordinates.
-  virtual void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
-                        const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const = 0;
+  void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
+                Eigen::Ref<VecX<double>> d_dot) const;
   /// M of rigid motion at the positions now: 6 x 6.
   virtual Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const = 0;
   virtual LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const = 0;
@@ -160,8 +175,11 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// Of the A of compliance(), whose rows depend on each other where points lie close together.
-  static MatX<double> inverse_of(const MatX<double>& A);
+  /// compliance() and push_all() by M^-1.
+  virtual MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const = 0;
+  virtual void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                            const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const = 0;
+
   /// Throws std::invalid_argument when points are displaced by more than the size of the part at time 0.
   static void check_start(const Part& part, const Nodes& displacements, const VecX<double>& rates);
 

@@ -64,15 +64,15 @@ class ModalDeformation final : public LocalDeformation {
               ThreadPool* pool) const override;
   void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const override;
   void accelerations(VecX<double>& f_r, LocalWorkspace& work) const override;
-  void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
-  void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
-                Eigen::Ref<VecX<double>> d_dot) const override;
   Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const override;
   LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
  private:
+  MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
+  void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
+                    Eigen::Ref<VecX<double>> d_dot) const override;
   static ModalWorkspace& of(LocalWorkspace& work) { return static_cast<ModalWorkspace&>(work); }
   static const ModalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const ModalWorkspace&>(work);

@@ -89,9 +89,6 @@ class NodalDeformation final : public LocalDeformation {
               ThreadPool* pool) const override;
   void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const override;
   void accelerations(VecX<double>& f_r, LocalWorkspace& work) const override;
-  void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
-  void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
-                Eigen::Ref<VecX<double>> d_dot) const override;
   Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const override;
   LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
   Bound stiffness_bound(const LocalWorkspace& work) const override;
@@ -113,6 +110,9 @@ class NodalDeformation final : public LocalDeformation {
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:
+  MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
+  void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
+                    Eigen::Ref<VecX<double>> d_dot) const override;
   std::vector<Material<Pack>> packs_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;

@@ -13,7 +13,7 @@ namespace pliant {
 struct JointSolver {
   enum class Choice { automatic, blocks, augmented };
   Choice choice = Choice::automatic;
-  /// Of the augmented matrix.
+  /// Of the augmented matrix, and of the stiffness of nodes where a method of integration factors it.
   std::function<std::unique_ptr<SparseFactor>()> make_factor = make_eigen_factor;
   /// A fill-reducing order for the blocks, beside the cardinality search.
   NodeOrder order = minimum_degree_order;
