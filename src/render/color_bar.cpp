@@ -6,8 +6,8 @@
 
 #include <pliant/render/color_map.h>
 
+#include <pliant/render/ticks.h>
 #include "stroke_font.h"
-#include "ticks.h"
 
 namespace pliant {
 namespace {

@@ -6,7 +6,7 @@
 #include <pliant/io/png.h>
 #include <pliant/io/run_files.h>
 
-#include "ticks.h"
+#include <pliant/render/ticks.h>
 
 namespace pliant {
 namespace {

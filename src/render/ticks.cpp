@@ -1,4 +1,4 @@
-#include "ticks.h"
+#include <pliant/render/ticks.h>
 
 #include <algorithm>
 #include <array>

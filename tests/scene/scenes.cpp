@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -151,10 +152,39 @@ TEST_CASE("what is allowed but has no effect is warned about") {
             .find("no resolution shows it") != std::string::npos);
 }
 
+TEST_CASE("colouring of parts is read") {
+  const std::string start =
+      R"json({"parts": [{"name": "a", "shape": "sphere", "parameters": {"r": {"stiffness": 1}}},
+                        {"name": "b", "shape": "box"}], "coloring": )json";
+  const auto coloring = [&](const std::string& text) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::parse_scene("s.json", start + text + "}", {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    CHECK(schema().accepts(nlohmann::json::parse(start + text + "}")));
+    REQUIRE(scene->coloring);
+    const auto& parts = scene->body.parts();
+    return std::tuple(scene->coloring->by, scene->coloring->range, colors(*scene->coloring, *parts[0]),
+                      colors(*scene->coloring, *parts[1]));
+  };
+  using Range = std::optional<std::array<double, 2>>;
+  CHECK(coloring("{\"by\": \"strain\"}") ==
+        std::tuple(pliant::SurfaceQuantity::strain, Range(), true, false));
+  CHECK(coloring("{\"by\": \"displacement\", \"range\": [-1, 2], \"parts\": [\"b\"]}") ==
+        std::tuple(pliant::SurfaceQuantity::displacement, Range({-1, 2}), false, true));
+  pliant::Diagnostics diagnostics;
+  pliant::parse_scene(
+      "s.json", R"json({"parts": [{"name": "a", "shape": "sphere"}], "coloring": {"by": "strain"}})json", {},
+      diagnostics);
+  CHECK(diagnostics.text().find("/coloring/by: \"strain\"; it has no effect, because no part deforms") !=
+        std::string::npos);
+}
+
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
   // What needs more than types, keys and ranges: names and numbers that must fit others.
   const std::vector<std::string> beyond{"anchor_not_finite",
                                         "camera_at_its_target",
+                                        "coloring_of_unknown_part",
+                                        "coloring_range_falls",
                                         "density_too_large",
                                         "duplicate_key",
                                         "duplicate_part_name",
