@@ -1,5 +1,7 @@
 #include "color_options.h"
 
+#include <cmath>
+
 #include "options.h"
 
 namespace pliant_cli {
@@ -39,7 +41,9 @@ void add_color_options(CLI::App& command, ColorOptions& options) {
 }
 
 void check_colors(const ColorOptions& options) {
-  if (!options.range.empty() && !(options.range[0] < options.range[1]))
+  if (options.range.empty()) return;
+  const double span = options.range[1] - options.range[0];
+  if (!(span > 0) || !std::isfinite(span))
     throw CLI::ValidationError("--color-range", "the second number must be larger than the first");
 }
 

@@ -141,11 +141,13 @@ LocalSettings::Law local_law(const std::string& name, std::vector<double> values
                                   " numbers");
     const bool of_shell = info.shell;
     const auto lay = info.lay;
-    return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+    return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) -> Energy {
       if (mesh.shell() != of_shell)
         throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
                                     ", not of " + (of_shell ? "solids" : "shells"));
-      return lay(mesh, values.data());
+      Energy energy = lay(mesh, values.data());
+      energy->set_law(name);
+      return energy;
     };
   }
   throw std::invalid_argument("no law of local deformation '" + name + "'; there are:" + known);

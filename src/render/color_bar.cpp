@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <pliant/render/color_map.h>
-
 #include <pliant/render/ticks.h>
+
 #include "stroke_font.h"
 
 namespace pliant {

@@ -5,7 +5,6 @@
 
 #include <pliant/io/png.h>
 #include <pliant/io/run_files.h>
-
 #include <pliant/render/ticks.h>
 
 namespace pliant {

@@ -9,7 +9,7 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostDecimals = 4, kMostDigits = 6;
+constexpr int kMostDecimals = 4, kMostDigits = 6, kMostTicks = 12;
 
 // In the scale's own digits; with a power of ten where they would be many.
 std::string label(double value, double step, double largest) {
@@ -38,9 +38,10 @@ double tick_step(double span) {
 std::vector<Tick> ticks(double low, double high) {
   const double step = tick_step(high - low), slack = 1e-9 * (high - low);
   const double largest = std::max(std::abs(low), std::abs(high));
+  const double first = std::ceil((low - slack) / step);
   std::vector<Tick> all;
-  for (double k = std::ceil((low - slack) / step); k * step <= high + slack; ++k)
-    all.push_back({k * step, label(k * step, step, largest)});
+  for (int i = 0; i < kMostTicks && (first + i) * step <= high + slack; ++i)
+    all.push_back({(first + i) * step, label((first + i) * step, step, largest)});
   return all;
 }
 

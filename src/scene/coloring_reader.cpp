@@ -1,6 +1,6 @@
 #include "coloring_reader.h"
 
-#include <algorithm>
+#include <cmath>
 
 namespace pliant {
 
@@ -11,7 +11,8 @@ schema::Record coloring_record() {
   const Type range = array(number(any(), "m or 1"), 2, 2)
                          .checked([](const JsonValue& value, const ReportAt& report) {
                            const JsonValue::Array& ends = value.array();
-                           if (!(ends[0].number() < ends[1].number()))
+                           const double span = ends[1].number() - ends[0].number();
+                           if (!(span > 0) || !std::isfinite(span))
                              report(value, "expected [from, to] with from < to", kWholeValue);
                          })
                          .expecting("[from, to], two numbers (m or 1)");

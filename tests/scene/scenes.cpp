@@ -62,6 +62,37 @@ TEST_CASE("every scene that comes with pliant reads without a warning, and a run
   }
 }
 
+TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books") {
+  const auto run = [](const char* name, double until, const auto& after_step) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
+    pliant::Simulation simulation(scene->body, scene->integrator);
+    double largest = 0;
+    while (simulation.time() < until) {
+      simulation.step(scene->step);
+      const pliant::Ledger ledger = simulation.ledger();
+      largest = std::max(largest, ledger.kinetic);
+      REQUIRE(std::abs(ledger.balance) < 1e-5 * std::max(largest, 1.0));
+      after_step(simulation);
+    }
+  };
+  double least = 0;
+  run("twisting_tube.json", 0.8, [&](const pliant::Simulation& simulation) {
+    least = std::min(least, simulation.state().q[7]);
+  });
+  CHECK(least < -2);  // from 2.5
+  double longest = 0;
+  run("soft_chain.json", 0.7, [&](const pliant::Simulation& simulation) {
+    const pliant::Model& model = simulation.model();
+    REQUIRE(model.gap(simulation.state(), 3) < 1e-12);
+    const auto end = [&](double u) {
+      return model.world_point(simulation.state(), 0, pliant::material_at(u, 0, 1));
+    };
+    longest = std::max(longest, (end(pliant::kPi / 2) - end(-pliant::kPi / 2)).norm());
+  });
+  CHECK(longest > 1.2 * 0.32);
+}
+
 TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
   for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
     pliant::Diagnostics diagnostics;
