@@ -25,7 +25,7 @@ struct Picture {
   /// What the colours of values mean (color_map.h), shown as a bar at the right; values beyond have the first
   /// or the last colour. A picture less than 160 pixels wide or 120 high has no room for the bar.
   struct Scale {
-    std::string title;  ///< what stroke_font.h can draw: "strain", "displacement (m)"
+    std::string title;  ///< of digits, small letters and . , - + / ( ): "strain", "displacement (m)"
     double low = 0, high = 1;
   };
 
