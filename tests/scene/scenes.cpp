@@ -77,9 +77,8 @@ TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, 
     }
   };
   double least = 0;
-  run("twisting_tube.json", 0.8, [&](const pliant::Simulation& simulation) {
-    least = std::min(least, simulation.state().q[7]);
-  });
+  run("twisting_tube.json", 0.8,
+      [&](const pliant::Simulation& simulation) { least = std::min(least, simulation.state().q[7]); });
   CHECK(least < -2);  // from 2.5
   double longest = 0;
   run("soft_chain.json", 0.7, [&](const pliant::Simulation& simulation) {
