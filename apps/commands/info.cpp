@@ -38,18 +38,6 @@ void print_parameters(const pliant::Part& part) {
   if (parameters.size() > 0) std::cout << "\n";
 }
 
-void print_local(const pliant::LocalDeformation& local) {
-  const pliant::LocalMesh& mesh = local.mesh();
-  std::cout << "  local deformation: " << pliant::count_text(local.n_nodes(), "node");
-  if (mesh.shell())
-    std::cout << ", " << pliant::count_text(mesh.triangles.cols(), "triangle");
-  else
-    std::cout << ", " << mesh.tetrahedra.cols() << " tetrahedra of " << mesh.tetrahedra.rows() << " nodes";
-  for (std::size_t i = 0; i < local.energies().size(); ++i)
-    std::cout << (i == 0 ? "; laws " : ", ") << local.energies()[i]->law();
-  std::cout << "\n";
-}
-
 void print_part(const pliant::PartModel& model) {
   const pliant::Part& part = *model.part;
   std::cout << "part " << part.name() << ": " << part.shape().name();
@@ -62,8 +50,7 @@ void print_part(const pliant::PartModel& model) {
   else
     std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s()
               << " dynamic parameters; " << frozen << " frozen"
-              << (part.n_d() > 0 ? "; " + std::to_string(part.n_d()) + " local" : "") << ")\n";
-  if (part.local() != nullptr) print_local(*part.local());
+              << (part.local() != nullptr ? "; " + part.local()->description() : "") << ")\n";
   const pliant::Inertia<double>& inertia = part.rest_inertia();
   const Vec3<double> centre =
       inertia.mass > 0 ? Vec3<double>(inertia.moment / inertia.mass) : Vec3<double>(0, 0, 0);

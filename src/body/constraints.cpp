@@ -276,8 +276,10 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
       };
       add(w.v_r, 0);
       if constexpr (std::is_same_v<S, double>)
-        if (part.local != nullptr)
-          add(at_points(part.shared, nodes(w.local->d_dot, part.local->n_nodes())), 6 + part.n_s);
+        if (part.local != nullptr) {
+          VecX<double> buffer;
+          add(at_points(part.shared, part.local->at_nodes(w.local->d_dot.data(), buffer)), 6 + part.n_s);
+        }
     }
     power[static_cast<int>(Work::anchors)] += done - closing;
   }

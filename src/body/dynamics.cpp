@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <pliant/body/one_sided_rows.h>
-#include <pliant/local/corotated.h>
+#include <pliant/local/inverted_element.h>
 
 namespace pliant {
 
@@ -29,7 +29,9 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
 
 /// Adds the local deformation at the ports to their positions and velocities.
 void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
-  const auto d = nodes(w.local->d, m.local->n_nodes()), d_dot = nodes(w.local->d_dot, m.local->n_nodes());
+  VecX<double> of_d, of_d_dot;
+  const auto d = m.local->at_nodes(w.local->d.data(), of_d),
+             d_dot = m.local->at_nodes(w.local->d_dot.data(), of_d_dot);
   for (std::size_t k = 0; k < m.ports.size(); ++k) {
     const NodeWeights& at = m.node_weights[k];
     for (std::size_t i = 0; i < at.node.size(); ++i) {
@@ -61,10 +63,10 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   }
   if constexpr (std::is_same_v<S, double>)
     if (m.local != nullptr) {
-      if (!w.local) w.local = std::make_unique<LocalWorkspace>();
+      if (!w.local) w.local = m.local->workspace();
       w.local->d = q.segment(m.q0 + 7 + m.n_s, m.n_d());
       w.local->d_dot = v.segment(m.v0 + 6 + m.n_s, m.n_d());
-      local_positions(part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
+      m.local->positions(part, w.q_s, w.v_r, *w.local, w.counters);
     }
   if (n_ports == 0) return;
   if (w.rigid == &m && w.ports.size() == n_ports) {
@@ -102,7 +104,7 @@ void masses(const PartModel& m, PartWorkspace<S>& w) {
   const Vec3<S> omega = w.v_r.template segment<3>(3);
   if constexpr (std::is_same_v<S, double>)
     if (m.local != nullptr) {
-      local_masses(*m.part, *m.local, w.q_s, w.q_s_dot, *w.local, w.counters);
+      m.local->masses(*m.part, w.q_s, w.v_r, *w.local, w.counters);
       w.inertia.mass = m.part->total_mass();
       w.inertia.moment = w.local->moment;
       return;
@@ -148,7 +150,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
       w.f.setZero(6 + n);
       if (n > 0) elastic_forces<S>(m, t, w);
       try {
-        local_forces(*m.local, w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
+        m.local->forces(w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
       } catch (const InvertedElement& failure) {
         throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
       }
@@ -182,14 +184,14 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
     w.f.template segment<3>(3) += w.ports[k].p.cross(f);
     w.f.tail(m.n_s) += w.ports[k].J.transpose().lazyProduct(f);
     if constexpr (std::is_same_v<S, double>)
-      if (m.local != nullptr) push_nodes(*m.local, m.node_weights[k], f, *w.local);
+      if (m.local != nullptr) m.local->push(m.node_weights[k], f, *w.local);
   }
 }
 
 void take_factor(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // nothing can push on it at once
-    local_compliance(*m.local, m.shared, *w.local);
+    m.local->compliance(m.shared, *w.local);
     w.inertia.M = w.local->A_inverse;
     return;
   }
@@ -197,12 +199,15 @@ void take_factor(const PartModel& m, PartWorkspace<double>& w) {
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 
-/// a_r of a part that deforms locally, with the d_ddot at its joints, and the d_ddot of its nodes.
-void accelerate_nodes(const PartModel& m, PartWorkspace<double>& w) {
-  local_accelerations(*m.local, w.a_r, *w.local);
-  const VecX<double> a_r = w.a_r;
-  w.a_r.resize(m.n_x());
-  w.a_r << a_r, at_points(m.shared, nodes(w.local->d_ddot, m.local->n_nodes()));
+/// a_r of a part that deforms locally, with the d_ddot at its joints, and the d_ddot of all of it.
+void accelerate_locally(const PartModel& m, PartWorkspace<double>& w) {
+  m.local->accelerations(w.a_r, *w.local);
+  if (!m.shared.empty()) {
+    VecX<double> buffer;
+    const VecX<double> a_r = w.a_r;
+    w.a_r.resize(m.n_x());
+    w.a_r << a_r, at_points(m.shared, m.local->at_nodes(w.local->d_ddot.data(), buffer));
+  }
   w.local->a_free = w.a_r;
 }
 
@@ -359,7 +364,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     if constexpr (std::is_same_v<S, double>) {
       take_factor(m, w);
       if (m.local != nullptr)
-        accelerate_nodes(m, w);
+        accelerate_locally(m, w);
       else
         w.solve_mass(w.a_r);
       if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
@@ -384,8 +389,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
         d_ddot = w.local->d_ddot;
         // What joints and limits push.
         if (w.a_r != w.local->a_free)
-          push_all_nodes(*m.local, m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
-                         d_ddot);
+          m.local->push_all(m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local, d_ddot);
       }
   }
 }
@@ -534,15 +538,20 @@ void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, Ve
   }
 }
 
+void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part,
+                              Workspace<double>& work) const {
+  work.parts.resize(model_->parts().size());
+  const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
+  PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
+  positions<double>(m, q, v, w);
+  masses<double>(m, w);
+}
+
 void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                                Workspace<double>& work) const {
-  work.parts.resize(model_->parts().size());
   for (const int i : parts) {
-    const PartModel& m = model_->parts()[static_cast<std::size_t>(i)];
-    PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
-    positions<double>(m, q, v, w);
-    masses<double>(m, w);
-    take_factor(m, w);
+    evaluate_frame(q, v, i, work);
+    take_factor(model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)]);
   }
 }
 

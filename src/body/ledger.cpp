@@ -7,7 +7,7 @@ void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<doub
                           Ledger& ledger) const {
   const Vec3<double>& g = model_->body().gravity;
   if (m.local != nullptr) {
-    const LocalMotion motion = local_motion(*m.local, w.v_r, *w.local);
+    const LocalMotion motion = m.local->motion(w.v_r, *w.local);
     ledger.kinetic += motion.kinetic;
     ledger.local += motion.elastic;
     ledger.gravity -= g.dot(m.part->total_mass() * w.c + w.R * motion.moment);
@@ -42,7 +42,7 @@ Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) c
     add_energy(t, m, w, ledger);
     VecMax<double> momentum;  // P and L about c, body frame
     if (m.local != nullptr) {
-      const LocalMotion motion = local_motion(*m.local, w.v_r, *w.local);
+      const LocalMotion motion = m.local->motion(w.v_r, *w.local);
       momentum.resize(6);
       momentum << motion.momentum, motion.angular_momentum;
     } else {

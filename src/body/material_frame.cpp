@@ -9,15 +9,17 @@ namespace pliant {
 
 namespace {
 
-/// Material points around one, near ones first.
-std::vector<Material<double>> neighbours(const Material<double>& m, bool ring) {
+/// Material points around one, near ones first; of a shell, which is its surface alone, on that.
+std::vector<Material<double>> neighbours(const Material<double>& m, const Part& part) {
   constexpr double step = 0.3;
-  const MaterialAngles at = angles(m);
+  const bool ring = part.shape().mesh() == MeshPattern::torus;
+  MaterialAngles at = angles(m);
   std::vector<Material<double>> all;
+  if (part.shell()) at.w = 1;
   for (const double sign : {-1.0, 1.0}) {
     all.push_back(material_at(at.u + sign * step, at.v, at.w));
     all.push_back(material_at(at.u, at.v + sign * step, at.w));
-    if (at.w + sign * step >= 0 && at.w + sign * step <= 1)
+    if (!part.shell() && at.w + sign * step >= 0 && at.w + sign * step <= 1)
       all.push_back(material_at(at.u, at.v, at.w + sign * step));
   }
   // At poles, at the centre and on the core of a ring the angles lead nowhere.
@@ -36,7 +38,7 @@ FramedPoint framed(const Point& at, const Mat3<double>& axes) {
   if (at.part == nullptr)
     return {std::vector<Point>(MaterialFrame::points, at), {Mat3<double>::Zero(), axes}};
   const Part& part = *at.part;
-  std::vector<Material<double>> around = neighbours(at.material, part.shape().mesh() == MeshPattern::torus);
+  std::vector<Material<double>> around = neighbours(at.material, part);
   around.push_back(at.material);
   const Eigen::Matrix3Xd x = part.s(around, part.parameters().rest());
   // The three whose directions are furthest from lying in a plane.

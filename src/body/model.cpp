@@ -33,13 +33,8 @@ Model::Model(MultiBody& body) : body_(&body) {
     n_v_ += part->n_v();
     n_limits_ += m.n_s;
 
-    // Below this a diagonal entry of M counts as no inertia: rounding noise of a body of this mass and size.
-    const double mass = part->total_mass(), size = part->size();
     m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
-    for (int k = 0; k < m.n_s; ++k) {
-      const Parameter& p = part->parameters().moving(k);
-      m.inertia_floor[6 + k] = 1e-24 * mass * (p.spec->quantity == Quantity::length ? 1.0 : size * size);
-    }
+    for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part->inertia_floor(k);
     if (part->rigid()) {
       m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
       for (int k = 0; k < 6; ++k) {
@@ -336,19 +331,17 @@ Vec3<double> Model::world_point(const State& state, int part, const Material<dou
                                 const NodeWeights& at) const {
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
   Vec3<double> p = m.part->s({material}, values(state, part)).col(0);
-  for (std::size_t i = 0; i < at.node.size(); ++i)
-    p += at.weight[i] * local_nodes(state, part).row(at.node[i]).transpose();
+  if (!at.node.empty()) {
+    VecX<double> buffer;
+    p += at_points({at}, m.local->at_nodes(state.q.data() + m.q0 + 7 + m.n_s, buffer));
+  }
   return position(state, part) + orientation(state, part) * p;  // Eq. (1)
-}
-
-Eigen::Map<const Nodes> Model::local_nodes(const State& state, int part) const {
-  const PartModel& m = parts_[static_cast<std::size_t>(part)];
-  return {state.q.data() + m.q0 + 7 + m.n_s, m.local->n_nodes(), 3};
 }
 
 Nodes Model::node_positions(const State& state, int part) const {
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
-  return m.part->s(m.local->mesh().nodes, values(state, part)).transpose() + local_nodes(state, part);
+  return m.part->s(m.local->mesh().nodes, values(state, part)).transpose() +
+         m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s);
 }
 
 double Model::gap(const State& state, int joint) const {
@@ -369,15 +362,6 @@ double Model::gap(const State& state, int joint) const {
   return m.joint->one_sided() ? std::max(0.0, -C[0]) : C.norm();
 }
 
-namespace {
-/// "upper.d[17].x"; what energies have of their own: "upper.own[3]".
-std::string local_name(const PartModel& m, int k) {
-  const auto n = static_cast<int>(m.local->n_nodes());
-  if (k >= 3 * n) return m.part->name() + ".own[" + std::to_string(k - 3 * n) + "]";
-  return m.part->name() + ".d[" + std::to_string(k % n) + "]." + "xyz"[k / n];
-}
-}  // namespace
-
 std::string Model::velocity_name(int i) const {
   static constexpr std::array<const char*, 6> rigid{"c_dot.x", "c_dot.y", "c_dot.z",
                                                     "omega.x", "omega.y", "omega.z"};
@@ -385,7 +369,7 @@ std::string Model::velocity_name(int i) const {
     if (m.v0 < 0 || i < m.v0 || i >= m.v0 + m.n_v()) continue;
     const int k = i - m.v0;
     if (k < 6) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    if (k >= 6 + m.n_s) return local_name(m, k - 6 - m.n_s) + "_dot";
+    if (k >= 6 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 6 - m.n_s) + "_dot";
     return m.part->name() + "." + m.part->parameters().moving(k - 6).name + "_dot";
   }
   throw std::out_of_range("no velocity number " + std::to_string(i));
@@ -398,7 +382,7 @@ std::string Model::coordinate_name(int i) const {
     if (m.q0 < 0 || i < m.q0 || i >= m.q0 + m.n_q()) continue;
     const int k = i - m.q0;
     if (k < 7) return m.part->name() + "." + rigid[static_cast<std::size_t>(k)];
-    if (k >= 7 + m.n_s) return local_name(m, k - 7 - m.n_s);
+    if (k >= 7 + m.n_s) return m.part->name() + "." + m.local->coordinate_name(k - 7 - m.n_s);
     return m.part->name() + "." + m.part->parameters().moving(k - 7).name;
   }
   throw std::out_of_range("no coordinate number " + std::to_string(i));

@@ -45,8 +45,8 @@ void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const Vec
   x.head(6 + m.n_s) = share_of(m, v);
   x.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
   if (m.shared.empty()) return;
-  x.tail(x.size() - 6 - m.n_s) =
-      at_points(m.shared, Eigen::Map<const Nodes>(v.data() + m.v0 + 6 + m.n_s, m.local->n_nodes(), 3));
+  VecX<double> buffer;
+  x.tail(x.size() - 6 - m.n_s) = at_points(m.shared, m.local->at_nodes(v.data() + m.v0 + 6 + m.n_s, buffer));
 }
 
 void give_velocity(const PartModel& m, const PartWorkspace<double>& w,
@@ -55,7 +55,7 @@ void give_velocity(const PartModel& m, const PartWorkspace<double>& w,
     VecX<double> change(x.size());
     take_velocity(m, w, v, change);
     change = w.local->A_inverse * (x - change);
-    push_all_nodes(*m.local, m.shared, change, *w.local, v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+    m.local->push_all(m.shared, change, *w.local, v.segment(m.v0 + 6 + m.n_s, m.n_d()));
   }
   share_of(m, v) = x.head(6 + m.n_s);
   v.segment<3>(m.v0) = w.R * x.head<3>();
@@ -65,8 +65,7 @@ void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eige
                   double h, VecX<double>& q) {
   advance_part(m, q, world_velocity(w, x.head(6 + m.n_s)), h);
   if (m.local != nullptr)
-    push_all_nodes(*m.local, m.shared, w.local->A_inverse * (h * x), *w.local,
-                   q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    m.local->push_all(m.shared, w.local->A_inverse * (h * x), *w.local, q.segment(m.q0 + 7 + m.n_s, m.n_d()));
 }
 
 void normalise_rotations(const Model& model, VecX<double>& q) {

@@ -54,19 +54,19 @@ class Snapshot {
 /// A rigid motion is added to the velocities of a part that deforms locally, so that its P and L stay.
 void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                         const PartWorkspace<double>& to, State& state) {
-  const LocalMotion before = local_motion(*m.local, from.v_r, *from.local),
-                    now = local_motion(*m.local, to.v_r, *to.local);
+  const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
   const Vec3<double> P = from.R * before.momentum;
   Vec<double, 6> missing;
   missing << to.R.transpose() * P - now.momentum,
       to.R.transpose() * (from.R * before.angular_momentum + (from.c - to.c).cross(P)) - now.angular_momentum;
-  const Vec<double, 6> rigid = local_inertia(*m.local, *to.local).ldlt().solve(missing);
+  const Vec<double, 6> rigid = m.local->rigid_inertia(*to.local).ldlt().solve(missing);
   state.v.segment<3>(m.v0) += to.R * rigid.head<3>();
   state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
 }
 
 /// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
-/// them P and L. before: evaluated at the coordinates before; now: at those now.
+/// them P and L; of a part that deforms locally, whose nodes keep their velocities, P and L alone. before:
+/// evaluated at the coordinates before; now: at those now.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {

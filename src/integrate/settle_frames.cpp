@@ -8,6 +8,7 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/part/nodal_deformation.h>
 
 namespace pliant {
 
@@ -19,11 +20,6 @@ constexpr int kMostIterations = 8;
 /// Of K with H0 scaled to a unit diagonal (design 1.3).
 constexpr double kWorstCondition = 1e8;
 
-/// Rows of x, each turned by R.
-Nodes turned(const Nodes& x, const Mat3<double>& R) {
-  return x * R.transpose();
-}
-
 }  // namespace
 
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
@@ -32,12 +28,10 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.local == nullptr) continue;
-    const LocalDeformation& local = *m.local;
-    const Eigen::Index n = local.n_nodes();
     auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
     if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) continue;
-    const std::vector<int> part{static_cast<int>(i)};
-    dynamics.evaluate_masses(state.q, state.v, part, work);
+    const int part = static_cast<int>(i);
+    dynamics.evaluate_frame(state.q, state.v, part, work);
     PartWorkspace<double>& w = work.parts[i];
     if (!(w.local->condition <= kWorstCondition)) {
       std::ostringstream message;
@@ -46,12 +40,18 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
               << "); freeze some of the parameters";
       throw NumericalFailure(message.str(), t);
     }
+    if (m.local->nodal() == nullptr) continue;
+    const NodalDeformation& local = *m.local->nodal();
+    NodalWorkspace& now = NodalDeformation::of(*w.local);
+    const Eigen::Index n = local.n_nodes();
     const double size = m.part->size();
-    const Nodes x_dot = turned(node_velocities(local, w.v_r, *w.local), w.R);
-    Nodes p = nodes(w.local->x, n);
+    Nodes &p = now.p_kept, &u = now.u_kept;
+    p = nodes(now.x, n);
+    u = nodes(now.d_dot, n);
+    local.add_frame_velocities(w.v_r, 1, now, u);
     for (int iteration = 0;; ++iteration) {
-      const VecMax<double> unmet = frame_share(local, nodes(w.local->d, n), *w.local);
-      const VecMax<double> delta = w.local->solve_transposed(unmet);
+      const VecMax<double> unmet = local.frame_share(nodes(now.d, n), now);
+      const VecMax<double> delta = now.solve_transposed(unmet);
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
       if (iteration == kMostIterations) {
         std::ostringstream message;
@@ -61,22 +61,19 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
         throw NumericalFailure(message.str(), t);
       }
       advance_part(m, state.q, world_velocity(w, delta), 1);
-      const Vec3<double> turn = delta.segment<3>(3);
-      const double angle = turn.norm();
-      const Mat3<double> back =
-          Eigen::AngleAxisd(-angle, angle > 0 ? Vec3<double>(turn / angle) : Vec3<double>::UnitX())
-              .toRotationMatrix();
-      p = turned(p.rowwise() - delta.head<3>().transpose(), back);
+      const Vec3<double> turning = delta.segment<3>(3);
+      const double angle = turning.norm();
+      const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
+      local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
       // Where the nodes would be with the displacements of before tells the reference shape.
-      dynamics.evaluate_masses(state.q, state.v, part, work);
-      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - w.local->s;
-      dynamics.evaluate_masses(state.q, state.v, part, work);
+      if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
+      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
+      dynamics.evaluate_frame(state.q, state.v, part, work);
     }
-    const Nodes now = turned(x_dot, w.R.transpose());
-    const VecMax<double> v_r = w.local->solve_transposed(frame_share(local, now, *w.local));
+    const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
     share_of(m, state.v) = world_velocity(w, v_r);
-    state.v.segment(m.v0 + 6 + m.n_s, 3 * n) =
-        Eigen::Map<const VecX<double>>(Nodes(now - frame_velocities(local, v_r, *w.local)).data(), 3 * n);
+    local.add_frame_velocities(v_r, -1, now, u);
+    Eigen::Map<Nodes>(state.v.data() + m.v0 + 6 + m.n_s, n, 3) = u;
   }
 }
 

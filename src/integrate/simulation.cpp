@@ -7,7 +7,7 @@
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
-#include <pliant/local/corotated.h>
+#include <pliant/local/inverted_element.h>
 
 namespace pliant {
 
@@ -16,6 +16,16 @@ namespace {
 constexpr double kNear = 1e-9, kUlps = 8;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
+
+/// Does something about the state of a time t (s); what cannot be told of it is a failure of the run.
+template <class F>
+auto at_time(double t, F&& act) {
+  try {
+    return act();
+  } catch (const InvertedElement& failure) {
+    throw NumericalFailure(failure.what(), t);
+  }
+}
 }  // namespace
 
 Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads)
@@ -26,12 +36,14 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
   dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
-  if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
-  settle_frames(dynamics_, 0, state_, output_work_);
-  if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
-  for (const Island& island : model_.islands())
-    take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);
-  start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
+  at_time(0, [&] {
+    if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
+    settle_frames(dynamics_, 0, state_, output_work_);
+    if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
+    for (const Island& island : model_.islands())
+      take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);
+    start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
+  });
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
 }
 
@@ -190,7 +202,7 @@ void Simulation::set_state(State state) {
 }
 
 Ledger Simulation::ledger() {
-  Ledger ledger = dynamics_.ledger(state_, output_work_);
+  Ledger ledger = at_time(time(), [&] { return dynamics_.ledger(state_, output_work_); });
   ledger.balance = ledger.energy() - start_energy_ - ledger.work.sum();
   return ledger;
 }

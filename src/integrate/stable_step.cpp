@@ -83,21 +83,13 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   return low;
 }
 
-/// Bounds of K and D of the nodes of a part in mass-normalised coordinates: those of elasticity, of the
-/// global parameters, and of springs at nodes add up.
-struct Bound {
-  double K, D;
-};
-Bound bound_nodes(const Model& model, std::size_t i, const PartWorkspace<double>& w) {
+/// Bounds of K and D of a part that deforms locally in mass-normalised coordinates: those of elasticity, of
+/// the global parameters, and of springs at its points add up.
+LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w) {
   const PartModel& m = model.parts()[i];
   const Part& part = *m.part;
-  Bound bound{0, m.local->alpha() + m.drag};
-  for (const auto& energy : m.local->energies()) {
-    const bool linear = energy->of() == NodalEnergy::Of::displacement;
-    const double omega2 = energy->frequency_bound(linear ? w.local->d : w.local->x, m.local->inertia());
-    bound.K += omega2;
-    if (linear) bound.D += m.local->beta() * omega2;
-  }
+  LocalDeformation::Bound bound = m.local->stiffness_bound(*w.local);
+  bound.D += m.local->alpha() + m.drag;
   if (m.n_s > 0) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
     const double omega2 = (compliance * part.K_s()).eigenvalues().cwiseAbs().maxCoeff();
@@ -107,10 +99,7 @@ Bound bound_nodes(const Model& model, std::size_t i, const PartWorkspace<double>
   for (const SpringModel& s : model.springs())
     for (const PortRef& ref : {s.a, s.b}) {
       if (ref.part != static_cast<int>(i)) continue;
-      const NodeWeights& at = m.node_weights[static_cast<std::size_t>(ref.port)];
-      double mobility = 0;  // of the point, were its nodes free
-      for (std::size_t k = 0; k < at.node.size(); ++k)
-        mobility += at.weight[k] * at.weight[k] * m.local->mobility()[at.node[k]];
+      const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
       // The other end may yield as much.
       bound.K += 2 * s.spring->stiffness * mobility;
       bound.D += 2 * s.spring->damping * mobility;
@@ -216,7 +205,7 @@ double largest_stable_step(const Simulation& simulation) {
     const double turning = state.v.segment<3>(m.v0 + 3).norm();
     if (turning > 0) smallest = std::min(smallest, kMostTurn / turning);
     if (m.local == nullptr) continue;
-    const Bound bound = bound_nodes(model, i, work.parts[i]);
+    const LocalDeformation::Bound bound = bound_locally(model, i, work.parts[i]);
     smallest = std::min(smallest, one(bound.K, bound.D));
   }
   for (const std::vector<std::size_t>& group : members) {

@@ -16,11 +16,6 @@ const ParameterSpec& dynamic_parameter(const PartModel& part, int k) {
   return *part.part->parameters().moving(k).spec;
 }
 
-/// Of the k-th local coordinate.
-const char* local_unit(const PartModel& part, int k) {
-  return k < 3 * part.local->n_nodes() ? "m" : "1";
-}
-
 }  // namespace
 
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part) {
@@ -32,7 +27,7 @@ std::vector<Column> coordinate_columns(const Model& model, const PartModel& part
     else if (k < 7)
       column.unit = "1", column.meaning = "orientation, body to world";
     else if (k >= 7 + part.n_s)
-      column.unit = local_unit(part, k - 7 - part.n_s), column.meaning = "local deformation, body frame";
+      column.unit = part.local->unit(k - 7 - part.n_s), column.meaning = "local deformation, body frame";
     else
       column.unit = dynamic_parameter(part, k - 7).unit(),
       column.meaning = dynamic_parameter(part, k - 7).meaning;
@@ -50,7 +45,7 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
     else if (k < 6)
       column.unit = "rad/s", column.meaning = "angular velocity, body frame";
     else if (k >= 6 + part.n_s)
-      column.unit = std::string(local_unit(part, k - 6 - part.n_s)) + "/s";
+      column.unit = std::string(part.local->unit(k - 6 - part.n_s)) + "/s";
     else
       column.unit = std::string(dynamic_parameter(part, k - 6).unit()) + "/s";
     columns.push_back(std::move(column));

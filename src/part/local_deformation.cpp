@@ -1,244 +1,50 @@
 #include <pliant/part/local_deformation.h>
 
-#include <array>
-#include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 
-#include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
-#include <pliant/local/solid_mass.h>
-#include <pliant/local/tetrahedron.h>
-#include <pliant/part/part.h>
-#include <pliant/part/solid.h>
-#include <pliant/part/surface.h>
+#include <pliant/part/nodal_deformation.h>
 
 namespace pliant {
 
-namespace {
-
-/// A third of the area of the triangles at each node.
-VecX<double> node_areas(const LocalMesh& mesh) {
-  VecX<double> area = VecX<double>::Zero(mesh.X.rows());
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const auto corner = [&](int k) -> Vec3<double> { return mesh.X.row(mesh.triangles(k, t)).transpose(); };
-    const double third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-    for (int k = 0; k < 3; ++k) area[mesh.triangles(k, t)] += third;
-  }
-  return area;
+std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings) {
+  return std::make_unique<NodalDeformation>(part, settings);
 }
 
-/// Moments of mass of order 0, 1 and 2 of a point, in units of a length.
-Vec<double, 10> moments(const Vec3<double>& x) {
-  Vec<double, 10> f;
-  f << 1, x[0], x[1], x[2], x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0];
-  return f;
-}
-/// The same of a whole part.
-Vec<double, 10> moments(const Inertia<double>& whole, double unit) {
-  const Mat3<double> I = whole.M.block<3, 3>(3, 3) / (unit * unit);
-  const Vec3<double> square = 0.5 * I.trace() * Vec3<double>::Ones() - I.diagonal();
-  Vec<double, 10> f;
-  f << whole.mass, whole.moment / unit, square, -I(0, 1), -I(1, 2), -I(2, 0);
-  return f;
+void LocalDeformation::check_start(const Part& part, const Nodes& displacements, const VecX<double>& rates) {
+  const double farthest = displacements.rowwise().norm().maxCoeff();
+  if (farthest <= part.size() && rates.allFinite()) return;
+  std::ostringstream message;
+  message << "part '" << part.name() << "': at time 0 nodes are displaced by " << farthest
+          << " m; expected no more than its size, " << part.size() << " m, and finite velocities";
+  throw std::invalid_argument(message.str());
 }
 
-/// Changes masses as little as it takes, relative to themselves, to give them the mass, the centre and the
-/// second moments of the part without nodes.
-void match_moments(const Inertia<double>& whole, double unit, const Nodes& X, VecX<double>& mass) {
-  const Eigen::Index n = X.rows();
-  MatX<double> F(10, n);
-  for (Eigen::Index k = 0; k < n; ++k) F.col(k) = moments(Vec3<double>(X.row(k).transpose() / unit));
-  const Vec<double, 10> missing = moments(whole, unit) - F * mass;
-  // Least sum m c^2 with sum m c f = what is missing: c = f^T y.
-  const Eigen::Matrix<double, 10, 10> A = F * mass.asDiagonal() * F.transpose();
-  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 10, 10>> solver;
-  solver.setThreshold(1e-10);
-  solver.compute(A);
-  const VecX<double> change = F.transpose() * solver.solve(missing);
-  mass.array() *= 1 + change.array();
+MatX<double> LocalDeformation::inverse_of(const MatX<double>& A) {
+  constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
+  const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const MatX<double> scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  constexpr double well_conditioned = 1e-8;
+  const Eigen::LLT<MatX<double>> factor(scaled);
+  if (factor.info() == Eigen::Success && factor.rcond() > well_conditioned)
+    return scale.asDiagonal() * factor.solve(MatX<double>(scale.asDiagonal()));
+  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scaled);
+  VecX<double> inverse = eigen.eigenvalues();
+  for (double& value : inverse) value = value > smallest ? 1 / value : 0;
+  const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
+  return V * inverse.asDiagonal() * V.transpose();
 }
 
-/// Weights of the point of a triangle that is nearest to x.
-Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<double>, 3>& corner) {
-  const Vec3<double> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], r = x - corner[0];
-  const double a = e1.dot(e1), b = e1.dot(e2), c = e2.dot(e2), d = e1.dot(r), e = e2.dot(r);
-  const double det = a * c - b * b;
-  const double s = (c * d - b * e) / det, t = (a * e - b * d) / det;
-  if (s >= 0 && t >= 0 && s + t <= 1) return {1 - s - t, s, t};
-  Vec3<double> best = Vec3<double>::Zero();
-  double least = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>((k + 1) % 3);
-    const Vec3<double> edge = corner[j] - corner[i];
-    const double along = std::clamp((x - corner[i]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    const double distance = (x - corner[i] - along * edge).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
-    best.setZero();
-    best[k] = 1 - along;
-    best[(k + 1) % 3] = along;
-  }
-  return best;
-}
-
-/// Weights of a point x in a shell: those of the point of its triangles that is nearest.
-NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
-  NodeWeights best;
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    std::array<Vec3<double>, 3> corner;
-    for (int k = 0; k < 3; ++k)
-      corner[static_cast<std::size_t>(k)] = mesh.X.row(mesh.triangles(k, t)).transpose();
-    const Vec3<double> weight = nearest_on_triangle(x, corner);
-    const double distance =
-        (x - weight[0] * corner[0] - weight[1] * corner[1] - weight[2] * corner[2]).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
-    best = {};
-    for (int k = 0; k < 3; ++k) {
-      if (weight[k] == 0) continue;
-      best.node.push_back(mesh.triangles(k, t));
-      best.weight.push_back(weight[k]);
-    }
-  }
-  return best;
-}
-
-/// Weights of a point x in an element, from barycentric coordinates nearby.
-template <class Element>
-NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<double>& x,
-                       std::array<double, 4> L) {
-  std::array<Vec3<double>, Element::n_nodes> X;
-  for (int k = 0; k < Element::n_nodes; ++k)
-    X[static_cast<std::size_t>(k)] = mesh.X.row(mesh.tetrahedra(k, element)).transpose();
-  // Newton's method where the element is curved; straight ones are met at once.
-  constexpr int most = 10;
-  for (int i = 0; i < most; ++i) {
-    const TetrahedronPoint at{L, 0};
-    const auto N = Element::N(at);
-    Vec3<double> miss = x;
-    for (int k = 0; k < Element::n_nodes; ++k) miss -= N[k] * X[static_cast<std::size_t>(k)];
-    const Vec3<double> step = Element::gradient(at, X.data()).inverse() * miss;
-    L[0] -= step.sum();
-    for (std::size_t k = 0; k < 3; ++k) L[k + 1] += step[static_cast<Eigen::Index>(k)];
-  }
-  NodeWeights at;
-  const auto N = Element::N({L, 0});
-  for (int k = 0; k < Element::n_nodes; ++k) {
-    at.node.push_back(mesh.tetrahedra(k, element));
-    at.weight.push_back(N[k]);
-  }
-  return at;
-}
-
-/// Weights of a point x in a solid: by the element in which it lies, or outside of which it lies least.
-NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
-  Eigen::Index in = 0;
-  std::array<double, 4> L{};
-  double inside = -std::numeric_limits<double>::infinity();
-  Eigen::Matrix4d corners;
-  corners.row(3).setOnes();
-  for (Eigen::Index t = 0; t < mesh.tetrahedra.cols(); ++t) {
-    for (int k = 0; k < 4; ++k) corners.col(k).head<3>() = mesh.X.row(mesh.tetrahedra(k, t)).transpose();
-    const Vec<double, 4> at = corners.inverse() * x.homogeneous();
-    if (!(at.minCoeff() > inside)) continue;
-    inside = at.minCoeff();
-    in = t;
-    Eigen::Map<Vec<double, 4>>(L.data()) = at;
-  }
-  if (mesh.tetrahedra.rows() == 4) return weights_in<LinearTetrahedron>(mesh, in, x, L);
-  return weights_in<EnrichedTetrahedron>(mesh, in, x, L);
-}
-
-/// Triangles of a surface of 3 nodes a column, or of 7 (see Solid), each of which makes six.
-Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
-  if (faces.rows() == 3) return faces;
-  constexpr int round[7] = {0, 3, 1, 4, 2, 5, 0}, middle = 6;
-  Eigen::Matrix3Xi triangles(3, 6 * faces.cols());
-  for (Eigen::Index f = 0; f < faces.cols(); ++f)
-    for (int i = 0; i < 6; ++i)
-      triangles.col(6 * f + i) << faces(round[i], f), faces(round[i + 1], f), faces(middle, f);
-  return triangles;
-}
-
-/// Nodes and elements at rest, with masses that stand in the right ratio.
-LocalMesh lay_mesh(const Part& part, const LocalSettings& settings) {
-  LocalMesh mesh;
-  if (part.shell()) {
-    const Surface surface(part, settings.resolution);
-    mesh.nodes = surface.material();
-    mesh.triangles = surface.triangles();
-  } else {
-    const Solid solid(part, settings.resolution,
-                      settings.order == 2 ? Solid::Order::enriched : Solid::Order::linear);
-    mesh.nodes = solid.material();
-    mesh.triangles = flat_triangles(solid.boundary());
-    mesh.tetrahedra = solid.elements();
-  }
-  mesh.X = part.s(mesh.nodes, part.parameters().rest()).transpose();
-  mesh.mass = part.shell() ? node_areas(mesh) : lumped_mass(mesh.X, mesh.tetrahedra, 1);
-  mesh.density = part.total_mass() / mesh.mass.sum();
-  mesh.mass *= mesh.density;
-  return mesh;
-}
-
-}  // namespace
-
-LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settings)
-    : alpha_(settings.alpha), beta_(settings.beta) {
-  mesh_ = lay_mesh(part, settings);
-  match_moments(part.rest_inertia(), part.size(), mesh_.X, mesh_.mass);
-  if (!(mesh_.mass.minCoeff() > 0))
-    throw std::invalid_argument("part '" + part.name() + "': a mesh of resolution " +
-                                std::to_string(settings.resolution) +
-                                " is too coarse for its masses to be positive");
-  for (std::size_t first = 0; first < mesh_.nodes.size(); first += Pack::kLanes) {
-    std::array<Material<double>, Pack::kLanes> four;
-    for (std::size_t i = 0; i < Pack::kLanes; ++i)
-      four[i] = mesh_.nodes[std::min(first + i, mesh_.nodes.size() - 1)];
-    packs_.push_back(gather(four.data()));
-  }
-  VecX<double> own;
-  for (const LocalSettings::Law& law : settings.energies) {
-    energies_.push_back(law(mesh_));
-    if (beta_ > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
-      throw std::invalid_argument("part '" + part.name() +
-                                  "': beta of its nodes damps laws that are quadratic in d only; use alpha");
-    const VecX<double> more = energies_.back()->own_inertia();
-    if (more.size() == 0) continue;
-    if (own.size() > 0)
-      throw std::invalid_argument("part '" + part.name() +
-                                  "': only one of its energies may have coordinates of its own");
-    own = more;
-  }
-  inertia_.resize(3 * n_nodes() + own.size());
-  inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
-  mobility_ = inertia_.cwiseInverse();
-  auto at_nodes = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of) {
-    VecX<double> values = VecX<double>::Zero(n_d());
-    for (Eigen::Index k = 0; of && k < n_nodes(); ++k)
-      nodes(values, n_nodes()).row(k) = of(mesh_.X.row(k).transpose()).transpose();
-    return values;
-  };
-  initial_ = at_nodes(settings.displacement);
-  initial_rate_ = at_nodes(settings.velocity);
-  const double farthest = nodes(initial_, n_nodes()).rowwise().norm().maxCoeff();
-  if (!(farthest <= part.size()) || !initial_rate_.allFinite()) {
-    std::ostringstream message;
-    message << "part '" << part.name() << "': at time 0 nodes are displaced by " << farthest
-            << " m; expected no more than its size, " << part.size() << " m, and finite velocities";
-    throw std::invalid_argument(message.str());
-  }
-}
-
-NodeWeights LocalDeformation::weights(const Part& part, const Material<double>& m) const {
-  if (mesh_.shell() && m.w < 1) return {};
-  const Vec3<double> x = part.s({m}, part.parameters().rest()).col(0);
-  return mesh_.shell() ? weights_on_triangles(mesh_, x) : weights_in_elements(mesh_, x);
+VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values) {
+  VecX<double> x = VecX<double>::Zero(3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t i = 0; i < points[k].node.size(); ++i)
+      x.segment<3>(3 * static_cast<Eigen::Index>(k)) +=
+          points[k].weight[i] * values.row(points[k].node[i]).transpose();
+  return x;
 }
 
 }  // namespace pliant

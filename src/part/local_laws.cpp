@@ -19,8 +19,8 @@ using Number = LocalLawInfo::Number;
 using Energy = std::unique_ptr<NodalEnergy>;
 
 const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
-const Number kPoissonShell{"nu", "1", "Poisson's number.", -1, true, 0.3, 0.5};
-const Number kPoissonSolid{"nu", "1", "Poisson's number, below 1/2.", -1, true, 0.3, 0.4999999};
+const Number kPoissonShell{"nu", "1", "Poisson's ratio.", -1, true, 0.3, 0.5};
+const Number kPoissonSolid{"nu", "1", "Poisson's ratio, below 1/2.", -1, true, 0.3, 0.4999999};
 const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
 
 ShellMesh shell(const LocalMesh& mesh) {
@@ -141,14 +141,16 @@ LocalSettings::Law local_law(const std::string& name, std::vector<double> values
                                   " numbers");
     const bool of_shell = info.shell;
     const auto lay = info.lay;
-    return [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) -> Energy {
-      if (mesh.shell() != of_shell)
-        throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
-                                    ", not of " + (of_shell ? "solids" : "shells"));
-      Energy energy = lay(mesh, values.data());
-      energy->set_law(name);
-      return energy;
-    };
+    std::optional<Elasticity> linear;
+    if (name == "elastic") linear.emplace(values[0], values[1]);
+    return LocalSettings::Law(
+        [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+          if (mesh.shell() != of_shell)
+            throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
+                                        ", not of " + (of_shell ? "solids" : "shells"));
+          return lay(mesh, values.data());
+        },
+        name, linear);
   }
   throw std::invalid_argument("no law of local deformation '" + name + "'; there are:" + known);
 }

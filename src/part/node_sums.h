@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/local/four_nodes.h>
-#include <pliant/part/local_dynamics.h>
+#include <pliant/part/nodal_deformation.h>
 
 namespace pliant::node_sums {
 
@@ -43,17 +43,21 @@ inline Vec3<Pack> spread(const Vec3<double>& a) {
 inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
+/// Of Packs, whose product by Eigen compilers do not inline.
+[[gnu::always_inline]] inline Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 /// The axial vector of a matrix: sum of a x b for sum a b^T.
 inline Vec3<double> axial(const Mat3<double>& ab) {
   return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
 }
 
-inline bool any(const VecX<double>& x) {
+inline bool any(const Eigen::Ref<const VecX<double>>& x) {
   return (x.array() != 0).any();
 }
 
 /// The columns of J of parameter c.
-inline const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
+inline const double* column(const NodalWorkspace& w, Eigen::Index n, int c) {
   return w.J.data() + 3 * n * c;
 }
 
@@ -61,12 +65,12 @@ inline const double* column(const LocalWorkspace& w, Eigen::Index n, int c) {
 struct FrameMotion {
   Vec3<Pack> c, omega;
   const VecMax<double>& v;
-  const LocalWorkspace& w;
+  const NodalWorkspace& w;
   Eigen::Index n;
 
-  FrameMotion(const VecMax<double>& all, const LocalWorkspace& work, Eigen::Index n_nodes)
+  FrameMotion(const VecMax<double>& all, const NodalWorkspace& work, Eigen::Index n_nodes)
       : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
-  Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, omega.cross(p)); }
+  Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, cross(omega, p)); }
   Vec3<Pack> shape(const FourNodes& four) const {
     Vec3<Pack> sum = Vec3<Pack>::Constant(Pack(0.0));
     for (int k = 6; k < v.size(); ++k) {
@@ -77,25 +81,12 @@ struct FrameMotion {
   }
 };
 
-/// sum G^T F over nodes at positions x (p, or s).
-inline VecMax<double> generalised(const double* x, const double* F, const LocalWorkspace& w, Eigen::Index n,
-                                  int n_s) {
-  VecMax<double> f(6 + n_s);
-  VectorSum force, torque;
-  for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> at = four.load(x, n), push = four.load(F, n);
-    force.add(push);
-    torque.add(at.cross(push));
-  });
-  f.head<3>() = force.total();
-  f.segment<3>(3) = torque.total();
-  for (int k = 0; k < n_s; ++k) {
-    Pack along(0.0);
-    for_each_four(
-        n, [&](const FourNodes& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });
-    f[6 + k] = sum(along);
-  }
-  return f;
+/// sum J^T F of parameter k over nodes.
+inline double along_column(const double* F, const NodalWorkspace& w, Eigen::Index n, int k) {
+  Pack along(0.0);
+  for_each_four(n,
+                [&](const FourNodes& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });
+  return sum(along);
 }
 
 }  // namespace pliant::node_sums

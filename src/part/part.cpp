@@ -302,8 +302,14 @@ void Part::prepare() {
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
-  if (local_settings_) local_ = std::make_unique<LocalDeformation>(*this, *local_settings_);
+  if (local_settings_) local_ = make_local_deformation(*this, *local_settings_);
   prepared_ = true;
+}
+
+double Part::inertia_floor(int k) const {
+  constexpr double part_of_mass = 1e-24;
+  const bool length = parameters_.moving(k).spec->quantity == Quantity::length;
+  return part_of_mass * total_mass() * (length ? 1.0 : size_ * size_);
 }
 
 Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,

@@ -24,6 +24,8 @@ namespace {
 
 /// Least volume of an element, in units of the cube of its longest edge.
 constexpr double kFlat = 1e-9;
+/// More straight elements than that, or a quarter of curved ones, would not fit in a few gigabytes.
+constexpr double kMostElements = 2e6;
 
 /// Corner nodes and elements, the vertices of the surface first.
 struct Corners {
@@ -211,6 +213,14 @@ Solid::Solid(const Part& part, int resolution, Order order) {
   if (resolution < 1 || resolution > 64)
     throw std::invalid_argument("part '" + part.name() + "': solid resolution " + std::to_string(resolution) +
                                 " must be from 1 to 64");
+  const double elements = 48 * std::pow(resolution, 3),
+               most = order == Order::linear ? kMostElements : kMostElements / 4;
+  if (elements > most) {
+    std::ostringstream message;
+    message << "part '" << part.name() << "': solid resolution " << resolution << " makes some " << elements
+            << " elements of this order; expected at most " << most;
+    throw std::invalid_argument(message.str());
+  }
   const ParameterValues<double> rest = part.parameters().rest();
   const ShapeFace& shape = part.shape();
   const ShapeParameters a = rest.b.data();

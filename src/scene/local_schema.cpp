@@ -34,7 +34,9 @@ schema::Record local_record() {
       "local",
       "Local deformation at the nodes of a mesh: of the surface of a shell, of the body of a solid.",
       {optional("resolution", integer(between(1, 64)),
-                "Edges along a quarter circle: 48 n^2 triangles of a shell, 48 n^3 tetrahedra of a solid.",
+                "Edges along a quarter circle: 48 n^2 triangles of a shell (a torus 64 n^2), some 48 n^3 "
+                "tetrahedra of a "
+                "solid.",
                 "8"),
        optional("order", integer(between(1, 2)),
                 "Of the elements of a solid: 1 straight with 4 nodes, 2 curved with 15 nodes.", "1"),

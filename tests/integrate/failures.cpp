@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "motion.h"
+#include "spring_net.h"
 
 using namespace pliant;
 using test::has_text;
@@ -167,6 +168,28 @@ TEST_CASE("parameters without inertia are held and named", "[failure]") {
     // Nothing else is disturbed: the scale goes on.
     CHECK(simulation.state().v[6] == Approx(0.1).epsilon(1e-2));
     test::run(simulation, 0.1, 100);
+    CHECK(simulation.state().q.allFinite());
+  }
+}
+
+TEST_CASE("parameters without inertia of a part that deforms locally are held and named",
+          "[failure][local]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "body", "ellipsoid", {"bend_offset"}, 1000);
+    part.make_shell().stiffness({{"a1", 1e5}, {"bend_offset.b2", 1}});
+    part.initial_rate({{"a1", 0.1}, {"bend_offset.b2", 0.3}}).move({0, 0, 0}, {0.2, 0.1, 0});
+    LocalSettings settings = test::net(2, 1e5);
+    settings.velocity = test::rush;
+    part.deform_locally(settings);
+    Simulation simulation(body, method);
+    simulation.step(1e-4);
+    INFO(method);
+    CHECK(simulation.held().count("body.bend_offset.b2") == 1);
+    CHECK(simulation.held().size() == 1);
+    CHECK(simulation.state().v.allFinite());
+    test::run(simulation, 0.01, 100);
     CHECK(simulation.state().q.allFinite());
   }
 }

@@ -2,6 +2,8 @@
 #include "catch.h"
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/body/material_frame.h>
+#include <pliant/part/local_laws.h>
 
 #include "motion.h"
 #include "spring_net.h"
@@ -156,6 +158,31 @@ TEST_CASE("a soft shell at a step that is too long: the part is named, and the s
   }
   CHECK_THAT(what, test::has_text("too long") || test::has_text("largest stable step"));
   CHECK_THAT(what, test::has_text("'ball'") || test::has_text("ball."));
+}
+
+TEST_CASE("an element that is inside out at time 0 fails with the name of its part", "[local]") {
+  MultiBody body;
+  auto& part = body.add<Primitive<Sphere>>("jelly", 1000);
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.energies = {local_law("corotated", {1e4, 0.3})};
+  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> {
+    return X[2] > 0.9 ? Vec3<double>(0, 0, -0.95) : Vec3<double>(0, 0, 0);
+  };
+  part.deform_locally(settings);
+  CHECK_THROWS_AS(Simulation(body), NumericalFailure);
+  CHECK_THROWS_WITH(Simulation(body), test::has_text("part 'jelly'"));
+}
+
+TEST_CASE("the points of a hinge on a shell are of its surface, which moves", "[local][joints]") {
+  MultiBody body;
+  Part& part = balloon(body, "balloon", {0, 0, 0}, false);
+  for (const double w : {0.4, 1.0})
+    for (const Point& at : framed(point(part, 0.3, 0.2, w), Mat3<double>::Identity()).points)
+      CHECK((at.material.w == 1 || at.material.w == w));
+  Simulation simulation(body);
+  const FramedPoint frame = framed(point(part, 0.3, 0.2), Mat3<double>::Identity());
+  for (const Point& at : frame.points) CHECK(!part.local()->weights(part, at.material).node.empty());
 }
 
 TEST_CASE("assembly before time 0 by both solvers, with soft shells and without", "[local][assembly]") {

@@ -2,6 +2,7 @@
 #include "catch.h"
 
 #include <pliant/part/local_laws.h>
+#include <pliant/part/nodal_deformation.h>
 #include <pliant/part/surface.h>
 
 #include "motion.h"
@@ -40,7 +41,8 @@ double unmet(const Simulation& simulation) {
   Workspace<double> work;
   simulation.dynamics().evaluate_masses(simulation.state().q, simulation.state().v, {0}, work);
   const LocalWorkspace& w = *work.parts[0].local;
-  const VecMax<double> all = frame_share(*m.local, nodes(w.d, m.local->n_nodes()), w);
+  const NodalDeformation& local = *m.local->nodal();
+  const VecMax<double> all = local.frame_share(nodes(w.d, local.n_nodes()), w);
   return all.norm() / (m.part->total_mass() * m.part->size());
 }
 
@@ -107,13 +109,14 @@ TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns 
       Workspace<double> work;
       simulation.dynamics().accelerations(0, state.q, state.v, state, work);
       const PartWorkspace<double>& w = work.parts[0];
-      const LocalDeformation& local = *shell.local();
-      const Nodes a = frame_velocities(local, w.a_r, *w.local) + nodes(w.local->d_ddot, local.n_nodes());
+      const NodalDeformation& local = *shell.local()->nodal();
+      Nodes a = nodes(w.local->d_ddot, local.n_nodes());
+      local.add_frame_velocities(w.a_r, 1, *w.local, a);
       Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
       for (Eigen::Index i = 0; i < a.rows(); ++i) {
         const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
         sum += ma;
-        turning += nodes(w.local->x, local.n_nodes()).row(i).transpose().cross(ma);
+        turning += nodes(NodalDeformation::of(*w.local).x, local.n_nodes()).row(i).transpose().cross(ma);
       }
       const Vec3<double> f = w.R.transpose() * force;
       CHECK((sum - f).norm() <= 1e-12 * f.norm());
@@ -140,9 +143,13 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
       const State& s = simulation.state();
       simulation.dynamics().evaluate_masses(s.q, s.v, {0}, work);
       const PartWorkspace<double>& w = work.parts[0];
-      const Eigen::Index n = part.local()->n_nodes();
-      const Nodes v = node_velocities(*part.local(), w.v_r, *w.local) * w.R.transpose();
-      const Nodes x = (nodes(w.local->x, n) * w.R.transpose()).rowwise() + w.c.transpose();
+      const NodalDeformation& local = *part.local()->nodal();
+      const Eigen::Index n = local.n_nodes();
+      Nodes v = nodes(w.local->d_dot, local.n_nodes());
+      local.add_frame_velocities(w.v_r, 1, *w.local, v);
+      v *= w.R.transpose();
+      const Nodes x =
+          (nodes(NodalDeformation::of(*w.local).x, n) * w.R.transpose()).rowwise() + w.c.transpose();
       return std::make_pair(x, v);
     };
     const auto [x0, v0] = places();

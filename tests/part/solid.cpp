@@ -275,6 +275,8 @@ TEST_CASE("solid meshes that cannot be are refused", "[solid]") {
   const std::unique_ptr<Part> box = make_part("brick", "box", {"taper", "bend"}, 1);
   CHECK_THROWS_WITH(Solid(*box, 0), test::has_text("from 1 to 64"));
   CHECK_THROWS_WITH(Solid(*box, 65), test::has_text("'brick'"));
+  CHECK_THROWS_WITH(Solid(*box, 64), test::has_text("elements of this order; expected at most 2e+06"));
+  CHECK_THROWS_WITH(Solid(*box, 24, Order::enriched), test::has_text("expected at most 500000"));
   box->rest({{"taper.tx", -1}, {"taper.ty", -1}});
   CHECK_THROWS_WITH(Solid(*box, 4), test::has_text("flat"));
   const std::unique_ptr<Part> spikes = make_part("spikes", "superellipsoid", {}, 1);

@@ -8,7 +8,6 @@
 #include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
 #include <pliant/math/thread_pool.h>
-#include <pliant/part/local_dynamics.h>
 
 namespace pliant {
 
@@ -53,10 +52,12 @@ struct PartWorkspace {
   }
   /// Whether a velocity has no inertia right now, and is held.
   bool held(int k) const {
-    return !local && (rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k));
+    if (local) return local->held.test(static_cast<std::size_t>(k));
+    return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k);
   }
   bool any_held() const {
-    return !local && (rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held());
+    if (local) return local->held.any();
+    return rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held();
   }
 };
 
@@ -128,6 +129,8 @@ class Dynamics {
   /// Frames, points, mass matrices and their factors of some parts.
   void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
+  /// Frame, points and mass matrix of a part, without its factor.
+  void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
   /// Energy of some parts and of the springs at them, J. work: any.
   double energy(double t, const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                 Workspace<double>& work) const;

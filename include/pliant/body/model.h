@@ -138,9 +138,7 @@ class Model {
                            const NodeWeights& at) const;
   /// Where a material point is among the nodes of a part; none of a part that does not deform locally.
   NodeWeights node_weights(int part, const Material<double>& m) const;
-  /// Displacements of the nodes of a part that deforms locally, body frame.
-  Eigen::Map<const Nodes> local_nodes(const State& state, int part) const;
-  /// Positions of its nodes, body frame, m.
+  /// Positions of the nodes of the mesh of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
   double gap(const State& state, int joint) const;

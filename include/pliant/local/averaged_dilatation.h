@@ -1,8 +1,7 @@
 // What keeps nearly incompressible solids from locking: the dilatation enters by means over patches c,
 //   E = lambda/2 sum_c V_c theta_c^2,   V_c theta_c = int over c of div d
 // instead of point by point. 4 nodes: a patch is a node with a quarter of each element around it (nodal
-// pressure, Bonet & Burton 1998); 10 and 15
-// nodes: the element. By Jensen no more than the energy with the
+// pressure, Bonet & Burton 1998); 10 and 15 nodes: the element. By Jensen no more than the energy with the
 // dilatation itself.
 #pragma once
 

@@ -4,18 +4,12 @@
 // R by Newton's iteration with scaling (Higham 1986).
 #pragma once
 
-#include <stdexcept>
-
 #include <pliant/local/elasticity.h>
+#include <pliant/local/inverted_element.h>
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/tensor.h>
 
 namespace pliant {
-
-/// An element is turned inside out, where the energy is not defined.
-struct InvertedElement : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// The rotation nearest to F; throws InvertedElement unless det F > 0.
 template <class T>
@@ -30,8 +24,7 @@ Mat3<T> nearest_rotation(const Mat3<T>& F) {
     if (!(least_of(J) > 0))
       throw InvertedElement(
           "an element of corotated material is turned inside out; a smaller step keeps it from that, "
-          "neo-Hookean "
-          "material bears it");
+          "neo-Hookean material bears it");
     const T g = sqrt(sqrt(contraction(C, C) / (contraction(R, R) * J * J)));
     const T keep = T(0.5) * g, inverse = T(0.5) / (g * J);
     T step(0.0);

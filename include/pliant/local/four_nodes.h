@@ -16,33 +16,34 @@ class FourNodes {
 
   Eigen::Index first() const { return first_; }
   /// Lanes beyond the last node are zero.
-  Pack load(const double* column) const {
+  [[gnu::always_inline]] Pack load(const double* column) const {
+    if (count_ != Pack::kLanes) return load_some(column + first_);
     Pack x;
-    const double* from = column + first_;
-    if (count_ == Pack::kLanes) {
-      std::memcpy(x.vectors, from, sizeof x.vectors);
-      return x;
-    }
-    for (int i = 0; i < Pack::kLanes; ++i) x.set(i, i < count_ ? from[i] : 0.0);
+    std::memcpy(x.vectors, column + first_, sizeof x.vectors);
     return x;
   }
-  void store(double* column, const Pack& x) const {
-    double* to = column + first_;
-    if (count_ == Pack::kLanes) {
-      std::memcpy(to, x.vectors, sizeof x.vectors);
-      return;
-    }
-    for (int i = 0; i < count_; ++i) to[i] = x[i];
+  [[gnu::always_inline]] void store(double* column, const Pack& x) const {
+    if (count_ != Pack::kLanes) return store_some(column + first_, x);
+    std::memcpy(column + first_, x.vectors, sizeof x.vectors);
   }
   /// The same of three columns that stand one after the other.
-  Vec3<Pack> load(const double* columns, Eigen::Index rows) const {
+  [[gnu::always_inline]] Vec3<Pack> load(const double* columns, Eigen::Index rows) const {
     return {load(columns), load(columns + rows), load(columns + 2 * rows)};
   }
-  void store(double* columns, Eigen::Index rows, const Vec3<Pack>& x) const {
+  [[gnu::always_inline]] void store(double* columns, Eigen::Index rows, const Vec3<Pack>& x) const {
     for (int r = 0; r < 3; ++r) store(columns + r * rows, x[r]);
   }
 
  private:
+  [[gnu::noinline]] Pack load_some(const double* from) const {
+    Pack x(0.0);
+    for (int i = 0; i < count_; ++i) x.set(i, from[i]);
+    return x;
+  }
+  [[gnu::noinline]] void store_some(double* to, const Pack& x) const {
+    for (int i = 0; i < count_; ++i) to[i] = x[i];
+  }
+
   Eigen::Index first_;
   int count_;
 };

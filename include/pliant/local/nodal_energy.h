@@ -3,8 +3,6 @@
 // what its elements push in a fixed order, so that results do not depend on the number of threads.
 #pragma once
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCore>
@@ -26,9 +24,6 @@ class NodalEnergy {
   };
 
   virtual ~NodalEnergy() = default;
-  /// The law that it was laid by (part/local_laws.h), for messages; empty of one that scenes do not know.
-  const std::string& law() const { return law_; }
-  void set_law(std::string name) { law_ = std::move(name); }
   virtual Of of() const = 0;
   /// Inertia of the coordinates that the energy has of its own; they follow those of the nodes. Most have
   /// none.
@@ -46,9 +41,6 @@ class NodalEnergy {
   /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over
   /// all coordinates.
   virtual double frequency_bound(const VecX<double>& x, const VecX<double>& M) const = 0;
-
- private:
-  std::string law_;
 };
 
 }  // namespace pliant

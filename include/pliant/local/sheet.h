@@ -1,4 +1,4 @@
-// Hooke's law of a thin isotropic sheet (plane stress): E Young's modulus (Pa), nu Poisson's number,
+// Hooke's law of a thin isotropic sheet (plane stress): E Young's modulus (Pa), nu Poisson's ratio,
 //   W(e) = t/2 [lambda (tr e)^2 + 2 mu e:e] per area,  lambda = E nu/(1 - nu^2),  2 mu = E/(1 + nu);
 // bent, with the curvature k:  W(k) = D/2 [nu (tr k)^2 + (1 - nu) k:k],  D = E t^3/(12 (1 - nu^2)).
 #pragma once
@@ -9,7 +9,7 @@ namespace pliant {
 
 struct Sheet {
   double E;          ///< Pa
-  double nu;         ///< Poisson's number
+  double nu;         ///< Poisson's ratio
   double thickness;  ///< m
 
   /// Throws std::invalid_argument, naming the value, unless E >= 0, -1 < nu <= 1/2 and thickness > 0.

@@ -1,81 +1,160 @@
-// The local deformation of a part, d = S q_d: displacements of the nodes of a mesh of its material domain in
-// the part's frame, with their masses and elastic energies. Rigid motion and changes of the global parameters
-// could be written in d as well; reference conditions take that out (design 1.3):
-//   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
+// The local deformation of a part, d = S q_d: displacements of its material points in the part's frame, by
+// local coordinates q_d. Rigid motion and changes of the global parameters could be written in d as well;
+// reference conditions W^T d = 0 take that out (design 1.3). This is the face of every choice of S; one call
+// handles a whole part:
+//   nodal_deformation.h   d at the nodes of a mesh
+// Material points see d through nodes: d = sum weight_i d_i, d_i the values that at_nodes() makes of q_d.
 #pragma once
 
+#include <bitset>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
+#include <pliant/local/elasticity.h>
 #include <pliant/local/nodal_energy.h>
-#include <pliant/shape/material.h>
+#include <pliant/math/thread_pool.h>
+#include <pliant/part/local_mesh.h>
 
 namespace pliant {
 
+class NodalDeformation;
 class Part;
+struct Counters;
 
-/// A mesh of the material domain of a part.
-struct LocalMesh {
-  std::vector<Material<double>> nodes;
-  Nodes X;                     ///< where they are at rest, body frame, m
-  Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise from outside
-  Eigen::MatrixXi tetrahedra;  ///< 4 or 15 nodes a column, see Solid; none of a shell
-  VecX<double> mass;           ///< of each node, kg
-  double density = 0;          ///< kg/m^3; of a shell kg/m^2
-  bool shell() const { return tetrahedra.cols() == 0; }
+/// An energy that is to be laid (part/local_laws.h has those that scenes know).
+struct LocalLaw {
+  using Lay = std::function<std::unique_ptr<NodalEnergy>(const LocalMesh&)>;
+  template <class F, class = std::enable_if_t<std::is_constructible_v<Lay, F>>>
+  LocalLaw(F on_mesh, std::string its_name = "of one's own", std::optional<Elasticity> of_solid = {})
+      : lay(std::move(on_mesh)), name(std::move(its_name)), linear(of_solid) {}
+
+  Lay lay;  ///< on a mesh
+  std::string name;
+  std::optional<Elasticity> linear;  ///< of linear elasticity of a solid, which needs no mesh
 };
 
 /// How a part is to deform locally.
 struct LocalSettings {
   int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
   int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes
-  /// Lays an energy on the mesh (part/local_laws.h has those that scenes know).
-  using Law = std::function<std::unique_ptr<NodalEnergy>(const LocalMesh&)>;
+  using Law = LocalLaw;
   std::vector<Law> energies;
-  /// At time 0, from the place of a node at rest (body frame, m): m and m/s; none: zero.
+  /// At time 0, from the place of a point at rest (body frame, m): m and m/s; none: zero.
   std::function<Vec3<double>(const Vec3<double>&)> displacement, velocity;
-  double alpha = 0, beta = 0;  ///< D = alpha M + beta K of the nodes, 1/s and s
+  double alpha = 0, beta = 0;  ///< D = alpha M + beta K of the local coordinates, 1/s and s
 };
 
-/// Where a material point is among the nodes: d = sum weight_i d_i.
-struct NodeWeights {
-  std::vector<int> node;
-  std::vector<double> weight;
-  friend bool operator==(const NodeWeights& a, const NodeWeights& b) {
-    return a.node == b.node && a.weight == b.weight;
-  }
+/// What is recomputed at each evaluation, in the order of the stages; what one choice of S needs beside it is
+/// in a type of its own.
+struct LocalWorkspace {
+  virtual ~LocalWorkspace() = default;
+
+  VecX<double> d, d_dot;  ///< local coordinates and their rates
+  MatX<double> H0;        ///< M over (c, theta, q_s) at d = 0
+  Vec3<double> moment;    ///< sum m p
+  /// Of (c, theta, q_s), those that move nothing right now; they have no acceleration.
+  std::bitset<kMaxVelocities> held;
+  double condition = 1;          ///< of what tells (c, theta, q_s) and d apart; 1 at best
+  double damping = 0, drag = 0;  ///< powers of the local damping, and of the drag, W
+  VecX<double> force;            ///< on the local coordinates
+  VecX<double> d_ddot;
+  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+  /// M^-1 as joints see it, see compliance(), and its inverse where no points hold each other.
+  MatX<double> A, A_inverse;
+};
+
+/// Energy of the motion and of the elasticity, J; momentum and angular momentum about the frame's origin,
+/// body frame; first moment sum m p.
+struct LocalMotion {
+  double kinetic, elastic;
+  Vec3<double> momentum, angular_momentum, moment;
 };
 
 class LocalDeformation {
  public:
-  /// Throws std::invalid_argument when the mesh or an energy cannot be laid.
-  LocalDeformation(const Part& part, const LocalSettings& settings);
+  virtual ~LocalDeformation() = default;
 
+  /// The mesh by which it is shown.
   const LocalMesh& mesh() const { return mesh_; }
-  Eigen::Index n_nodes() const { return mesh_.X.rows(); }
-  /// Number of local coordinates: three a node, and those that energies have of their own.
-  Eigen::Index n_d() const { return inertia_.size(); }
-  /// Diagonal of the mass matrix of the local coordinates.
-  const VecX<double>& inertia() const { return inertia_; }
-  /// 1 / inertia.
-  const VecX<double>& mobility() const { return mobility_; }
-  const std::vector<Material<Pack>>& packs() const { return packs_; }
-  const std::vector<std::unique_ptr<NodalEnergy>>& energies() const { return energies_; }
-  /// Local coordinates and their rates at time 0; the reference conditions are not met yet.
+  /// Number of local coordinates.
+  Eigen::Index n_d() const { return initial_.size(); }
+  /// Local coordinates and their rates at time 0.
   const VecX<double>& initial() const { return initial_; }
   const VecX<double>& initial_rate() const { return initial_rate_; }
   double alpha() const { return alpha_; }
   double beta() const { return beta_; }
+  /// "d[17].x": the name of a local coordinate, and its unit.
+  virtual std::string coordinate_name(Eigen::Index k) const = 0;
+  virtual const char* unit(Eigen::Index k) const = 0;
+  /// "600 local, of 200 nodes": in words.
+  virtual std::string description() const = 0;
+
   /// Of a material point; none where the local deformation does not reach, inside a shell.
-  NodeWeights weights(const Part& part, const Material<double>& m) const;
+  virtual NodeWeights weights(const Part& part, const Material<double>& m) const = 0;
+  /// What local coordinates, or their rates, are at the nodes that weights tell of. buffer: may hold them.
+  virtual Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const = 0;
+  /// Displacements of the nodes of mesh(), m.
+  virtual Nodes displacements(const double* q_d) const = 0;
+  /// The deformation by nodes, if it is one.
+  virtual const NodalDeformation* nodal() const { return nullptr; }
+
+  // The dynamics, stage after stage, body frame. v_r = (R^T c_dot, omega, q_s_dot). Each takes a workspace
+  // that workspace() made; d and d_dot are the caller's to set.
+
+  virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
+  virtual void positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                         LocalWorkspace& work, Counters& counters) const = 0;
+  virtual void masses(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                      LocalWorkspace& work, Counters& counters) const = 0;
+  /// Inertial forces, gravity g, drag nu, elasticity and its damping.
+  virtual void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
+                      ThreadPool* pool) const = 0;
+  /// Adds a force on a material point; what it does to (c, theta, q_s) is told apart.
+  virtual void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const = 0;
+  /// f_r: what acts on (c, theta, q_s) beside the forces above; becomes a_r. Fills d_ddot.
+  virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work) const = 0;
+  /// A = M^-1 as the joints of a part see it: what pushes g on (v_r, the points) do to (v_r, d_dot at the
+  /// points).
+  virtual void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const = 0;
+  /// Adds to d_dot what such pushes do to the local coordinates.
+  virtual void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                        const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const = 0;
+  /// M of rigid motion at the positions now: 6 x 6.
+  virtual Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const = 0;
+  virtual LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const = 0;
+
+  /// No less than the largest omega^2 of its elasticity, 1/s^2, and its damping by beta, 1/s.
+  struct Bound {
+    double K = 0, D = 0;
+  };
+  virtual Bound stiffness_bound(const LocalWorkspace& work) const = 0;
+  /// 1/kg of a material point, were its local coordinates alone to move.
+  virtual double mobility(const NodeWeights& at) const = 0;
+
+ protected:
+  LocalDeformation(double alpha, double beta) : alpha_(alpha), beta_(beta) {}
+
+  LocalMesh mesh_;
+  VecX<double> initial_, initial_rate_;
+
+  /// Of the A of compliance(), whose rows depend on each other where points lie close together.
+  static MatX<double> inverse_of(const MatX<double>& A);
+  /// Throws std::invalid_argument when points are displaced by more than the size of the part at time 0.
+  static void check_start(const Part& part, const Nodes& displacements, const VecX<double>& rates);
 
  private:
-  LocalMesh mesh_;
-  std::vector<Material<Pack>> packs_;
-  VecX<double> inertia_, mobility_, initial_, initial_rate_;
-  std::vector<std::unique_ptr<NodalEnergy>> energies_;
   double alpha_, beta_;
 };
+
+/// Throws std::invalid_argument when the mesh or an energy cannot be laid.
+std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings);
+
+/// Values of nodes at points, three a point.
+VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values);
 
 }  // namespace pliant

@@ -113,6 +113,9 @@ class Part {
   const Inertia<double>& rest_inertia() const { return rest_inertia_; }
   /// A length of the body at rest: its largest half extent, m.
   double size() const { return size_; }
+  /// An entry of the diagonal of M below which a dynamic parameter has no inertia: rounding noise of a body
+  /// of this mass and size.
+  double inertia_floor(int k) const;
   /// The local deformation; nullptr of a part that has none.
   const LocalDeformation* local() const { return local_.get(); }
 

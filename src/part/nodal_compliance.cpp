@@ -1,7 +1,5 @@
 // What joints and limits push on a part that deforms locally does to it.
-#include <Eigen/Eigenvalues>
-
-#include <pliant/part/local_dynamics.h>
+#include <pliant/part/nodal_deformation.h>
 
 #include "node_sums.h"
 
@@ -9,19 +7,10 @@ namespace pliant {
 
 using namespace node_sums;
 
-VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values) {
-  VecX<double> x = VecX<double>::Zero(3 * static_cast<Eigen::Index>(points.size()));
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < points[k].node.size(); ++i)
-      x.segment<3>(3 * static_cast<Eigen::Index>(k)) +=
-          points[k].weight[i] * values.row(points[k].node[i]).transpose();
-  return x;
-}
-
 namespace {
 
 /// G of points, from positions of nodes: 3 rows each.
-MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, const LocalWorkspace& w,
+MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, const NodalWorkspace& w,
                       Eigen::Index n, Eigen::Index n_r) {
   const auto n_p = static_cast<Eigen::Index>(points.size());
   MatX<double> G(3 * n_p, n_r);
@@ -35,23 +24,11 @@ MatX<double> frame_at(const std::vector<NodeWeights>& points, const double* x, c
   return G;
 }
 
-/// Inverse of A, whose rows may depend on each other where points lie close together.
-MatX<double> inverse_of(const MatX<double>& A) {
-  constexpr double smallest = 1e-11;  // eigenvalue of A scaled to a unit diagonal
-  const VecX<double> scale = A.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scale.asDiagonal() * A * scale.asDiagonal());
-  VecX<double> inverse = eigen.eigenvalues();
-  for (double& value : inverse) value = value > smallest ? 1 / value : 0;
-  const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
-  return V * inverse.asDiagonal() * V.transpose();
-}
-
 }  // namespace
 
-void local_compliance(const LocalDeformation& local, const std::vector<NodeWeights>& points,
-                      LocalWorkspace& w) {
-  const Eigen::Index n = local.n_nodes(), n_r = w.H0.rows(),
-                     n_p = 3 * static_cast<Eigen::Index>(points.size());
+void NodalDeformation::compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const {
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes(), n_r = w.H0.rows(), n_p = 3 * static_cast<Eigen::Index>(points.size());
   const MatX<double> G = frame_at(points, w.x.data(), w, n, n_r),
                      G0 = frame_at(points, w.s.data(), w, n, n_r);
   MatX<double> right(n_r, n_r + n_p), above = MatX<double>::Zero(n_r, n_r + n_p);
@@ -68,8 +45,7 @@ void local_compliance(const LocalDeformation& local, const std::vector<NodeWeigh
       for (std::size_t i = 0; i < points[a].node.size(); ++i)
         for (std::size_t j = 0; j < points[b].node.size(); ++j) {
           if (points[a].node[i] != points[b].node[j]) continue;
-          const double share =
-              points[a].weight[i] * points[b].weight[j] * local.mobility()[points[a].node[i]];
+          const double share = points[a].weight[i] * points[b].weight[j] * mobility_[points[a].node[i]];
           for (int r = 0; r < 3; ++r)
             w.A(n_r + 3 * static_cast<Eigen::Index>(a) + r, n_r + 3 * static_cast<Eigen::Index>(b) + r) +=
                 share;
@@ -78,9 +54,10 @@ void local_compliance(const LocalDeformation& local, const std::vector<NodeWeigh
   w.A_inverse = inverse_of(w.A);
 }
 
-void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights>& points,
-                    const VecX<double>& g, const LocalWorkspace& w, Eigen::Ref<VecX<double>> d_dot) {
-  const Eigen::Index n = local.n_nodes();
+void NodalDeformation::push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                                const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
   const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;
   const FrameMotion pull(kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const FourNodes& four) {
@@ -96,7 +73,7 @@ void push_all_nodes(const LocalDeformation& local, const std::vector<NodeWeights
       const int node = points[k].node[i];
       for (int r = 0; r < 3; ++r)
         d_dot[node + r * n] +=
-            points[k].weight[i] * local.mobility()[node] * g[n_r + 3 * static_cast<Eigen::Index>(k) + r];
+            points[k].weight[i] * mobility_[node] * g[n_r + 3 * static_cast<Eigen::Index>(k) + r];
     }
 }
 

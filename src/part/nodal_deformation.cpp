@@ -1,0 +1,79 @@
+#include <pliant/part/nodal_deformation.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace pliant {
+
+NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)
+    : LocalDeformation(settings.alpha, settings.beta) {
+  mesh_ = lay_local_mesh(part, settings);
+  for (std::size_t first = 0; first < mesh_.nodes.size(); first += Pack::kLanes) {
+    std::array<Material<double>, Pack::kLanes> four;
+    for (std::size_t i = 0; i < Pack::kLanes; ++i)
+      four[i] = mesh_.nodes[std::min(first + i, mesh_.nodes.size() - 1)];
+    packs_.push_back(gather(four.data()));
+  }
+  VecX<double> own;
+  for (const LocalSettings::Law& law : settings.energies) {
+    energies_.push_back(law.lay(mesh_));
+    laws_ += (laws_.empty() ? "" : ", ") + law.name;
+    if (beta() > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
+      throw std::invalid_argument("part '" + part.name() +
+                                  "': beta of its nodes damps laws that are quadratic in d only; use alpha");
+    const VecX<double> more = energies_.back()->own_inertia();
+    if (more.size() == 0) continue;
+    if (own.size() > 0)
+      throw std::invalid_argument("part '" + part.name() +
+                                  "': only one of its energies may have coordinates of its own");
+    own = more;
+  }
+  inertia_.resize(3 * n_nodes() + own.size());
+  inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
+  mobility_ = inertia_.cwiseInverse();
+  auto at_nodes = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of) {
+    VecX<double> values = VecX<double>::Zero(inertia_.size());
+    for (Eigen::Index k = 0; of && k < n_nodes(); ++k)
+      nodes(values, n_nodes()).row(k) = of(mesh_.X.row(k).transpose()).transpose();
+    return values;
+  };
+  initial_ = at_nodes(settings.displacement);
+  initial_rate_ = at_nodes(settings.velocity);
+  check_start(part, nodes(initial_, n_nodes()), initial_rate_);
+}
+
+std::string NodalDeformation::coordinate_name(Eigen::Index k) const {
+  const Eigen::Index n = n_nodes();
+  if (k >= 3 * n) return "own[" + std::to_string(k - 3 * n) + "]";
+  return "d[" + std::to_string(k % n) + "]." + "xyz"[k / n];
+}
+
+const char* NodalDeformation::unit(Eigen::Index k) const {
+  return k < 3 * n_nodes() ? "m" : "1";
+}
+
+std::string NodalDeformation::description() const {
+  const std::string elements = mesh().shell() ? std::to_string(mesh().triangles.cols()) + " triangles"
+                                              : std::to_string(mesh().tetrahedra.cols()) + " tetrahedra";
+  return std::to_string(n_d()) + " local, of " + std::to_string(n_nodes()) + " nodes and " + elements +
+         "; laws: " + laws_;
+}
+
+NodeWeights NodalDeformation::weights(const Part& part, const Material<double>& m) const {
+  return mesh_weights(part, mesh_, m);
+}
+
+Eigen::Map<const Nodes> NodalDeformation::at_nodes(const double* q_d, VecX<double>&) const {
+  return {q_d, n_nodes(), 3};
+}
+
+Nodes NodalDeformation::displacements(const double* q_d) const {
+  return Eigen::Map<const Nodes>(q_d, n_nodes(), 3);
+}
+
+std::unique_ptr<LocalWorkspace> NodalDeformation::workspace() const {
+  return std::make_unique<NodalWorkspace>();
+}
+
+}  // namespace pliant

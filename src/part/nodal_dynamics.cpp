@@ -1,0 +1,426 @@
+#include <pliant/part/nodal_deformation.h>
+
+#include "node_sums.h"
+
+namespace pliant {
+
+using namespace node_sums;
+
+namespace {
+
+/// H = sum m [I, -[x]x, J]^T [I, -[s]x, J], from its sums: of m, m x, m s, m x s^T and those with J.
+struct FrameSums {
+  double mass = 0;
+  Vec3<double> x = Vec3<double>::Zero(), s = x;
+  Mat3<double> xs = Mat3<double>::Zero();
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxGlobal> J, x_J,
+      s_J;  ///< sum m J, m x cross J, m s cross J
+  MatMax<double, kMaxGlobal> JJ;
+
+  MatMax<double> matrix() const {
+    const auto n_s = J.cols();
+    MatMax<double> H(6 + n_s, 6 + n_s);
+    H.topLeftCorner<3, 3>() = mass * Mat3<double>::Identity();
+    H.block<3, 3>(0, 3) = -skew(s);
+    H.block<3, 3>(3, 0) = skew(x);
+    H.block<3, 3>(3, 3) = xs.trace() * Mat3<double>::Identity() - xs.transpose();
+    H.block(0, 6, 3, n_s) = J;
+    H.block(6, 0, n_s, 3) = J.transpose();
+    H.block(3, 6, 3, n_s) = x_J;
+    H.block(6, 3, n_s, 3) = s_J.transpose();
+    H.block(6, 6, n_s, n_s) = JJ;
+    return H;
+  }
+};
+
+/// The sums at positions x of nodes, reference shape s.
+FrameSums frame_sums(const double* at_x, const double* at_s, const double* mass, const NodalWorkspace& w,
+                     Eigen::Index n, int n_s) {
+  FrameSums sums;
+  VectorSum mx, ms;
+  OuterSum xs;
+  Pack total(0.0);
+  for_each_four(n, [&](const FourNodes& four) {
+    const Pack m = four.load(mass);
+    const Vec3<Pack> x = four.load(at_x, n), m_s = times(m, four.load(at_s, n));
+    total += m;
+    mx.add(times(m, x));
+    ms.add(m_s);
+    xs.add(x, m_s);
+  });
+  sums.mass = sum(total);
+  sums.x = mx.total();
+  sums.s = ms.total();
+  sums.xs = xs.total();
+  sums.J.resize(3, n_s);
+  sums.x_J.resize(3, n_s);
+  sums.s_J.resize(3, n_s);
+  sums.JJ.resize(n_s, n_s);
+  for (int k = 0; k < n_s; ++k) {
+    VectorSum J;
+    OuterSum xJ, sJ;
+    std::array<Pack, kMaxGlobal> JJ;
+    JJ.fill(Pack(0.0));
+    for_each_four(n, [&](const FourNodes& four) {
+      const Vec3<Pack> mJ = times(four.load(mass), four.load(column(w, n, k), n));
+      J.add(mJ);
+      xJ.add(four.load(at_x, n), mJ);
+      sJ.add(four.load(at_s, n), mJ);
+      for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += mJ.dot(four.load(column(w, n, j), n));
+    });
+    sums.J.col(k) = J.total();
+    sums.x_J.col(k) = axial(xJ.total());
+    sums.s_J.col(k) = axial(sJ.total());
+    for (int j = 0; j <= k; ++j) sums.JJ(j, k) = sums.JJ(k, j) = sum(JJ[static_cast<std::size_t>(j)]);
+  }
+  return sums;
+}
+
+/// P and 2 Wdot^T d_dot + Wddot^T d of the global parameters, from derivatives of the jets along each.
+void shape_rates(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
+                 const VecMax<double>& q_s_dot, const NodalWorkspace& w, MatMax<double>& P,
+                 VecMax<double>& rates) {
+  using D = Dual<1>;
+  const auto n_s = static_cast<int>(q_s.size());
+  const Eigen::Index n = local.n_nodes();
+  const bool moving = any(q_s_dot);
+  constexpr int kBlock = 8;
+  std::array<Jet<Dual<1, Pack>>, kBlock> jets;
+  for (int j = 0; j < n_s; ++j) {
+    VecMax<D> q(n_s), rate(n_s);
+    for (int k = 0; k < n_s; ++k) {
+      q[k] = D(q_s[k]);
+      rate[k] = D(q_s_dot[k]);
+    }
+    q[j].d[0] = 1;
+    const ParameterValues<D> values = part.parameters().expand<D>(q, rate);
+    std::array<Pack, kMaxGlobal> of_d, of_d_dot;
+    of_d.fill(Pack(0.0));
+    of_d_dot.fill(Pack(0.0));
+    Pack of_s2(0.0);
+    const auto packs = static_cast<int>(local.packs().size());
+    for (int first = 0; first < packs; first += kBlock) {
+      const int count = std::min(kBlock, packs - first);
+      JetBatch<Dual<1, Pack>> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
+      part.jets(values, local.packs().data() + first, batch);
+      for (int i = 0; i < count; ++i) {
+        const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n);
+        const Pack m = four.load(local.inertia().data());
+        const Vec3<Pack> md = times(m, four.load(w.d.data(), n)), mv = times(m, four.load(w.d_dot.data(), n));
+        const Jet<Dual<1, Pack>>& jet = jets[static_cast<std::size_t>(i)];
+        for (int k = 0; k < n_s; ++k) {
+          const auto at = static_cast<std::size_t>(k);
+          for (int r = 0; r < 3; ++r) {
+            of_d[at] += jet.J[at][r].d[0] * md[r];
+            of_d_dot[at] += jet.J[at][r].d[0] * mv[r];
+          }
+        }
+        if (moving)
+          for (int r = 0; r < 3; ++r) of_s2 += jet.s2[r].d[0] * md[r];
+      }
+    }
+    for (int i = 0; i < n_s; ++i) {
+      P(6 + i, 6 + j) = sum(of_d[static_cast<std::size_t>(i)]);
+      rates[6 + i] += 2 * q_s_dot[j] * sum(of_d_dot[static_cast<std::size_t>(i)]);
+    }
+    if (moving) rates[6 + j] += sum(of_s2);
+  }
+}
+
+}  // namespace
+
+void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                                 LocalWorkspace& work, Counters& counters) const {
+  NodalWorkspace& w = of(work);
+  const VecMax<double> q_s_dot = v_r.tail(q_s.size());
+  const Eigen::Index n = n_nodes();
+  const auto n_s = static_cast<int>(q_s.size());
+  w.x.resize(n_d());
+  if (n_s == 0) {
+    if (w.s.rows() != n) w.s = mesh_.X;
+    nodes(w.x, n) = w.s + nodes(w.d, n);
+  } else {
+    const bool moving = any(q_s_dot);
+    w.s.resize(n, 3);
+    w.J.resize(3 * n, n_s);
+    w.s1.setZero(n, 3);
+    w.s2.setZero(n, 3);
+    const ParameterValues<double> values = part.parameters().expand<double>(VecMax<double>(q_s), q_s_dot);
+    constexpr int kBlock = 8;
+    std::array<Jet<Pack>, kBlock> jets;
+    const auto packs = static_cast<int>(packs_.size());
+    for (int first = 0; first < packs; first += kBlock) {
+      const int count = std::min(kBlock, packs - first);
+      JetBatch<Pack> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
+      part.jets(values, packs_.data() + first, batch);
+      for (int i = 0; i < count; ++i) {
+        const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n);
+        const Jet<Pack>& jet = jets[static_cast<std::size_t>(i)];
+        four.store(w.s.data(), n, jet.s);
+        if (moving) {
+          four.store(w.s1.data(), n, jet.s1);
+          four.store(w.s2.data(), n, jet.s2);
+        }
+        for (int k = 0; k < n_s; ++k)
+          four.store(w.J.data() + 3 * n * k, n, jet.J[static_cast<std::size_t>(k)]);
+      }
+    }
+    counters.jacobian_points += n;
+    counters.rate_points += moving ? n : 0;
+    nodes(w.x, n) = w.s + nodes(w.d, n);
+    w.u = w.s1 + nodes(w.d_dot, n);
+  }
+  const Eigen::Index own = n_d() - 3 * n;
+  w.x.tail(own) = w.d.tail(own);
+}
+
+void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
+                              LocalWorkspace& work, Counters& counters) const {
+  NodalWorkspace& w = of(work);
+  const VecMax<double> q_s_dot = v_r.tail(q_s.size());
+  const Eigen::Index n = n_nodes();
+  const auto n_s = static_cast<int>(q_s.size());
+  const double* mass = inertia_.data();
+  const FrameSums sums = frame_sums(w.x.data(), w.s.data(), mass, w, n, n_s);
+  w.moment = sums.x;
+  if (n_s > 0 || w.H0.rows() == 0) w.H0 = frame_sums(w.s.data(), w.s.data(), mass, w, n, n_s).matrix();
+
+  w.rates.setZero(6 + n_s);
+  MatMax<double> P = MatMax<double>::Zero(6 + n_s, 6 + n_s);
+  if (n_s > 0) {
+    // W^T d: rows of rotation sum m s x d, of parameters sum m J^T d.
+    OuterSum s1v, s2d;
+    const bool moving = any(q_s_dot);
+    if (moving)
+      for_each_four(n, [&](const FourNodes& four) {
+        const Pack m = four.load(mass);
+        s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
+        s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
+      });
+    // J x d = d (J cross) : sum m J x d = sum m s x J - sum m x cross J.
+    P.block(3, 6, 3, n_s) = sums.s_J - sums.x_J;
+    if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
+    shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
+  }
+  MatMax<double> K = sums.matrix() - P.transpose();
+  w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
+  w.held.reset();
+  for (int k = 0; k < n_s; ++k) {
+    if (w.H0(6 + k, 6 + k) > part.inertia_floor(k)) continue;
+    w.held.set(static_cast<std::size_t>(6 + k));
+    K.row(6 + k).setZero();
+    K.col(6 + k).setZero();
+    K(6 + k, 6 + k) = w.scale[6 + k] = 1;
+    w.rates[6 + k] = 0;
+  }
+  w.factor.compute(w.scale.asDiagonal() * K * w.scale.asDiagonal());
+  w.condition = 1 / w.factor.rcond();
+  ++counters.mass_matrices;
+}
+
+void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
+                              ThreadPool* pool) const {
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes(), size = n_d();
+  const VecMax<double> v = v_r;
+  const FrameMotion frame(v, w, n);
+  const Vec3<Pack> gravity = spread(g);
+  const bool curved = w.s2.rows() == n;
+  Pack square(0.0);
+  w.f.resize(size);
+  w.f.tail(size - 3 * n).setZero();
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.rates_of_p(n), n);
+    const Pack m = four.load(inertia_.data());
+    const Vec3<Pack> spin = cross(frame.omega, p);
+    Vec3<Pack> turn;  // omega x p + 2 u
+    for (int r = 0; r < 3; ++r) turn[r] = spin[r] + u[r] + u[r];
+    Vec3<Pack> b = cross(frame.omega, turn);
+    if (curved) b = plus(b, four.load(w.s2.data(), n));
+    Vec3<Pack> force;
+    for (int r = 0; r < 3; ++r) force[r] = m * (gravity[r] - b[r]);
+    if (nu > 0) {
+      const Vec3<Pack> velocity = plus(plus(frame.c, spin), u);
+      for (int r = 0; r < 3; ++r) force[r] -= m * Pack(nu) * velocity[r];
+      square += m * velocity.dot(velocity);
+    }
+    four.store(w.f.data(), n, force);
+  });
+  w.drag = -nu * sum(square);
+  w.f_d.setZero(size);
+  w.buffers.resize(energies_.size());
+  w.damping = 0;
+  for (std::size_t k = 0; k < energies_.size(); ++k) {
+    const NodalEnergy& energy = *energies_[k];
+    if (energy.of() == NodalEnergy::Of::displacement)
+      energy.add_force(w.d, w.f_d, w.buffers[k], pool);
+    else
+      energy.add_force(w.x, w.f, w.buffers[k], pool);
+  }
+  if (beta() > 0) {
+    VecX<double>& damping = w.force;
+    damping.setZero(size);
+    for (std::size_t k = 0; k < energies_.size(); ++k) {
+      const NodalEnergy& energy = *energies_[k];
+      if (energy.of() == NodalEnergy::Of::displacement)
+        energy.add_derivative(w.d, w.d_dot, damping, w.buffers[k], pool);
+    }
+    w.damping += beta() * damping.dot(w.d_dot);
+    w.f_d += beta() * damping;
+  }
+  if (alpha() > 0) {
+    w.damping -= alpha() * w.d_dot.dot(inertia_.cwiseProduct(w.d_dot));
+    w.f_d -= alpha() * inertia_.cwiseProduct(w.d_dot);
+  }
+}
+
+void NodalDeformation::push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const {
+  auto f = nodes(of(work).f_d, n_nodes());
+  for (std::size_t i = 0; i < at.node.size(); ++i) f.row(at.node[i]) += at.weight[i] * force.transpose();
+}
+
+void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) const {
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  const auto n_s = static_cast<int>(f_r.size()) - 6;
+  w.force.resize(n_d());
+  w.d_ddot.resize(n_d());
+  // sum G^T F_d and sum W^T y of all forces, y = F / m, in one pass over the nodes.
+  VecMax<double> of_d(6 + n_s), of_all(6 + n_s);
+  VectorSum f_d, f, torque_d, torque;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> on_d = four.load(w.f_d.data(), n), all = plus(on_d, four.load(w.f.data(), n));
+    f_d.add(on_d);
+    f.add(all);
+    torque_d.add(cross(four.load(w.x.data(), n), on_d));
+    torque.add(cross(four.load(w.s.data(), n), all));
+    four.store(w.force.data(), n, all);
+  });
+  of_d.head<3>() = f_d.total();
+  of_d.segment<3>(3) = torque_d.total();
+  of_all.head<3>() = f.total();
+  of_all.segment<3>(3) = torque.total();
+  for (int k = 0; k < n_s; ++k) {
+    of_d[6 + k] = along_column(w.f_d.data(), w, n, k);
+    of_all[6 + k] = along_column(w.force.data(), w, n, k);
+  }
+  w.kappa = w.solve(of_d - f_r);
+  const VecMax<double> a = w.solve_transposed(of_all - w.H0 * w.kappa + w.rates);
+  f_r = a;
+  const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
+  for_each_four(n, [&](const FourNodes& four) {
+    const Pack mobility = four.load(mobility_.data());
+    Vec3<Pack> d = times(mobility, four.load(w.force.data(), n));
+    const Vec3<Pack> by_kappa = pull.rigid(four.load(w.s.data(), n)),
+                     by_frame = frame.rigid(four.load(w.x.data(), n));
+    for (int r = 0; r < 3; ++r) d[r] -= by_kappa[r] + by_frame[r];
+    if (n_s > 0) {
+      const Vec3<Pack> k = pull.shape(four), shape = frame.shape(four);
+      for (int r = 0; r < 3; ++r) d[r] -= k[r] + shape[r];
+    }
+    four.store(w.d_ddot.data(), n, d);
+  });
+  const Eigen::Index own = n_d() - 3 * n;
+  w.force.tail(own) = w.f.tail(own) + w.f_d.tail(own);
+  w.d_ddot.tail(own) = mobility_.tail(own).cwiseProduct(w.force.tail(own));
+}
+
+Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  return frame_sums(w.x.data(), w.x.data(), inertia_.data(), w, n_nodes(), 0).matrix();
+}
+
+VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
+                                             const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes(), n_s = w.H0.rows() - 6;
+  VecMax<double> share(6 + n_s);
+  VectorSum sum_a, s_a;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> ma = times(four.load(inertia_.data()), four.load(a.data(), n));
+    sum_a.add(ma);
+    s_a.add(cross(four.load(w.s.data(), n), ma));
+  });
+  share.head<3>() = sum_a.total();
+  share.segment<3>(3) = s_a.total();
+  for (int k = 0; k < n_s; ++k) {
+    Pack along(0.0);
+    for_each_four(n, [&](const FourNodes& four) {
+      along += four.load(inertia_.data()) * four.load(column(w, n, k), n).dot(four.load(a.data(), n));
+    });
+    share[6 + k] = sum(along);
+  }
+  return share;
+}
+
+void NodalDeformation::add_frame_velocities(const VecMax<double>& v_r, double sign,
+                                            const LocalWorkspace& work, Eigen::Ref<Nodes> v) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  const FrameMotion frame(v_r, w, n);
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> by_frame = plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four));
+    four.store(v.data(), n, plus(four.load(v.data(), n), times(Pack(sign), by_frame)));
+  });
+}
+
+void NodalDeformation::move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p,
+                                  Nodes& u) const {
+  const Eigen::Index n = n_nodes();
+  const Vec3<Pack> from = spread(-shift),
+                   row[3] = {spread(turn.col(0)), spread(turn.col(1)), spread(turn.col(2))};
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> x = plus(four.load(p.data(), n), from), v = four.load(u.data(), n);
+    Vec3<Pack> x_now, v_now;
+    for (int r = 0; r < 3; ++r) {
+      x_now[r] = row[r].dot(x);
+      v_now[r] = row[r].dot(v);
+    }
+    four.store(p.data(), n, x_now);
+    four.store(u.data(), n, v_now);
+  });
+}
+
+LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  const VecMax<double> v = v_r;
+  const FrameMotion frame(v, w, n);
+  VectorSum P, L, moment;
+  Pack twice(0.0);
+  for_each_four(n, [&](const FourNodes& four) {
+    const Pack m = four.load(inertia_.data());
+    const Vec3<Pack> p = four.load(w.x.data(), n);
+    const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.rates_of_p(n), n));
+    const Vec3<Pack> momentum = times(m, velocity);
+    twice += momentum.dot(velocity);
+    P.add(momentum);
+    L.add(cross(p, momentum));
+    moment.add(times(m, p));
+  });
+  const Eigen::Index own = n_d() - 3 * n;
+  LocalMotion all{0.5 * sum(twice), 0, P.total(), L.total(), moment.total()};
+  all.kinetic += 0.5 * w.d_dot.tail(own).dot(inertia_.tail(own).cwiseProduct(w.d_dot.tail(own)));
+  for (const auto& energy : energies_)
+    all.elastic += energy->energy(energy->of() == NodalEnergy::Of::displacement ? w.d : w.x);
+  return all;
+}
+
+LocalDeformation::Bound NodalDeformation::stiffness_bound(const LocalWorkspace& work) const {
+  Bound bound;
+  for (const auto& energy : energies_) {
+    const bool linear = energy->of() == NodalEnergy::Of::displacement;
+    const double omega2 = energy->frequency_bound(linear ? work.d : of(work).x, inertia_);
+    bound.K += omega2;
+    if (linear) bound.D += beta() * omega2;
+  }
+  return bound;
+}
+
+double NodalDeformation::mobility(const NodeWeights& at) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < at.node.size(); ++k) sum += at.weight[k] * at.weight[k] * mobility_[at.node[k]];
+  return sum;
+}
+
+}  // namespace pliant
