@@ -5,6 +5,7 @@
 #include <pliant/io/mesh_frames.h>
 #include <pliant/io/run_files.h>
 
+#include "color_options.h"
 #include "command.h"
 #include "exit_codes.h"
 #include "open_run.h"
@@ -21,11 +22,13 @@ struct ExportCommand {
   std::string run, folder;
   FrameOptions frames;
   std::string format;
+  ColorOptions colors;
   bool quiet = false, force = false;
 };
 
 int export_meshes(const ExportCommand& command) {
   const OpenRun run = open_run(command.run);
+  apply_colors(command.colors, *run.scene);
   const std::vector<std::int64_t> frames = parse_frames(command.frames).frames(run.frames());
   const fs::path folder =
       command.folder.empty() ? fs::path(command.run) / pliant::kMeshFolder : fs::path(command.folder);
@@ -51,11 +54,13 @@ void add_export(CLI::App& app, Action& action) {
       ->option_text("obj|ply");
   command->add_option("-o,--out", options->folder, "Folder for the files [RUN/meshes]")->type_name("DIR");
   add_frame_options(*command, options->frames);
+  add_color_by(*command, options->colors);
   command->add_flag("--force", options->force, "Replace files that exist");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   command->footer(
       "Examples:\n"
       "  pliant export out/pull --to ply -o meshes\n"
+      "  pliant export out/balloon --to ply --color-by strain      a property \"strain\" of the vertices\n"
       "  pliant export out/pull --to obj --frames 40");
   command->callback([options, &action] { action = [options] { return export_meshes(*options); }; });
 }

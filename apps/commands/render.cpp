@@ -4,6 +4,7 @@
 
 #include <pliant/io/run_files.h>
 
+#include "color_options.h"
 #include "command.h"
 #include "draw_frames.h"
 #include "exit_codes.h"
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 struct RenderCommand {
   std::string run, folder, size;
   FrameOptions frames;
+  ColorOptions colors;
   std::vector<double> eye, target;
   std::optional<double> field_of_view;
   bool quiet = false, force = false, no_ground = false, no_springs = false, no_shadows = false;
@@ -38,6 +40,7 @@ void change_view(const RenderCommand& command, pliant::Scene& scene) {
   if (!command.target.empty())
     scene.camera.target = pliant::Vec3<double>(command.target[0], command.target[1], command.target[2]);
   scene.camera.field_of_view = command.field_of_view.value_or(scene.camera.field_of_view);
+  apply_colors(command.colors, scene);
   if (command.no_ground) scene.ground.visible = false;
   if (command.no_springs) scene.show_springs = false;
   if (command.no_shadows) scene.light.shadows = false;
@@ -68,6 +71,7 @@ void add_render(CLI::App& app, Action& action) {
   command->add_option("--size", options->size, "Size in pixels [that of the run]")
       ->check(picture_size())
       ->type_name("WxH");
+  add_color_options(*command, options->colors);
   command->add_option("--camera-eye", options->eye, "Position of the camera, m")
       ->expected(3)
       ->check(any_number())
@@ -89,9 +93,13 @@ void add_render(CLI::App& app, Action& action) {
       "Examples:\n"
       "  pliant render out/pull --size 1920x1080 -o out/pull-hd\n"
       "  pliant render out/pull --frames 0:100:10 --camera-eye 4 -3 2 -o out/pull-side\n"
+      "  pliant render out/balloon --color-by strain --color-range 0 2 -o out/balloon-strain\n"
       "  for i in 1 2; do pliant render out/pull --shard $i/2 & done; wait\n"
       "  ffmpeg -framerate 25 -i out/pull/frames/frame_%06d.png -pix_fmt yuv420p pull.mp4");
-  command->callback([options, &action] { action = [options] { return render(*options); }; });
+  command->callback([options, &action] {
+    check_colors(options->colors);
+    action = [options] { return render(*options); };
+  });
 }
 
 }  // namespace pliant_cli

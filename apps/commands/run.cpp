@@ -10,6 +10,7 @@
 #include <pliant/io/run.h>
 #include <pliant/io/run_files.h>
 
+#include "color_options.h"
 #include "command.h"
 #include "draw_frames.h"
 #include "exit_codes.h"
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 
 struct RunCommand {
   SceneOptions scene;
+  ColorOptions colors;
   std::string folder, size;
   std::optional<double> end, step, frame_rate;
   bool obj = false, png = false, quiet = false, force = false, resume = false;
@@ -50,6 +52,7 @@ void apply_options(const RunCommand& command, const std::optional<pliant::RunRec
     scene.width = begun->width;
     scene.height = begun->height;
   }
+  apply_colors(command.colors, scene);
   scene.end = command.end.value_or(scene.end);
   scene.step = command.step.value_or(scene.step);
   scene.frame_rate = command.frame_rate.value_or(scene.frame_rate);
@@ -159,6 +162,7 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   command->add_option("--size", options->size, "Size of pictures, pixels")
       ->check(picture_size())
       ->type_name("WxH");
+  add_color_options(*command, options->colors);
   add_graphics_option(*command, options->backend);
   command
       ->add_option("--threads", options->threads,
@@ -174,12 +178,16 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   command->footer(
       "Examples:\n"
       "  pliant run scenes/tumbling.json --obj --png -o out/tumbling\n"
+      "  pliant run scenes/balloon.json --png --color-by strain\n"
       "  pliant run scenes/pull.json --set /parts/0/density=500 --set /gravity=[0,0,-9.81] --end 2\n"
       "  pliant run scenes/pull.json -o out/pull --resume --end 20    longer than it was, or after Ctrl-C\n"
       "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, "
       "q.npy, v.npy,\n"
       "modes.npy, explained by layout.json), meshes/ and frames/.");
-  command->callback([options, &action] { action = [options] { return run_scene(*options); }; });
+  command->callback([options, &action] {
+    check_colors(options->colors);
+    action = [options] { return run_scene(*options); };
+  });
 }
 
 }  // namespace pliant_cli

@@ -339,9 +339,12 @@ Eigen::Quaterniond Model::orientation(const State& state, int part) const {
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material) const {
+  return world_point(state, part, material, node_weights(part, material));
+}
+
+NodeWeights Model::node_weights(int part, const Material<double>& material) const {
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
-  return world_point(state, part, material,
-                     m.local == nullptr ? NodeWeights() : m.local->weights(*m.part, material));
+  return m.local == nullptr ? NodeWeights() : m.local->weights(*m.part, material);
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material,

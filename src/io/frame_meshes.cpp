@@ -1,5 +1,7 @@
 #include <pliant/io/frame_meshes.h>
 
+#include <algorithm>
+
 namespace pliant {
 
 FrameMeshes::FrameMeshes(const Scene& scene, const Model& model) : model_(&model) {
@@ -7,11 +9,37 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model) : model_(&model
     const Appearance& look = scene.appearance.at(i);
     if (!look.visible) continue;
     const Part& part = *model.parts()[i].part;
-    const bool rigid = part.rigid();
-    shown_.push_back({i, Surface(part, part.local() == nullptr ? look.resolution : 1), rigid, {}});
-    if (rigid) shown_.back().body = shown_.back().surface.body_mesh(part, part.parameters().rest());
     meshes_.push_back({part.name(), look.color, {}});
+    Shown& shown = shown_.emplace_back();
+    shown.part = i;
+    shown.rigid = part.rigid();
+    if (part.local() == nullptr)
+      shown.surface.emplace(part, look.resolution);
+    else
+      shown.nodes = surface_nodes(part.local()->mesh());
+    if (shown.rigid) shown.body = shown.surface->body_mesh(part, part.parameters().rest());
+    if (!scene.coloring) continue;
+    const ParameterValues<double> rest = part.parameters().rest();
+    meshes_.back().by_values = colors(*scene.coloring, part);
+    if (shown.surface)
+      shown.values.emplace(scene.coloring->by, part.s(shown.surface->material(), rest),
+                           shown.surface->triangles());
+    else
+      shown.values.emplace(scene.coloring->by, shown.nodes.of(part.local()->mesh().X), shown.nodes.triangles);
   }
+}
+
+Eigen::Matrix3Xd FrameMeshes::vertices(const Shown& shown, const State& state) const {
+  const int part = static_cast<int>(shown.part);
+  if (!shown.surface) return shown.nodes.of(model_->node_positions(state, part));
+  if (shown.rigid) return shown.body.x;
+  return model_->parts()[shown.part].part->s(shown.surface->material(), model_->values(state, part));
+}
+
+TriangleMesh FrameMeshes::body_mesh(const Shown& shown, const State& state) const {
+  if (!shown.surface) return node_mesh(shown.nodes.triangles, vertices(shown, state));
+  return shown.surface->body_mesh(*model_->parts()[shown.part].part,
+                                  model_->values(state, static_cast<int>(shown.part)));
 }
 
 const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
@@ -19,52 +47,51 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
     const Shown& shown = shown_[k];
     const int part = static_cast<int>(shown.part);
     const Vec3<double> c = model_->position(state, part);
-    const Eigen::Quaterniond R = model_->orientation(state, part);
-    TriangleMesh& mesh = meshes_[k].mesh;
-    if (const LocalDeformation* local = model_->parts()[shown.part].local) {
-      mesh = node_mesh(local->mesh(), model_->node_positions(state, part));
-      mesh.x = (R.toRotationMatrix() * mesh.x).colwise() + c;
-      mesh.normals = R.toRotationMatrix() * mesh.normals;
-      continue;
-    }
-    if (!shown.rigid) {
-      mesh = shown.surface.world_mesh(*model_->parts()[shown.part].part, model_->values(state, part), c, R);
-      continue;
-    }
-    const Mat3<double> turn = R.toRotationMatrix();
-    mesh.x = (turn * shown.body.x).colwise() + c;
-    mesh.normals = turn * shown.body.normals;
-    if (mesh.triangles.cols() == 0) {
-      mesh.triangles = shown.body.triangles;
-      mesh.corners = shown.body.corners;
+    const Mat3<double> R = model_->orientation(state, part).toRotationMatrix();
+    NamedMesh& named = meshes_[k];
+    TriangleMesh& mesh = named.mesh;
+    if (!shown.rigid) mesh = body_mesh(shown, state);
+    const TriangleMesh& body = shown.rigid ? shown.body : mesh;
+    if (shown.values && (!shown.rigid || named.values.size() == 0)) named.values = shown.values->at(body.x);
+    mesh.x = (R * body.x).colwise() + c;
+    mesh.normals = R * body.normals;
+    if (shown.rigid && mesh.triangles.cols() == 0) {
+      mesh.triangles = body.triangles;
+      mesh.corners = body.corners;
     }
   }
   return meshes_;
 }
 
-Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) {
+Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) const {
   Eigen::AlignedBox3d box;
   for (const Shown& shown : shown_) {
     const int part = static_cast<int>(shown.part);
-    const Part& solid = *model_->parts()[shown.part].part;
-    const Mat3<double> turn = model_->orientation(state, part).toRotationMatrix();
-    const Eigen::Matrix3Xd of_body =
-        solid.local() != nullptr
-            ? Eigen::Matrix3Xd(model_->node_positions(state, part).transpose())
-            : (shown.rigid ? shown.body.x : solid.s(shown.surface.material(), model_->values(state, part)));
-    const Eigen::Matrix3Xd x = (turn * of_body).colwise() + model_->position(state, part);
+    const Mat3<double> R = model_->orientation(state, part).toRotationMatrix();
+    const Eigen::Matrix3Xd x = (R * vertices(shown, state)).colwise() + model_->position(state, part);
     box.extend(Vec3<double>(x.rowwise().minCoeff()));
     box.extend(Vec3<double>(x.rowwise().maxCoeff()));
   }
   return box;
 }
 
+std::optional<double> FrameMeshes::high_value(const State& state) const {
+  std::vector<double> all;
+  for (std::size_t k = 0; k < shown_.size(); ++k) {
+    if (!meshes_[k].by_values) continue;
+    const VecX<double> values = shown_[k].values->at(vertices(shown_[k], state));
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  if (all.empty()) return std::nullopt;
+  const auto high = all.end() - 1 - static_cast<std::ptrdiff_t>(all.size() / 100);
+  std::nth_element(all.begin(), high, all.end());
+  return *high;
+}
+
 std::int64_t FrameMeshes::triangles() const {
   std::int64_t sum = 0;
-  for (const Shown& shown : shown_) {
-    const LocalDeformation* local = model_->parts()[shown.part].local;
-    sum += local == nullptr ? shown.surface.triangles().cols() : local->mesh().triangles.cols();
-  }
+  for (const Shown& shown : shown_)
+    sum += shown.surface ? shown.surface->triangles().cols() : shown.nodes.triangles.cols();
   return sum;
 }
 

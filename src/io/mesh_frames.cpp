@@ -19,7 +19,8 @@ void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, c
     if (format == MeshFormat::obj)
       write_obj(folder / frame_name("frame", frame, "obj"), now, kMaterialFile);
     else
-      write_ply(folder / frame_name("frame", frame, "ply"), now);
+      write_ply(folder / frame_name("frame", frame, "ply"), now,
+                scene.coloring ? quantity_info(scene.coloring->by).name : "");
     progress.advance(++done);
   }
   if (format == MeshFormat::obj) {

@@ -23,7 +23,7 @@ Eigen::Matrix3Xd vertex_normals(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::string ply_bytes(const std::vector<NamedMesh>& meshes) {
+std::string ply_bytes(const std::vector<NamedMesh>& meshes, const std::string& values) {
   Eigen::Index vertices = 0, triangles = 0;
   for (const NamedMesh& named : meshes) {
     vertices += named.mesh.x.cols();
@@ -40,10 +40,11 @@ std::string ply_bytes(const std::vector<NamedMesh>& meshes) {
   for (const char* property : {"double x", "double y", "double z", "float nx", "float ny", "float nz",
                                "uchar red", "uchar green", "uchar blue", "int part"})
     bytes += std::string("property ") + property + "\n";
+  if (!values.empty()) bytes += "property double " + values + "\n";
   bytes +=
       "element face " + std::to_string(triangles) + "\nproperty list uchar int vertex_indices\nend_header\n";
 
-  bytes.reserve(bytes.size() + static_cast<std::size_t>(vertices) * 43 +
+  bytes.reserve(bytes.size() + static_cast<std::size_t>(vertices) * (values.empty() ? 43 : 51) +
                 static_cast<std::size_t>(triangles) * 13);
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     const TriangleMesh& mesh = meshes[i].mesh;
@@ -54,6 +55,7 @@ std::string ply_bytes(const std::vector<NamedMesh>& meshes) {
       for (const double channel : meshes[i].color)
         put(bytes, static_cast<std::uint8_t>(std::lround(255 * channel)));
       put(bytes, static_cast<std::int32_t>(i));
+      if (!values.empty()) put(bytes, meshes[i].values[k]);
     }
   }
   std::int32_t first = 0;
@@ -67,8 +69,9 @@ std::string ply_bytes(const std::vector<NamedMesh>& meshes) {
   return bytes;
 }
 
-void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes) {
-  const std::string bytes = ply_bytes(meshes);
+void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
+               const std::string& values) {
+  const std::string bytes = ply_bytes(meshes, values);
   write_whole_file(path, bytes.data(), bytes.size());
 }
 

@@ -53,6 +53,7 @@ TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulatio
                             (moved || (part.n_s > 0 && !part.part->parameters().links().empty())));
     local_shown_ = local_shown_ || part.local != nullptr;
   }
+  for (const Track& track : scene.tracks) tracked_.emplace_back(simulation.model(), track.point);
 }
 
 std::vector<Column> TrajectoryTable::columns() const {
@@ -105,9 +106,7 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
   numbers.assign(1, state.time());
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
-  for (const Track& track : scene_->tracks)
-    add_vector(numbers,
-               model.world_point(state, model.body().index(*track.point.part), track.point.material));
+  for (const PlacedPoint& point : tracked_) add_vector(numbers, point.at(state));
   for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
     const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work_);
     add_vector(numbers, wrench.force);

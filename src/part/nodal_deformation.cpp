@@ -18,6 +18,7 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   VecX<double> own;
   for (const LocalSettings::Law& law : settings.energies) {
     energies_.push_back(law.lay(mesh_));
+    laws_ += (laws_.empty() ? "" : ", ") + law.name;
     if (beta() > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
       throw std::invalid_argument("part '" + part.name() +
                                   "': beta of its nodes damps laws that are quadratic in d only; use alpha");
@@ -53,7 +54,10 @@ const char* NodalDeformation::unit(Eigen::Index k) const {
 }
 
 std::string NodalDeformation::description() const {
-  return std::to_string(n_d()) + " local, of " + std::to_string(n_nodes()) + " nodes";
+  const std::string elements = mesh().shell() ? std::to_string(mesh().triangles.cols()) + " triangles"
+                                              : std::to_string(mesh().tetrahedra.cols()) + " tetrahedra";
+  return std::to_string(n_d()) + " local, of " + std::to_string(n_nodes()) + " nodes and " + elements +
+         "; laws: " + laws_;
 }
 
 NodeWeights NodalDeformation::weights(const Part& part, const Material<double>& m) const {

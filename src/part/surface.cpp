@@ -87,11 +87,32 @@ TriangleMesh Surface::body_mesh(const Part& part, const ParameterValues<double>&
   return mesh;
 }
 
-TriangleMesh node_mesh(const LocalMesh& nodes, const Eigen::Ref<const Nodes>& x) {
+SurfaceNodes surface_nodes(const LocalMesh& mesh) {
+  std::vector<int> number(mesh.nodes.size(), -1);  // of each node among those of the surface
+  for (const int node : mesh.triangles.reshaped()) number[static_cast<std::size_t>(node)] = 0;
+  SurfaceNodes surface;
+  for (std::size_t k = 0; k < number.size(); ++k) {
+    if (number[k] < 0) continue;
+    number[k] = static_cast<int>(surface.node.size());
+    surface.node.push_back(static_cast<int>(k));
+  }
+  surface.triangles =
+      mesh.triangles.unaryExpr([&](int node) { return number[static_cast<std::size_t>(node)]; });
+  return surface;
+}
+
+Eigen::Matrix3Xd SurfaceNodes::of(const Eigen::Ref<const Nodes>& all) const {
+  Eigen::Matrix3Xd x(3, static_cast<Eigen::Index>(node.size()));
+  for (Eigen::Index k = 0; k < x.cols(); ++k)
+    x.col(k) = all.row(node[static_cast<std::size_t>(k)]).transpose();
+  return x;
+}
+
+TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::Matrix3Xd x) {
   TriangleMesh mesh;
-  mesh.x = x.transpose();
-  mesh.triangles = nodes.triangles;
-  std::vector<Vec3<double>> normals(static_cast<std::size_t>(x.rows()), Vec3<double>::Zero());
+  mesh.x = std::move(x);
+  mesh.triangles = triangles;
+  std::vector<Vec3<double>> normals(static_cast<std::size_t>(mesh.x.cols()), Vec3<double>::Zero());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     const std::array<Vec3<double>, 3> corner{
         mesh.x.col(mesh.triangles(0, t)), mesh.x.col(mesh.triangles(1, t)), mesh.x.col(mesh.triangles(2, t))};

@@ -1,9 +1,11 @@
 #include <pliant/render/film.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <pliant/io/png.h>
 #include <pliant/io/run_files.h>
+#include <pliant/render/ticks.h>
 
 namespace pliant {
 namespace {
@@ -11,6 +13,7 @@ namespace {
 const Eigen::Vector3f kSpringColor(0.25f, 0.27f, 0.3f);
 constexpr float kSpringWidth = 1.5f, kAnchorWidth = 6;  // pixels
 constexpr double kVertical = 1e-5;                      // sine of the angle between view and z
+constexpr double kRounding = 1e-9;                      // strain, or displacement over size, that is none
 
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
@@ -22,42 +25,36 @@ Film::Film(const Scene& scene, const Model& model, const Recording& recording)
     : scene_(&scene), model_(&model), recording_(&recording), meshes_(scene, model) {
   if (recording.rows() == 0) throw std::out_of_range("the recording holds no state");
   lay_tracks();
+  lay_ties();
   choose_view();
+  choose_scale();
   if (scene.light.direction) picture_.lights.to_key = scene.light.direction->cast<float>();
   picture_.lights.shadows = scene.light.shadows;
 }
 
 void Film::lay_tracks() {
-  tracks_.resize(scene_->tracks.size());
+  for (const Track& track : scene_->tracks) tracked_.emplace_back(*model_, track.point);
+  tracks_.resize(tracked_.size());
   if (tracks_.empty()) return;
   for (std::int64_t row = 0; row < recording_->rows(); ++row) {
     const State state = recording_->state(row);
-    for (std::size_t i = 0; i < tracks_.size(); ++i) {
-      const Point& point = scene_->tracks[i].point;
-      tracks_[i].push_back(place(point, state));
-    }
+    for (std::size_t i = 0; i < tracks_.size(); ++i) tracks_[i].push_back(tracked_[i].at(state));
   }
-}
-
-Eigen::Vector3d Film::place(const Point& point, const State& state) const {
-  if (point.part == nullptr) return point.world.value(state.time());
-  return model_->world_point(state, model_->body().index(*point.part), point.material);
 }
 
 // What is drawn of springs and joints: a line between two points where it keeps them apart, dots where it
 // holds on to the world.
-std::vector<Film::Tie> Film::ties() const {
-  std::vector<Tie> all;
-  if (!scene_->show_springs) return all;
-  for (const auto& spring : scene_->body.springs()) all.push_back({{&spring->a, &spring->b}, true, nullptr});
+void Film::lay_ties() {
+  if (!scene_->show_springs) return;
+  for (const auto& spring : scene_->body.springs())
+    ties_.push_back({{{*model_, spring->a}, {*model_, spring->b}}, true, nullptr});
   for (const auto& joint : scene_->body.joints()) {
     const std::vector<Point>& points = joint->points();
-    Tie tie{{&points.front()}, joint->rows() == 1 && points.size() == 2, joint.get()};
+    Tie tie{{{*model_, points.front()}}, joint->rows() == 1 && points.size() == 2, joint.get()};
     if (joint->n_points() > joint->n_first())
-      tie.ends.push_back(&points[static_cast<std::size_t>(joint->n_first())]);
-    all.push_back(std::move(tie));
+      tie.ends.emplace_back(*model_, points[static_cast<std::size_t>(joint->n_first())]);
+    ties_.push_back(std::move(tie));
   }
-  return all;
 }
 
 // Where springs and joints hold on to the world, as far as that is beside the bodies and not somewhere far
@@ -66,12 +63,11 @@ Eigen::AlignedBox3d Film::anchors(const Eigen::AlignedBox3d& bodies) const {
   Eigen::AlignedBox3d box;
   if (bodies.isEmpty()) return box;
   const double reach = bodies.diagonal().norm();
-  const std::vector<Tie> all = ties();
   for (std::int64_t row = 0; row < recording_->rows(); ++row)
-    for (const Tie& tie : all)
-      for (const Point* end : tie.ends) {
-        if (end->part != nullptr) continue;
-        const Eigen::Vector3d x = end->world.value(recording_->time(row));
+    for (const Tie& tie : ties_)
+      for (const PlacedPoint& end : tie.ends) {
+        if (end.point().part != nullptr) continue;
+        const Eigen::Vector3d x = end.point().world.value(recording_->time(row));
         if (bodies.exteriorDistance(x) <= reach) box.extend(x);
       }
   return box;
@@ -105,20 +101,46 @@ void Film::choose_view() {
   if (camera.up.cross(view).norm() <= kVertical * view.norm()) camera.up = Eigen::Vector3d::UnitY();
 }
 
+void Film::choose_scale() {
+  if (!scene_->coloring) return;
+  const Coloring& coloring = *scene_->coloring;
+  std::optional<double> highest;
+  const std::int64_t rows =
+      coloring.range ? 1 : recording_->rows();  // one tells whether any part is coloured
+  for (std::int64_t row = 0; row < rows; ++row) {
+    const std::optional<double> here = meshes_.high_value(recording_->state(row));
+    if (here) highest = std::max(highest.value_or(0), *here);
+  }
+  if (!highest) return;
+  double rounding = coloring.by == SurfaceQuantity::strain ? kRounding : 0;
+  if (coloring.by == SurfaceQuantity::displacement)
+    for (const auto& part : scene_->body.parts()) rounding = std::max(rounding, kRounding * part->size());
+  const QuantityInfo& quantity = quantity_info(coloring.by);
+  const std::string unit = quantity.unit;
+  picture_.scale = {unit == "1" ? quantity.name : quantity.name + (" (" + unit + ")"), 0, 1};
+  if (coloring.range) {
+    picture_.scale->low = coloring.range->front();
+    picture_.scale->high = coloring.range->back();
+  } else if (*highest > rounding) {
+    const double step = tick_step(*highest);
+    picture_.scale->high = std::ceil(*highest / step) * step;
+  }
+}
+
 void Film::draw_ties(const State& state) {
-  for (const Tie& tie : ties()) {
+  for (const Tie& tie : ties_) {
     if (tie.joint != nullptr && !tie.joint->acts_at(state.time())) continue;
     if (tie.line) {
       Picture::Track line;
-      line.points = {place(*tie.ends[0], state), place(*tie.ends[1], state)};
+      line.points = {tie.ends[0].at(state), tie.ends[1].at(state)};
       line.color = kSpringColor;
       line.width = kSpringWidth;
       picture_.tracks.push_back(line);
     }
-    for (const Point* end : tie.ends) {
-      if (end->part != nullptr) continue;
+    for (const PlacedPoint& end : tie.ends) {
+      if (end.point().part != nullptr) continue;
       Picture::Track dot;
-      dot.points = {place(*end, state)};
+      dot.points = {end.at(state)};
       dot.color = kSpringColor;
       dot.width = kAnchorWidth;
       picture_.tracks.push_back(dot);
@@ -130,15 +152,15 @@ const Picture& Film::at(double time) {
   const State state = recording_->at(time);
   picture_.bodies.clear();
   for (const NamedMesh& named : meshes_.at(state))
-    picture_.bodies.push_back({&named.mesh, vector_of(named.color)});
+    picture_.bodies.push_back(
+        {&named.mesh, vector_of(named.color), named.by_values ? &named.values : nullptr});
   picture_.tracks.clear();
   std::int64_t rows = 0;  // recorded before now
   while (rows < recording_->rows() && recording_->time(rows) < state.time()) ++rows;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const Point& point = scene_->tracks[i].point;
     Picture::Track track;
     track.points.assign(tracks_[i].begin(), tracks_[i].begin() + rows);
-    track.points.push_back(place(point, state));
+    track.points.push_back(tracked_[i].at(state));
     track.color = vector_of(scene_->tracks[i].color);
     picture_.tracks.push_back(std::move(track));
   }

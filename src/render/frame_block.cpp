@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "srgb.h"
+
 namespace pliant {
 namespace {
 
@@ -141,10 +143,6 @@ double automatic_spacing(double view_height) {
 }
 
 }  // namespace
-
-float linear_light(float srgb) {
-  return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
-}
 
 FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& boxes, int samples_wide,
                        int samples_high, int shadow_side, int contact_side) {

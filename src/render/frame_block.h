@@ -29,9 +29,6 @@ struct FrameBlock {
   Eigen::Vector4f viewport;  ///< samples; z: side of a shadow texel on its map
 };
 
-/// Linear light of an sRGB channel, both in [0, 1].
-float linear_light(float srgb);
-
 /// Everything of the frame that follows from the picture, the places of its bodies (boxes relative to the
 /// camera's target) and the sizes of the pictures and maps. Throws std::invalid_argument naming the setting
 /// that makes no sense.

@@ -92,6 +92,7 @@ inline constexpr unsigned kDepthBufferBit = 0x0100;
   X(uniform_1f, glUniform1f, void, (Int, float))                                                       \
   X(uniform_1i, glUniform1i, void, (Int, Int))                                                         \
   X(uniform_3f, glUniform3f, void, (Int, float, float, float))                                         \
+  X(uniform_3fv, glUniform3fv, void, (Int, Size, const float*))                                        \
   X(uniform_block_binding, glUniformBlockBinding, void, (Uint, Uint, Uint))                            \
   X(use_program, glUseProgram, void, (Uint))                                                           \
   X(vertex_attrib_divisor, glVertexAttribDivisor, void, (Uint, Uint))                                  \

@@ -10,9 +10,9 @@
 namespace pliant::gl {
 namespace {
 
-Uint compile(const Functions& gl, Enum stage, const char* name, const char* text) {
+Uint compile(const Functions& gl, Enum stage, const char* name, const char* start, const char* text) {
   const Uint shader = gl.create_shader(stage);
-  const std::array<const char*, 2> parts = {shaders::kShared, text};
+  const std::array<const char*, 3> parts = {shaders::kShared, start, text};
   gl.shader_source(shader, static_cast<Size>(parts.size()), parts.data(), nullptr);
   gl.compile_shader(shader);
   Int good = 0;
@@ -26,12 +26,13 @@ Uint compile(const Functions& gl, Enum stage, const char* name, const char* text
 
 }  // namespace
 
-Program::Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text)
+Program::Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text,
+                 const char* fragment_start)
     : gl_(gl) {
-  const Uint vertex = compile(gl, kVertexShader, name, vertex_text);
+  const Uint vertex = compile(gl, kVertexShader, name, "", vertex_text);
   Uint fragment = 0;
   try {
-    fragment = compile(gl, kFragmentShader, name, fragment_text);
+    fragment = compile(gl, kFragmentShader, name, fragment_start, fragment_text);
   } catch (...) {
     gl.delete_shader(vertex);
     throw;

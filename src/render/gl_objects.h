@@ -29,8 +29,9 @@ using Renderbuffer = Object<&Functions::gen_renderbuffers, &Functions::delete_re
 /// A linked program. GLSL 330; the text of shaders.h that all stages share is put in front.
 class Program {
  public:
-  /// Throws std::runtime_error with the compiler's words.
-  Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text);
+  /// fragment_start: goes in front of fragment_text. Throws std::runtime_error with the compiler's words.
+  Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text,
+          const char* fragment_start = "");
   ~Program();
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;

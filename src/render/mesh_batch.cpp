@@ -1,6 +1,7 @@
 // Pairs of position and normal are found once a topology; each frame only gathers them.
 #include "mesh_batch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -29,8 +30,18 @@ void check_range(const Eigen::Matrix3Xi& indices, Eigen::Index columns, std::siz
 
 }  // namespace
 
-MeshBatch::MeshBatch(const gl::Functions& gl) : gl_(gl), array_(gl), vertices_(gl), indices_(gl) {
-  gl_.bind_vertex_array(array_.name());
+MeshBatch::MeshBatch(const gl::Functions& gl)
+    : gl_(gl), array_(gl), leveled_array_(gl), vertices_(gl), indices_(gl), levels_(gl) {
+  lay_attributes(leveled_array_);
+  gl_.bind_buffer(gl::kArrayBuffer, levels_.name());
+  gl_.vertex_attrib_pointer(2, 1, gl::kFloat, 0, sizeof(float), nullptr);
+  gl_.enable_vertex_attrib_array(2);
+  lay_attributes(array_);
+  gl_.bind_vertex_array(0);
+}
+
+void MeshBatch::lay_attributes(const gl::VertexArray& array) const {
+  gl_.bind_vertex_array(array.name());
   gl_.bind_buffer(gl::kElementArrayBuffer, indices_.name());
   gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
   constexpr int kStride = kFloatsPerVertex * sizeof(float);
@@ -38,7 +49,6 @@ MeshBatch::MeshBatch(const gl::Functions& gl) : gl_(gl), array_(gl), vertices_(g
   gl_.vertex_attrib_pointer(1, 3, gl::kFloat, 0, kStride, reinterpret_cast<const void*>(3 * sizeof(float)));
   gl_.enable_vertex_attrib_array(0);
   gl_.enable_vertex_attrib_array(1);
-  gl_.bind_vertex_array(0);
 }
 
 MeshBatch::Topology MeshBatch::make_topology(const TriangleMesh& mesh, std::size_t body) {
@@ -83,7 +93,28 @@ void MeshBatch::upload_indices() {
                   all.data(), gl::kStaticDraw);
 }
 
-void MeshBatch::update(const std::vector<Picture::Body>& bodies, const Eigen::Vector3d& origin) {
+void MeshBatch::upload_levels(const Picture& picture) {
+  scratch_.clear();
+  for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
+    const std::vector<int>& position = topologies_[i].position;
+    const VecX<double>* values = picture.bodies[i].values;
+    if (values == nullptr) {
+      scratch_.resize(scratch_.size() + position.size(), 0);
+      continue;
+    }
+    if (values->size() != picture.bodies[i].mesh->x.cols() || !values->allFinite())
+      fail(i, "has not one finite value a vertex");
+    const double low = picture.scale->low, span = picture.scale->high - low;
+    for (const int vertex : position)
+      scratch_.push_back(static_cast<float>(std::clamp(((*values)[vertex] - low) / span, 0.0, 1.0)));
+  }
+  gl_.bind_buffer(gl::kArrayBuffer, levels_.name());
+  gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(scratch_.size() * sizeof(float)),
+                  scratch_.data(), gl::kStreamDraw);
+}
+
+void MeshBatch::update(const Picture& picture) {
+  const std::vector<Picture::Body>& bodies = picture.bodies;
   bool changed = topologies_.size() != bodies.size();
   topologies_.resize(bodies.size());
   std::size_t pairs = 0;
@@ -116,7 +147,7 @@ void MeshBatch::update(const std::vector<Picture::Body>& bodies, const Eigen::Ve
     Eigen::AlignedBox3f box;
     bool good = true;
     for (std::size_t k = 0; k < topology.position.size(); ++k, out += kFloatsPerVertex) {
-      const Eigen::Vector3d p = mesh.x.col(topology.position[k]) - origin,
+      const Eigen::Vector3d p = mesh.x.col(topology.position[k]) - picture.camera.target,
                             n = mesh.normals.col(topology.normal[k]);
       // Negated, so that a number that is not finite fails.
       good = good && !(!(p.cwiseAbs().maxCoeff() <= kFarthest) || !(n.cwiseAbs().maxCoeff() <= 2) ||
@@ -135,6 +166,7 @@ void MeshBatch::update(const std::vector<Picture::Body>& bodies, const Eigen::Ve
   gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
   gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(scratch_.size() * sizeof(float)),
                   scratch_.data(), gl::kStreamDraw);
+  if (picture.scale) upload_levels(picture);
 }
 
 }  // namespace pliant

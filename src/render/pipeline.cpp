@@ -2,11 +2,17 @@
 // shaded about once.
 #include "pipeline.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include <pliant/render/color_map.h>
+
+#include "color_bar.h"
 #include "resolve.h"
 #include "shaders.h"
+#include "srgb.h"
 
 namespace pliant {
 namespace {
@@ -55,7 +61,7 @@ Pipeline::Pipeline(const GlContext& context, int width, int height)
       shadow_program_(gl_, "shadow", shaders::kShadowVertex, shaders::kDepthFragment),
       height_program_(gl_, "height", shaders::kHeightVertex, shaders::kDepthFragment),
       contact_program_(gl_, "contact", shaders::kContactVertex, shaders::kContactFragment),
-      body_program_(gl_, "body", shaders::kBodyVertex, shaders::kBodyFragment),
+      body_program_(gl_, "body", shaders::kBodyVertex, shaders::kBodyFragment, shaders::kOwnColor),
       ground_program_(gl_, "ground", shaders::kGroundVertex, shaders::kGroundFragment),
       background_program_(gl_, "background", shaders::kBackgroundVertex, shaders::kBackgroundFragment),
       track_program_(gl_, "track", shaders::kTrackVertex, shaders::kTrackFragment),
@@ -144,17 +150,35 @@ void Pipeline::draw_contact(bool bodies) {
 
 void Pipeline::draw_bodies(const Picture& picture) {
   if (meshes_.index_count() == 0) return;
+  const auto leveled = [&](const Picture::Body& body) { return picture.scale && body.values != nullptr; };
   body_program_.use();
   meshes_.bind();
-  const gl::Int albedo = body_program_.uniform("albedo");
+  const gl::Int own_color = body_program_.uniform("own_color");
   for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
-    const MeshBatch::Range& range = meshes_.ranges()[i];
+    if (leveled(picture.bodies[i])) continue;
     const Eigen::Vector3f color = linear(picture.bodies[i].color);
-    gl_.uniform_3f(albedo, color[0], color[1], color[2]);
-    gl_.draw_elements(
-        gl::kTriangles, range.count, gl::kUnsignedInt,
-        reinterpret_cast<const void*>(static_cast<std::size_t>(range.first) * sizeof(std::uint32_t)));
+    gl_.uniform_3f(own_color, color[0], color[1], color[2]);
+    draw_body(i);
   }
+  if (std::none_of(picture.bodies.begin(), picture.bodies.end(), leveled)) return;
+  if (!leveled_program_) {
+    leveled_program_ = std::make_unique<gl::Program>(gl_, "leveled body", shaders::kLeveledVertex,
+                                                     shaders::kBodyFragment, shaders::kLevelColor);
+    leveled_program_->use();
+    gl_.uniform_1i(leveled_program_->uniform("shadow_map"), kShadowUnit);
+    gl_.uniform_3fv(leveled_program_->uniform("color_map"), kMapColors, color_map().front().data());
+  }
+  leveled_program_->use();
+  meshes_.bind_levels();
+  for (std::size_t i = 0; i < picture.bodies.size(); ++i)
+    if (leveled(picture.bodies[i])) draw_body(i);
+}
+
+void Pipeline::draw_body(std::size_t body) {
+  const MeshBatch::Range& range = meshes_.ranges()[body];
+  gl_.draw_elements(
+      gl::kTriangles, range.count, gl::kUnsignedInt,
+      reinterpret_cast<const void*>(static_cast<std::size_t>(range.first) * sizeof(std::uint32_t)));
 }
 
 void Pipeline::draw_tracks(const Picture& picture) {
@@ -178,7 +202,10 @@ void Pipeline::draw_tracks(const Picture& picture) {
 Image Pipeline::draw(const Picture& picture) {
   check_colors(picture.bodies, "body");
   check_colors(picture.tracks, "track");
-  meshes_.update(picture.bodies, picture.camera.target);
+  if (picture.scale &&
+      !(std::isfinite(picture.scale->high - picture.scale->low) && picture.scale->low < picture.scale->high))
+    throw std::invalid_argument("picture: the scale of its values must go from a number to a larger one");
+  meshes_.update(picture);
   const FrameBlock frame =
       frame_block(picture, meshes_.boxes(), 2 * width_, 2 * height_, kShadowSide, kContactSide);
   tracks_.update(picture, frame);
@@ -211,7 +238,9 @@ Image Pipeline::draw(const Picture& picture) {
   gl_.read_pixels(0, 0, 2 * width_, 2 * height_, gl::kRgba, gl::kUnsignedByte, samples_.data());
   if (const gl::Enum error = gl_.get_error())
     throw std::runtime_error("OpenGL failed to draw a picture (error " + std::to_string(error) + ")");
-  return resolve(samples_, width_, height_);
+  Image image = resolve(samples_, width_, height_);
+  if (picture.scale) draw_color_bar(image, *picture.scale);
+  return image;
 }
 
 }  // namespace pliant

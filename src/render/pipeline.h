@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <pliant/io/image.h>
@@ -32,6 +33,7 @@ class Pipeline {
   void draw_depth(const MapTarget& map, int side, const gl::Program& program, bool bodies);
   void draw_contact(bool bodies);
   void draw_bodies(const Picture& picture);
+  void draw_body(std::size_t body);
   void draw_tracks(const Picture& picture);
   void draw_triangle();
   void check_target();
@@ -40,6 +42,7 @@ class Pipeline {
   int width_, height_;
   gl::Program shadow_program_, height_program_, contact_program_, body_program_, ground_program_,
       background_program_, track_program_;
+  std::unique_ptr<gl::Program> leveled_program_;  // of bodies coloured by values; made with the first
   MapTarget shadow_, heights_, contact_;
   gl::Framebuffer target_;
   gl::Renderbuffer color_, depth_;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "srgb.h"
+
 namespace pliant {
 namespace {
 
@@ -13,8 +15,7 @@ std::vector<std::uint8_t> srgb_table() {
   std::vector<std::uint8_t> table(kBrightest + 1);
   for (int i = 0; i <= kBrightest; ++i) {
     const double light = static_cast<double>(i) / kBrightest;
-    const double srgb = light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb));
+    table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_channel(light)));
   }
   return table;
 }

@@ -107,9 +107,42 @@ void main() {
 }
 )";
 
+const char* const kLeveledVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in float vertex_level;
+out vec3 at;
+out vec3 n_raw;
+out vec3 on_map;
+out float level;
+void main() {
+  at = position;
+  n_raw = normal;
+  on_map = (shadow * vec4(position + to_key.w * normal, 1.0)).xyz;
+  level = vertex_level;
+  gl_Position = view_projection * vec4(position, 1.0);
+}
+)";
+
+const char* const kOwnColor = R"(
+uniform vec3 own_color;
+vec3 albedo() { return own_color; }
+)";
+
+// The mixing of color_map.h.
+const char* const kLevelColor = R"(
+const int kColors = 11;
+uniform vec3 color_map[kColors];
+in float level;
+vec3 albedo() {
+  float place = clamp(level, 0.0, 1.0) * float(kColors - 1);
+  int below = min(int(place), kColors - 2);
+  return mix(color_map[below], color_map[below + 1], place - float(below));
+}
+)";
+
 const char* const kBodyFragment = R"(
 uniform sampler2DShadow shadow_map;
-uniform vec3 albedo;
 in vec3 at;
 in vec3 n_raw;
 in vec3 on_map;
@@ -136,7 +169,7 @@ void main() {
   float mirror = 0.03 + 0.55 * g2 * g2 * grazing;
   float up = clamp(0.5 + 0.9 * (2.0 * nv * n.z - v.z), 0.0, 1.0);
 
-  result = encode(albedo * (ambient + key.rgb * diffuse) + key.rgb * (gloss * arrives) +
+  result = encode(albedo() * (ambient + key.rgb * diffuse) + key.rgb * (gloss * arrives) +
                   mirror * mix(below, sky.rgb, up));
 }
 )";

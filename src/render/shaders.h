@@ -13,7 +13,10 @@ extern const char* const kDepthFragment;
 extern const char* const kContactVertex;  ///< how much of the sky each place of the ground sees
 extern const char* const kContactFragment;
 extern const char* const kBodyVertex;
+extern const char* const kOwnColor;  ///< albedo of a body; in front of kBodyFragment
 extern const char* const kBodyFragment;
+extern const char* const kLeveledVertex;  ///< of one coloured by values
+extern const char* const kLevelColor;     ///< its albedo
 extern const char* const kGroundVertex;
 extern const char* const kGroundFragment;
 extern const char* const kBackgroundVertex;

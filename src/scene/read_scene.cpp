@@ -12,6 +12,7 @@
 #include <pliant/scene/scene_schema.h>
 #include <pliant/scene/validate.h>
 
+#include "coloring_reader.h"
 #include "direction_reader.h"
 #include "joint_reader.h"
 #include "part_reader.h"
@@ -69,6 +70,7 @@ class SceneReader {
     for (const Reader& r : named("forces")) read_force(r, points);
     for (const Reader& r : named("torques")) read_torque(r, points);
     for (const Reader& r : named("tracks")) read_track(r, points);
+    read_coloring();
     return scene;
   }
 
@@ -207,6 +209,18 @@ class SceneReader {
     track.name = name_of(r, "track", scene_->tracks.size());
     if (r.given("color")) track.color = color(r.at("color"));
     scene_->tracks.push_back(track);
+  }
+
+  void read_coloring() {
+    if (!root_.given("coloring")) return;
+    const Reader coloring = root_.object("coloring");
+    if (!coloring.complete()) return;
+    scene_->coloring = pliant::read_coloring(coloring, parts_, faults_);
+    const auto& parts = scene_->body.parts();
+    if (faults_.errors() == 0 && std::none_of(parts.begin(), parts.end(), [&](const auto& part) {
+          return colors(*scene_->coloring, *part);
+        }))
+      faults_.warn(coloring.at("by"), "it has no effect, because no part deforms");
   }
 
   const JsonDocument& document_;

@@ -5,6 +5,7 @@
 #include <pliant/scene/point_value.h>
 #include <pliant/scene/time_value.h>
 
+#include "coloring_reader.h"
 #include "joint_schema.h"
 #include "local_schema.h"
 
@@ -213,6 +214,7 @@ Record make_scene_record() {
            optional("torques", array(record(torque)), "Torques on parts.", "[]"),
            optional("tracks", array(record(track)), "Motion tracks.", "[]"),
            optional("output", record(output), "What is recorded and drawn.", "{}"),
+           optional("coloring", record(coloring_record()), "Parts coloured by how they are deformed."),
            optional("camera", record(camera), "From where frames are seen.", "{}"),
            optional("light", record(light), "The key light.", "{}"),
            optional("ground", record(ground), "The drawn ground.", "{}")}};

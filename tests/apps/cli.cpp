@@ -256,6 +256,18 @@ TEST_CASE("I49, I50: what is there is not written over") {
   CHECK(fs::exists(place.folder / "p/frame_000001.ply"));
   CHECK_FALSE(fs::exists(place.folder / "p/frame_000000.ply"));
   CHECK(place.pliant("export r --to ply --frames 5:99").code == 3);
+  CHECK(place.pliant("export r --to ply --quiet --frames 1 -o p --force --color-by strain").code == 0);
+  CHECK(has(bytes_of(place.folder / "p/frame_000001.ply"), "property double strain"));
+}
+
+TEST_CASE("colours by values are asked for in full") {
+  const Place place;
+  CHECK(place.pliant("run top.json --color-by stain").code == 2);
+  CHECK(place.pliant("run top.json --color-range 0 1").code == 2);
+  const Result falls = place.pliant("run top.json --color-by strain --color-range 1 1");
+  CHECK(falls.code == 2);
+  CHECK(has(falls.err, "--color-range"));
+  CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
 TEST_CASE("I51: a file system that takes no more ends with code 7, and what is there is whole") {

@@ -1,4 +1,5 @@
 // OBJ and PLY: every number comes back, groups and indices are right.
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include <pliant/io/obj.h>
 #include <pliant/io/ply.h>
 #include <pliant/io/run.h>
+#include <pliant/part/local_laws.h>
 
 using namespace pliant;
 namespace fs = std::filesystem;
@@ -161,4 +163,128 @@ TEST_CASE("frames become files of their number") {
   for (std::size_t i = 0; i < first.x.size(); ++i)
     shift += (last.x[i] - first.x[i]) / static_cast<double>(first.x.size());
   CHECK(shift[0] == Approx(0.5).epsilon(1e-12));
+}
+
+namespace {
+
+/// A soft solid with curved elements that turns, one that only changes its radius, and a rigid one.
+std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
+  auto scene = std::make_unique<Scene>();
+  scene->body.gravity.setZero();
+  Part& soft = scene->body.add(make_part("soft", "ellipsoid", {}, 1000));
+  soft.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.25}}).place({1, 2, 3}, Eigen::Quaterniond(0.8, 0, 0.6, 0));
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.order = 2;
+  settings.energies = {local_law("elastic", {1e5, 0.3})};
+  // Free of rigid motion: a stretch along the axes.
+  settings.displacement = [](const Vec3<double>& X) { return Vec3<double>(0.1 * X); };
+  soft.deform_locally(std::move(settings));
+  Part& ball = scene->body.add(make_part("ball", "sphere", {}, 1000));
+  ball.rest({{"r", 0.5}}).initial({{"r", 0.55}}).place({-1, 0, 0}).move({1, 2, 3}, {3, 2, 1});
+  Part& top = scene->body.add(make_part("top", "ellipsoid", {}, 1000));
+  top.move({1, 2, 3}, {3, 2, 1});
+  scene->appearance.resize(3);
+  scene->coloring = Coloring{by, {}, {}};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("values of the surface: a known stretch, by nodes or by parameters; nothing for rigid motion") {
+  for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
+    const auto scene = soft_scene(by);
+    Simulation simulation(scene->body, "rk4");
+    FrameMeshes frame(*scene, simulation.model());
+    const std::vector<NamedMesh>& meshes = frame.at(simulation.state());
+    REQUIRE(meshes.size() == 3);
+    CHECK(meshes[0].by_values);
+    CHECK(meshes[1].by_values);
+    CHECK_FALSE(meshes[2].by_values);
+    for (const NamedMesh& named : meshes) REQUIRE(named.values.size() == named.mesh.x.cols());
+    const auto rest_distance = [&](int k) {
+      return VecX<double>((meshes[static_cast<std::size_t>(k)].mesh.x.colwise() -
+                           simulation.model().position(simulation.state(), k))
+                              .colwise()
+                              .norm() /
+                          1.1);
+    };
+    for (int k : {0, 1}) {
+      const VecX<double>& values = meshes[static_cast<std::size_t>(k)].values;
+      if (by == SurfaceQuantity::strain)
+        CHECK((values.array() - 0.105).abs().maxCoeff() < 1e-10);
+      else
+        CHECK((values - 0.1 * rest_distance(k)).cwiseAbs().maxCoeff() < 1e-10);
+    }
+    for (int i = 0; i < 10; ++i) simulation.step(1e-3);
+    CHECK(frame.at(simulation.state())[2].values.isZero(0));
+    CHECK(*frame.high_value(simulation.state()) > 0.02);
+    scene->coloring->parts = {scene->body.parts()[2].get()};
+    FrameMeshes rigid(*scene, simulation.model());
+    CHECK(*rigid.high_value(simulation.state()) == 0);
+  }
+}
+
+TEST_CASE("a soft part that only moves has values of rounding") {
+  auto moved = std::make_unique<Scene>();
+  moved->body.gravity.setZero();
+  Part& soft = moved->body.add(make_part("soft", "ellipsoid", {}, 1000));
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.energies = {local_law("neo_hookean", {1e5, 0.3})};
+  soft.deform_locally(std::move(settings)).move({5, -3, 2}, {0, 0, 0});
+  moved->appearance.resize(1);
+  for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
+    moved->coloring = Coloring{by, {}, {}};
+    Simulation simulation(moved->body, "rk4");
+    FrameMeshes frame(*moved, simulation.model());
+    for (int i = 0; i < 50; ++i) simulation.step(1e-3);
+    CHECK(frame.at(simulation.state())[0].values.cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
+TEST_CASE("only the nodes on the surface of a soft solid are written, all are kept") {
+  const auto scene = soft_scene(SurfaceQuantity::strain);
+  const Simulation simulation(scene->body);
+  FrameMeshes frame(*scene, simulation.model());
+  const TriangleMesh& mesh = frame.at(simulation.state())[0].mesh;
+  const LocalMesh& nodes = scene->body.parts()[0]->local()->mesh();
+  CHECK(mesh.x.cols() < nodes.X.rows());
+  CHECK(mesh.triangles.cols() == nodes.triangles.cols());
+  std::vector<bool> used(static_cast<std::size_t>(mesh.x.cols()));
+  for (const int vertex : mesh.triangles.reshaped()) used[static_cast<std::size_t>(vertex)] = true;
+  CHECK(std::count(used.begin(), used.end(), true) == mesh.x.cols());
+  const Nodes all = simulation.model().node_positions(simulation.state(), 0);
+  const Mat3<double> R = simulation.model().orientation(simulation.state(), 0).toRotationMatrix();
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3<double> x =
+          R * all.row(nodes.triangles(k, t)).transpose() + simulation.model().position(simulation.state(), 0);
+      REQUIRE((mesh.x.col(mesh.triangles(k, t)) - x).norm() < 1e-15);
+    }
+  CHECK(simulation.state().q.size() >= 3 * nodes.X.rows());
+  const ReadObj obj = read_obj(obj_text(frame.at(simulation.state())));
+  Eigen::Index vertices = 0;
+  for (const NamedMesh& named : frame.at(simulation.state())) vertices += named.mesh.x.cols();
+  CHECK(static_cast<Eigen::Index>(obj.x.size()) == vertices);
+}
+
+TEST_CASE("PLY vertices carry the values under their name") {
+  const NewFolder folder;
+  const auto scene = soft_scene(SurfaceQuantity::strain);
+  const Simulation simulation(scene->body);
+  FrameMeshes frame(*scene, simulation.model());
+  const std::vector<NamedMesh>& meshes = frame.at(simulation.state());
+  const std::string plain = ply_bytes(meshes), bytes = ply_bytes(meshes, "strain"), mark = "end_header\n";
+  CHECK(plain.find("strain") == std::string::npos);
+  CHECK(bytes.find("property int part\nproperty double strain\nelement face") != std::string::npos);
+  const std::size_t data = bytes.find(mark) + mark.size();
+  std::size_t vertex = 0;
+  for (const NamedMesh& named : meshes)
+    for (const double value : named.values) {
+      double written = 0;
+      std::memcpy(&written, bytes.data() + data + 51 * vertex++ + 43, sizeof written);
+      REQUIRE(written == value);
+    }
+  CHECK(bytes.size() - data == plain.size() - plain.find(mark) - mark.size() + 8 * vertex);
 }

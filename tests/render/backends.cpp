@@ -54,13 +54,17 @@ TEST_CASE("OSMesa and EGL give the same bytes, side by side in one process") {
     WARN("not compared: needs both libosmesa6 and libegl1 with libgl1-mesa-dri");
     return;
   }
-  const test::Scene scene;
+  test::Scene scene;
   Renderer a(320, 240, GlBackend::osmesa), b(320, 240, GlBackend::egl);
   CHECK(a.backend() == "OSMesa");
   CHECK(b.backend().rfind("EGL", 0) == 0);
   const Image first = a.draw(scene.picture);
   CHECK(first.rgb == b.draw(scene.picture).rgb);
   CHECK(first.rgb == a.draw(scene.picture).rgb);
+  scene.color_by_height();
+  const Image colored = a.draw(scene.picture);
+  CHECK(colored.rgb != first.rgb);
+  CHECK(colored.rgb == b.draw(scene.picture).rgb);
 }
 
 TEST_CASE("The number of raster threads does not change a byte") {

@@ -123,6 +123,41 @@ TEST_CASE("the camera holds where springs hang, unless that is far away") {
   CHECK(same(filmed.film().camera(), without));
 }
 
+TEST_CASE("parts that deform are coloured on one scale in all frames") {
+  const Filmed filmed;
+  filmed.scene->coloring = Coloring{SurfaceQuantity::displacement, {}, {}};
+  Film film = filmed.film(), later = filmed.film();
+  const Picture::Scale scale = *later.at(0.2).scale;
+  CHECK(scale.title == "displacement (m)");
+  CHECK(scale.low == 0);
+  double largest = 0;
+  for (int k = 0; k <= 10; ++k) {
+    const Picture& picture = film.at(0.02 * k);
+    REQUIRE(picture.scale);
+    CHECK(picture.scale->high == scale.high);
+    REQUIRE(picture.bodies[0].values != nullptr);  // the blob
+    CHECK(picture.bodies[0].values->size() == picture.bodies[0].mesh->x.cols());
+    for (std::size_t i = 1; i < 4; ++i) CHECK(picture.bodies[i].values == nullptr);  // rigid, fixed
+    largest = std::max(largest, picture.bodies[0].values->maxCoeff());
+  }
+  CHECK(largest > 0.6 * scale.high);
+  CHECK(largest < 1.1 * scale.high);
+
+  filmed.scene->coloring->range = {-1, 3};
+  filmed.scene->coloring->parts = {filmed.scene->body.parts()[1].get()};
+  filmed.scene->coloring->by = SurfaceQuantity::strain;
+  Film chosen = filmed.film();
+  const Picture& picture = chosen.at(0.1);
+  CHECK(picture.scale->title == "strain");
+  CHECK(picture.scale->low == -1);
+  CHECK(picture.scale->high == 3);
+  CHECK(picture.bodies[0].values == nullptr);
+  REQUIRE(picture.bodies[1].values != nullptr);
+  CHECK(picture.bodies[1].values->isZero(0));
+  filmed.scene->appearance[1].visible = false;
+  CHECK_FALSE(filmed.film().at(0.1).scale);  // nothing is coloured
+}
+
 TEST_CASE("a camera that looks straight down has y at the top") {
   const Filmed filmed;
   filmed.scene->camera.eye = Vec3<double>(0, 0, 5);

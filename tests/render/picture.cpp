@@ -4,6 +4,7 @@
 #include "catch.h"
 #include "scenes.h"
 
+#include <pliant/render/color_map.h>
 #include <pliant/render/renderer.h>
 
 using namespace pliant;
@@ -309,6 +310,21 @@ TEST_CASE("Nonsense is refused with its place, and the renderer goes on") {
   refused([](Picture& p) { p.background.top[1] = 2; }, "background.top");
   refused([](Picture& p) { p.ground.spacing = -1; }, "spacing");
   refused([&](Picture& p) { p.ground.height = nan; }, "height");
+  VecX<double> values = VecX<double>::Zero(scene.meshes[1].x.cols());
+  const auto bad_values = [&](auto change, const char* part) {
+    refused(
+        [&](Picture& p) {
+          p.bodies[1].values = &values;
+          p.scale = {"", 0, 1};
+          change(p);
+        },
+        part);
+  };
+  bad_values([](Picture& p) { p.scale->high = 0; }, "the scale");
+  bad_values([&](Picture& p) { p.scale->low = -huge; }, "the scale");
+  bad_values([&](Picture& p) { p.scale->high = nan; }, "the scale");
+  bad_values([&](Picture&) { values[3] = nan; }, "body 1 has not one finite value");
+  bad_values([&](Picture&) { values.resize(5); }, "body 1 has not one finite value");
   bad_mesh([](TriangleMesh& m) { m.triangles(0, 5) = static_cast<int>(m.x.cols()); },
            "body 1 has triangles with vertices");
   bad_mesh([](TriangleMesh& m) { m.corners(2, 5) = -1; }, "body 1 has triangles with normals");
@@ -317,6 +333,92 @@ TEST_CASE("Nonsense is refused with its place, and the renderer goes on") {
   bad_mesh([&](TriangleMesh& m) { m.x(1, 7) = nan; }, "body 1 is not finite");
   bad_mesh([&](TriangleMesh& m) { m.x(1, 7) = 1e300; }, "body 1 is not finite");
   bad_mesh([&](TriangleMesh& m) { m.normals(0, 7) = nan; }, "body 1 is not finite");
+}
+
+TEST_CASE("A body with values has the colours of the scale") {
+  const TriangleMesh ball = test::sphere({0, 0, 0}, 1);
+  const VecX<double> height = ball.x.row(2).transpose();
+  Picture picture = of(ball);
+  // Light from all sides alike: what is seen is the colour.
+  picture.lights.key_strength = 0;
+  picture.lights.sky = picture.lights.bounce = {1, 1, 1};
+  picture.lights.ambient_strength = 0.8f;
+  Renderer renderer(400, 300);
+  const Image plain = renderer.draw(picture);
+  picture.bodies[0].values = &height;
+  CHECK(renderer.draw(picture).rgb == plain.rgb);  // without a scale they mean nothing
+  picture.scale = {"height (m)", -0.5, 0.5};
+  const Image image = renderer.draw(picture);
+  for (const double z : {-0.8, -0.45, -0.2, 0.0, 0.25, 0.45, 0.8}) {
+    const Eigen::Vector3d at(0, -std::sqrt(1 - z * z), z);
+    const std::array<int, 3> seen = pixel(image, pixel_of(at, picture.camera, 400, 300));
+    const Eigen::Vector3f asked = mapped_color(z + 0.5);
+    CAPTURE(z, seen[0], seen[1], seen[2]);
+    // Channels stand in the order of those of the colour: gloss and ambient light only scale and lift them.
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (asked[i] > asked[j] + 0.1f) CHECK(seen[i] > seen[j]);
+  }
+  // Beyond the scale the colour stays.
+  const auto same = [&](double z1, double z2) {
+    const auto a = pixel(image, pixel_of({0, -std::sqrt(1 - z1 * z1), z1}, picture.camera, 400, 300)),
+               b = pixel(image, pixel_of({0, -std::sqrt(1 - z2 * z2), z2}, picture.camera, 400, 300));
+    return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
+  };
+  CHECK(same(0.56, 0.62) < 12);
+  CHECK(same(0.1, 0.3) > 40);
+}
+
+TEST_CASE("The colour bar stands at the right, with its colours, ticks and title") {
+  const TriangleMesh ball = test::sphere({0, 0, 0}, 0.5);
+  const VecX<double> values = VecX<double>::Zero(ball.x.cols());
+  Picture picture = of(ball);
+  picture.background.top = picture.background.bottom = {0.4f, 0.5f, 0.6f};
+  Renderer renderer(640, 480);
+  const Image without = renderer.draw(picture);
+  picture.bodies[0].values = &values;
+  picture.scale = {"strain", 0, 0.2};
+  const Image with = renderer.draw(picture);
+  // The columns of the bar: those whose pixel half way up has the middle colour.
+  const auto near = [](const std::array<int, 3>& p, const Eigen::Vector3f& color) {
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(p[static_cast<std::size_t>(c)] - 255 * static_cast<double>(color[c])) > 3) return false;
+    return true;
+  };
+  int left = 640, right = 0, top = 480, bottom = 0;
+  for (int y = 0; y < 480; ++y)
+    for (int x = 500; x < 640; ++x)
+      if (near(pixel(with, x, y), mapped_color(0.5))) left = std::min(left, x), right = std::max(right, x);
+  REQUIRE(right - left >= 8);
+  REQUIRE(right - left <= 24);
+  const int middle = (left + right) / 2;
+  for (int y = 0; y < 480; ++y) {
+    if (near(pixel(with, middle, y), mapped_color(1)) && top == 480) top = y;
+    if (near(pixel(with, middle, y), mapped_color(0))) bottom = y;
+  }
+  REQUIRE(bottom - top > 200);
+  for (int y = top + 2; y < bottom - 2; ++y)
+    CHECK(near(pixel(with, middle, y), mapped_color((bottom + 0.5 - y) / (bottom + 1 - top))));
+  // Dark marks of five ticks beside it, and letters above; nothing of it where it is not.
+  const auto dark = [&](int x, int y) { return brightness(pixel(with, x, y)) < 200; };
+  int marks = 0;
+  for (int y = top - 4; y < bottom + 4; ++y) marks += dark(right + 4, y) && !dark(right + 4, y - 1);
+  CHECK(marks == 5);
+  int ink = 0, label_ink = 0;
+  for (int y = top - 30; y < top - 4; ++y)
+    for (int x = 560; x < 640; ++x) ink += dark(x, y);
+  for (int y = top - 6; y < bottom + 6; ++y)
+    for (int x = right + 8; x < 640; ++x) label_ink += dark(x, y);
+  CHECK(ink > 60);
+  CHECK(label_ink > 100);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 420; x < 540; ++x) REQUIRE(pixel(with, x, y) == pixel(without, x, y));
+  // A picture too small for it has none.
+  Renderer small(120, 90);
+  picture.bodies[0].values = nullptr;
+  const Image tiny = small.draw(picture);
+  picture.scale.reset();
+  CHECK(tiny.rgb == small.draw(picture).rgb);
 }
 
 TEST_CASE("Bodies without triangles draw nothing") {

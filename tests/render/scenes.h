@@ -69,6 +69,7 @@ inline TriangleMesh cube(const Eigen::Vector3d& centre, double half, double turn
 /// Two spheres and a cube on the ground with a track: every pass of the renderer has work.
 struct Scene {
   std::vector<TriangleMesh> meshes;
+  std::vector<VecX<double>> values;
   Picture picture;
 
   explicit Scene(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero())
@@ -83,6 +84,15 @@ struct Scene {
                                          Eigen::Vector3d(-2 + 0.04 * i, -0.5, 1 + std::sin(0.1 * i)));
     picture.ground.height = origin[2];
     picture.camera = automatic_camera(bounds(picture), 4.0 / 3);
+  }
+  /// The spheres coloured by the height of their vertices.
+  void color_by_height() {
+    values.resize(2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      values[i] = meshes[i].x.row(2).transpose();
+      picture.bodies[i].values = &values[i];
+    }
+    picture.scale = {"height (m)", picture.ground.height, picture.ground.height + 2};
   }
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;

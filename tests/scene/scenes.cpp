@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -59,6 +60,36 @@ TEST_CASE("every scene that comes with pliant reads without a warning, and a run
     CHECK(simulation.model().parts().size() == scene->body.parts().size());
     CHECK(schema().accepts(json_of(path)));
   }
+}
+
+TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books") {
+  const auto run = [](const char* name, double until, const auto& after_step) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
+    pliant::Simulation simulation(scene->body, scene->integrator);
+    double largest = 0;
+    while (simulation.time() < until) {
+      simulation.step(scene->step);
+      const pliant::Ledger ledger = simulation.ledger();
+      largest = std::max(largest, ledger.kinetic);
+      REQUIRE(std::abs(ledger.balance) < 1e-5 * std::max(largest, 1.0));
+      after_step(simulation);
+    }
+  };
+  double least = 0;
+  run("twisting_tube.json", 0.8,
+      [&](const pliant::Simulation& simulation) { least = std::min(least, simulation.state().q[7]); });
+  CHECK(least < -2);  // from 2.5
+  double longest = 0;
+  run("soft_chain.json", 0.7, [&](const pliant::Simulation& simulation) {
+    const pliant::Model& model = simulation.model();
+    REQUIRE(model.gap(simulation.state(), 3) < 1e-12);
+    const auto end = [&](double u) {
+      return model.world_point(simulation.state(), 0, pliant::material_at(u, 0, 1));
+    };
+    longest = std::max(longest, (end(pliant::kPi / 2) - end(-pliant::kPi / 2)).norm());
+  });
+  CHECK(longest > 1.2 * 0.32);
 }
 
 TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
@@ -151,10 +182,39 @@ TEST_CASE("what is allowed but has no effect is warned about") {
             .find("no resolution shows it") != std::string::npos);
 }
 
+TEST_CASE("colouring of parts is read") {
+  const std::string start =
+      R"json({"parts": [{"name": "a", "shape": "sphere", "parameters": {"r": {"stiffness": 1}}},
+                        {"name": "b", "shape": "box"}], "coloring": )json";
+  const auto coloring = [&](const std::string& text) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::parse_scene("s.json", start + text + "}", {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    CHECK(schema().accepts(nlohmann::json::parse(start + text + "}")));
+    REQUIRE(scene->coloring);
+    const auto& parts = scene->body.parts();
+    return std::tuple(scene->coloring->by, scene->coloring->range, colors(*scene->coloring, *parts[0]),
+                      colors(*scene->coloring, *parts[1]));
+  };
+  using Range = std::optional<std::array<double, 2>>;
+  CHECK(coloring("{\"by\": \"strain\"}") ==
+        std::tuple(pliant::SurfaceQuantity::strain, Range(), true, false));
+  CHECK(coloring("{\"by\": \"displacement\", \"range\": [-1, 2], \"parts\": [\"b\"]}") ==
+        std::tuple(pliant::SurfaceQuantity::displacement, Range({-1, 2}), false, true));
+  pliant::Diagnostics diagnostics;
+  pliant::parse_scene(
+      "s.json", R"json({"parts": [{"name": "a", "shape": "sphere"}], "coloring": {"by": "strain"}})json", {},
+      diagnostics);
+  CHECK(diagnostics.text().find("/coloring/by: \"strain\"; it has no effect, because no part deforms") !=
+        std::string::npos);
+}
+
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
   // What needs more than types, keys and ranges: names and numbers that must fit others.
   const std::vector<std::string> beyond{"anchor_not_finite",
                                         "camera_at_its_target",
+                                        "coloring_of_unknown_part",
+                                        "coloring_range_falls",
                                         "density_too_large",
                                         "duplicate_key",
                                         "duplicate_part_name",

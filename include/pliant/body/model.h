@@ -131,8 +131,13 @@ class Model {
   ParameterValues<double> values(const State& state, int part) const;
   Vec3<double> position(const State& state, int part) const;
   Eigen::Quaterniond orientation(const State& state, int part) const;
-  /// A point of a part in the world.
+  /// A point of a part in the world. Asked for again and again it is found faster by its weights among the
+  /// nodes, or as a PlacedPoint.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
+  Vec3<double> world_point(const State& state, int part, const Material<double>& m,
+                           const NodeWeights& at) const;
+  /// Where a material point is among the nodes of a part; none of a part that does not deform locally.
+  NodeWeights node_weights(int part, const Material<double>& m) const;
   /// Positions of the nodes of the mesh of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
@@ -142,8 +147,6 @@ class Model {
   std::string coordinate_name(int i) const;
 
  private:
-  Vec3<double> world_point(const State& state, int part, const Material<double>& m,
-                           const NodeWeights& at) const;
   /// what: the spring or force that acts there, for messages.
   PortRef attach(const Point& point, const std::string& what);
   void add_joint(const Joint& joint);

@@ -1,12 +1,14 @@
 // The surfaces of all visible parts at a state: what meshes and pictures of a frame are made of.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include <pliant/body/model.h>
+#include <pliant/io/surface_values.h>
 #include <pliant/part/surface.h>
 #include <pliant/scene/scene.h>
 
@@ -15,7 +17,9 @@ namespace pliant {
 struct NamedMesh {
   std::string name;  ///< of the part
   Color color{};
-  TriangleMesh mesh;  ///< world
+  TriangleMesh mesh;       ///< world
+  VecX<double> values{};   ///< of its vertices, what the scene's coloring tells; empty without
+  bool by_values = false;  ///< coloured by them
 };
 
 class FrameMeshes {
@@ -28,16 +32,24 @@ class FrameMeshes {
   /// rigid parts are evaluated once and then only moved.
   const std::vector<NamedMesh>& at(const State& state);
   /// The box around all vertices at a state.
-  Eigen::AlignedBox3d bounds(const State& state);
+  Eigen::AlignedBox3d bounds(const State& state) const;
+  /// What 99 of 100 vertices stay below at a state, of the parts that are coloured by values; nothing when
+  /// none is. The rest may be very far above: a force at a point stretches its vertex the more, the finer the
+  /// mesh.
+  std::optional<double> high_value(const State& state) const;
   std::int64_t triangles() const;
 
  private:
   struct Shown {
     std::size_t part;
-    Surface surface;
     bool rigid;
-    TriangleMesh body;  // of a rigid part, body frame
+    std::optional<Surface> surface;  // of a part without nodes
+    SurfaceNodes nodes;              // of one with nodes
+    TriangleMesh body;               // of a rigid part, body frame
+    std::optional<SurfaceValues> values;
   };
+  Eigen::Matrix3Xd vertices(const Shown& shown, const State& state) const;
+  TriangleMesh body_mesh(const Shown& shown, const State& state) const;
 
   const Model* model_;
   std::vector<Shown> shown_;

@@ -10,11 +10,12 @@
 
 namespace pliant {
 
-/// The bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar), part (int);
-/// triangles.
-std::string ply_bytes(const std::vector<NamedMesh>& meshes);
+/// The bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar: of the part), part
+/// (int); triangles. values: the name under which the values of the vertices follow (double), empty for none.
+std::string ply_bytes(const std::vector<NamedMesh>& meshes, const std::string& values = "");
 
 /// Writes a file (whole or absent). Throws std::system_error.
-void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes);
+void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
+               const std::string& values = "");
 
 }  // namespace pliant

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/body/placed_point.h>
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/column.h>
 #include <pliant/io/recording.h>
@@ -49,6 +50,7 @@ class TrajectoryTable {
   bool parts_shown_;
   bool local_shown_ = false;        // whether any part deforms locally
   std::vector<bool> centre_shown_;  // of each part
+  std::vector<PlacedPoint> tracked_;
 };
 
 /// Writes the table of all states of a recording. Throws std::system_error, RecordingMismatch.

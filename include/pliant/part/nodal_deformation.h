@@ -116,6 +116,7 @@ class NodalDeformation final : public LocalDeformation {
   std::vector<Material<Pack>> packs_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
+  std::string laws_;  // their names
 };
 
 }  // namespace pliant

@@ -33,9 +33,18 @@ class Surface {
   Eigen::Matrix3Xi triangles_;
 };
 
-/// The mesh of the nodes of a part that deforms locally, from their positions (one row a node): normals are
-/// those of the triangles around a vertex.
-TriangleMesh node_mesh(const LocalMesh& nodes, const Eigen::Ref<const Nodes>& x);
+/// The nodes on the surface of a part that deforms locally, in their order.
+struct SurfaceNodes {
+  std::vector<int> node;
+  Eigen::Matrix3Xi triangles;  ///< of these nodes, counter-clockwise from outside
+
+  /// The rows of these nodes among those of all, one a column.
+  Eigen::Matrix3Xd of(const Eigen::Ref<const Nodes>& all) const;
+};
+SurfaceNodes surface_nodes(const LocalMesh& mesh);
+
+/// A mesh whose normals are those of the triangles around a vertex.
+TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::Matrix3Xd x);
 
 /// Volume enclosed by a closed mesh, m^3.
 double enclosed_volume(const TriangleMesh& mesh);

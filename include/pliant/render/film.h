@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include <pliant/body/placed_point.h>
 #include <pliant/io/frame_meshes.h>
 #include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
@@ -15,8 +16,8 @@
 namespace pliant {
 
 /// Makes the picture of any frame: the parts, the tracks up to then, and springs, rods and strings as thin
-/// lines, which end in a dot where they hold on to the world. Camera and ground are the same in all frames of
-/// a run: where the scene leaves them open, they follow from the whole recorded motion.
+/// lines, which end in a dot where they hold on to the world. Camera, ground and the scale of values are the
+/// same in all frames of a run: where the scene leaves them open, they follow from the whole recorded motion.
 class Film {
  public:
   /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
@@ -27,23 +28,25 @@ class Film {
   const Camera& camera() const { return picture_.camera; }
 
  private:
-  void lay_tracks();
-  Eigen::Vector3d place(const Point& point, const State& state) const;
-  Eigen::AlignedBox3d anchors(const Eigen::AlignedBox3d& bodies) const;
   struct Tie {
-    std::vector<const Point*> ends;  ///< one, of a joint that ties no other point, or two
+    std::vector<PlacedPoint> ends;  ///< one, of a joint that ties no other point, or two
     bool line;
     const Joint* joint;  ///< nullptr for a spring
   };
-  std::vector<Tie> ties() const;
+  void lay_tracks();
+  void lay_ties();
+  Eigen::AlignedBox3d anchors(const Eigen::AlignedBox3d& bodies) const;
   void draw_ties(const State& state);
   void choose_view();
+  void choose_scale();
 
   const Scene* scene_;
   const Model* model_;
   const Recording* recording_;
   FrameMeshes meshes_;
+  std::vector<PlacedPoint> tracked_;
   std::vector<std::vector<Eigen::Vector3d>> tracks_;  // of each track, its point at every recorded state
+  std::vector<Tie> ties_;
   Picture picture_;
 };
 

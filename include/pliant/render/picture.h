@@ -1,11 +1,14 @@
 // What a picture shows: plain data, filled anew for every frame. Colours are sRGB with channels in [0, 1].
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <pliant/math/types.h>
 #include <pliant/part/triangle_mesh.h>
 #include <pliant/render/camera.h>
 
@@ -16,6 +19,14 @@ struct Picture {
   struct Body {
     const TriangleMesh* mesh = nullptr;
     Eigen::Vector3f color = {0.8f, 0.8f, 0.8f};
+    const VecX<double>* values = nullptr;  ///< one a vertex; with a scale the body is coloured by them
+  };
+
+  /// What the colours of values mean (color_map.h), shown as a bar at the right; values beyond have the first
+  /// or the last colour. A picture less than 160 pixels wide or 120 high has no room for the bar.
+  struct Scale {
+    std::string title;  ///< of digits, small letters and . , - + / ( ): "strain", "displacement (m)"
+    double low = 0, high = 1;
   };
 
   /// The path of a point, hidden where bodies are in front of it. A path of one point is a dot.
@@ -53,6 +64,7 @@ struct Picture {
   };
 
   std::vector<Body> bodies;
+  std::optional<Scale> scale;
   std::vector<Track> tracks;
   Ground ground;
   Lights lights;

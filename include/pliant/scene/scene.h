@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pliant/body/multibody.h>
+#include <pliant/scene/coloring.h>
 
 namespace pliant {
 
@@ -60,7 +61,8 @@ struct Scene {
   CameraSetting camera;
   LightSetting light;
   GroundSetting ground;
-  bool show_springs = true;  ///< in pictures, as lines between their points
+  std::optional<Coloring> coloring;  ///< parts have their own colours when not given
+  bool show_springs = true;          ///< in pictures, as lines between their points
 
   std::string document;                ///< the file as it was read; a run keeps it beside its recording
   std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to it
