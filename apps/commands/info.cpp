@@ -71,6 +71,14 @@ void print_part(const pliant::PartModel& model) {
               << ", zz " << about_centre(2, 2) << ", xy " << rounded(about_centre(0, 1), scale) << ", xz "
               << rounded(about_centre(0, 2), scale) << ", yz " << rounded(about_centre(1, 2), scale) << "\n";
   }
+  if (part.continuum() != nullptr) {
+    const pliant::ContinuumSettings& law = part.continuum()->settings();
+    const pliant::StrainPoints& strained = part.continuum()->points();
+    std::cout << "  elasticity: " << law.law << ", E " << law.E << " Pa, nu " << law.nu_P
+              << "; strain points: " << strained.n_points << ", rule \"" << strained.rule << "\"";
+    if (strained.settled > 0) std::cout << " settled to " << pliant::rounded_text(strained.settled);
+    std::cout << "\n";
+  }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
     std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
