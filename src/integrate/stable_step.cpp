@@ -96,7 +96,7 @@ Bound bound_nodes(const Model& model, std::size_t i, const PartWorkspace<double>
     const bool linear = energy->of() == NodalEnergy::Of::displacement;
     const double omega2 = energy->frequency_bound(linear ? w.local->d : w.local->x, m.local->inertia());
     bound.K += omega2;
-    if (linear) bound.D += m.local->beta() * omega2;
+    bound.D += m.local->beta() * omega2;
   }
   if (m.n_s > 0) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);

@@ -205,9 +205,6 @@ LocalDeformation::LocalDeformation(const Part& part, const LocalSettings& settin
   VecX<double> own;
   for (const LocalSettings::Law& law : settings.energies) {
     energies_.push_back(law(mesh_));
-    if (beta_ > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
-      throw std::invalid_argument("part '" + part.name() +
-                                  "': beta of its nodes damps laws that are quadratic in d only; use alpha");
     const VecX<double> more = energies_.back()->own_inertia();
     if (more.size() == 0) continue;
     if (own.size() > 0)

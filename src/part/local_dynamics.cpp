@@ -242,16 +242,21 @@ void local_forces(const LocalDeformation& local, const VecX<double>& v_r, const 
     else
       energy.add_force(w.x, w.f, w.buffers[k], pool);
   }
-  if (local.beta() > 0) {
+  auto damp = [&](NodalEnergy::Of of, const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f) {
     VecX<double>& damping = w.force;
     damping.setZero(n_d);
-    for (std::size_t k = 0; k < local.energies().size(); ++k) {
-      const NodalEnergy& energy = *local.energies()[k];
-      if (energy.of() == NodalEnergy::Of::displacement)
-        energy.add_derivative(w.d, w.d_dot, damping, w.buffers[k], pool);
-    }
-    w.damping += local.beta() * damping.dot(w.d_dot);
-    w.f_d += local.beta() * damping;
+    for (std::size_t k = 0; k < local.energies().size(); ++k)
+      if (local.energies()[k]->of() == of)
+        local.energies()[k]->add_viscous_force(x, x_dot, damping, w.buffers[k], pool);
+    w.damping += local.beta() * damping.dot(x_dot);
+    f += local.beta() * damping;
+  };
+  if (local.beta() > 0) {
+    damp(NodalEnergy::Of::displacement, w.d, w.d_dot, w.f_d);
+    w.x_dot.resize(n_d);
+    nodes(w.x_dot, n) = w.u;
+    w.x_dot.tail(n_d - 3 * n) = w.d_dot.tail(n_d - 3 * n);
+    damp(NodalEnergy::Of::position, w.x, w.x_dot, w.f);
   }
   if (local.alpha() > 0) {
     w.damping -= local.alpha() * w.d_dot.dot(local.inertia().cwiseProduct(w.d_dot));

@@ -36,6 +36,13 @@ class NodalEnergy {
   /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
   virtual void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
+  /// f -= what beta = 1 s of Kelvin and Voigt's damping pushes while x moves at x_dot: viscous stresses in
+  /// proportion to the rate of strain, which rigid motion does not make, and which never give power. K x_dot
+  /// of what is quadratic in d, and about rest of the others.
+  virtual void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f,
+                                 Buffer& buffer, ThreadPool* pool) const {
+    add_derivative(x, x_dot, f, buffer, pool);
+  }
   /// Adds the entries of K(x).
   virtual void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
   /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over

@@ -19,6 +19,9 @@ class Pressure : public NodalEnergy {
                       ThreadPool* pool) const final;
   /// Leaves out w w^T with w = rank_one(x), which ties every node to every other.
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const final;
+  /// A pressure damps nothing.
+  void add_viscous_force(const VecX<double>&, const VecX<double>&, VecX<double>&, Buffer&,
+                         ThreadPool*) const final {}
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const final;
 
   /// w = sqrt(E'') dV/dx: K is what add_stiffness gives and w w^T. Nothing but zeros at constant pressure.

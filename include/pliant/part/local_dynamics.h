@@ -33,6 +33,7 @@ struct LocalWorkspace {
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   double condition = 1;                        ///< of K, scaled
   // forces, N
+  VecX<double> x_dot;            ///< rates of x in the body frame, where they damp
   VecX<double> f, f_d;           ///< on all that nodes do; on d alone, the rest being told in f_r
   VecX<double> force;            ///< sum of both
   double damping = 0, drag = 0;  ///< their powers, W
