@@ -8,6 +8,7 @@
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/skipped.h>
+#include <pliant/part/patch_weights.h>
 
 #include "command.h"
 #include "exit_codes.h"
@@ -95,10 +96,12 @@ void print_point(const pliant::Simulation& simulation, const pliant::Point& poin
   }
   const pliant::MaterialAngles at = pliant::angles(point.material);
   std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
-  const pliant::Model& model = simulation.model();
-  const Vec3<double> x =
-      model.world_point(simulation.state(), model.body().index(*point.part), point.material);
-  print_vector(x, point.part->size());
+  print_vector(simulation.model().world_point(simulation.state(), point), point.part->size());
+  if (point.patch > 0)
+    std::cout
+        << " over "
+        << pliant::patch_weights(*point.part, *point.part->local(), point.material, point.patch).node.size()
+        << " nodes";
 }
 
 void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <pliant/part/patch_weights.h>
+
 namespace pliant {
 
 namespace {
@@ -79,6 +81,16 @@ Model::Model(MultiBody& body) : body_(&body) {
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
 }
 
+namespace {
+/// Among the nodes of a part that deforms locally.
+NodeWeights node_weights(const Point& point) {
+  const LocalDeformation* local = point.part->local();
+  if (local == nullptr) return {};
+  return point.patch > 0 ? patch_weights(*point.part, *local, point.material, point.patch)
+                         : local->weights(*point.part, point.material);
+}
+}  // namespace
+
 PortRef Model::attach(const Point& point, const std::string& what) {
   if (point.part == nullptr) return {};
   const Material<double>& m = point.material;
@@ -89,8 +101,13 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
-  if (const LocalDeformation* local = point.part->local())
-    parts_[static_cast<std::size_t>(part)].node_weights.push_back(local->weights(*point.part, m));
+  const LocalDeformation* local = point.part->local();
+  if (point.patch != 0 && (!(point.patch > 0) || local == nullptr))
+    throw std::invalid_argument(what + ": its point on part '" + point.part->name() + "' " +
+                                (local == nullptr
+                                     ? "has a patch of nodes, but the part does not deform locally"
+                                     : "needs a patch with a positive radius"));
+  if (local != nullptr) parts_[static_cast<std::size_t>(part)].node_weights.push_back(node_weights(point));
   parts_[static_cast<std::size_t>(part)].port_place.push_back(-1);
   return {part, static_cast<int>(ports.size()) - 1};
 }
@@ -327,6 +344,11 @@ Vec3<double> Model::world_point(const State& state, int part, const Material<dou
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
   return world_point(state, part, material,
                      m.local == nullptr ? NodeWeights() : m.local->weights(*m.part, material));
+}
+
+Vec3<double> Model::world_point(const State& state, const Point& point) const {
+  if (point.part == nullptr) return point.world.value(state.time());
+  return world_point(state, body_->index(*point.part), point.material, node_weights(point));
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material,

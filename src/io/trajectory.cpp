@@ -105,9 +105,7 @@ void TrajectoryTable::row(const State& state, std::vector<double>& numbers) {
   ledger.balance = ledger.energy() - simulation_->start_energy() - ledger.work.sum();
   numbers.assign(1, state.time());
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) add_part(state, i, numbers);
-  for (const Track& track : scene_->tracks)
-    add_vector(numbers,
-               model.world_point(state, model.body().index(*track.point.part), track.point.material));
+  for (const Track& track : scene_->tracks) add_vector(numbers, model.world_point(state, track.point));
   for (int j = 0; parts_shown_ && j < static_cast<int>(model.joints().size()); ++j) {
     const Wrench wrench = simulation_->dynamics().joint_wrench(state.time(), j, work_);
     add_vector(numbers, wrench.force);

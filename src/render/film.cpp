@@ -40,8 +40,7 @@ void Film::lay_tracks() {
 }
 
 Eigen::Vector3d Film::place(const Point& point, const State& state) const {
-  if (point.part == nullptr) return point.world.value(state.time());
-  return model_->world_point(state, model_->body().index(*point.part), point.material);
+  return model_->world_point(state, point);
 }
 
 // What is drawn of springs and joints: a line between two points where it keeps them apart, dots where it

@@ -133,6 +133,8 @@ class Model {
   Eigen::Quaterniond orientation(const State& state, int part) const;
   /// A point of a part in the world.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
+  /// Any point: of the world at the time of the state, of a part with its patch.
+  Vec3<double> world_point(const State& state, const Point& point) const;
   /// Displacements of the nodes of a part that deforms locally, body frame.
   Eigen::Map<const Nodes> local_nodes(const State& state, int part) const;
   /// Positions of its nodes, body frame, m.
