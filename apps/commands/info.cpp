@@ -8,6 +8,7 @@
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/skipped.h>
+#include <pliant/part/patch_weights.h>
 
 #include "command.h"
 #include "exit_codes.h"
@@ -68,6 +69,14 @@ void print_part(const pliant::PartModel& model) {
               << ", zz " << about_centre(2, 2) << ", xy " << rounded(about_centre(0, 1), scale) << ", xz "
               << rounded(about_centre(0, 2), scale) << ", yz " << rounded(about_centre(1, 2), scale) << "\n";
   }
+  if (part.continuum() != nullptr) {
+    const pliant::ContinuumSettings& law = part.continuum()->settings();
+    const pliant::StrainPoints& strained = part.continuum()->points();
+    std::cout << "  elasticity: " << law.law << ", E " << law.E << " Pa, nu " << law.nu_P
+              << "; strain points: " << strained.n_points << ", rule \"" << strained.rule << "\"";
+    if (strained.settled > 0) std::cout << " settled to " << pliant::rounded_text(strained.settled);
+    std::cout << "\n";
+  }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
     std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
@@ -84,10 +93,12 @@ void print_point(const pliant::Simulation& simulation, const pliant::Point& poin
   }
   const pliant::MaterialAngles at = pliant::angles(point.material);
   std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
-  const pliant::Model& model = simulation.model();
-  const Vec3<double> x =
-      model.world_point(simulation.state(), model.body().index(*point.part), point.material);
-  print_vector(x, point.part->size());
+  print_vector(simulation.model().world_point(simulation.state(), point), point.part->size());
+  if (point.patch > 0)
+    std::cout
+        << " over "
+        << pliant::patch_weights(*point.part, *point.part->local(), point.material, point.patch).node.size()
+        << " nodes";
 }
 
 void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {

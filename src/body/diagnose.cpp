@@ -15,6 +15,8 @@ std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& 
   const VecMax<double> elastic = part.K_s() * stretch, momentum = mass_matrix(w) * w.v_r;
   const VecMax<double> damping =
       (part.alpha() * mass_matrix(w).bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;
+  if (part.continuum() != nullptr && !std::isfinite(part.continuum()->energy(part, w.q_s)))
+    return "the strain energy of its material";
   if (!elastic.allFinite()) return "the elastic force K_s (q - rest)";
   if (!damping.allFinite()) return "the damping force D q_dot";
   if (part.drag() > 0 && !(part.drag() * momentum).allFinite()) return "the drag";

@@ -138,6 +138,9 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
     const Parameter& p = part.parameters().moving(i);
     if (!p.rest.is_constant()) w.power[static_cast<int>(Work::actuation)] -= elastic * p.rest.at(t).d;
   }
+  if (part.continuum() != nullptr)
+    w.power[static_cast<int>(Work::damping)] +=
+        part.continuum()->add_force(part, w.q_s, w.q_s_dot, part.beta(), w.f.tail(n), w.counters);
 }
 
 // forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
@@ -149,11 +152,7 @@ void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartW
     if (m.local != nullptr) {
       w.f.setZero(6 + n);
       if (n > 0) elastic_forces<S>(m, t, w);
-      try {
-        m.local->forces(w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
-      } catch (const InvertedElement& failure) {
-        throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
-      }
+      m.local->forces(w.v_r, w.R.transpose() * gravity, m.drag, *w.local, pool);
       w.power[static_cast<int>(Work::damping)] += w.local->damping;
       w.power[static_cast<int>(Work::drag)] += w.local->drag;
       return;
@@ -288,7 +287,11 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
     masses<S>(m, w);
-    own_forces<S>(m, model.body().gravity, t, w, pool_);
+    try {
+      own_forces<S>(m, model.body().gravity, t, w, pool_);
+    } catch (const InvertedElement& failure) {
+      throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
+    }
   });
 
   // forces between parts, in a fixed order

@@ -18,6 +18,7 @@ void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<doub
   VecMax<double> stretch(m.n_s);
   for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
   ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
+  if (m.part->continuum() != nullptr) ledger.elastic += m.part->continuum()->energy(*m.part, w.q_s);
 }
 
 void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,

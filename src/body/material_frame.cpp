@@ -63,7 +63,7 @@ FramedPoint framed(const Point& at, const Mat3<double>& axes) {
   Mat3<double> D;
   for (int k = 0; k < 3; ++k) {
     const int i = chosen[static_cast<std::size_t>(k)];
-    framed.points.push_back(point(part, around[static_cast<std::size_t>(i)]));
+    framed.points.push_back(point(part, around[static_cast<std::size_t>(i)], at.patch));
     D.col(k) = difference(i);
   }
   framed.frame.K = D.inverse() * axes;

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <pliant/part/patch_weights.h>
+
 namespace pliant {
 
 namespace {
@@ -74,6 +76,13 @@ Model::Model(MultiBody& body) : body_(&body) {
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
 }
 
+NodeWeights Model::node_weights(const Point& point) {
+  const LocalDeformation* local = point.part->local();
+  if (local == nullptr) return {};
+  return point.patch > 0 ? patch_weights(*point.part, local->mesh(), point.material, point.patch)
+                         : local->weights(*point.part, point.material);
+}
+
 PortRef Model::attach(const Point& point, const std::string& what) {
   if (point.part == nullptr) return {};
   const Material<double>& m = point.material;
@@ -84,8 +93,13 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
-  if (const LocalDeformation* local = point.part->local())
-    parts_[static_cast<std::size_t>(part)].node_weights.push_back(local->weights(*point.part, m));
+  const LocalDeformation* local = point.part->local();
+  const bool has_nodes = local != nullptr && local->nodal() != nullptr;
+  if (point.patch != 0 && (!(point.patch > 0) || !has_nodes))
+    throw std::invalid_argument(what + ": its point on part '" + point.part->name() + "' " +
+                                (has_nodes ? "needs a patch with a positive radius"
+                                           : "has a patch of nodes, but the part does not deform by nodes"));
+  if (local != nullptr) parts_[static_cast<std::size_t>(part)].node_weights.push_back(node_weights(point));
   parts_[static_cast<std::size_t>(part)].port_place.push_back(-1);
   return {part, static_cast<int>(ports.size()) - 1};
 }
@@ -339,12 +353,8 @@ Eigen::Quaterniond Model::orientation(const State& state, int part) const {
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material) const {
-  return world_point(state, part, material, node_weights(part, material));
-}
-
-NodeWeights Model::node_weights(int part, const Material<double>& material) const {
-  const PartModel& m = parts_[static_cast<std::size_t>(part)];
-  return m.local == nullptr ? NodeWeights() : m.local->weights(*m.part, material);
+  return world_point(state, part, material,
+                     node_weights({parts_[static_cast<std::size_t>(part)].part, material, {}}));
 }
 
 Vec3<double> Model::world_point(const State& state, int part, const Material<double>& material,

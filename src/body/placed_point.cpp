@@ -8,7 +8,7 @@ PlacedPoint::PlacedPoint(const Model& model, Point point)
     : model_(&model),
       point_(std::move(point)),
       part_(point_.part == nullptr ? -1 : model.body().index(*point_.part)) {
-  if (part_ >= 0) among_nodes_ = model.node_weights(part_, point_.material);
+  if (part_ >= 0) among_nodes_ = Model::node_weights(point_);
 }
 
 Vec3<double> PlacedPoint::at(const State& state) const {

@@ -125,8 +125,9 @@ class Assembly {
     double least = kInfinite;
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
+      const MatX<double> K = m.part->strain_stiffness(q_s(m));
       for (int k = 0; k < m.n_s; ++k) {
-        const double stiffness = m.part->K_s()(k, k), inertia = mass_matrix(work_.parts[at(i)])(6 + k, 6 + k);
+        const double stiffness = K(k, k), inertia = mass_matrix(work_.parts[at(i)])(6 + k, 6 + k);
         if (stiffness > 0 && inertia > 0) least = std::min(least, stiffness / inertia);
       }
     }
@@ -142,7 +143,7 @@ class Assembly {
       if (w.local) w.inertia.M = w.local->H0;
       MatX<double>& H = w.inertia.M;
       H.block<3, 3>(3, 3) *= dear;
-      H.bottomRightCorner(m.n_s, m.n_s) += m.part->K_s() / eps_;
+      H.bottomRightCorner(m.n_s, m.n_s) += m.part->strain_stiffness(q_s(m)) / eps_;
       w.factor.compute(H, m.inertia_floor);
       w.rigid = nullptr;
       if (w.local) hold_nodes(w);
@@ -246,12 +247,14 @@ class Assembly {
       const PartModel& m = model_.parts()[at(i)];
       const VecMax<double> s = stretch(m);
       sum += 0.5 * s.dot(m.part->K_s() * s);
+      if (m.part->continuum() != nullptr) sum += m.part->continuum()->energy(*m.part, q_s(m));
     }
     return sum;
   }
 
+  VecMax<double> q_s(const PartModel& m) const { return state_.q.segment(m.q0 + 7, m.n_s); }
   VecMax<double> stretch(const PartModel& m) const {
-    VecMax<double> s = state_.q.segment(m.q0 + 7, m.n_s);
+    VecMax<double> s = q_s(m);
     for (int k = 0; k < m.n_s; ++k) s[k] -= m.part->parameters().moving(k).rest.value(state_.time());
     return s;
   }
@@ -259,7 +262,12 @@ class Assembly {
   /// What takes the parameters of a part alone to rest.
   VecX<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
     VecX<double> x = VecX<double>::Zero(m.n_x());
-    x.segment(6, m.n_s) = -(m.part->K_s() * stretch(m)) / eps_;
+    VecX<double> f = -(m.part->K_s() * stretch(m));
+    Counters unused;
+    if (m.part->continuum() != nullptr)
+      m.part->continuum()->add_force(*m.part, q_s(m), VecMax<double>(VecMax<double>::Zero(m.n_s)), 0, f,
+                                     unused);
+    x.segment(6, m.n_s) = f / eps_;
     w.solve_mass(x);
     return x;
   }

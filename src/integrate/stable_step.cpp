@@ -164,10 +164,11 @@ double largest_stable_step(const Simulation& simulation) {
       const int at = first[i], n_v = 6 + m.n_s;
       const MatX<double>& M = mass_matrix(work.parts[i]);
       system.M.block(at, at, n_v, n_v) = M;
+      const VecMax<double> q_s = state.q.segment(m.q0 + 7, m.n_s);
       if (m.local == nullptr || !implicit) {
-        system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.K_s();
+        system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.elastic_stiffness(q_s);
         system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
-            part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s();
+            part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.strain_stiffness(q_s);
       }
       system.D.block(at, at, n_v, n_v) += part.drag() * M;
       ours.insert(ours.end(), springs_at[i].begin(), springs_at[i].end());

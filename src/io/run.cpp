@@ -50,13 +50,15 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
 
 int automatic_threads(Scene& scene) {
   // Microseconds of an evaluation at the least, as bench/step_bench measures them: of a part, and of each of
-  // its mass points for each parameter. Sending work to the pool and waiting for it takes about 10.
-  constexpr double part_alone = 0.1, point_and_parameter = 0.008, worth_a_thread = 50;
+  // its mass points for each parameter, and of a point whose strain is needed. Sending work to the pool and
+  // waiting for it takes about 10.
+  constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
     if (part->fixed()) continue;
     part->prepare();
     cost += part_alone + point_and_parameter * part->mass_points().n_points * part->n_s();
+    if (part->continuum() != nullptr) cost += strain_point * part->continuum()->points().n_points;
   }
   const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);

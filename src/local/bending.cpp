@@ -281,59 +281,68 @@ double MidEdgeBending<Hinges>::energy(const VecX<double>& x) const {
 }
 
 template <class Hinges>
+void MidEdgeBending<Hinges>::push(const VecX<double>& x, const double* m, VecX<double>& f, double* corners,
+                                  ThreadPool* pool) const {
+  batches_.add(f, corners, pool, [&](int b) {
+    return times(-hinge_moment(b, m), hinges_.gradient(b, batches_.corners(x, b)));
+  });
+  if (curved_)
+    corner_batches_.add(f, corners, pool, [&](int b) {
+      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, m)),
+                           hinges_.edges(b, corner_batches_.corners(x, b)));
+    });
+  add_own_forces(f, m);
+}
+
+template <class Hinges>
+void MidEdgeBending<Hinges>::fill_changes(const VecX<double>& x, const VecX<double>& dx, double* angles,
+                                          double* m, ThreadPool* pool) const {
+  fill_angles(angles, pool, [&](int b) {
+    return dot(hinges_.gradient(b, batches_.corners(x, b)), batches_.corners(dx, b));
+  });
+  fill_moments(angles, dx.data() + 3 * n_nodes_, m, pool, [&](int b) {
+    return strain_change(hinges_.edges(b, corner_batches_.corners(x, b)),
+                         edges_of(corner_batches_.corners(dx, b)));
+  });
+}
+
+template <class Hinges>
 void MidEdgeBending<Hinges>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
                                        ThreadPool* pool) const {
   const Places at = places(buffer, 1);
   fill_angles(at.angles, pool, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
   fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool,
                [&](int b) { return hinges_.strain(b, corner_batches_.corners(x, b)); });
-  batches_.add(f, at.corners, pool, [&](int b) {
-    return times(-hinge_moment(b, at.moments), hinges_.gradient(b, batches_.corners(x, b)));
-  });
-  if (curved_)
-    corner_batches_.add(f, at.corners, pool, [&](int b) {
-      return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, at.moments)),
-                           hinges_.edges(b, corner_batches_.corners(x, b)));
-    });
-  add_own_forces(f, at.moments);
+  push(x, at.moments, f, at.corners, pool);
+}
+
+template <class Hinges>
+void MidEdgeBending<Hinges>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot,
+                                               VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
+  const Places at = places(buffer, 1);
+  fill_changes(x, x_dot, at.angles, at.moments, pool);
+  push(x, at.moments, f, at.corners, pool);
 }
 
 template <class Hinges>
 void MidEdgeBending<Hinges>::add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f,
                                             Buffer& buffer, ThreadPool* pool) const {
-  if constexpr (Hinges::kOf == Of::displacement) {
-    add_force(dx, f, buffer, pool);
-  } else {
-    const Places at = places(buffer, 2);
-    double *d_angles = at.angles + n_angles(), *d_moments = at.moments + n_moments();
+  add_viscous_force(x, dx, f, buffer, pool);
+  if constexpr (Hinges::kOf == Of::position) {
+    // What the moments push turns with the nodes.
+    const Places at = places(buffer, 1);
     fill_angles(at.angles, pool, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
-    fill_angles(d_angles, pool, [&](int b) {
-      return dot(hinges_.gradient(b, batches_.corners(x, b)), batches_.corners(dx, b));
-    });
     fill_moments(at.angles, x.data() + 3 * n_nodes_, at.moments, pool,
                  [&](int b) { return hinges_.strain(b, corner_batches_.corners(x, b)); });
-    fill_moments(d_angles, dx.data() + 3 * n_nodes_, d_moments, pool, [&](int b) {
-      return strain_change(edges_of(corner_batches_.corners(x, b)), edges_of(corner_batches_.corners(dx, b)));
-    });
     batches_.add(f, at.corners, pool, [&](int b) {
-      const Corners now = batches_.corners(x, b);
-      Corners df = times(-hinge_moment(b, d_moments), hinges_.gradient(b, now));
-      const Corners turned =
-          times(-hinge_moment(b, at.moments), gradient_change(now, batches_.corners(dx, b)));
-      for (std::size_t k = 0; k < 4; ++k) df[k] += turned[k];
-      return df;
+      return times(-hinge_moment(b, at.moments),
+                   gradient_change(batches_.corners(x, b), batches_.corners(dx, b)));
     });
     if (curved_)
       corner_batches_.add(f, at.corners, pool, [&](int b) {
-        const Triangles& of = triangles_[static_cast<std::size_t>(b)];
-        TriangleCorners df =
-            corner_forces(tensions(of, moments_at(b, d_moments)), edges_of(corner_batches_.corners(x, b)));
-        const TriangleCorners turned =
-            corner_forces(tensions(of, moments_at(b, at.moments)), edges_of(corner_batches_.corners(dx, b)));
-        for (std::size_t k = 0; k < 3; ++k) df[k] += turned[k];
-        return df;
+        return corner_forces(tensions(triangles_[static_cast<std::size_t>(b)], moments_at(b, at.moments)),
+                             edges_of(corner_batches_.corners(dx, b)));
       });
-    add_own_forces(f, d_moments);
   }
 }
 

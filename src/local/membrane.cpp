@@ -61,6 +61,24 @@ void Membrane<Law>::add_derivative(const VecX<double>& x, const VecX<double>& dx
 }
 
 template <class Law>
+void Membrane<Law>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f,
+                                      Buffer& buffer, ThreadPool* pool) const {
+  using D = Dual<1, Pack>;
+  buffer.numbers.resize(batches_.buffer_size());
+  batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
+    const Edges<Pack> e = edges_of(batches_.corners(x, b)), e_dot = edges_of(batches_.corners(x_dot, b));
+    // Tensions of the rates q_dot by the law about rest: constant, symmetric and positive.
+    std::array<D, 3> rate;
+    for (std::size_t k = 0; k < 3; ++k) {
+      rate[k] = D(0.0);
+      rate[k].d[0] = e[k].dot(e_dot[k]);
+    }
+    const std::array<D, 3> tau = batch(b).law.tension(rate);
+    return corner_forces<Pack>({tau[0].d[0], tau[1].d[0], tau[2].d[0]}, e);
+  });
+}
+
+template <class Law>
 template <class Visit>
 void Membrane<Law>::each_element(const VecX<double>& x, Visit&& visit) const {
   using D = Dual<3, Pack>;

@@ -81,6 +81,16 @@ void SolidEnergy<Element, Law>::add_derivative(const VecX<double>& x, const VecX
 }
 
 template <class Element, class Law>
+void SolidEnergy<Element, Law>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot,
+                                                  VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
+  if constexpr (Law::of == Of::displacement)
+    add_derivative(x, x_dot, f, buffer, pool);
+  else
+    add<2>({x.data(), x_dot.data()}, f, buffer, pool,
+           [&](const Mat3<Pack>* G) { return viscous_stress(law_.lambda, law_.mu, G[0], G[1]); });
+}
+
+template <class Element, class Law>
 double SolidEnergy<Element, Law>::energy(const VecX<double>& x) const {
   Vec3<Pack> corner[N];
   double E = 0;

@@ -42,7 +42,7 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
 
 }  // namespace
 
-Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found) {
+Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, double tolerance) {
   const Eigen::Index n = F.rows();
   // Columns in units of their absolute sums; rows in units of the root of their size, which makes x = d c
   // behave like the root of a weight.
@@ -58,7 +58,7 @@ Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found) {
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
   const auto R = qr.matrixQR().diagonal().cwiseAbs();
   Eigen::Index rank = 0;
-  while (rank < R.size() && R[rank] > 1e-15 * R[0]) ++rank;
+  while (rank < R.size() && R[rank] > tolerance * R[0]) ++rank;
   if (rank_found) *rank_found = rank;
   if (rank >= n) return Eigen::VectorXd::Ones(n);
 

@@ -263,6 +263,7 @@ Counters& Counters::operator+=(const Counters& o) {
   inertial_forces += o.inertial_forces;
   point_jets += o.point_jets;
   surfaces += o.surfaces;
+  strain_points += o.strain_points;
   return *this;
 }
 

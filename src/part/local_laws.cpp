@@ -136,6 +136,12 @@ const std::vector<LocalLawInfo>& all_local_laws() {
   return all;
 }
 
+const LocalLawInfo& local_law_info(const std::string& name) {
+  for (const LocalLawInfo& info : all_local_laws())
+    if (name == info.name) return info;
+  throw std::logic_error("no law '" + name + "'");
+}
+
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values) {
   std::string known;
   for (const LocalLawInfo& info : all_local_laws()) {

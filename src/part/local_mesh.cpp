@@ -17,18 +17,17 @@
 
 namespace pliant {
 
-namespace {
-
-/// A third of the area of the triangles at each node.
-VecX<double> node_areas(const LocalMesh& mesh) {
-  VecX<double> area = VecX<double>::Zero(mesh.X.rows());
-  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    const auto corner = [&](int k) -> Vec3<double> { return mesh.X.row(mesh.triangles(k, t)).transpose(); };
+VecX<double> LocalMesh::areas() const {
+  VecX<double> area = VecX<double>::Zero(X.rows());
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    const auto corner = [&](int k) -> Vec3<double> { return X.row(triangles(k, t)).transpose(); };
     const double third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-    for (int k = 0; k < 3; ++k) area[mesh.triangles(k, t)] += third;
+    for (int k = 0; k < 3; ++k) area[triangles(k, t)] += third;
   }
   return area;
 }
+
+namespace {
 
 /// Moments of mass of order 0, 1 and 2 of a point, in units of a length.
 Vec<double, 10> moments(const Vec3<double>& x) {
@@ -180,7 +179,7 @@ LocalMesh lay_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.tetrahedra = solid.elements();
   }
   mesh.X = part.s(mesh.nodes, part.parameters().rest()).transpose();
-  mesh.mass = part.shell() ? node_areas(mesh) : lumped_mass(mesh.X, mesh.tetrahedra, 1);
+  mesh.mass = part.shell() ? mesh.areas() : lumped_mass(mesh.X, mesh.tetrahedra, 1);
   mesh.density = part.total_mass() / mesh.mass.sum();
   mesh.mass *= mesh.density;
   match_moments(part.rest_inertia(), part.size(), mesh.X, mesh.mass);

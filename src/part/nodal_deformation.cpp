@@ -19,9 +19,6 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   for (const LocalSettings::Law& law : settings.energies) {
     energies_.push_back(law.lay(mesh_));
     laws_ += (laws_.empty() ? "" : ", ") + law.name;
-    if (beta() > 0 && energies_.back()->of() != NodalEnergy::Of::displacement)
-      throw std::invalid_argument("part '" + part.name() +
-                                  "': beta of its nodes damps laws that are quadratic in d only; use alpha");
     const VecX<double> more = energies_.back()->own_inertia();
     if (more.size() == 0) continue;
     if (own.size() > 0)

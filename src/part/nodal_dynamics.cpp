@@ -257,16 +257,20 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
     else
       energy.add_force(w.x, w.f, w.buffers[k], pool);
   }
-  if (beta() > 0) {
+  auto damp = [&](NodalEnergy::Of of, const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f) {
     VecX<double>& damping = w.force;
     damping.setZero(size);
-    for (std::size_t k = 0; k < energies_.size(); ++k) {
-      const NodalEnergy& energy = *energies_[k];
-      if (energy.of() == NodalEnergy::Of::displacement)
-        energy.add_derivative(w.d, w.d_dot, damping, w.buffers[k], pool);
-    }
-    w.damping += beta() * damping.dot(w.d_dot);
-    w.f_d += beta() * damping;
+    for (std::size_t k = 0; k < energies_.size(); ++k)
+      if (energies_[k]->of() == of) energies_[k]->add_viscous_force(x, x_dot, damping, w.buffers[k], pool);
+    w.damping += beta() * damping.dot(x_dot);
+    f += beta() * damping;
+  };
+  if (beta() > 0) {
+    damp(NodalEnergy::Of::displacement, w.d, w.d_dot, w.f_d);
+    w.x_dot.resize(size);
+    w.x_dot.head(3 * n) = Eigen::Map<const VecX<double>>(w.rates_of_p(n), 3 * n);
+    w.x_dot.tail(size - 3 * n) = w.d_dot.tail(size - 3 * n);
+    damp(NodalEnergy::Of::position, w.x, w.x_dot, w.f);
   }
   if (alpha() > 0) {
     w.damping -= alpha() * w.d_dot.dot(inertia_.cwiseProduct(w.d_dot));

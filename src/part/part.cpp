@@ -239,10 +239,48 @@ Part& Part::deform_locally(LocalSettings settings) {
   return *this;
 }
 
+Part& Part::elasticity(ContinuumSettings settings) {
+  change();
+  try {
+    continuum_law(settings);
+  } catch (const std::invalid_argument& e) {
+    refuse(e.what());
+  }
+  continuum_settings_ = std::move(settings);
+  return *this;
+}
+
 Part& Part::fix() {
   change();
   fixed_ = true;
   return *this;
+}
+
+void Part::check_elasticity() const {
+  if (!continuum_settings_) return;
+  const auto& laws = all_continuum_laws();
+  const auto law = std::find_if(laws.begin(), laws.end(), [&](const ContinuumLawInfo& info) {
+    return info.name == continuum_settings_->law;
+  });
+  if (law->shell != shell_)
+    refuse("the law '" + continuum_settings_->law + "' of its elasticity is of " +
+           (law->shell ? "shells, not of solids" : "solids, not of shells"));
+  if (local_settings_)
+    refuse(
+        "its nodes deform locally, so a law of these is to be its elasticity: it is that of the whole map");
+  for (const int i : parameters_.dynamic()) {
+    const Parameter& p = parameters_[i];
+    if (p.spec->quantity == Quantity::exponent && !shape_->bounded_exponents())
+      refuse("a changing " + p.name + " strains the material of a " + shape_->name() +
+             " without bound, so it has no elastic energy; freeze " + p.name +
+             (shape_->name() == std::string("superellipsoid")
+                  ? ", or take the shape superellipsoid_radial, whose material follows by bounded strains"
+                  : ""));
+    if (!p.rest.is_constant() && stiffness_.row(i).isZero(0))
+      refuse("the rest value of " + p.name +
+             " moves in time, but its elastic material rests in the shape of time 0; give " + p.name +
+             " a stiffness, through which its rest value pulls");
+  }
 }
 
 void Part::prepare() {
@@ -269,6 +307,7 @@ void Part::prepare() {
   if (given_inertia_ && local_settings_)
     refuse("a part that deforms locally takes its inertia from its density");
   if (fixed_ && local_settings_) refuse("a fixed part does not deform locally");
+  check_elasticity();
   K_s_.resize(n, n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
@@ -297,12 +336,16 @@ void Part::prepare() {
     return sum;
   };
   rest_inertia_ = take();
+  const double volume = rest_inertia_.mass / density_;
   if (total_mass_) {
     const double factor = *total_mass_ / rest_inertia_.mass;
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
   if (local_settings_) local_ = make_local_deformation(*this, *local_settings_);
+  continuum_.reset();
+  if (continuum_settings_ && n > 0)
+    continuum_ = std::make_unique<ContinuumEnergy>(*this, *continuum_settings_, volume);
   prepared_ = true;
 }
 
@@ -310,6 +353,25 @@ double Part::inertia_floor(int k) const {
   constexpr double part_of_mass = 1e-24;
   const bool length = parameters_.moving(k).spec->quantity == Quantity::length;
   return part_of_mass * total_mass() * (length ? 1.0 : size_ * size_);
+}
+
+MatX<double> Part::elastic_stiffness(const VecMax<double>& q_s) const {
+  return continuum_ ? MatX<double>(K_s_ + continuum_->stiffness(*this, q_s)) : K_s_;
+}
+MatX<double> Part::strain_stiffness(const VecMax<double>& q_s) const {
+  return continuum_ ? MatX<double>(K_s_ + continuum_->strain_stiffness(*this, q_s)) : K_s_;
+}
+
+void Part::jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+                JetBatch<Dual<1, Pack>>& batch) const {
+  constexpr int most = 8;
+  std::array<Material<Dual<1, Pack>>, most> still;
+  for (int first = 0; first < batch.count; first += most) {
+    JetBatch<Dual<1, Pack>> some{batch.jet + first, std::min(most, batch.count - first), 0, batch.level};
+    for (int i = 0; i < some.count; ++i) still[static_cast<std::size_t>(i)] = constant(at[first + i]);
+    jets(values, still.data(), some);
+    batch.n_columns = some.n_columns;
+  }
 }
 
 Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,

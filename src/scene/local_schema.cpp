@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <pliant/part/continuum.h>
 #include <pliant/part/local_laws.h>
 
 #include "scene_faults.h"
@@ -10,19 +11,32 @@ namespace pliant {
 
 using namespace schema;
 
+namespace {
+
+Record law_record(const LocalLawInfo& info, const char* meaning) {
+  Record law{info.name, std::string(info.shell ? "Of a shell: " : "Of a solid: ") + meaning, {}};
+  for (const LocalLawInfo::Number& n : info.numbers) {
+    Range range = at_most(n.max);
+    range.min = n.min;
+    range.min_excluded = n.above && std::isfinite(n.min);
+    law.fields.push_back(n.fallback ? optional(n.key, number(range, n.unit), n.meaning, brief(*n.fallback))
+                                    : required(n.key, number(range, n.unit), n.meaning, "1000"));
+  }
+  return law;
+}
+
+}  // namespace
+
+schema::Type elasticity_type() {
+  std::vector<Record> laws;
+  for (const ContinuumLawInfo& info : all_continuum_laws())
+    laws.push_back(law_record(local_law_info(info.name), info.meaning));
+  return tagged("type", std::move(laws)).defined_as("elasticity");
+}
+
 schema::Record local_record() {
   std::vector<Record> laws;
-  for (const LocalLawInfo& info : all_local_laws()) {
-    Record law{info.name, std::string(info.shell ? "Of a shell: " : "Of a solid: ") + info.meaning, {}};
-    for (const LocalLawInfo::Number& n : info.numbers) {
-      Range range = at_most(n.max);
-      range.min = n.min;
-      range.min_excluded = n.above && std::isfinite(n.min);
-      law.fields.push_back(n.fallback ? optional(n.key, number(range, n.unit), n.meaning, brief(*n.fallback))
-                                      : required(n.key, number(range, n.unit), n.meaning, "1000"));
-    }
-    laws.push_back(std::move(law));
-  }
+  for (const LocalLawInfo& info : all_local_laws()) laws.push_back(law_record(info, info.meaning));
   const Record dent{
       "dent",
       "A displacement of the nodes at time 0 around a place, displacement exp(-(r / radius)^2).",

@@ -60,6 +60,7 @@ std::unique_ptr<Part> PartReader::read() {
   part_->move(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
   if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), faults_, *part_);
+  read_elasticity();
   check_rigid();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
   if (known && faults_.errors() == before) prepare();
@@ -73,6 +74,26 @@ double PartReader::property(const char* key) const {
     if (material != materials_.end()) return material->second.number(key);
   }
   return r_.number(key);
+}
+
+/// Of the part, else of its material.
+void PartReader::read_elasticity() {
+  const Reader* from = r_.given("elasticity") ? &r_ : nullptr;
+  if (from == nullptr && r_.given("material")) {
+    const auto material = materials_.find(r_.text("material"));
+    if (material != materials_.end() && material->second.given("elasticity")) from = &material->second;
+  }
+  if (from == nullptr) return;
+  const Reader law = from->object("elasticity");
+  if (!law.complete()) return;
+  ContinuumSettings settings{law.name(), law.number("E"), law.number("nu"), 0};
+  if (law.record().find("thickness") != nullptr) settings.thickness = law.number("thickness");
+  try {
+    part_->elasticity(settings);
+    part_->check_elasticity();
+  } catch (const std::invalid_argument& e) {
+    faults_.place(from == &r_ ? law.json() : r_.at("material"), without_name(e));
+  }
 }
 
 void PartReader::read_stiffness(const Reader& r) {
@@ -181,10 +202,15 @@ void PartReader::check_rigid() {
 
 /// What shows only when all parameters come together: too many that are dynamic, a shape that folds.
 void PartReader::refused(const std::invalid_argument& e) {
+  faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), without_name(e));
+}
+
+/// What an error says, the name of the part left out.
+std::string PartReader::without_name(const std::invalid_argument& e) const {
   std::string message = e.what();
   const std::string who = "part '" + part_->name() + "': ";
   if (message.compare(0, who.size(), who) == 0) message.erase(0, who.size());
-  faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), message);
+  return message;
 }
 
 void PartReader::prepare() {

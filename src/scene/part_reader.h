@@ -28,6 +28,7 @@ class PartReader {
 
  private:
   double property(const char* key) const;
+  void read_elasticity();
   void read_stiffness(const Reader& r);
   bool check_names(const JsonValue& names);
   bool check_square(const JsonValue& K, std::size_t n);
@@ -36,6 +37,7 @@ class PartReader {
   void read_inertia(const Reader& r);
   void check_rigid();
   void refused(const std::invalid_argument& e);
+  std::string without_name(const std::invalid_argument& e) const;
   void prepare();
 
   const Reader& r_;

@@ -78,7 +78,13 @@ std::optional<Point> PointReader::on_part(const Reader& r) const {
   if (found == nullptr || !found->prepared || !r.given("at")) return {};
   const auto at = material(*found->part, r.at("at"));
   if (!at) return {};
-  return point(*found->part, *at);
+  const double patch = read_material_point(r.at("at")).patch;
+  if (patch > 0 && found->part->local() == nullptr) {
+    faults_.value(*r.at("at").find("patch"), "it is a radius among nodes, and part \"" + found->part->name() +
+                                                 "\" has no local deformation; expected no \"patch\"");
+    return {};
+  }
+  return point(*found->part, *at, patch);
 }
 
 std::optional<Point> PointReader::anywhere(const Reader& r) const {

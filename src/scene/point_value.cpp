@@ -17,13 +17,19 @@ Field radial() {
                   "1");
 }
 
+Field patch() {
+  return optional("patch", number(above(0), "m"),
+                  "Of a part with local deformation: what acts here is spread over the nodes within this "
+                  "radius, and the point is where their mean is. The element around it when not given.");
+}
+
 Record by_coordinates() {
   return {"point_at_coordinates",
           "A material point by its coordinates.",
           {required("u", number(between(-kMostAngle, kMostAngle), "rad"),
                     "Latitude of the shape, from -pi/2 to pi/2; round the tube of a torus.", "0"),
            required("v", number(between(-kMostAngle, kMostAngle), "rad"), "Longitude of the shape.", "0"),
-           radial()}};
+           radial(), patch()}};
 }
 
 Record by_direction() {
@@ -36,7 +42,7 @@ Record by_direction() {
       "the outermost one of the surface, and with w the point inside with the same u and v.",
       {required("direction", vector3("1").checked(not_zero), "Direction in the part's frame, of any length.",
                 "[0, 0, 1]"),
-       radial()}};
+       radial(), patch()}};
 }
 
 Record by_place() {
@@ -45,7 +51,7 @@ Record by_place() {
       "The material point at a place of the rest shape; for a place outside, at most twice as far out as the "
       "surface, the surface point with "
       "the same u and v.",
-      {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]")}};
+      {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]"), patch()}};
 }
 
 }  // namespace
@@ -62,13 +68,15 @@ Type material_point() {
 
 MaterialPointValue read_material_point(const JsonValue& value) {
   using Form = MaterialPointValue::Form;
-  if (const JsonValue* near = value.find("near")) return {Form::kNear, read_vector3(*near), 1};
+  const JsonValue* radius = value.find("patch");
+  const double patch = radius != nullptr ? radius->number() : 0;
+  if (const JsonValue* near = value.find("near")) return {Form::kNear, read_vector3(*near), 1, patch};
   const JsonValue* w = value.find("w");
   const double radial = w != nullptr ? w->number() : 1;
   if (const JsonValue* direction = value.find("direction")) {
-    return {Form::kDirection, read_vector3(*direction), radial};
+    return {Form::kDirection, read_vector3(*direction), radial, patch};
   }
-  return {Form::kCoordinates, {value.find("u")->number(), value.find("v")->number(), radial}, radial};
+  return {Form::kCoordinates, {value.find("u")->number(), value.find("v")->number(), radial}, radial, patch};
 }
 
 }  // namespace pliant

@@ -78,6 +78,9 @@ Record damping_fields(std::string record_name, std::string description, std::vec
   std::vector<Field> fields = std::move(more);
   fields.push_back(optional("density", number(above(0), "kg/m^3"),
                             "Mass per rest volume; of a shell per rest area (kg/m^2).", "1000"));
+  fields.push_back(optional("elasticity", elasticity_type(),
+                            "Elastic material of a part without local deformation: the strain energy of its "
+                            "dynamic parameters, instead of stiffnesses or beside them."));
   fields.push_back(optional("alpha", number(at_least(0), "1/s"),
                             "Damping of the parameters in proportion to mass: D = alpha M + beta K.", "0"));
   fields.push_back(optional("beta", number(at_least(0), "s"),

@@ -26,6 +26,34 @@ Material<Dual<3>> material_with_tangents(double u, double v, double w) {
           Dual<3>::variable(w, 2)};
 }
 
+Material<Dual<3>> material_with_tangents(const Material<double>& m) {
+  Material<Dual<3>> r;
+  // Along d/du, or along cos sin d/du next to a corner, where the derivatives of logarithms would overflow.
+  auto turn = [](const Trig<double>& c, const Trig<double>& s, std::size_t slot, Trig<Dual<3>>& rc,
+                 Trig<Dual<3>>& rs) {
+    constexpr double small = 1e-30;
+    const bool corner =
+        (std::abs(c.x) < small && c.log_abs > kLogZero) || (std::abs(s.x) < small && s.log_abs > kLogZero);
+    auto put = [slot](Trig<Dual<3>>& to, const Trig<double>& from, double slope, double log_slope) {
+      to = {Dual<3>(from.x), Dual<3>(from.sign), Dual<3>(from.log_abs)};
+      to.x.d[slot] = slope;
+      to.log_abs.d[slot] = log_slope;
+    };
+    auto over = [](double a, double b) { return b != 0 ? a / b : 0; };
+    if (corner) {
+      put(rc, c, -c.x * s.x * s.x, -s.x * s.x);
+      put(rs, s, c.x * c.x * s.x, c.x * c.x);
+    } else {
+      put(rc, c, -s.x, over(-s.x, c.x));
+      put(rs, s, c.x, over(c.x, s.x));
+    }
+  };
+  turn(m.cu, m.su, 0, r.cu, r.su);
+  turn(m.cv, m.sv, 1, r.cv, r.sv);
+  r.w = Dual<3>::variable(m.w, 2);
+  return r;
+}
+
 Material<double> material_towards(const Vec3<double>& direction, double w) {
   const double ring = std::hypot(direction[0], direction[1]);
   const double size = std::hypot(ring, direction[2]);
@@ -54,6 +82,34 @@ Material<Pack> gather(const Material<double>* four) {
     m.w.set(i, one.w);
   }
   return m;
+}
+
+Material<Dual<1, Pack>> gather(const Material<Dual<3>>* four, std::size_t slot) {
+  Material<Dual<1, Pack>> m;
+  for (int i = 0; i < Pack::kLanes; ++i) {
+    const Material<Dual<3>>& one = four[i];
+    auto put = [i, slot](Dual<1, Pack>& to, const Dual<3>& from) {
+      to.v.set(i, from.v);
+      to.d[0].set(i, from.d[slot]);
+    };
+    auto put_trig = [&put](Trig<Dual<1, Pack>>& to, const Trig<Dual<3>>& from) {
+      put(to.x, from.x);
+      put(to.sign, from.sign);
+      put(to.log_abs, from.log_abs);
+    };
+    put_trig(m.cu, one.cu);
+    put_trig(m.su, one.su);
+    put_trig(m.cv, one.cv);
+    put_trig(m.sv, one.sv);
+    put(m.w, one.w);
+  }
+  return m;
+}
+
+Material<Dual<1, Pack>> constant(const Material<Pack>& m) {
+  using D = Dual<1, Pack>;
+  auto trig = [](const Trig<Pack>& t) { return Trig<D>{D(t.x), D(t.sign), D(t.log_abs)}; };
+  return {trig(m.cu), trig(m.su), trig(m.cv), trig(m.sv), D(m.w)};
 }
 
 }  // namespace pliant

@@ -33,10 +33,10 @@ TEST_CASE("a placed point is the point of its part, soft or not, and of the worl
     CHECK(in_world.at(state) == Vec3<double>(3 * state.time(), 0, 1));
   }
   // The nodes have moved: the point is not that of the shape alone.
-  const NodeWeights weights = model.node_weights(0, in_soft.point().material);
+  const NodeWeights weights = Model::node_weights(in_soft.point());
   CHECK_FALSE(weights.node.empty());
   CHECK((model.world_point(simulation.state(), 0, in_soft.point().material, {}) -
          in_soft.at(simulation.state()))
             .norm() > 1e-6);
-  CHECK(model.node_weights(1, on_plain.point().material).node.empty());
+  CHECK(Model::node_weights(on_plain.point()).node.empty());
 }

@@ -129,6 +129,9 @@ TEST_CASE("a step takes nothing from the heap", "[skip]") {
     a.damping(0.1, 0.001, 0.1).rest("a1", test::wave(0.3, 0.05, 20));
     Part& b = test::add(body, "b", "box", {}, 1000);
     b.place({1, 0, 0}).move({0, 0, 0}, {1, 2, 3});
+    Part& c = test::add(body, "c", "ellipsoid", {"twist"}, 1000);
+    c.elasticity({"neo_hookean", 1e6, 0.3, 0}).damping(0, 1e-4);
+    c.initial({{"a1", 1.01}, {"twist.angle", 0.1}});
     body.spring("tie", point(a, 0.3, 1), point(b, 0, 0), 100, 1, 0.3);
     body.force("push", point(a, 0.3, 1), TimeVector(test::wave(0, 1, 3), 0, 0));
     body.torque("turn", b, TimeVector(test::wave(0, 1, 3), 0, 0));

@@ -219,6 +219,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "duplicate_key",
                                         "duplicate_part_name",
                                         "dynamic_exponent_out_of_range",
+                                        "elasticity_faults",
                                         "exponent_out_of_range",
                                         "fixed_but_dynamic",
                                         "folded_bend",

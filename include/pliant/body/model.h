@@ -136,8 +136,9 @@ class Model {
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   Vec3<double> world_point(const State& state, int part, const Material<double>& m,
                            const NodeWeights& at) const;
-  /// Where a material point is among the nodes of a part; none of a part that does not deform locally.
-  NodeWeights node_weights(int part, const Material<double>& m) const;
+  /// Where a point is among the nodes of its part, with its patch; none of a part that does not deform
+  /// locally.
+  static NodeWeights node_weights(const Point& point);
   /// Positions of the nodes of the mesh of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.

@@ -11,21 +11,24 @@ struct Point {
   const Part* part = nullptr;  ///< nullptr: the world
   Material<double> material;
   TimeVector world;  ///< m; used when part is nullptr
+  /// Of a part that deforms locally: what acts here is spread over the nodes within this radius (m, at rest),
+  /// and the point is where their mean is; 0: the element around it.
+  double patch = 0;
 };
 
 /// A material point by its angles (rad) and radius; w = 1 is the surface.
 inline Point point(const Part& part, double u, double v, double w = 1) {
-  return {&part, material_at(u, v, w), {}};
+  return {&part, material_at(u, v, w), {}, 0};
 }
-inline Point point(const Part& part, const Material<double>& material) {
-  return {&part, material, {}};
+inline Point point(const Part& part, const Material<double>& material, double patch = 0) {
+  return {&part, material, {}, patch};
 }
 /// A fixed or moving point of the world.
 inline Point world(double x, double y, double z) {
-  return {nullptr, {}, TimeVector(Vec3<double>(x, y, z))};
+  return {nullptr, {}, TimeVector(Vec3<double>(x, y, z)), 0};
 }
 inline Point world(TimeVector moving) {
-  return {nullptr, {}, std::move(moving)};
+  return {nullptr, {}, std::move(moving), 0};
 }
 
 }  // namespace pliant

@@ -33,6 +33,8 @@ class MidEdgeBending final : public NodalEnergy {
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
+  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+                         ThreadPool* pool) const override;
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
 
@@ -70,6 +72,12 @@ class MidEdgeBending final : public NodalEnergy {
   /// dE/dtheta of the edges of a batch.
   Pack hinge_moment(int batch, const double* moments) const;
   void add_own_forces(VecX<double>& f, const double* moments) const;
+  /// What the turns of angles at dx do to angles and moments.
+  void fill_changes(const VecX<double>& x, const VecX<double>& dx, double* angles, double* moments,
+                    ThreadPool* pool) const;
+  /// What moments push on nodes at x and on the own coordinates.
+  void push(const VecX<double>& x, const double* moments, VecX<double>& f, double* corners,
+            ThreadPool* pool) const;
   template <class Visit>
   void each_element(const VecX<double>& x, Visit&& visit) const;
 

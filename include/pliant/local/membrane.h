@@ -21,6 +21,8 @@ class Membrane final : public NodalEnergy {
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
+  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+                         ThreadPool* pool) const override;
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
 

@@ -36,6 +36,13 @@ class NodalEnergy {
   /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
   virtual void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
+  /// f -= what beta = 1 s of Kelvin and Voigt's damping pushes while x moves at x_dot: viscous stresses in
+  /// proportion to the rate of strain, which rigid motion does not make, and which never give power. K x_dot
+  /// of what is quadratic in d, and about rest of the others.
+  virtual void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f,
+                                 Buffer& buffer, ThreadPool* pool) const {
+    add_derivative(x, x_dot, f, buffer, pool);
+  }
   /// Adds the entries of K(x), but for w w^T with w = rank_one(x), which ties every coordinate to every
   /// other.
   virtual void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const = 0;

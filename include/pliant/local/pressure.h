@@ -18,6 +18,9 @@ class Pressure : public NodalEnergy {
   void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const final;
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const final;
+  /// A pressure damps nothing.
+  void add_viscous_force(const VecX<double>&, const VecX<double>&, VecX<double>&, Buffer&,
+                         ThreadPool*) const final {}
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const final;
 
   /// w = sqrt(E'') dV/dx. Nothing but zeros at constant pressure.

@@ -9,6 +9,7 @@
 
 #include <pliant/local/corotated.h>
 #include <pliant/local/element_corners.h>
+#include <pliant/local/hooke.h>
 #include <pliant/local/linear_law.h>
 #include <pliant/local/neo_hookean.h>
 #include <pliant/local/nodal_energy.h>
@@ -31,6 +32,8 @@ class SolidEnergy final : public NodalEnergy {
   void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
+  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+                         ThreadPool* pool) const override;
   void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
   double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
 

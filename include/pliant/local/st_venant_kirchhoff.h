@@ -5,8 +5,8 @@
 #pragma once
 
 #include <pliant/local/elasticity.h>
+#include <pliant/local/hooke.h>
 #include <pliant/local/nodal_energy.h>
-#include <pliant/local/tensor.h>
 
 namespace pliant {
 
@@ -19,35 +19,16 @@ struct StVenantKirchhoff {
 
   template <class T>
   T density(const Mat3<T>& F) const {
-    const Mat3<T> G = strain(F);
-    return contraction(second_stress(G), G) * T(0.5);
+    const Mat3<T> G = green_strain(F);
+    return contraction(hooke_stress(lambda, mu, G), G) * T(0.5);
   }
   template <class T>
   Mat3<T> stress(const Mat3<T>& F) const {
-    return product(F, second_stress(strain(F)));
+    return product(F, hooke_stress(lambda, mu, green_strain(F)));
   }
   template <class T>
   Mat3<T> stress_along(const Mat3<T>& F, const Mat3<T>& dF) const {
-    const Mat3<T> A = transposed_product(F, dF);
-    Mat3<T> dG;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) dG(i, j) = T(0.5) * (A(i, j) + A(j, i));
-    return product(dF, second_stress(strain(F))) + product(F, second_stress(dG));
-  }
-
- private:
-  template <class T>
-  static Mat3<T> strain(const Mat3<T>& F) {
-    Mat3<T> G = scaled(T(0.5), transposed_product(F, F));
-    for (int i = 0; i < 3; ++i) G(i, i) -= T(0.5);
-    return G;
-  }
-  template <class T>
-  Mat3<T> second_stress(const Mat3<T>& G) const {
-    Mat3<T> S = scaled(T(2 * mu), G);
-    const T pressure = T(lambda) * trace(G);
-    for (int i = 0; i < 3; ++i) S(i, i) += pressure;
-    return S;
+    return product(dF, hooke_stress(lambda, mu, green_strain(F))) + viscous_stress(lambda, mu, F, dF);
   }
 };
 

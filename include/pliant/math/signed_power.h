@@ -61,6 +61,12 @@ Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
   return r;
 }
 
+/// Four points at a time, none of them where |x| is 0.
+template <int N, class T>
+Dual<N, T> signed_power(const Trig<Dual<N, T>>& c, const Dual<N, T>& eps) {
+  return math::exp(Dual<N, T>(eps * c.log_abs)) * c.sign.v;
+}
+
 /// r^p for r >= 0 and p > 0, zero with zero derivatives at r = 0.
 template <class T>
 T power_from_zero(const T& r, const T& p) {

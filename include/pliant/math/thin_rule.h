@@ -7,9 +7,11 @@
 namespace pliant {
 
 /// F(i, k): what node i contributes to the integral of function k. Returns factors c >= 0 of the nodes'
-/// weights, most of them 0, with F^T c = F^T 1 to rounding in units of each column's largest absolute sum.
+/// weights, most of them 0, with F^T c = F^T 1 to rounding in units of each column's absolute sum, or to the
+/// tolerance.
 /// The functions should be more than their numerical rank; rank_found (if not null) says what that is, so
 /// that a caller can see whether they were.
-Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found = nullptr);
+Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found = nullptr,
+                          double tolerance = 1e-15);
 
 }  // namespace pliant

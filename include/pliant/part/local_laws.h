@@ -32,6 +32,9 @@ struct LocalLawInfo {
 
 const std::vector<LocalLawInfo>& all_local_laws();
 
+/// A law that is there, by name.
+const LocalLawInfo& local_law_info(const std::string& name);
+
 /// A law by name with the values of its numbers, in order. Throws std::invalid_argument, listing the laws for
 /// an unknown one.
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values);

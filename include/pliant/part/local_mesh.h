@@ -20,6 +20,8 @@ struct LocalMesh {
   VecX<double> mass;           ///< of each node, kg
   double density = 0;          ///< kg/m^3; of a shell kg/m^2
   bool shell() const { return tetrahedra.cols() == 0; }
+  /// A third of the area of the triangles at each node, m^2; 0 inside.
+  VecX<double> areas() const;
 };
 
 /// Its masses have the mass, the centre and the second moments of the part. Throws std::invalid_argument

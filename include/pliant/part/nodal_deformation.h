@@ -30,6 +30,7 @@ struct NodalWorkspace final : LocalWorkspace {
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale K scale
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   // forces, N
+  VecX<double> x_dot;   ///< rates of x in the body frame, where they damp
   VecX<double> f, f_d;  ///< on all that nodes do; on d alone, the rest being told in f_r
   VecMax<double> kappa;
   // what pushes on v_r and on the shared points do

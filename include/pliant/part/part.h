@@ -11,6 +11,7 @@
 
 #include <Eigen/Geometry>
 
+#include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
 #include <pliant/part/local_deformation.h>
 #include <pliant/part/mass_points.h>
@@ -27,6 +28,7 @@ struct Counters {
   long inertial_forces = 0;  ///< inertial forces g_q evaluated
   long point_jets = 0;       ///< material points evaluated for forces
   long surfaces = 0;         ///< surfaces evaluated for output
+  long strain_points = 0;    ///< points of the body whose strain was evaluated
   Counters& operator+=(const Counters& o);
 };
 
@@ -57,9 +59,15 @@ class Part {
   Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
   /// One-sided limits of dynamic parameters; judged at the rest value when the part is prepared.
   Part& limits(const std::string& parameter, Range range);
+  /// Elastic material: the strain energy of the whole map from rest to now, beside what stiffnesses there
+  /// are. Of a part whose nodes deform locally the laws of these are that.
+  Part& elasticity(ContinuumSettings settings);
+  /// Throws std::invalid_argument when its elastic material cannot be that of the part, as prepare() does.
+  void check_elasticity() const;
   Part& make_dynamic(const std::vector<std::string>& parameters);
   Part& freeze(const std::vector<std::string>& parameters);
-  /// D = alpha M_ss + beta K_s on the global parameters; drag nu M on all motion (1/s, s, 1/s).
+  /// D = alpha M_ss + beta K_s on the global parameters, beta times the rate of strain in its material; drag
+  /// nu M on all motion (1/s, s, 1/s).
   Part& damping(double alpha, double beta, double nu = 0);
   /// Mass on the surface only; the density is then per area (kg/m^2).
   Part& make_shell();
@@ -108,6 +116,13 @@ class Part {
   const MassPoints& mass_points() const { return mass_points_; }
   /// Stiffness K_s over the dynamic parameters.
   const MatX<double>& K_s() const { return K_s_; }
+  /// The strain energy of its material; nullptr of a part that has none, or that nothing strains.
+  const ContinuumEnergy* continuum() const { return continuum_.get(); }
+  /// d2E/dq_s2 of its whole elastic energy at q_s.
+  MatX<double> elastic_stiffness(const VecMax<double>& q_s) const;
+  /// The part of it that material strains by themselves make, without their stress: never negative, and what
+  /// beta multiplies.
+  MatX<double> strain_stiffness(const VecMax<double>& q_s) const;
   double total_mass() const { return rest_inertia_.mass; }
   /// Inertia at rest; of a rigid part for ever.
   const Inertia<double>& rest_inertia() const { return rest_inertia_; }
@@ -158,8 +173,12 @@ class Part {
   /// Jets of material points: position, J, rates, by level.
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
-  virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+  /// Their derivatives by the direction that the dual parts of the values and of the material points carry.
+  virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
                     JetBatch<Dual<1, Pack>>& batch) const = 0;
+  /// By that of the values alone.
+  void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+            JetBatch<Dual<1, Pack>>& batch) const;
 
  protected:
   Part(std::string name, double density, std::unique_ptr<ShapeFace> shape,
@@ -187,6 +206,7 @@ class Part {
   std::optional<double> total_mass_;
   std::optional<Inertia<double>> given_inertia_;
   std::optional<LocalSettings> local_settings_;
+  std::optional<ContinuumSettings> continuum_settings_;
   MatX<double> stiffness_;  // over all parameters
   double alpha_ = 0, beta_ = 0, drag_ = 0;
   bool fixed_ = false, shell_ = false, prepared_ = false;
@@ -198,6 +218,7 @@ class Part {
   Inertia<double> rest_inertia_;
   double size_ = 0;
   std::unique_ptr<LocalDeformation> local_;
+  std::unique_ptr<ContinuumEnergy> continuum_;
 };
 
 }  // namespace pliant

@@ -20,14 +20,15 @@ class Primitive final : public Part {
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+  using Part::jets;
+  void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);
   }
 
  private:
   template <class P, class S>
-  void evaluate(const ParameterValues<P>& values, const Material<Pack>* at, JetBatch<S>& batch) const {
+  void evaluate(const ParameterValues<P>& values, const Material<S>* at, JetBatch<S>& batch) const {
     const LinkParameters<P> all{values.b.data(), values.b_dot.data(), parameters().dynamic_flags()};
     shape_jets<Shape>(all, at, batch);
     if (chain_.acts(after_shape(all))) chain_.apply(half_height_jet<Shape>(all), after_shape(all), batch);

@@ -33,6 +33,9 @@ class ShapeFace {
   /// e and its derivatives along three material directions carried by the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
+  /// Whether a changing exponent strains the material by bounded amounts (physics 1.5).
+  virtual bool bounded_exponents() const = 0;
+
   // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same
   // solid).
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
@@ -77,6 +80,7 @@ PLIANT_HAS_MEMBER(profile)
 PLIANT_HAS_MEMBER(ring)
 PLIANT_HAS_MEMBER(ring_exponent)
 PLIANT_HAS_MEMBER(section)
+PLIANT_HAS_MEMBER(bounded_exponents)
 #undef PLIANT_HAS_MEMBER
 
 }  // namespace detail
@@ -133,6 +137,7 @@ class ShapeFaceOf final : public ShapeFace {
   Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
     return Shape::template e<Dual<3>>(m, lift<Dual<3>>(a));
   }
+  bool bounded_exponents() const override { return detail::has_bounded_exponents<Shape>; }
   Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
     return RestMap::template e<Dual<3>>(m, lift<Dual<3>>(a));
   }

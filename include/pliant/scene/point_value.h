@@ -17,7 +17,8 @@ struct MaterialPointValue {
   };
   Form form = Form::kCoordinates;
   Vec3<double> x = Vec3<double>::Zero();
-  double w = 1;  ///< 0 at the centre, 1 on the surface
+  double w = 1;      ///< 0 at the centre, 1 on the surface
+  double patch = 0;  ///< radius, m; 0: none
 };
 
 namespace schema {

@@ -20,6 +20,10 @@ Material<double> material_at(double u, double v, double w = 1);
 /// The same with its derivatives along u, v and w.
 Material<Dual<3>> material_with_tangents(double u, double v, double w);
 
+/// A material point with its derivatives along three directions that span what u, v and w do; they are of use
+/// where cosines or sines are so small that only their logarithms tell.
+Material<Dual<3>> material_with_tangents(const Material<double>& m);
+
 /// From exact cosine and sine pairs.
 inline Material<double> material_from(double cu, double su, double cv, double sv, double w = 1) {
   return {trig(cu), trig(su), trig(cv), trig(sv), w};
@@ -36,5 +40,9 @@ MaterialAngles angles(const Material<double>& m);
 
 /// Four material points as one.
 Material<Pack> gather(const Material<double>* four);
+/// The same along direction number `slot` of their derivatives.
+Material<Dual<1, Pack>> gather(const Material<Dual<3>>* four, std::size_t slot);
+/// Material points that stay.
+Material<Dual<1, Pack>> constant(const Material<Pack>& m);
 
 }  // namespace pliant

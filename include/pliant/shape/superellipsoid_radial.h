@@ -21,6 +21,7 @@ struct SuperellipsoidRadial {
       exponent("eps2", "squareness in the x-y plane: 1 round, 0.1 square, 2 pointed", Follows::free),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool bounded_exponents = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 5>& a) {
