@@ -3,7 +3,7 @@
 // error of the frequency, by basis. Nodes take steps of 0.9 of the largest stable one, modes three a period,
 // which they solve exactly. The error of nodes is that of the mode of their mesh, and of the method at the
 // step. CSV to standard output; after it what each basis takes at the errors of the table, "not reached"
-// within 1e5 degrees of freedom else.
+// where no row does.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>
