@@ -15,8 +15,8 @@ namespace {
 constexpr std::array<int, 12> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr std::size_t kLastLevel = kSizes.size() - 3;
 /// Changes of moments that are rounding, relative to the volume; and what is taken when no more is to be had.
-constexpr double kTolerance = 5e-15, kNoise = 1e-12;
-constexpr Eigen::Index kMostPoints = 1'000'000;
+constexpr double kTolerance = 5e-14, kNoise = 1e-12;
+constexpr Eigen::Index kMostPoints = 2'000'000;
 
 /// Along u, v and w.
 using Levels = std::array<std::size_t, 3>;

@@ -18,7 +18,7 @@ struct BodyRule {
 };
 
 /// For all products of Legendre polynomials of a total degree. Throws std::invalid_argument when that takes
-/// more than a million points.
+/// more than two million points.
 BodyRule lay_body_rule(const Part& part, const LegendreProducts& polynomials);
 
 }  // namespace pliant

@@ -26,8 +26,8 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 /// Up to here the dense solver is the faster way.
 constexpr Eigen::Index kDense = 400;
-/// Local coordinates whose factor fits into a few gigabytes, and numbers in the modes.
-constexpr Eigen::Index kMostCoordinates = 120'000;
+/// Local coordinates whose factor takes minutes, and numbers in the modes.
+constexpr Eigen::Index kMostCoordinates = 60'000;
 constexpr double kMostNumbers = 5e7;
 
 /// Elasticity of a mesh in mass-normalised coordinates.
