@@ -3,12 +3,12 @@
 #include <iostream>
 #include <memory>
 
+#include <pliant/body/placed_point.h>
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/skipped.h>
-#include <pliant/part/patch_weights.h>
 
 #include "command.h"
 #include "exit_codes.h"
@@ -93,12 +93,8 @@ void print_point(const pliant::Simulation& simulation, const pliant::Point& poin
   }
   const pliant::MaterialAngles at = pliant::angles(point.material);
   std::cout << point.part->name() << " {u: " << at.u << ", v: " << at.v << ", w: " << at.w << "} at ";
-  print_vector(simulation.model().world_point(simulation.state(), point), point.part->size());
-  if (point.patch > 0)
-    std::cout
-        << " over "
-        << pliant::patch_weights(*point.part, *point.part->local(), point.material, point.patch).node.size()
-        << " nodes";
+  print_vector(pliant::PlacedPoint(simulation.model(), point).at(simulation.state()), point.part->size());
+  if (point.patch > 0) std::cout << " over " << pliant::Model::node_weights(point).node.size() << " nodes";
 }
 
 void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulation) {

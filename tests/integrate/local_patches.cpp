@@ -4,7 +4,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
+#include <pliant/body/placed_point.h>
 #include <pliant/part/local_laws.h>
+#include <pliant/part/nodal_deformation.h>
 #include <pliant/part/patch_weights.h>
 
 #include "draws.h"
@@ -30,7 +32,7 @@ double stretch(int resolution, double patch) {
   Primitive<Sphere> ball("ball", 1000);
   ball.deform_locally(soft(resolution, false));
   ball.prepare();
-  const LocalDeformation& local = *ball.local();
+  const NodalDeformation& local = *ball.local()->nodal();
   const Eigen::Index n = local.n_nodes();
   std::vector<Eigen::Triplet<double>> entries;
   local.energies()[0]->add_stiffness(VecX<double>::Zero(3 * n), entries);
@@ -41,7 +43,8 @@ double stretch(int resolution, double patch) {
   VecX<double> f = VecX<double>::Zero(3 * n);
   for (const double side : {-1.0, 1.0}) {
     const Material<double> pole = material_at(side * kPi / 2, 0);
-    const NodeWeights at = patch > 0 ? patch_weights(ball, local, pole, patch) : local.weights(ball, pole);
+    const NodeWeights at =
+        patch > 0 ? patch_weights(ball, local.mesh(), pole, patch) : local.weights(ball, pole);
     for (std::size_t i = 0; i < at.node.size(); ++i) f[2 * n + at.node[i]] += side * at.weight[i];
   }
   return f.dot(Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(K).solve(f));
@@ -80,7 +83,7 @@ TEST_CASE("a patch reproduces its point at rest, on the surface and inside", "[l
     for (int trial = 0; trial < 20; ++trial) {
       Material<double> m = draws.material(MeshPattern::ball);
       if (kind.shell || trial % 2 == 0) m.w = 1;
-      const NodeWeights at = patch_weights(*part, *part->local(), m, 0.7);
+      const NodeWeights at = patch_weights(*part, mesh, m, 0.7);
       const Vec3<double> x = part->s({m}, part->parameters().rest()).col(0);
       double sum = 0, size = 0;
       Vec3<double> mean = Vec3<double>::Zero();
@@ -96,7 +99,7 @@ TEST_CASE("a patch reproduces its point at rest, on the surface and inside", "[l
     }
     // Nothing but its element is within a radius that no edge of the mesh fits in.
     const Material<double> m = material_at(0.3, 0.4);
-    CHECK(patch_weights(*part, *part->local(), m, 1e-3) == part->local()->weights(*part, m));
+    CHECK(patch_weights(*part, mesh, m, 1e-3) == part->local()->weights(*part, m));
   }
 }
 
@@ -111,7 +114,7 @@ TEST_CASE("a force over a patch turns the part as one at its point", "[local][pa
     const Vec3<double> force(0.3, -0.2, 0.5);
     body.force("push", at, TimeVector(force));
     Simulation simulation(body, "rk4");
-    const Vec3<double> x = simulation.model().world_point(simulation.state(), at);
+    const Vec3<double> x = PlacedPoint(simulation.model(), at).at(simulation.state());
     CHECK((x - ball.s({at.material}, ball.parameters().rest()).col(0)).norm() <= 1e-12);
     const double h = 1e-6;
     simulation.step(h);
@@ -140,7 +143,8 @@ TEST_CASE("a joint holds the mean of its patch", "[local][patch][motion]") {
     }
     CHECK(gap <= 1e-11);
     CHECK(std::abs(simulation.ledger().balance) <= 1e-3 * std::abs(start));
-    CHECK((simulation.model().world_point(simulation.state(), point(ball, material_at(kPi / 2, 0), kPatch)) -
+    CHECK((PlacedPoint(simulation.model(), point(ball, material_at(kPi / 2, 0), kPatch))
+               .at(simulation.state()) -
            Vec3<double>(0, 0, 1))
               .norm() <= 1e-11);
   }

@@ -205,7 +205,7 @@ TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
     int by_bytes, by_values;
   };
   int cases = 0, ready = 0;
-  for (const Dose& dose : {Dose{PLIANT_SCENES, 40, 80}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
+  for (const Dose& dose : {Dose{PLIANT_SCENES, 20, 40}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(dose.folder)) {
       // Exponents as degrees of freedom take a second to prepare, and so do a hundred parts.
       if (sample.name == "mould.json" || sample.name == "net.json") continue;
