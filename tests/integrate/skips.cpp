@@ -5,8 +5,10 @@
 #include <cstdlib>
 
 #include <pliant/body/joints/rod.h>
+#include <pliant/part/local_laws.h>
 
 #include "motion.h"
+#include "spring_net.h"
 
 using namespace pliant;
 
@@ -158,6 +160,42 @@ TEST_CASE("a step of parts with joints takes nothing from the heap", "[skip]") {
     Simulation simulation(body, method);
     INFO(method);
     check_heap(simulation, 1e-4);
+  }
+}
+
+TEST_CASE("a step of a part that deforms locally takes nothing from the heap", "[skip][local]") {
+  for (const char* method : kMethods) {
+    MultiBody body;
+    Part& part = test::add(body, "jelly", "ellipsoid", {}, 1000);
+    LocalSettings settings;
+    settings.resolution = 2;
+    settings.energies = {local_law("elastic", {1e4, 0.3})};
+    settings.velocity = test::rush;
+    settings.alpha = 0.1;
+    part.move({0, 0, 0}, {1, 2, 3}).deform_locally(settings);
+    body.spring("tie", point(part, 0.3, 1), world(0, 0, 2), 1, 0.1, 0.3);
+    Simulation simulation(body, method);
+    INFO(method);
+    check_heap(simulation, 1e-4);
+  }
+}
+
+TEST_CASE("no local deformation, no nodes; with it, J of frozen parameters is never evaluated",
+          "[skip][local]") {
+  for (const bool soft : {false, true}) {
+    MultiBody body;
+    Part& part = test::add(body, "body", "ellipsoid", {}, 1000);
+    part.make_shell().move({0, 0, 0}, {1, 2, 3});
+    LocalSettings settings = test::net(2, 1e3);
+    settings.velocity = test::rush;
+    if (soft) part.deform_locally(settings);
+    Simulation simulation(body, "rk4");
+    const Counters counters = after_steps(simulation, 10);
+    CHECK(counters.jacobian_points == 0);  // none of them is dynamic
+    CHECK(counters.rate_points == 0);
+    CHECK((simulation.model().parts()[0].local == nullptr) == !soft);
+    CHECK((counters.mass_matrices == 0) == !soft);
+    CHECK(simulation.state().q.size() == 7 + part.n_d());
   }
 }
 
