@@ -66,7 +66,7 @@ double frequency(Simulation& simulation, double h, int periods, F&& of_state) {
 }  // namespace
 
 TEST_CASE("an elastic solid of seven parameters in free flight keeps energy, P and L at order 4",
-          "[continuum][motion]") {
+          "[continuum][motion][long]") {
   for (const char* law : {"elastic", "st_venant_kirchhoff", "neo_hookean"}) {
     CAPTURE(law);
     std::vector<double> balance, momentum, turning;
@@ -85,7 +85,8 @@ TEST_CASE("an elastic solid of seven parameters in free flight keeps energy, P a
   }
 }
 
-TEST_CASE("damping of the material takes energy, tells it all, and leaves P and L", "[continuum][motion]") {
+TEST_CASE("damping of the material takes energy, tells it all, and leaves P and L",
+          "[continuum][motion][long]") {
   auto end_of = [](int steps) {
     MultiBody body;
     rubber(body, "neo_hookean", 1e-3);
@@ -172,7 +173,7 @@ TEST_CASE("a solid that is turned inside out fails by name", "[continuum][failur
   CHECK(simulation.state().q.allFinite());
 }
 
-TEST_CASE("the predicted stable step of an elastic part is the measured one", "[continuum][stable]") {
+TEST_CASE("the predicted stable step of an elastic part is the measured one", "[continuum][stable][long]") {
   auto grows = [](double beta, double h) {
     MultiBody body;
     Part& part = rubber(body, "st_venant_kirchhoff", beta);

@@ -170,7 +170,7 @@ TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[i
   }
 }
 
-TEST_CASE("soft parts hung from each other: order 2, joints closed to rounding", "[implicit][joints]") {
+TEST_CASE("soft parts hung from each other: order 2, joints closed to rounding", "[implicit][joints][long]") {
   for (const bool parameters : {false, true}) {
     Soft soft = solid("elastic", 1000);
     soft.parameters = parameters;
@@ -241,7 +241,7 @@ TEST_CASE("the ledger of a soft part: damping, drag, a spring, a hand, at order 
   CHECK(observed_order(balance) >= 1.9);
 }
 
-TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implicit][stable]") {
+TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implicit][stable][long]") {
   std::vector<std::pair<std::string, Build>> all;
   auto each = [&](const std::string& name, Soft soft) {
     soft.displaced = 0.05;
@@ -279,7 +279,7 @@ TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implici
 }
 
 TEST_CASE("100 times the explicit limit on joints: stable, and joints closed to rounding",
-          "[implicit][joints][stable]") {
+          "[implicit][joints][stable][long]") {
   for (const std::string law : {"elastic", "corotated"})
     for (const bool parameters : {false, true}) {
       Soft soft = solid(law, 3e6);

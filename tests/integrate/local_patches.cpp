@@ -53,7 +53,7 @@ double stretch(int resolution, double patch) {
 }  // namespace
 
 TEST_CASE("a pull over a patch does not depend on the mesh, one at a point grows without bound",
-          "[local][patch]") {
+          "[local][patch][long]") {
   const double coarse = stretch(4, kPatch), middle = stretch(6, kPatch), fine = stretch(9, kPatch);
   const double point_coarse = stretch(4, 0), point_middle = stretch(6, 0), point_fine = stretch(9, 0);
   CAPTURE(coarse, middle, fine, point_coarse, point_middle, point_fine);

@@ -151,7 +151,7 @@ TEST_CASE("where all points are strained alike one stands for all, and the energ
   CHECK(heavy.continuum()->energy(heavy, Vec3<double>(0.6, 0.3, 1.3)) == Approx(before).epsilon(1e-13));
 }
 
-TEST_CASE("the force is the slope of the energy, and the stiffness that of the force", "[continuum]") {
+TEST_CASE("the force is the slope of the energy, and the stiffness that of the force", "[continuum][long]") {
   Draws draws(5);
   for (const Body& body : bodies())
     for (const std::string& law : kSolidLaws) {
