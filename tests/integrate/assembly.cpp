@@ -11,9 +11,11 @@
 
 #include "draws.h"
 #include "motion.h"
+#include "widest_gap.h"
 
 using namespace pliant;
 using test::Draws;
+using test::widest_gap;
 
 namespace {
 
@@ -38,13 +40,6 @@ void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) 
     body.ball("joint" + std::to_string(i), to, anywhere(part));
     parts.push_back(&part);
   }
-}
-
-double widest_gap(const Simulation& simulation) {
-  double widest = 0;
-  for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
-    widest = std::max(widest, simulation.model().gap(simulation.state(), j));
-  return widest;
 }
 
 }  // namespace

@@ -9,8 +9,10 @@
 
 #include "motion.h"
 #include "spring_net.h"
+#include "widest_gap.h"
 
 using namespace pliant;
+using test::widest_gap;
 
 using test::bump;
 using test::observed_order;
@@ -119,13 +121,6 @@ double explicit_limit(const Build& build) {
   MultiBody body;
   build(body);
   return largest_stable_step(Simulation(body, "rk4"));
-}
-
-double widest_gap(const Simulation& simulation) {
-  double gap = 0;
-  for (std::size_t j = 0; j < simulation.model().joints().size(); ++j)
-    gap = std::max(gap, simulation.model().gap(simulation.state(), static_cast<int>(j)));
-  return gap;
 }
 
 }  // namespace

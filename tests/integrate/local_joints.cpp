@@ -7,8 +7,10 @@
 
 #include "motion.h"
 #include "spring_net.h"
+#include "widest_gap.h"
 
 using namespace pliant;
+using test::widest_gap;
 
 namespace {
 
@@ -20,13 +22,6 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
   settings.velocity = test::rush;
   part.deform_locally(settings);
   return part;
-}
-
-double widest(const Simulation& simulation) {
-  double gap = 0;
-  for (std::size_t j = 0; j < simulation.model().joints().size(); ++j)
-    gap = std::max(gap, simulation.model().gap(simulation.state(), static_cast<int>(j)));
-  return gap;
 }
 
 }  // namespace
@@ -44,7 +39,7 @@ TEST_CASE("soft shells hung from each other: joints hold, and the order is kept"
       const double start = simulation.ledger().energy();
       for (int i = 0; i < steps; ++i) {
         simulation.step(1.0 / steps);
-        REQUIRE(widest(simulation) <= 1e-11);
+        REQUIRE(widest_gap(simulation) <= 1e-11);
       }
       energy.push_back(std::abs(simulation.ledger().energy() - start));
     }
@@ -105,7 +100,7 @@ TEST_CASE("a soft shell on a string: it goes taut, and the gap stays closed", "[
   bool taut = false;
   for (int i = 0; i < 1500; ++i) {
     simulation.step(1e-3);
-    REQUIRE(widest(simulation) <= 1e-9);
+    REQUIRE(widest_gap(simulation) <= 1e-9);
     taut = taut || simulation.state().joints[0] == JointMode::closed;
   }
   CHECK(taut);
@@ -205,7 +200,7 @@ TEST_CASE("assembly before time 0 by both solvers, with soft shells and without"
       body.ball("two", point(*parts[1], kPi / 2, 0), point(*parts[2], -kPi / 2, 0));
       body.ball("head", world(0.5, 0.5, 3.9), point(*parts[2], kPi / 2, 0));
       const Simulation simulation(body, "rk4");
-      CHECK(widest(simulation) <= 1e-9);
+      CHECK(widest_gap(simulation) <= 1e-9);
       places.push_back(simulation.state().q);
     }
     CAPTURE(local);

@@ -14,8 +14,10 @@
 #include <pliant/body/model.h>
 
 #include "motion.h"
+#include "widest_gap.h"
 
 using namespace pliant;
+using test::widest_gap;
 
 namespace {
 
@@ -147,13 +149,6 @@ void double_the_balls(MultiBody& body) {
     const std::vector<Point> points = body.joints()[j]->points();
     body.ball("copy" + std::to_string(j), points[0], points[1]);
   }
-}
-
-double widest_gap(const Simulation& simulation) {
-  double widest = 0;
-  for (std::size_t j = 0; j < simulation.model().joints().size(); ++j)
-    widest = std::max(widest, simulation.model().gap(simulation.state(), static_cast<int>(j)));
-  return widest;
 }
 
 /// Rows that follow from others, of all joints.

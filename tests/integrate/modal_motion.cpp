@@ -9,8 +9,10 @@
 #include <pliant/part/modal_deformation.h>
 
 #include "motion.h"
+#include "widest_gap.h"
 
 using namespace pliant;
+using test::widest_gap;
 
 namespace {
 
@@ -48,13 +50,6 @@ Part& tumbling(MultiBody& body, Basis basis, bool parameters) {
         .initial_rate({{"taper.tx", 0.3}});
   part.deform_locally(soft(basis));
   return part;
-}
-
-double widest(const Simulation& simulation) {
-  double gap = 0;
-  for (std::size_t j = 0; j < simulation.model().joints().size(); ++j)
-    gap = std::max(gap, simulation.model().gap(simulation.state(), static_cast<int>(j)));
-  return gap;
 }
 
 }  // namespace
@@ -219,7 +214,7 @@ TEST_CASE("modes on a ball joint, a hinge and a loop: joints hold, and the order
         const double start = simulation.ledger().energy();
         for (int i = 0; i < steps; ++i) {
           simulation.step(0.5 / steps);
-          REQUIRE(widest(simulation) <= 1e-10);
+          REQUIRE(widest_gap(simulation) <= 1e-10);
         }
         energy.push_back(std::abs(simulation.ledger().energy() - start));
       }
