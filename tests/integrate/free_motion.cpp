@@ -144,7 +144,7 @@ TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>)", "[motio
                         Body{false, 0.1, 0.328868}}) {
     MultiBody body;
     body.gravity.setZero();
-    auto& part = body.add<Primitive<Superellipsoid>>("body", 1000);
+    auto& part = body.add(make_part("body", "superellipsoid", {}, 1000));
     part.rest({{"eps1", b.eps}, {"eps2", b.eps}}).mass(3).stiffness({{"a3", 50}}).initial({{"a3", 1.2}});
     if (b.shell) part.make_shell();
     Simulation simulation(body, "rk4");
@@ -260,7 +260,7 @@ TEST_CASE("a moving exponent conserves energy and momenta at fourth order too", 
   for (int steps : {80, 160, 320}) {
     MultiBody body;
     body.gravity.setZero();
-    auto& part = body.add<Primitive<Superellipsoid, Chain<Taper>>>("body", 1000);
+    auto& part = body.add(make_part("body", "superellipsoid", {"taper"}, 1000));
     part.rest({{"eps1", 0.7}, {"eps2", 1}, {"a3", 0.5}, {"taper.tx", 0.3}})
         .stiffness({{"eps1", 20000}, {"a1", 40000}});
     part.initial({{"eps1", 0.8}}).initial_rate({{"a1", 1}}).move({0, 0, 0}, {1, -2, 1.5});
@@ -279,7 +279,7 @@ TEST_CASE("P is conserved to rounding where the frame sits at the centre of mass
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
-    auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>("body", 1000);
+    auto& part = body.add(make_part("body", "ellipsoid", {"twist"}, 1000));
     part.rest({{"a2", 0.5}}).stiffness({{"a1", 1e5}, {"a3", 1e5}, {"twist.angle", 1e4}});
     part.initial({{"a1", 1.2}, {"twist.angle", 0.7}}).move({0.3, 0.2, -0.1}, {1, 2, 3});
     Simulation simulation(body, method);

@@ -125,7 +125,7 @@ double explicit_limit(const Build& build) {
 
 }  // namespace
 
-TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[implicit][motion]") {
+TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[implicit][motion][long]") {
   Soft linear = solid("elastic", 300), sheet = shell("membrane", "bending", 300);
   SECTION("a linear solid") {
     check_order(flying(linear), 0.4, {100, 200, 400});

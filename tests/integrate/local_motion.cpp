@@ -19,7 +19,7 @@ namespace {
 /// A tumbling shell whose global parameters move too.
 Part& tumbling(MultiBody& body, int resolution, bool soft = true) {
   body.gravity.setZero();
-  auto& part = body.add<Primitive<Superellipsoid, Chain<Taper, Twist>>>("shell", 2);
+  auto& part = body.add(make_part("shell", "superellipsoid", {"taper", "twist"}, 2));
   part.make_shell()
       .rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
       .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
@@ -165,7 +165,7 @@ TEST_CASE(
     "[local]") {
   MultiBody body;
   body.gravity.setZero();
-  auto& part = body.add<Primitive<Cylinder, Chain<Twist>>>("tube", 2);
+  auto& part = body.add(make_part("tube", "cylinder", {"twist"}, 2));
   part.make_shell()
       .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.6}})
       .stiffness({{"twist.angle", 2}})

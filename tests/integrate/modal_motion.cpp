@@ -40,7 +40,7 @@ LocalSettings soft(Basis basis, double E = 2e3) {
 /// A tumbling solid that rings, with three parameters that move, or none.
 Part& tumbling(MultiBody& body, Basis basis, bool parameters) {
   body.gravity.setZero();
-  auto& part = body.add<Primitive<Superellipsoid, Chain<Taper, Twist>>>("soft", 20);
+  auto& part = body.add(make_part("soft", "superellipsoid", {"taper", "twist"}, 20));
   part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
       .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
       .move({0.3, -0.2, 0.1}, {1, 0.6, -0.8});

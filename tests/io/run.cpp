@@ -76,7 +76,8 @@ TEST_CASE("N66: any number of threads gives the same bytes") {
 
 TEST_CASE(
     "N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken "
-    "one") {
+    "one",
+    "[long]") {
   const NewFolder folder;
   for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     const fs::path unbroken = folder / (std::string(integrator) + "_unbroken");

@@ -184,7 +184,7 @@ TEST_CASE("the force is the slope of the energy, and the stiffness that of the f
     }
 }
 
-TEST_CASE("at rest there is no force, and damping is beta times the stiffness", "[continuum]") {
+TEST_CASE("at rest there is no force, and damping is beta times the stiffness", "[continuum][long]") {
   Draws draws(7);
   for (const Body& body : bodies())
     for (const std::string& law : kSolidLaws) {

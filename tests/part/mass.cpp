@@ -104,7 +104,7 @@ TEST_CASE("scales: M_ss of the semi-axes", "[mass]") {
   }
 }
 
-TEST_CASE("exponents: the logarithmic moments are digamma functions", "[mass]") {
+TEST_CASE("exponents: the logarithmic moments are digamma functions", "[mass][long]") {
   // Mean of ln|cos u| weighted by x^2: (psi(2 eps1) - psi(5 eps1 / 2)) / 2, physics 1.3; for v: (psi(3/2
   // eps2) - psi(2 eps2)) / 2.
   for (double eps : {0.4, 1.0, 1.6}) {
@@ -255,7 +255,7 @@ TEST_CASE("mass and inertia given", "[mass]") {
 }
 
 TEST_CASE("M is symmetric and positive definite, and inertial forces do the work that M's change asks for",
-          "[mass]") {
+          "[mass][long]") {
   // nu^T g_q + 1/2 nu^T Mdot nu = 0 for M of the mixed frame (c_dot in the world, omega in the body). Here M
   // is that of the body frame, in which a constant c_dot turns: v_r' = (-omega x v_c, 0, 0) adds nu^T M v_r'.
   Draws draws(2);

@@ -172,7 +172,7 @@ TEST_CASE("the surface of a cone with a tip has no triangles without an area", "
   }
 }
 
-TEST_CASE("volumes of solid meshes converge: second order, fourth with quadratic elements", "[solid]") {
+TEST_CASE("volumes of solid meshes converge: second order, fourth with quadratic elements", "[solid][long]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : {std::vector<std::string>{}, {"taper", "bend"}, {"twist"}}) {
       const std::unique_ptr<Part> part = moderate_part(face->name(), chain);

@@ -207,8 +207,9 @@ TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
   int cases = 0, ready = 0;
   for (const Dose& dose : {Dose{PLIANT_SCENES, 20, 40}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
     for (const Sample& sample : samples(dose.folder)) {
-      // Exponents as degrees of freedom take a second to prepare, and so do a hundred parts.
-      if (sample.name == "mould.json" || sample.name == "net.json") continue;
+      // Exponents as degrees of freedom take a second to prepare, and so do a hundred parts and elasticity.
+      if (sample.name == "mould.json" || sample.name == "net.json" || sample.name == "rubber_bars.json")
+        continue;
       Spoiler spoiler(sample.name);
       for (int i = 0; i < std::max(1, dose.by_bytes / kEach); ++i, ++cases)
         try_out(sample, spoiler.spoil_bytes(sample.text), &ready);

@@ -45,7 +45,7 @@ const pliant::test::SchemaJudge& schema() {
 
 }  // namespace
 
-TEST_CASE("every scene that comes with pliant reads without a warning, and a run can start") {
+TEST_CASE("every scene that comes with pliant reads without a warning, and a run can start", "[long]") {
   const std::vector<fs::path> scenes = scenes_in(PLIANT_SCENES);
   CHECK(scenes.size() >= 19);
   for (const fs::path& path : scenes) {
@@ -62,7 +62,8 @@ TEST_CASE("every scene that comes with pliant reads without a warning, and a run
   }
 }
 
-TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books") {
+TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books",
+          "[long]") {
   const auto run = [](const char* name, double until, const auto& after_step) {
     pliant::Diagnostics diagnostics;
     const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
