@@ -133,7 +133,7 @@ TEST_CASE("small motion dies as beta omega^2 / 2", "[continuum][motion]") {
   CHECK(std::log(start / simulation.ledger().energy()) == Approx(beta * omega2 * time).epsilon(2e-2));
 }
 
-TEST_CASE("jvp of an elastic part agrees with differences", "[continuum]") {
+TEST_CASE("jvp of an elastic part agrees with differences", "[continuum][long]") {
   for (const double beta : {0.0, 3e-3}) {
     MultiBody body;
     rubber(body, "neo_hookean", beta);
@@ -237,7 +237,8 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
   CHECK(q[1] < 0.95);
 }
 
-TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb's", "[continuum][motion]") {
+TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb's",
+          "[continuum][motion][long]") {
   // S2 and breathing of a free solid sphere, nu_P = 0.25 (physics 8.3): by three scales 3.1623 and 5.0, exact
   // 2.63987 and 4.44000. Excited by scales; the same by the nodes of a part whose scales are frozen.
   const double exact[2] = {2.63987, 4.44000}, scales[2] = {std::sqrt(10.0), 5.0};

@@ -202,7 +202,7 @@ TEST_CASE("pseudo-rigid ellipsoid against its own Lagrangian", "[motion]") {
   }
 }
 
-TEST_CASE("tumbling with every parameter moving: orders of RK4", "[motion]") {
+TEST_CASE("tumbling with every parameter moving: orders of RK4", "[motion][long]") {
   std::vector<VecX<double>> ends;
   std::vector<double> energy, momentum, angular;
   for (int steps : {100, 200, 400, 800, 3200}) {
@@ -234,7 +234,7 @@ TEST_CASE("tumbling with every parameter moving: orders of RK4", "[motion]") {
   CHECK(test::observed_order(angular) >= 3.9);
 }
 
-TEST_CASE("tumbling with every parameter moving: semi-implicit Euler is of first order", "[motion]") {
+TEST_CASE("tumbling with every parameter moving: semi-implicit Euler is of first order", "[motion][long]") {
   std::vector<VecX<double>> ends;
   std::vector<double> energy;
   for (int steps : {2000, 4000, 8000}) {
@@ -255,7 +255,7 @@ TEST_CASE("tumbling with every parameter moving: semi-implicit Euler is of first
   CHECK(test::observed_order(energy) >= 0.9);
 }
 
-TEST_CASE("a moving exponent conserves energy and momenta at fourth order too", "[motion]") {
+TEST_CASE("a moving exponent conserves energy and momenta at fourth order too", "[motion][long]") {
   std::vector<double> energy, angular;
   for (int steps : {80, 160, 320}) {
     MultiBody body;

@@ -50,7 +50,7 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
 
 TEST_CASE(
     "every law of local deformation keeps energy, momentum and angular momentum at order 4, damped or not",
-    "[local][motion]") {
+    "[local][motion][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const double beta : {0.0, 1e-4}) {
       CAPTURE(law.name, beta);

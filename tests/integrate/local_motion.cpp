@@ -68,7 +68,7 @@ TEST_CASE("nodes carry the mass, the centre and the inertia of the part", "[loca
 }
 
 TEST_CASE("free flight of a shell that rings, tumbles and changes its shape: order 4, and what is conserved",
-          "[local][motion]") {
+          "[local][motion][long]") {
   std::vector<double> energy, momentum, turning;
   for (const int steps : {50, 100, 200, 400}) {
     MultiBody body;

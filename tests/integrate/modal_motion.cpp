@@ -87,7 +87,7 @@ TEST_CASE("a mode of a free sphere rings for a hundred periods at three steps ea
 }
 
 TEST_CASE("free flight of modes that ring, tumble and change their shape: order 4, and what is conserved",
-          "[modal][motion]") {
+          "[modal][motion][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool parameters : {false, true}) {
       std::vector<double> energy, momentum, turning;
@@ -111,7 +111,7 @@ TEST_CASE("free flight of modes that ring, tumble and change their shape: order 
     }
 }
 
-TEST_CASE("semi-implicit Euler with modes: first order", "[modal][motion]") {
+TEST_CASE("semi-implicit Euler with modes: first order", "[modal][motion][long]") {
   std::vector<VecX<double>> ends;
   for (const int steps : {200, 400, 800, 1600}) {
     MultiBody body;

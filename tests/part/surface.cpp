@@ -143,7 +143,7 @@ TEST_CASE("the enclosed volume is positive and converges at second order", "[sur
     }
 }
 
-TEST_CASE("vertex normals are those of the part, and agree with the triangles around", "[surface]") {
+TEST_CASE("vertex normals are those of the part, and agree with the triangles around", "[surface][long]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : test::usual_chains()) {
       const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
