@@ -111,10 +111,10 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
       if (!has_pair(resting, contact) && !has_pair(impacts, contact)) impacts.push_back(contact);
     }
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
-      const double tau = locate(method, before, now, length, impacts, state, work, counters);
-      if (tau < length) {
+      const std::optional<double> tau = locate(method, before, now, length, impacts, state, work, counters);
+      if (tau) {
         ++events;
-        now += tau;
+        now += *tau;
         // What lies within rounding of the surface, or will by rounding.
         std::vector<Contact> there = finder_.find(state, now, kResting * resting_gap_);
         for (Contact& contact : there)
@@ -132,21 +132,25 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
 }
 
 /// The time into the step from `before` at which the first of the impacts happens; the state is that of then.
-/// h where there is none before the end.
-double ContactStepping::locate(Integrator& method, const State& before, double t, double h,
-                               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
-                               StepCounters& counters) const {
+/// None when they were not apart before.
+std::optional<double> ContactStepping::locate(Integrator& method, const State& before, double t, double h,
+                                              const std::vector<Contact>& impacts, State& state,
+                                              Workspace<double>& work, StepCounters& counters) const {
   double size = std::numeric_limits<double>::infinity(), largest = 0;
   for (const Contact& contact : impacts) {
     size = std::min(size, dynamics_.model().parts()[at(contact.a.part)].part->size());
     largest = std::max(largest, dynamics_.model().parts()[at(contact.a.part)].part->size());
   }
+  double reached = h;  // how far into the step the state is
+  auto go_to = [&](double tau) {
+    if (tau == reached) return;
+    state = before;
+    set_step(state, t, tau);
+    method.step(dynamics_, state, work, counters);
+    reached = tau;
+  };
   auto gap_at = [&](double tau) {
-    if (tau < h || state.h != h) {
-      state = before;
-      set_step(state, t, tau);
-      method.step(dynamics_, state, work, counters);
-    }
+    go_to(tau);
     double least = std::numeric_limits<double>::infinity();
     for (const Contact& contact : impacts)
       least = std::min(least, finder_.least_gap(state, t + tau, contact, 4 * largest));
@@ -162,10 +166,8 @@ double ContactStepping::locate(Integrator& method, const State& before, double t
     }
   }
   if (!(f_low > 0)) {
-    state = before;
-    set_step(state, t, h);
-    method.step(dynamics_, state, work, counters);
-    return h;
+    go_to(h);
+    return std::nullopt;
   }
   int side = 0;
   double tau = high;
@@ -185,7 +187,7 @@ double ContactStepping::locate(Integrator& method, const State& before, double t
       side = -1;
     }
   }
-  if (tau != high) gap_at(high);
+  go_to(high);
   return high;
 }
 
@@ -259,6 +261,7 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
   move(problem.movers(), work, 0, true, state);
   if (reach * h > 0) {
     move(problem.movers(), work, reach * h, false, state);
+    double left = most;
     for (int i = 0; i < kMostPartings; ++i) {
       if (!model.joints().empty()) settle_joints(dynamics_, t, state, work, counters);
       last_ = finder_.find(state, t, resting_gap_);
@@ -269,10 +272,11 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
                  deep.end());
       double deepest = 0;
       for (const Contact& contact : deep) deepest = std::min(deepest, contact.gap);
-      if (!(deepest < -kRounding * resting_gap_)) break;
+      if (!(deepest < -kRounding * resting_gap_) || left <= 0) break;
       evaluate(state, t, deep, work);
       ContactProblem parting(model, state, work, deep);
-      parting.part_bodies(most);
+      parting.part_bodies(left);
+      left -= std::min(left, -deepest);
       move(parting.movers(), work, 1, false, state);
     }
   }

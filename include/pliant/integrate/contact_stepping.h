@@ -4,6 +4,9 @@
 // rests or sticks does so to the last bit. Many impacts in one step are taken at its end.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <pliant/contact/contact_problem.h>
 #include <pliant/contact/find_contacts.h>
 #include <pliant/integrate/integrator.h>
@@ -25,9 +28,9 @@ class ContactStepping {
 
  private:
   std::vector<Contact> resting_at(const State& state, double t, double slow);
-  double locate(Integrator& method, const State& before, double t, double h,
-                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
-                StepCounters& counters) const;
+  std::optional<double> locate(Integrator& method, const State& before, double t, double h,
+                               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
+                               StepCounters& counters) const;
   void settle(double reach, double h, double slowest_rebound, State& state, double t,
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
