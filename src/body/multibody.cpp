@@ -69,6 +69,17 @@ Joint& MultiBody::join(const std::string& type, std::string name, const JointSet
   return join(make_joint(type, std::move(name), setting));
 }
 
+ContactPlane& MultiBody::plane(std::string name, TimeVector point, const Vec3<double>& normal) {
+  const double length = normal.norm();
+  if (!(length > 0) || !std::isfinite(length))
+    throw std::invalid_argument("plane '" + name + "': its normal has no direction");
+  for (const ContactPlane& other : contact.planes)
+    if (other.name == name) throw std::invalid_argument("a plane '" + name + "' is there already");
+  contact.active = true;
+  contact.planes.push_back({std::move(name), std::move(point), normal / length});
+  return contact.planes.back();
+}
+
 Joint& MultiBody::hinge(std::string name, Point a, Point b, const Vec3<double>& axis) {
   JointSetting setting{std::move(a), std::move(b)};
   setting.axis = axis;

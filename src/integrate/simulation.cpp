@@ -33,6 +33,7 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
       pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
       dynamics_(model_, pool_.get()),
       integrator_(make_integrator(integrator)),
+      contact_(body.contact.active ? std::make_unique<ContactStepping>(dynamics_) : nullptr),
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
   dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
@@ -100,10 +101,17 @@ bool Simulation::shorter_steps_pass(double h) {
   return state_.q.allFinite() && state_.v.allFinite();
 }
 
+void Simulation::take_step() {
+  if (contact_)
+    contact_->step(*integrator_, state_, work_, step_counters_);
+  else
+    integrator_->step(dynamics_, state_, work_, step_counters_);
+}
+
 /// Moves the state on by h but for the count of its step, stopping where joints switch.
 void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
-  if (times.empty()) return integrator_->step(dynamics_, state_, work_, step_counters_);
+  if (times.empty()) return take_step();
   const double end = state_.time() + h;
   const double near = std::max(kNear * h, kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;
@@ -117,7 +125,7 @@ void Simulation::advance(double h) {
       state_.step = 0;
       state_.h = stop - now;
     }
-    integrator_->step(dynamics_, state_, work_, step_counters_);
+    take_step();
     now = stop;
   }
   switch_joints(end, near);

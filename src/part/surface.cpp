@@ -24,14 +24,13 @@ Surface::Surface(const Part& part, int resolution) {
   std::vector<std::array<int, 3>> triangles;
   if (shape.mesh() == MeshPattern::ball) {
     const BallSurface ball(resolution);
-    for (const LatticePoint& p : ball.points)
-      material_.push_back(shape.mesh_label(ball_direction(p), rest.b.data()));
+    for (const LatticePoint& p : ball.points) places_.push_back(ball_direction(p));
     triangles = ball.triangles;
   } else {
     const int round = 8 * resolution, tube = 4 * resolution;
     for (int j = 0; j < round; ++j)
       for (int i = 0; i < tube; ++i)
-        material_.push_back(shape.mesh_label({2 * kPi * i / tube, 2 * kPi * j / round, 0}, rest.b.data()));
+        places_.emplace_back(2 * kPi * i / tube, 2 * kPi * j / round, 0);
     auto at = [&](int i, int j) { return (j % round) * tube + i % tube; };
     for (int j = 0; j < round; ++j)
       for (int i = 0; i < tube; ++i) {
@@ -39,6 +38,7 @@ Surface::Surface(const Part& part, int resolution) {
         triangles.push_back({at(i, j), at(i + 1, j + 1), at(i + 1, j)});
       }
   }
+  for (const Vec3<double>& place : places_) material_.push_back(shape.mesh_label(place, rest.b.data()));
   triangles_.resize(3, static_cast<Eigen::Index>(triangles.size()));
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)

@@ -13,6 +13,7 @@
 #include <pliant/scene/validate.h>
 
 #include "coloring_reader.h"
+#include "contact_reader.h"
 #include "direction_reader.h"
 #include "joint_reader.h"
 #include "part_reader.h"
@@ -66,6 +67,7 @@ class SceneReader {
     const PointReader points(parts_, scene_->end, faults_);
     scene_->body.stabilization = read_stabilization(root_.object("stabilization"));
     for (const Reader& r : named("joints")) read_joint(r, points, faults_, scene_->body);
+    if (root_.given("contact")) read_contact(root_.object("contact"), parts_, times(), faults_, scene_->body);
     for (const Reader& r : named("springs")) read_spring(r, points);
     for (const Reader& r : named("forces")) read_force(r, points);
     for (const Reader& r : named("torques")) read_torque(r, points);

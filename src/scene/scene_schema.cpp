@@ -6,6 +6,7 @@
 #include <pliant/scene/time_value.h>
 
 #include "coloring_reader.h"
+#include "contact_reader.h"
 #include "joint_schema.h"
 #include "local_schema.h"
 
@@ -195,7 +196,7 @@ Record make_scene_record() {
                       optional("shadows", boolean(), "Whether it casts shadows.", "true")}};
   const Record ground{
       "ground",
-      "The drawn ground; it does not touch the parts.",
+      "The drawn ground; it does not touch the parts, planes of \"contact\" do.",
       {optional("visible", boolean(), "Whether it is drawn.", "true"),
        optional("height", number(any(), "m"), "Its z; just below the motion when not given.")}};
   const Record material = damping_fields("material", "What parts can share.", {});
@@ -212,6 +213,7 @@ Record make_scene_record() {
            optional("joints", array(joint_type(end_point(), orientation())),
                     "Joints between parts or to the world.", "[]"),
            optional("stabilization", record(stabilization_record()), "How joints close and hold.", "{}"),
+           optional("contact", record(contact_record()), "What touches what; nothing when not given."),
            optional("springs", array(record(spring)), "Springs between parts or to the world.", "[]"),
            optional("forces", array(record(force)), "Forces at material points.", "[]"),
            optional("torques", array(record(torque)), "Torques on parts.", "[]"),

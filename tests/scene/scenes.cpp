@@ -216,6 +216,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "camera_at_its_target",
                                         "coloring_of_unknown_part",
                                         "coloring_range_falls",
+                                        "contact_beyond",
                                         "density_too_large",
                                         "duplicate_key",
                                         "duplicate_part_name",

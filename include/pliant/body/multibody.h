@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/contact_settings.h>
 #include <pliant/body/joint.h>
 #include <pliant/body/joint_setting.h>
 #include <pliant/body/joints/ball.h>
@@ -57,6 +58,7 @@ class MultiBody {
   Vec3<double> gravity{0, 0, -9.81};  ///< m/s^2
   Stabilization stabilization;
   JointSolver joint_solver;
+  ContactSettings contact;
 
   /// Adds a part; the reference stays valid. Throws std::invalid_argument when the name is taken or empty.
   template <class P, class... Args>
@@ -97,6 +99,10 @@ class MultiBody {
   /// parts are placed; a weld of the parts as they are placed, undeformed.
   Joint& hinge(std::string name, Point a, Point b, const Vec3<double>& axis);
   Joint& weld(std::string name, Point a, Point b);
+
+  /// An impenetrable plane through a point (m, world), and with it contact. Throws std::invalid_argument when
+  /// the normal has no direction or the name is taken.
+  ContactPlane& plane(std::string name, TimeVector point, const Vec3<double>& normal);
 
   const std::vector<std::unique_ptr<Part>>& parts() const { return parts_; }
   const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }

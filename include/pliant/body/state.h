@@ -18,14 +18,16 @@ enum class Work {
   anchors,  ///< of hands that move the ends of springs and joints
   actuation,
   forces,
-  limits,
+  limits,   ///< and of taut strings
+  contact,  ///< of what pushes bodies apart
+  friction,
   baumgarte,  ///< of joints that close
   projection  ///< of the impulses that close joints
 };
-inline constexpr int kWorks = 9;
-inline constexpr std::array<const char*, kWorks> kWorkNames{"damping", "drag",      "spring_damping",
-                                                            "anchors", "actuation", "forces",
-                                                            "limits",  "baumgarte", "projection"};
+inline constexpr int kWorks = 11;
+inline constexpr std::array<const char*, kWorks> kWorkNames{
+    "damping", "drag",    "spring_damping", "anchors",   "actuation", "forces",
+    "limits",  "contact", "friction",       "baumgarte", "projection"};
 
 /// What a joint does right now.
 enum class JointMode : std::int8_t {

@@ -14,7 +14,9 @@ struct StepCounters {
   long steps = 0;
   long evaluations = 0;  ///< of the accelerations
   long limit_impulses = 0;
-  long factorisations = 0;  ///< of the stiffness of nodes
+  long factorisations = 0;      ///< of the stiffness of nodes
+  long contact_sweeps = 0;      ///< over all contacts
+  double contact_residual = 0;  ///< the worst of them, m/s
 };
 
 class Integrator {
@@ -28,6 +30,9 @@ class Integrator {
   /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
   /// step is stable while it is at most 1.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
+  /// How far a force moves a body in a step that is constant over it, in steps times what it adds to the
+  /// velocity.
+  virtual double reach() const { return 0.5; }
   /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
   /// the step free.
   virtual bool local_is_implicit() const { return false; }

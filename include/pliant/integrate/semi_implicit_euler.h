@@ -12,6 +12,7 @@ class SemiImplicitEuler final : public Integrator {
  public:
   const char* name() const override { return "semi_implicit_euler"; }
   int order() const override { return 1; }
+  double reach() const override { return 1; }
   void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 

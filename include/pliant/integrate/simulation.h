@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pliant/integrate/assemble.h>
+#include <pliant/integrate/contact_stepping.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/integrate/step_failure.h>
 
@@ -41,6 +42,8 @@ class Simulation {
 
   /// What assembly before time 0 did, when it was asked for.
   const AssemblyReport& assembly() const { return assembly_; }
+  /// What touches; nullptr where nothing can.
+  const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
   /// Work of the kernels, summed over parts.
   Counters counters() const;
@@ -49,6 +52,7 @@ class Simulation {
 
  private:
   void advance(double h);
+  void take_step();
   bool shorter_steps_pass(double h);
   void switch_joints(double t, double near);
   void check(const State& before);
@@ -58,6 +62,7 @@ class Simulation {
   std::unique_ptr<ThreadPool> pool_;
   Dynamics dynamics_;
   std::unique_ptr<Integrator> integrator_;
+  std::unique_ptr<ContactStepping> contact_;  ///< where anything touches
   State state_, last_good_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;

@@ -18,6 +18,8 @@ class Surface {
   Surface(const Part& part, int resolution);
 
   const std::vector<Material<double>>& material() const { return material_; }
+  /// Where ShapeFace::mesh_label() took each of them from.
+  const std::vector<Vec3<double>>& places() const { return places_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
   /// Edges along a quarter circle that give about this many triangles.
   static int resolution_for(const Part& part, int triangles);
@@ -30,6 +32,7 @@ class Surface {
 
  private:
   std::vector<Material<double>> material_;
+  std::vector<Vec3<double>> places_;
   Eigen::Matrix3Xi triangles_;
 };
 

@@ -1,0 +1,41 @@
+// Who touches whom: planes, friction and restitution, and pairs that are out of the ordinary.
+#pragma once
+
+#include <deque>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pliant/math/time_function.h>
+
+namespace pliant {
+
+/// An immobile, impenetrable half space below a plane, or one that is moved by hand.
+struct ContactPlane {
+  std::string name;
+  TimeVector point;                                      ///< on the plane, m, world
+  Vec3<double> normal = {0, 0, 1};                       ///< of length 1, out of the half space, world
+  double on = 0;                                         ///< it is there from this time, s
+  double off = std::numeric_limits<double>::infinity();  ///< until that, s
+
+  bool acts_at(double t) const { return on <= t && t < off; }
+};
+
+/// How two things touch that are named: parts or planes.
+struct ContactPair {
+  std::string a, b;
+  bool touch = true;  ///< false: they pass through each other
+  double friction = 0, restitution = 0;
+};
+
+struct ContactSettings {
+  bool active = false;        ///< whether anything touches at all
+  bool between_parts = true;  ///< whether parts touch parts, or planes alone
+  double friction = 0.5;      ///< Coulomb's coefficient mu
+  double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
+  /// Parts that a joint ties together touch only where a pair says so.
+  std::vector<ContactPair> pairs;
+  std::deque<ContactPlane> planes;
+};
+
+}  // namespace pliant

@@ -1,0 +1,86 @@
+// The contacts of bodies that push on each other at once, at velocity level (design 1.6): each contact has a
+// velocity u of its sides against each other and an impulse p that meets Coulomb's law (solve/coulomb.h),
+// while the joints of each body hold and no parameter leaves its limits. What moves as one, a part alone or
+// the parts that joints tie together, is a mover; its velocities x stand as in body/group.h.
+#pragma once
+
+#include <vector>
+
+#include <pliant/body/dynamics.h>
+#include <pliant/contact/contact.h>
+
+namespace pliant {
+
+struct Mover {
+  int part = -1;                   ///< a part alone
+  const Island* island = nullptr;  ///< or this
+  VecX<double> before, x;          ///< velocities before and after the impulses
+};
+
+struct ContactSolution {
+  std::vector<Vec3<double>> impulse;  ///< of each contact, N s, world, on side a
+  double friction_work = 0;           ///< J
+  double residual = 0;                ///< what Coulomb's law misses at the worst contact, m/s
+  int sweeps = 0;
+};
+
+class ContactProblem {
+ public:
+  /// work: evaluated with masses and factors for every part that the contacts touch. contacts, work: must
+  /// outlive it. resting: whether a contact has been there before, so that it does not rebound.
+  ContactProblem(const Model& model, const State& state, Workspace<double>& work,
+                 const std::vector<Contact>& contacts);
+
+  /// slowest_rebound: m/s; impacts below it do not rebound.
+  ContactSolution solve(double slowest_rebound);
+  /// Without friction, and for changes of x instead of velocities: what takes the gaps to zero where they are
+  /// negative, by at most `most` m.
+  void part_bodies(double most);
+
+  const std::vector<Mover>& movers() const { return movers_; }
+
+ private:
+  struct Side {
+    std::size_t mover;
+    int first;       ///< of its part in x
+    MatX<double> J;  ///< 3 x n
+  };
+  struct Response {
+    std::size_t mover;
+    MatX<double> Y;  ///< change of x by unit impulses
+  };
+  /// A contact, or one row of a limit, whose other two are zero.
+  struct Block {
+    int rows = 3;
+    double mu = 0;
+    std::vector<Side> sides;
+    std::vector<Response> responses;
+    Mat3<double> W = Mat3<double>::Zero();
+    Mat3<double> axes = Mat3<double>::Identity();  ///< normal and tangents, columns, world
+    Vec3<double> constant = Vec3<double>::Zero();  ///< added to u
+    Vec3<double> p = Vec3<double>::Zero();
+  };
+
+  std::size_t mover_of(int part);
+  int first_in(const Mover& mover, int part) const;
+  void add_side(Block& block, const ContactSide& side, const Vec3<double>& x, double sign);
+  void add_limits(const State& state);
+  void complete(Block& block);
+  Vec3<double> velocity(const Block& block) const;
+  static Vec3<double> met(const Block& block, const Vec3<double>& u);
+  void push(const Block& block, const Vec3<double>& impulse);
+  double sweep(bool forward);
+  double residual() const;
+  MatX<double> matrix() const;
+  bool newton(double exact);
+  int iterate();
+
+  const Model& model_;
+  Workspace<double>& work_;
+  const std::vector<Contact>& contacts_;
+  std::vector<Mover> movers_;
+  std::vector<int> mover_number_;  // of each part; -1: not there yet
+  std::vector<Block> blocks_;      // the contacts first
+};
+
+}  // namespace pliant

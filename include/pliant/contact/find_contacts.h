@@ -1,0 +1,52 @@
+// Which surfaces meet: broad phase by boxes, then the low points of each part over planes and other parts.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <pliant/body/model.h>
+#include <pliant/contact/collision_surface.h>
+#include <pliant/contact/contact.h>
+
+namespace pliant {
+
+class ContactFinder {
+ public:
+  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
+  /// for parts that deform locally.
+  explicit ContactFinder(const Model& model);
+
+  /// Contacts at a state and a time (s) whose gap is at most `most` (m).
+  std::vector<Contact> find(const State& state, double t, double most) const;
+  /// Velocity of side a against side b at a contact, m/s, world.
+  Vec3<double> velocity(const State& state, const Contact& contact) const;
+  /// What a step of h seconds from a state comes near to.
+  struct Neighbourhood {
+    bool empty = true;  ///< nothing touches in it
+    double h;           ///< so long that no part passes through another, s
+  };
+  Neighbourhood neighbourhood(const State& state, double t, double h) const;
+  /// The least gap of a part over another or a plane, m; no more than `most`.
+  double least_gap(const State& state, double t, const Contact& of, double most) const;
+
+ private:
+  struct Rule {
+    bool touch = true;
+    double friction = 0, restitution = 0;
+  };
+  struct Placed;
+  Rule rule_of(const std::string& a, const std::string& b) const;
+  Placed place(const State& state, int part) const;
+  void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
+                     std::vector<Contact>& found) const;
+  /// Low points of a over b.
+  void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+                    std::vector<Contact>& found) const;
+
+  const Model* model_;
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
+  std::vector<Rule> on_planes_;                              // part after part, plane after plane
+  std::vector<Rule> on_parts_;                               // of parts i < j, n_parts x n_parts
+};
+
+}  // namespace pliant

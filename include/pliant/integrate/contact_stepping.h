@@ -1,0 +1,52 @@
+// Steps of bodies that touch, around any method of integration. A step that meets nothing is the method's
+// own. Where surfaces meet that were apart, the time of the impact is found and the impulses act there; where
+// they lie on each other, the impulses of a step act as forces do that are constant over it, so that what
+// rests or sticks does so to the last bit. Many impacts in one step are taken at its end.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <pliant/contact/contact_problem.h>
+#include <pliant/contact/find_contacts.h>
+#include <pliant/integrate/integrator.h>
+
+namespace pliant {
+
+class ContactStepping {
+ public:
+  /// dynamics: must outlive it. Throws std::invalid_argument, see ContactFinder.
+  explicit ContactStepping(const Dynamics& dynamics);
+
+  /// Advances q, v and work by state.h; the caller counts the step.
+  void step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters);
+
+  const ContactFinder& finder() const { return finder_; }
+  /// Contacts of the last step, and the impulses on their sides a, N s; empty where nothing touched.
+  const std::vector<Contact>& contacts() const { return contacts_; }
+  const std::vector<Vec3<double>>& impulses() const { return impulses_; }
+
+ private:
+  std::vector<Contact> resting_at(const State& state, double t, double slow);
+  std::optional<double> locate(Integrator& method, const State& before, double t, double h,
+                               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
+                               StepCounters& counters) const;
+  void settle(double reach, double h, double slowest_rebound, State& state, double t,
+              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+  void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
+                Workspace<double>& work) const;
+  void move(const std::vector<Mover>& movers, const Workspace<double>& work, double scale, bool as_velocity,
+            State& state) const;
+
+  const Dynamics& dynamics_;
+  ContactFinder finder_;
+  double resting_gap_ = 0;  ///< m
+  // What lies near each other in a state that was looked at last.
+  VecX<double> last_q_;
+  double last_t_ = 0;
+  std::vector<Contact> last_;
+  std::vector<Contact> contacts_;
+  std::vector<Vec3<double>> impulses_;
+};
+
+}  // namespace pliant

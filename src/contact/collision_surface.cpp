@@ -1,0 +1,171 @@
+#include <pliant/contact/collision_surface.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+namespace pliant {
+
+namespace {
+
+/// Edges along a quarter of a great circle.
+constexpr int kResolution = 6;
+/// How far the surface may lie below the chords between its points, in sizes of the part.
+constexpr double kSag = 0.02;
+/// Points this near in height, in sizes of the part, lie as low as each other.
+constexpr double kLevel = 1e-6;
+/// Points nearer than this, in sizes, are one.
+constexpr double kSame = 0.02;
+/// Size of the stencil, in spacings, that tells whether a point is lowest already.
+constexpr double kCorner = 1e-3, kRounding = 1e-15;
+/// The search ends when its stencil is this small, in spacings.
+constexpr double kSmallest = 1e-8;
+constexpr int kMostIterations = 60;
+
+/// The outermost of some points: the first, the farthest from it, the farthest from that, and the farthest
+/// from the line through them to either side.
+std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
+                                    double same) {
+  std::vector<Eigen::Index> chosen;
+  auto farthest = [&](auto&& distance) {
+    Eigen::Index best = some.front();
+    for (const Eigen::Index i : some)
+      if (distance(i) > distance(best) + 1e-9 * same) best = i;
+    return best;
+  };
+  auto add = [&](Eigen::Index i) {
+    for (const Eigen::Index j : chosen)
+      if ((p.col(i) - p.col(j)).norm() < same) return;
+    chosen.push_back(i);
+  };
+  const Eigen::Index corner =
+      farthest([&](Eigen::Index i) { return (p.col(i) - p.col(some.front())).norm(); });
+  const Eigen::Index other = farthest([&](Eigen::Index i) { return (p.col(i) - p.col(corner)).norm(); });
+  add(corner);
+  add(other);
+  const Vec3<double> along = (p.col(other) - p.col(corner)).normalized();
+  auto offset = [&](Eigen::Index i) -> Vec3<double> {
+    const Vec3<double> d = p.col(i) - p.col(corner);
+    return d - d.dot(along) * along;
+  };
+  const Eigen::Index side = farthest([&](Eigen::Index i) { return offset(i).norm(); });
+  const Vec3<double> across = offset(side);
+  if (across.norm() < same) return chosen;
+  add(side);
+  add(farthest([&](Eigen::Index i) { return -offset(i).dot(across) / across.norm(); }));
+  return chosen;
+}
+
+}  // namespace
+
+CollisionSurface::CollisionSurface(const Part& part)
+    : part_(&part), surface_(part, kResolution), spacing_(0.5 * kPi / kResolution) {
+  const Eigen::Matrix3Xd p = points(part.parameters().rest());
+  thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
+}
+
+CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
+                                                     const Field& field) const {
+  // A stencil of three by three places about the best so far; a quadratic through its heights tells the next.
+  const bool ball = part_->shape().mesh() == MeshPattern::ball;
+  const Vec3<double> start = surface_.places()[static_cast<std::size_t>(i)];
+  Vec3<double> e1{1, 0, 0}, e2{0, 1, 0};
+  if (ball) {
+    e1 = start.unitOrthogonal();
+    e2 = start.normalized().cross(e1);
+  }
+  auto material = [&](double x, double y) {
+    const Vec3<double> place = start + x * e1 + y * e2;
+    return part_->shape().mesh_label(place, values.b.data());
+  };
+  Eigen::Vector2d at(0, 0);
+  LowPoint best;
+  std::vector<Material<double>> stencil(9);
+  auto lay = [&](double size) {
+    for (int j = 0; j < 9; ++j)
+      stencil[static_cast<std::size_t>(j)] = material(at[0] + size * (j % 3 - 1), at[1] + size * (j / 3 - 1));
+    return part_->s(stencil, values);
+  };
+  double radius = 0.5 * spacing_;
+  {  // Corners, edges and faces have their lowest points among those of the mesh.
+    const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
+    const VecX<double> h = field(p);
+    best = {stencil[4], p.col(4), h[4]};
+    if (h.minCoeff() >= h[4] - kRounding * part_->size()) return best;
+  }
+  for (int k = 0; k < kMostIterations && radius > kSmallest * spacing_; ++k) {
+    const Eigen::Matrix3Xd p = lay(radius);
+    const VecX<double> h = field(p);
+    // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
+    Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
+                      (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
+    Eigen::Matrix2d H;
+    H(0, 0) = (h[0] + h[2] + h[3] + h[5] + h[6] + h[8] - 2 * (h[1] + h[4] + h[7])) / 3;
+    H(1, 1) = (h[0] + h[1] + h[2] + h[6] + h[7] + h[8] - 2 * (h[3] + h[4] + h[5])) / 3;
+    H(0, 1) = H(1, 0) = (h[0] + h[8] - h[2] - h[6]) / 4;
+    Eigen::Vector2d step(0, 0);
+    if (H.determinant() > 0 && H.trace() > 0) step = -H.inverse() * g;
+    const double most = step.cwiseAbs().maxCoeff();
+    if (most > 1) step /= most;
+    Eigen::Index lowest = 4;
+    h.minCoeff(&lowest);
+    Eigen::Vector2d next = at;
+    if (h[lowest] < best.height) {
+      best = {stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest]};
+      next = at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
+                                           static_cast<double>(lowest / 3) - 1);
+    }
+    bool good = false;
+    if (step != Eigen::Vector2d::Zero()) {
+      const Eigen::Vector2d there = at + radius * step;
+      const Material<double> m = material(there[0], there[1]);
+      const Eigen::Matrix3Xd p_there = part_->s({m}, values);
+      const double height = field(p_there)[0];
+      if (height <= best.height) {
+        best = {m, p_there.col(0), height};
+        next = there;
+        good = most < 0.5;
+      }
+    }
+    next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
+    const bool stays = (next - at).norm() <= 0.5 * radius;
+    at = next;
+    if (good)
+      radius *= 0.1;
+    else if (stays)
+      radius *= 0.4;
+  }
+  return best;
+}
+
+std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const ParameterValues<double>& values,
+                                                                     const Eigen::Matrix3Xd& p,
+                                                                     const VecX<double>& heights, double most,
+                                                                     const Field& field) const {
+  const double size = part_->size(), lowest = heights.minCoeff();
+  std::vector<LowPoint> found;
+  if (lowest > most + kSag * size) return found;
+  auto within = [&](double band) {
+    std::vector<Eigen::Index> some;
+    for (Eigen::Index i = 0; i < heights.size(); ++i)
+      if (heights[i] <= lowest + band) some.push_back(i);
+    return some;
+  };
+  auto add = [&](const LowPoint& point) {
+    for (LowPoint& other : found)
+      if ((other.p - point.p).norm() < kSame * size) {
+        if (point.height < other.height) other = point;
+        return;
+      }
+    found.push_back(point);
+  };
+  for (const double band : {kLevel * size, kSag * size})
+    for (const Eigen::Index i : outermost(p, within(band), kSame * size)) add(descend(values, i, field));
+  found.erase(std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > most; }),
+              found.end());
+  return found;
+}
+
+}  // namespace pliant

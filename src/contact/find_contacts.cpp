@@ -1,0 +1,314 @@
+#include <pliant/contact/find_contacts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include <pliant/body/multibody.h>
+
+namespace pliant {
+
+namespace {
+
+/// Contacts of a pair nearer than this, in sizes of the smaller part, are one.
+constexpr double kSame = 0.03;
+/// Share of the thinner of two parts that they may move against each other in a step.
+constexpr double kThinShare = 0.4;
+/// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
+/// edge.
+constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// Normals of one contact differ by less than this.
+constexpr double kSameNormal = 0.2;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+/// A part where it is.
+struct ContactFinder::Placed {
+  int number;
+  const Part* part;
+  ParameterValues<double> values;
+  Vec3<double> c;
+  Mat3<double> R;
+  Eigen::Matrix3Xd p, x;    ///< points of its surface, body frame and world
+  Eigen::AlignedBox3d box;  ///< world
+};
+
+ContactFinder::ContactFinder(const Model& model) : model_(&model) {
+  const MultiBody& body = model.body();
+  const int n = static_cast<int>(model.parts().size());
+  std::set<std::string> names;
+  for (const PartModel& m : model.parts()) {
+    names.insert(m.part->name());
+    if (m.local != nullptr)
+      throw std::invalid_argument("part '" + m.part->name() +
+                                  "' deforms locally, and contact is of parts that do not");
+    surfaces_.push_back(std::make_unique<CollisionSurface>(*m.part));
+  }
+  for (const ContactPlane& plane : body.contact.planes)
+    if (!names.insert(plane.name).second)
+      throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
+  for (const ContactPair& pair : body.contact.pairs)
+    for (const std::string& name : {pair.a, pair.b})
+      if (names.count(name) == 0)
+        throw std::invalid_argument("contact of '" + name + "': there is no part or plane of that name");
+  std::set<std::pair<int, int>> joined;
+  for (const JointModel& joint : model.joints())
+    for (const PortRef& one : joint.at)
+      for (const PortRef& other : joint.at)
+        if (one.part >= 0 && other.part > one.part) joined.insert({one.part, other.part});
+  for (int i = 0; i < n; ++i) {
+    const PartModel& m = model.parts()[at(i)];
+    for (const ContactPlane& plane : body.contact.planes) {
+      on_planes_.push_back(rule_of(m.part->name(), plane.name));
+      if (m.q0 < 0) on_planes_.back().touch = false;
+    }
+  }
+  on_parts_.resize(at(n) * at(n));
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j) {
+      const std::string &a = body.parts()[at(i)]->name(), &b = body.parts()[at(j)]->name();
+      Rule& rule = on_parts_[at(i) * at(n) + at(j)];
+      rule = rule_of(a, b);
+      const bool named =
+          std::any_of(body.contact.pairs.begin(), body.contact.pairs.end(),
+                      [&](const ContactPair& p) { return (p.a == a && p.b == b) || (p.a == b && p.b == a); });
+      if (!named && (!body.contact.between_parts || joined.count({i, j}) > 0)) rule.touch = false;
+      if (model.parts()[at(i)].q0 < 0 && model.parts()[at(j)].q0 < 0) rule.touch = false;
+    }
+}
+
+ContactFinder::Rule ContactFinder::rule_of(const std::string& a, const std::string& b) const {
+  const ContactSettings& settings = model_->body().contact;
+  for (const ContactPair& pair : settings.pairs)
+    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a))
+      return {pair.touch, pair.friction, pair.restitution};
+  return {true, settings.friction, settings.restitution};
+}
+
+ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
+  Placed placed{part,
+                model_->parts()[at(part)].part,
+                model_->values(state, part),
+                model_->position(state, part),
+                model_->orientation(state, part).toRotationMatrix(),
+                {},
+                {},
+                {}};
+  placed.p = surfaces_[at(part)]->points(placed.values);
+  placed.x = (placed.R * placed.p).colwise() + placed.c;
+  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff(), placed.x.rowwise().maxCoeff());
+  return placed;
+}
+
+void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t, double most,
+                                  std::vector<Contact>& found) const {
+  const ContactPlane& plane = model_->body().contact.planes[number];
+  if (!plane.acts_at(t)) return;
+  const Vec3<Taylor2<double>> moving = plane.point.at(t);
+  const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v),
+      carried(moving[0].d, moving[1].d, moving[2].d);
+  const Vec3<double> n = a.R.transpose() * plane.normal;
+  const double offset = plane.normal.dot(a.c - point);
+  const auto field = [&](const Eigen::Matrix3Xd& p) -> VecX<double> {
+    return (p.transpose() * n).array() + offset;
+  };
+  const Rule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
+  for (const CollisionSurface::LowPoint& low :
+       surfaces_[at(a.number)]->low_points(a.values, a.p, field(a.p), most, field)) {
+    Contact contact;
+    contact.a = {a.number, low.material};
+    contact.plane = static_cast<int>(number);
+    contact.x = a.c + a.R * low.p;
+    contact.normal = plane.normal;
+    contact.gap = low.height;
+    contact.carried = carried;
+    contact.friction = rule.friction;
+    contact.restitution = rule.restitution;
+    found.push_back(contact);
+  }
+}
+
+void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+                                 std::vector<Contact>& found) const {
+  // To first order the distance to b is w - 1 over the length of its gradient.
+  auto height = [&](const Vec3<double>& in_b, Vec3<double>* gradient = nullptr) {
+    const Vec3<double> slope = b.part->inside_outside_gradient(in_b, b.values);
+    if (gradient != nullptr) *gradient = slope;
+    return b.part->inside_outside(in_b, b.values) / slope.norm();
+  };
+  auto into_b = [&](const Vec3<double>& p) -> Vec3<double> {
+    return b.R.transpose() * (a.c + a.R * p - b.c);
+  };
+  const auto field = [&](const Eigen::Matrix3Xd& p) {
+    VecX<double> heights(p.cols());
+    for (Eigen::Index i = 0; i < p.cols(); ++i) heights[i] = height(into_b(p.col(i)));
+    return heights;
+  };
+  const double reach = most + 0.1 * std::min(a.part->size(), b.part->size());
+  const Eigen::AlignedBox3d near(b.box.min().array() - reach, b.box.max().array() + reach);
+  VecX<double> heights = VecX<double>::Constant(a.x.cols(), a.part->size() + b.part->size());
+  bool any = false;
+  for (Eigen::Index i = 0; i < a.x.cols(); ++i)
+    if (near.contains(a.x.col(i))) {
+      // Along the ray from the middle of b, which is no less than the distance and costs no gradient.
+      const Vec3<double> in_b = into_b(a.p.col(i));
+      const double beyond = b.part->inside_outside(in_b, b.values);
+      heights[i] = beyond / (1 + beyond) * in_b.norm();
+      any = true;
+    }
+  if (!any) return;
+  const std::vector<CollisionSurface::LowPoint> lows =
+      surfaces_[at(a.number)]->low_points(a.values, a.p, heights, most, field);
+  Vec3<double> middle = Vec3<double>::Zero();
+  for (const CollisionSurface::LowPoint& low : lows) middle += low.p / static_cast<double>(lows.size());
+  for (const CollisionSurface::LowPoint& low : lows) {
+    Contact contact;
+    Vec3<double> gradient, inner;
+    const Vec3<double> in_b = into_b(low.p);
+    contact.gap = height(in_b, &gradient);
+    // At an edge of b its faces have one normal each: the one that holds for the middle of the contact does.
+    const double inner_gap = height(into_b(low.p + kInner * (middle - low.p)), &inner);
+    if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
+      gradient = inner;
+      contact.gap = std::max(contact.gap, inner_gap);
+    }
+    contact.normal = b.R * gradient.normalized();
+    contact.x = a.c + a.R * low.p;
+    if (!contact.normal.allFinite()) continue;
+    contact.a = {a.number, low.material};
+    contact.b = {b.number, b.part->label(in_b, b.values)};
+    contact.friction = rule.friction;
+    contact.restitution = rule.restitution;
+    found.push_back(contact);
+  }
+}
+
+std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
+  const int n = static_cast<int>(model_->parts().size());
+  std::vector<Placed> placed;
+  for (int i = 0; i < n; ++i) placed.push_back(place(state, i));
+  std::vector<Contact> found;
+  const std::size_t planes = model_->body().contact.planes.size();
+  for (int i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < planes; ++k)
+      if (on_planes_[at(i) * planes + k].touch) find_on_plane(placed[at(i)], k, t, most, found);
+  // Sweep and prune along x.
+  std::vector<int> order(at(n));
+  for (int i = 0; i < n; ++i) order[at(i)] = i;
+  auto start = [&](int i) { return placed[at(i)].box.min()[0]; };
+  std::sort(order.begin(), order.end(),
+            [&](int i, int j) { return std::pair(start(i), i) < std::pair(start(j), j); });
+  std::vector<std::pair<int, int>> pairs;
+  for (int k = 0; k < n; ++k)
+    for (int l = k + 1; l < n; ++l) {
+      const Placed &one = placed[at(order[at(k)])], &other = placed[at(order[at(l)])];
+      if (other.box.min()[0] > one.box.max()[0] + most) break;
+      const int i = std::min(one.number, other.number), j = std::max(one.number, other.number);
+      if (on_parts_[at(i) * at(n) + at(j)].touch && one.box.squaredExteriorDistance(other.box) <= most * most)
+        pairs.emplace_back(i, j);
+    }
+  std::sort(pairs.begin(), pairs.end());
+  for (const auto& [i, j] : pairs) {
+    const Placed &a = placed[at(i)], &b = placed[at(j)];
+    const Rule& rule = on_parts_[at(i) * at(n) + at(j)];
+    std::vector<Contact> ours, theirs;
+    find_on_part(a, b, rule, most, ours);
+    find_on_part(b, a, rule, most, theirs);
+    const double same = kSame * std::min(a.part->size(), b.part->size());
+    for (Contact& contact : theirs) {
+      std::swap(contact.a, contact.b);
+      contact.normal = -contact.normal;
+      auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
+        return (other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal;
+      });
+      if (twin == ours.end())
+        ours.push_back(contact);
+      else if (contact.gap < twin->gap)
+        *twin = contact;
+    }
+    found.insert(found.end(), ours.begin(), ours.end());
+  }
+  return found;
+}
+
+Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
+  auto of = [&](const ContactSide& side) -> Vec3<double> {
+    const PartModel& m = model_->parts()[at(side.part)];
+    if (m.q0 < 0) return Vec3<double>::Zero();
+    const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
+    const auto v = state.v.segment(m.v0, m.n_v());
+    std::vector<PointJet<double>> jets;
+    Counters counters;
+    m.part->points({side.material}, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
+    return v.head<3>() + R * (v.segment<3>(3).cross(jets[0].p) + jets[0].p1);
+  };
+  return of(contact.a) - (contact.b.part < 0 ? contact.carried : of(contact.b));
+}
+
+ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
+  Neighbourhood near;
+  near.h = h;
+  const int n = static_cast<int>(model_->parts().size());
+  struct Swept {
+    Vec3<double> c, c_dot;
+    double speed, reach;  // of any point against the frame's origin, m/s; the bounding ball and the way, m
+  };
+  std::vector<Swept> all;
+  for (int i = 0; i < n; ++i) {
+    const PartModel& m = model_->parts()[at(i)];
+    Swept swept{model_->position(state, i), Vec3<double>::Zero(), 0, 0};
+    // A parameter may be larger than at rest: the ball is about where the points are.
+    swept.reach = surfaces_[at(i)]->points(model_->values(state, i)).colwise().norm().maxCoeff();
+    if (m.q0 >= 0) {
+      const auto v = state.v.segment(m.v0, m.n_v());
+      swept.c_dot = v.head<3>();
+      swept.speed = swept.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
+      const double free_fall = model_->body().gravity.norm() * h;
+      swept.reach += h * (swept.c_dot.norm() + swept.speed + free_fall);
+    }
+    all.push_back(swept);
+  }
+  const auto& planes = model_->body().contact.planes;
+  for (int i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      if (!on_planes_[at(i) * planes.size() + k].touch || !(planes[k].acts_at(t) || planes[k].acts_at(t + h)))
+        continue;
+      for (const double when : {t, t + h})
+        if (planes[k].normal.dot(all[at(i)].c - planes[k].point.value(when)) < all[at(i)].reach)
+          near.empty = false;
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j) {
+      if (!on_parts_[at(i) * at(n) + at(j)].touch) continue;
+      const Swept &a = all[at(i)], &b = all[at(j)];
+      if ((a.c - b.c).norm() > a.reach + b.reach) continue;
+      near.empty = false;
+      const double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed);
+      const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
+      if (way > thin) near.h = std::min(near.h, h * thin / way);
+    }
+  return near;
+}
+
+double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
+  std::vector<Contact> found;
+  const Placed a = place(state, of.a.part);
+  if (of.b.part < 0) {
+    find_on_plane(a, at(of.plane), t, most, found);
+  } else {
+    const Placed b = place(state, of.b.part);
+    find_on_part(a, b, {}, most, found);
+    find_on_part(b, a, {}, most, found);
+  }
+  double least = most;
+  for (const Contact& contact : found) least = std::min(least, contact.gap);
+  return least;
+}
+
+}  // namespace pliant

@@ -1,0 +1,71 @@
+#include <pliant/solve/coulomb.h>
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace pliant {
+
+namespace {
+constexpr int kMostIterations = 200;
+}
+
+Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
+  if (!(b[0] < 0)) return Vec3<double>::Zero();
+  const double p_alone = -b[0] / W(0, 0);  // without friction
+  if (!(mu > 0)) return {p_alone, 0, 0};
+  const Vec3<double> stick = -W.ldlt().solve(b);
+  if (stick[0] > 0 && stick.tail<2>().norm() <= mu * stick[0]) return stick;
+  // It slides at u_t = -s p_t, s > 0, with u_n = 0: (A + s) p_t = -c, A the Schur complement of the normal.
+  const Eigen::Vector2d coupling = W.block<2, 1>(1, 0);
+  const Eigen::Matrix2d A = W.block<2, 2>(1, 1) - coupling * coupling.transpose() / W(0, 0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(A);
+  const Eigen::Vector2d along = modes.eigenvectors().transpose() * (b.tail<2>() + coupling * p_alone);
+  const auto push = [&](double s) {
+    const Eigen::Vector2d t =
+        modes.eigenvectors() * (-along.array() / (modes.eigenvalues().array() + s)).matrix();
+    return Vec3<double>(p_alone - coupling.dot(t) / W(0, 0), t[0], t[1]);
+  };
+  const auto beyond = [&](double s) {
+    const Vec3<double> p = push(s);
+    return p.tail<2>().norm() - mu * p[0];
+  };
+  // |p_t| falls with s to 0, and p_n goes to p_alone > 0: there is a root.
+  double low = 0, high = modes.eigenvalues()[1];
+  while (beyond(high) > 0) {
+    low = high;
+    high *= 4;
+    if (!std::isfinite(high)) return {p_alone, 0, 0};
+  }
+  // The Illinois form of the false position, on 1 / |p_t| against 1 / (mu p_n), which is nearly straight.
+  const auto level = [&](double s) {
+    const Vec3<double> p = push(s);
+    return p[0] > 0 ? mu * p[0] / p.tail<2>().norm() - 1 : -1.0;
+  };
+  double f_low = level(low), f_high = level(high);
+  int side = 0;
+  for (int i = 0; i < kMostIterations && high - low > 2 * std::numeric_limits<double>::epsilon() * high;
+       ++i) {
+    double s = f_high > f_low ? low - f_low * (high - low) / (f_high - f_low) : 0.5 * (low + high);
+    if (!(s > low && s < high)) s = 0.5 * (low + high);
+    if (!(s > low && s < high)) break;
+    const double f = level(s);
+    if (f == 0) return push(s);
+    if (f < 0) {
+      low = s;
+      f_low = f;
+      if (side < 0) f_high *= 0.5;
+      side = -1;
+    } else {
+      high = s;
+      f_high = f;
+      if (side > 0) f_low *= 0.5;
+      side = 1;
+    }
+  }
+  return push(high);
+}
+
+}  // namespace pliant

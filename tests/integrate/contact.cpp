@@ -1,0 +1,287 @@
+// Contact of parts with planes and with each other: closed forms of friction, impacts and rolling
+// (physics 8.6), rest, and what an impact conserves.
+#include "catch.h"
+
+#include <cmath>
+
+#include <pliant/body/joints/all_joints.h>
+
+#include "draws.h"
+#include "motion.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+Part& ball(MultiBody& body, const char* name, double r, const Vec3<double>& at) {
+  Part& part = body.add(make_part(name, "sphere", {}, 1000));
+  return part.rest({{"r", r}}).place(at);
+}
+Part& box(MultiBody& body, const std::string& name, const Vec3<double>& half, const Vec3<double>& at,
+          const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity()) {
+  Part& part = body.add(make_part(name, "box", {}, 1000));
+  return part.rest({{"a1", half[0]}, {"a2", half[1]}, {"a3", half[2]}}).place(at, R);
+}
+void floor(MultiBody& body) {
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+Eigen::Quaterniond tilted(double angle) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3<double>::UnitY()));
+}
+constexpr double kG = 9.81;
+
+}  // namespace
+
+TEST_CASE("N49: a ball bounces at the times of the geometric series, and past its end it lies still",
+          "[contact]") {
+  for (const double e : {1.0, 0.9, 0.5, 0.0}) {
+    MultiBody body;
+    body.contact.restitution = e;
+    ball(body, "ball", 0.1, {0, 0, 1.1});
+    floor(body);
+    Simulation simulation(body, "rk4");
+    const double first = std::sqrt(2 / kG);
+    for (int i = 0; i < 2500; ++i) {
+      simulation.step(1e-3);
+      const double t = simulation.time();
+      double height = 1 - 0.5 * kG * t * t;
+      if (t > first) {
+        double v = std::sqrt(2 * kG) * e, since = t - first;
+        for (; v > 1e-9 && since > 2 * v / kG; v *= e) since -= 2 * v / kG;
+        height = v > 1e-9 ? v * since - 0.5 * kG * since * since : 0;
+      }
+      REQUIRE(simulation.state().q[2] - 0.1 == Approx(height).margin(2e-9));
+    }
+    CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+  }
+}
+
+TEST_CASE("N50: a block on a slope stays below the angle of friction, and slides by Coulomb's law above",
+          "[contact]") {
+  const double angle = kPi / 6, limit = std::tan(angle);
+  for (const double mu : {limit + 1e-6, limit - 1e-6, 0.3, 0.0}) {
+    MultiBody body;
+    body.contact.friction = mu;
+    const Eigen::Quaterniond R = tilted(angle);
+    const Vec3<double> n = R * Vec3<double>::UnitZ();
+    box(body, "block", {0.1, 0.1, 0.1}, 0.1 * n, R);
+    body.plane("slope", Vec3<double>(0, 0, 0), n);
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 1, 500);
+    const double a = kG * std::max(0.0, std::sin(angle) - mu * std::cos(angle));
+    const Vec3<double> moved = simulation.state().q.head<3>() - 0.1 * n;
+    CHECK(moved.norm() == Approx(0.5 * a).epsilon(1e-6).margin(1e-12));
+    CHECK(simulation.state().v.head<3>().norm() == Approx(a).epsilon(1e-6).margin(1e-12));
+    CHECK(std::abs(moved.dot(n)) < 1e-12);
+  }
+}
+
+TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
+  std::vector<double> errors;
+  for (const double h : {4e-3, 2e-3, 1e-3}) {
+    MultiBody body;
+    body.contact.friction = 0.4;
+    box(body, "block", {0.3, 0.2, 0.1}, {0, 0, 0.1}).move({2, 0.5, 0}, {0, 0, 0});
+    floor(body);
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.8, static_cast<int>(std::lround(0.8 / h)));
+    CHECK(simulation.state().v.norm() < 1e-12);
+    errors.push_back(std::abs(simulation.state().q.head<2>().norm() - 4.25 / (2 * 0.4 * kG)));
+    CHECK(errors.back() < 0.4 * kG * h * h);  // it stops within a step, which acts as one
+  }
+}
+
+TEST_CASE("a ball slides, then rolls at 5/7 of its speed, a hollow one at 3/5", "[contact]") {
+  for (const bool hollow : {false, true}) {
+    MultiBody body;
+    body.contact.friction = 0.3;
+    Part& part = ball(body, "ball", 0.1, {0, 0, 0.1}).move({1, 0, 0}, {0, 0, 0});
+    if (hollow) part.make_shell();
+    floor(body);
+    Simulation simulation(body, "rk4");
+    const double at = hollow ? 0.4 / (0.3 * kG) : 2 / (7 * 0.3 * kG);
+    test::run(simulation, 0.9 * at, 100);
+    CHECK(simulation.state().v[0] == Approx(1 - 0.3 * kG * 0.9 * at).epsilon(1e-8));
+    test::run(simulation, 0.5, 250);
+    const double v = hollow ? 3.0 / 5 : 5.0 / 7;
+    CHECK(simulation.state().v[0] == Approx(v).epsilon(1e-6));
+    CHECK(0.1 * simulation.state().v.segment<3>(3).norm() == Approx(v).epsilon(1e-6));
+    CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+  }
+}
+
+TEST_CASE("N51: boxes on boxes stand without creep", "[contact]") {
+  MultiBody body;
+  for (int i = 0; i < 5; ++i)
+    box(body, "box" + std::to_string(i), {0.1, 0.1, 0.1}, {0.005 * (i % 3), 0, 0.1 + 0.2 * i});
+  floor(body);
+  Simulation simulation(body, "rk4");
+  const VecX<double> start = simulation.state().q;
+  for (int i = 0; i < 100; ++i) {
+    simulation.step(2e-3);
+    REQUIRE((simulation.state().q - start).lpNorm<Eigen::Infinity>() < 1e-11);
+  }
+  CHECK(simulation.state().v.norm() < 1e-11);
+  CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+}
+
+TEST_CASE("parts that collide keep their momenta, and lose the energy that e says", "[contact]") {
+  Draws draws(5);
+  for (const double e : {0.0, 0.6, 1.0}) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.contact.active = true;
+    body.contact.restitution = e;
+    body.contact.friction = 0;
+    ball(body, "a", 0.1, {0, 0, 0}).move({2, 0, 0}, {0, 0, 0});
+    ball(body, "b", 0.2, {0.6, 0, 0}).move({-1, 0, 0}, {0, 0, 0});
+    Simulation simulation(body, "rk4");
+    const Ledger before = simulation.ledger();
+    test::run(simulation, 0.3, 60);
+    const Ledger after = simulation.ledger();
+    CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
+    CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-9 * before.momentum.norm());
+    const double m1 = body.parts()[0]->total_mass(), m2 = body.parts()[1]->total_mass();
+    const double loss = 0.5 * (1 - e * e) * m1 * m2 / (m1 + m2) * 9;
+    CHECK(before.energy() - after.energy() == Approx(loss).epsilon(1e-9).margin(1e-9));
+    CHECK(std::abs(after.balance) < 1e-9);
+  }
+  // Any shapes, with friction: what one gains the other loses.
+  for (int trial = 0; trial < 3; ++trial) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.contact.active = true;
+    box(body, "a", {0.1, 0.15, 0.2}, {0, 0, 0}).move({2, 0.1, 0}, draws.vector(3));
+    Part& b = body.add(make_part("b", "ellipsoid", {}, 500));
+    b.rest({{"a1", 0.2}, {"a2", 0.1}, {"a3", 0.15}}).place({0.6, 0.05, 0.03});
+    b.stiffness({{"a1", 3000}}).move({-1, 0, 0}, draws.vector(3));
+    Simulation simulation(body, "rk4");
+    const Ledger before = simulation.ledger();
+    bool met = false;
+    for (int i = 0; i < 150; ++i) {
+      simulation.step(2e-3);
+      met = met || !simulation.contact()->contacts().empty();
+    }
+    REQUIRE(met);
+    const Ledger after = simulation.ledger();
+    CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
+    CHECK(after.energy() < before.energy());
+    CHECK(std::abs(after.balance) < 1e-4);
+    const Model& model = simulation.model();
+    CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
+  }
+}
+
+TEST_CASE("N53: fast bodies do not pass through thin ones", "[contact]") {
+  for (const double speed : {1.0, 10.0, 100.0, 1000.0}) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.contact.active = true;
+    box(body, "plate", {0.5, 0.5, 0.01}, {0, 0, 0}).fix();
+    ball(body, "ball", 0.05, {0.02, 0.03, 0.3}).move({0, 0, -speed}, {0, 0, 0});
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 1 / speed, 10);
+    CHECK(simulation.state().q[2] > 0.05);
+    CHECK(simulation.state().q[2] == Approx(0.06).margin(1e-9));
+  }
+}
+
+TEST_CASE("N54: bodies that overlap are parted at a bounded speed, those with one centre too", "[contact]") {
+  for (const double apart : {0.15, 0.0}) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.contact.active = true;
+    ball(body, "a", 0.1, {0, 0, 0});
+    ball(body, "b", 0.1, {apart, 0, 0});
+    Simulation simulation(body, "rk4");
+    for (int i = 0; i < 100; ++i) {
+      const VecX<double> before = simulation.state().q;
+      simulation.step(1e-2);
+      REQUIRE(simulation.state().q.allFinite());
+      CHECK((simulation.state().q - before).lpNorm<Eigen::Infinity>() <= 1.01e-3);
+    }
+    if (apart > 0) CHECK(std::abs(simulation.state().q[7] - simulation.state().q[0]) >= 0.2 - 1e-9);
+  }
+}
+
+TEST_CASE("a jointed body lands, and its joint holds through the blow", "[contact]") {
+  MultiBody body;
+  Part& a = body.add(make_part("a", "ellipsoid", {}, 1000));
+  a.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.3}}).place({0, 0, 0.8}, tilted(0.4));
+  Part& b = body.add(make_part("b", "ellipsoid", {}, 1000));
+  const Vec3<double> top = Vec3<double>(0, 0, 0.8) + tilted(0.4) * Vec3<double>(0, 0, 0.3);
+  b.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.3}})
+      .place(top - tilted(-0.9) * Vec3<double>(0, 0, -0.3), tilted(-0.9));
+  body.ball("joint", point(a, kPi / 2, 0), point(b, -kPi / 2, 0));
+  floor(body);
+  Simulation simulation(body, "rk4");
+  bool met = false;
+  for (int i = 0; i < 400; ++i) {
+    simulation.step(2e-3);
+    met = met || !simulation.contact()->contacts().empty();
+    REQUIRE(simulation.model().gap(simulation.state(), 0) < 1e-10);
+    REQUIRE(simulation.step_counters().contact_residual < 1e-9);
+    for (const Contact& contact :
+         ContactFinder(simulation.model()).find(simulation.state(), simulation.time(), 0))
+      REQUIRE(contact.gap > -1e-4);
+  }
+  CHECK(met);
+  CHECK(simulation.ledger().work[static_cast<int>(Work::contact)] < 0);
+}
+
+TEST_CASE("N58: a plane that appears and one that is moved push what is in their way", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  ball(body, "ball", 0.1, {0, 0, 0.05});
+  ContactPlane& plane = body.plane("hand", TimeVector(0, 0, test::wave(0, 0.2, 3)), {0, 0, 1});
+  plane.on = 0.1;
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.1, 10);
+  CHECK(simulation.state().q[2] == 0.05);
+  double fastest = 0;
+  for (int i = 0; i < 100; ++i) {
+    simulation.step(1e-2);
+    fastest = std::max(fastest, simulation.state().v[2]);
+    REQUIRE(simulation.state().v.head<3>().norm() < 1);
+  }
+  CHECK(fastest > 0.5);
+  CHECK(fastest < 0.6 * std::cos(0.3));  // of the plane when it appears
+  CHECK(std::abs(simulation.ledger().balance) < 1e-6);
+}
+
+TEST_CASE("what does not touch is asked nothing, and bits do not depend on the past", "[contact]") {
+  MultiBody body;
+  body.contact.restitution = 0.5;
+  ball(body, "ball", 0.1, {0, 0, 2});
+  floor(body);
+  MultiBody free;
+  ball(free, "ball", 0.1, {0, 0, 2});
+  Simulation one(body, "rk4"), other(free, "rk4");
+  test::run(one, 0.2, 50);
+  test::run(other, 0.2, 50);
+  CHECK(one.state().q == other.state().q);  // in flight a step is the method's own
+  CHECK(one.step_counters().evaluations == other.step_counters().evaluations);
+  test::run(one, 0.6, 60);
+  const State copy = one.state();
+  test::run(one, 0.5, 50);
+  const std::uint64_t end = hash(one.state());
+  MultiBody again;
+  again.contact.restitution = 0.5;
+  ball(again, "ball", 0.1, {0, 0, 2});
+  floor(again);
+  Simulation resumed(again, "rk4");
+  resumed.set_state(copy);
+  test::run(resumed, 0.5, 50);
+  CHECK(hash(resumed.state()) == end);
+}
+
+TEST_CASE("contact that cannot be is refused by name", "[contact]") {
+  MultiBody body;
+  ball(body, "ball", 0.1, {0, 0, 1});
+  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 0}), test::has_text("no direction"));
+  floor(body);
+  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1}), test::has_text("there already"));
+  body.contact.pairs.push_back({"ball", "celing"});
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("celing"));
+}
