@@ -4,7 +4,7 @@
 #include <iostream>
 #include <memory>
 
-#include <pliant/integrate/simulation.h>
+#include <pliant/integrate/stable_step.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/io/number_text.h>
 #include <pliant/scene/read_scene.h>
@@ -39,16 +39,16 @@ double seconds_per_step(pliant::Simulation& simulation, const pliant::FrameSched
 void print_estimate(pliant::Scene& scene) {
   const pliant::FrameSchedule schedule(scene.end, scene.step, scene.frame_rate);
   pliant::Simulation simulation(scene.body, scene.integrator);
-  const double stable = pliant::largest_stable_step(simulation);
+  const pliant::StableStep stable = pliant::stable_step(simulation);
   const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
                          simulation.model().n_limits() + 1;
   const auto frames = static_cast<double>(schedule.frames());
   std::cout << "ok: " << pliant::count_text(static_cast<std::int64_t>(scene.body.parts().size()), "part")
             << ", " << simulation.model().n_v() << " degrees of freedom\n"
             << "estimate: " << schedule.steps() << " steps of " << schedule.step() << " s";
-  if (schedule.step() > stable)
-    std::cout << "\nwarning: the step is above the largest stable one, about " << pliant::rounded_text(stable)
-              << " s";
+  if (schedule.step() > stable.step)
+    std::cout << "\nwarning: the step is above the largest stable one, about "
+              << pliant::rounded_text(stable.step) << " s, set by " << stable.limit;
   else
     std::cout << ", about "
               << pliant::rounded_text(

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include <pliant/body/placed_point.h>
-#include <pliant/integrate/simulation.h>
+#include <pliant/integrate/stable_step.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
@@ -190,12 +190,14 @@ int info(const SceneOptions& options) {
   std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end()
             << " s by " << scene->integrator << ", " << pliant::count_text(schedule.frames(), "frame")
             << "\n";
-  const double stable = pliant::largest_stable_step(simulation);
-  if (std::isfinite(stable))
-    std::cout << "largest stable step: about " << pliant::rounded_text(stable) << " s at the start\n";
+  const pliant::StableStep stable = pliant::stable_step(simulation);
+  if (std::isfinite(stable.step))
+    std::cout << "largest stable step: about " << pliant::rounded_text(stable.step)
+              << " s at the start, set by " << stable.limit << "\n";
   else
     std::cout << "largest stable step: no bound, nothing is stiff\n";
-  if (schedule.step() > stable)
+  if (!stable.uncounted.empty()) std::cout << "  " << stable.uncounted << "\n";
+  if (schedule.step() > stable.step)
     std::cout << "warning: the step of " << schedule.step() << " s is above it; the run would likely fail\n";
   return kDone;
 }

@@ -1,4 +1,5 @@
 // pliant list: what scenes are made of, from the lists of the library.
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <pliant/body/joint_registry.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/math/formula.h>
+#include <pliant/part/local_laws.h>
 #include <pliant/part/registry.h>
 
 #include "command.h"
@@ -50,6 +52,22 @@ void list_deformations() {
   }
 }
 
+void list_laws() {
+  for (const pliant::LocalLawInfo& law : pliant::all_local_laws()) {
+    std::cout << law.name << "\n  of " << (law.shell ? "shells" : "solids") << ": " << law.meaning << "\n";
+    for (const pliant::LocalLawInfo::Number& n : law.numbers) {
+      const bool bounded = std::isfinite(n.min) || std::isfinite(n.max);
+      std::cout << "    " << std::left << std::setw(9) << n.key << " " << std::setw(5)
+                << (n.unit[0] == '1' ? "" : n.unit) << " "
+                << (n.fallback ? "default " + text_of(*n.fallback) + ", " : "");
+      if (bounded)
+        std::cout << (n.above ? "above " : "from ") << text_of(n.min)
+                  << (std::isfinite(n.max) ? " to " + text_of(n.max) : "") << "; ";
+      std::cout << n.meaning << "\n";
+    }
+  }
+}
+
 void list_joints() {
   for (const pliant::JointInfo& joint : pliant::all_joints())
     std::cout << joint.name << "\n  " << joint.formula << "\n";
@@ -74,6 +92,7 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"shapes", "solid primitives, with their parameters, ranges and formulas", list_shapes},
     {"deformations", "links of a part's chain of global deformations", list_deformations},
+    {"laws", "energies of local deformation, with what they take", list_laws},
     {"joints", "constraints between points of parts and of the world", list_joints},
     {"integrators", "methods of time integration", list_integrators},
     {"functions", "what formulas of time may use", list_functions},
@@ -84,7 +103,7 @@ constexpr Kind kKinds[] = {
 void add_list(CLI::App& app, Action& action) {
   const auto kind = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("list", "List shapes, deformations, joints, integrators or functions");
+      app.add_subcommand("list", "List shapes, deformations, laws, joints, integrators or functions");
   std::vector<std::string> names;
   std::string footer = "Kinds:\n";
   for (const Kind& k : kKinds) {

@@ -102,12 +102,14 @@ class Sway {
 
 }  // namespace
 
+bool sway_is_unknown(const Model& model) {
+  return !model.islands().empty() && std::any_of(model.parts().begin(), model.parts().end(),
+                                                 [](const PartModel& m) { return m.local != nullptr; });
+}
+
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
-  // The accelerations of nodes have no derivative: their elasticity has a bound of its own.
-  const bool local = std::any_of(model.parts().begin(), model.parts().end(),
-                                 [](const PartModel& m) { return m.local != nullptr; });
-  if (model.islands().empty() || local) return 0;
+  if (model.islands().empty() || sway_is_unknown(model)) return 0;
   const double value = Sway(dynamics, state, work).largest();
   return value > 0 ? std::sqrt(value) : 0;
 }

@@ -7,7 +7,10 @@ namespace pliant {
 
 /// The greatest omega (rad/s) of small motions that the joints allow, about a state with all its forces; 0
 /// when none swing. By Lanczos' method on directional derivatives of the accelerations, so slightly from
-/// below. work: as Dynamics::accelerations left it there.
+/// below; 0 where it is unknown. work: as Dynamics::accelerations left it there.
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work);
+
+/// Whether there are joints, and parts that deform locally: their accelerations have no derivative.
+bool sway_is_unknown(const Model& model);
 
 }  // namespace pliant

@@ -17,6 +17,24 @@ constexpr double kNear = 1e-9, kUlps = 8;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
 
+/// A part whose nodes have gone this many times its size from rest has burst, whatever is told of it then.
+constexpr double kBurst = 2;
+
+/// Parts that have burst at a state, ahead of the message of a failure; empty: none.
+std::string burst(const Model& model, const State& state) {
+  std::ostringstream message;
+  for (const PartModel& m : model.parts()) {
+    if (m.local == nullptr) continue;
+    const Nodes d = m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s);
+    const double farthest = d.rowwise().norm().maxCoeff() / m.part->size();
+    if (!(farthest > kBurst)) continue;
+    message << "part '" << m.part->name() << "' has burst: its nodes are " << farthest
+            << " times its size away from rest; its elasticity finds no balance with its load (expected a "
+               "smaller one, or a stiffer law), or the steps are too long for it; ";
+  }
+  return message.str();
+}
+
 /// Does something about the state of a time t (s); what cannot be told of it is a failure of the run.
 template <class F>
 auto at_time(double t, F&& act) {
@@ -72,7 +90,10 @@ void Simulation::step(double h) {
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     state_ = last_good_;
-    throw NumericalFailure(failure.what(), state_.time());
+    throw NumericalFailure(burst(model_, state_) + failure.what(), state_.time());
+  } catch (const NumericalFailure& failure) {
+    state_ = last_good_;
+    throw NumericalFailure(burst(model_, state_) + failure.what(), failure.time);
   } catch (...) {
     state_ = last_good_;
     throw;
@@ -165,7 +186,8 @@ void Simulation::check(const State& before) {
   std::string term = dynamics_.diagnose(before.time(), before.q, before.v, before, scratch);
   if (term.empty()) term = dynamics_.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
   std::ostringstream message;
-  message << "not a finite number in " << where << " after the step from t = " << before.time() << " s";
+  message << burst(model_, before) << "not a finite number in " << where
+          << " after the step from t = " << before.time() << " s";
   if (!term.empty())
     message << "; the term at fault is " << term;
   else

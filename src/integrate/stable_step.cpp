@@ -10,7 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <pliant/integrate/free_oscillation.h>
-#include <pliant/integrate/simulation.h>
+#include <pliant/integrate/stable_step.h>
 
 #include "fastest_sway.h"
 
@@ -116,9 +116,21 @@ LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const P
   return bound;
 }
 
+/// "the parameters of part 'a'", or with its springs those it is tied to: "... and 2 parts tied to it".
+std::string limit_of_group(const Model& model, const std::vector<std::size_t>& group) {
+  const std::string name = "'" + model.parts()[group.front()].part->name() + "'";
+  if (group.size() == 1) return "the springs and parameters of part " + name;
+  return "the springs and parameters of part " + name + " and of " + std::to_string(group.size() - 1) +
+         " tied to it";
+}
+
 }  // namespace
 
 double largest_stable_step(const Simulation& simulation) {
+  return stable_step(simulation).step;
+}
+
+StableStep stable_step(const Simulation& simulation) {
   const Model& model = simulation.model();
   const State& state = simulation.state();
   Workspace<double> work;
@@ -195,13 +207,16 @@ double largest_stable_step(const Simulation& simulation) {
     return system;
   };
 
-  double smallest = std::numeric_limits<double>::infinity();
+  StableStep smallest{std::numeric_limits<double>::infinity(), {}, {}};
+  auto take = [&](double step, const std::string& limit) {
+    if (step < smallest.step) smallest = {step, limit, {}};
+  };
   /// x_ddot = -stiffness x - damping x_dot.
   auto one = [&](double stiffness, double damping) {
     const auto number = [](double x) { return MatX<double>::Constant(1, 1, x); };
     return stable_step_of(simulation.integrator(), {number(1), number(stiffness), number(damping)});
   };
-  smallest = std::min(smallest, one(std::pow(fastest_sway(simulation.dynamics(), state, work), 2), 0));
+  take(one(std::pow(fastest_sway(simulation.dynamics(), state, work), 2), 0), "what sways on joints");
   const Dynamics::Hold& hold = simulation.dynamics().hold();
   const Stabilization& rule = model.body().stabilization;
   const bool by_gains = !rule.follows_step(hold.step_consistent) &&
@@ -210,29 +225,32 @@ double largest_stable_step(const Simulation& simulation) {
                         });
   if (by_gains) {
     const Gains gains = rule.gains(state.h, hold.step_consistent);
-    smallest = std::min(smallest, one(gains.beta * gains.beta, 2 * gains.alpha));
+    take(one(gains.beta * gains.beta, 2 * gains.alpha), "the gaps of joints, which Baumgarte's terms close");
   }
   for (std::size_t i = 0; i < n; ++i) {
     const PartModel& m = model.parts()[i];
     if (m.q0 < 0) continue;
     const double turning = state.v.segment<3>(m.v0 + 3).norm();
-    if (turning > 0) smallest = std::min(smallest, kMostTurn / turning);
+    const std::string name = "part '" + m.part->name() + "'";
+    if (turning > 0) take(kMostTurn / turning, "the spin of " + name);
     if (m.local == nullptr) continue;
     const LocalDeformation::Bound bound = bound_locally(model, i, work.parts[i], implicit);
-    smallest = std::min(smallest, one(bound.K, bound.D));
+    take(one(bound.K, bound.D), (implicit ? "the springs at " : "the local elasticity of ") + name);
   }
   for (const std::vector<std::size_t>& group : members) {
     int size = 0;
     for (const std::size_t i : group) size += 6 + model.parts()[i].n_s;
     if (size == 0) continue;
     if (size <= kLargestGroup) {
-      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system_of(group, 1)));
+      take(stable_step_of(simulation.integrator(), system_of(group, 1)), limit_of_group(model, group));
       continue;
     }
     // One by one, an end sees the spring at up to twice its stiffness.
     for (const std::size_t i : group)
-      smallest = std::min(smallest, stable_step_of(simulation.integrator(), system_of({i}, 2)));
+      take(stable_step_of(simulation.integrator(), system_of({i}, 2)), limit_of_group(model, {i}));
   }
+  if (sway_is_unknown(model))
+    smallest.uncounted = "what sways on joints is not counted, since parts deform locally";
   return smallest;
 }
 

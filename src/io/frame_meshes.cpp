@@ -4,7 +4,7 @@
 
 namespace pliant {
 
-FrameMeshes::FrameMeshes(const Scene& scene, const Model& model) : model_(&model) {
+FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) : model_(&model) {
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const Appearance& look = scene.appearance.at(i);
     if (!look.visible) continue;
@@ -18,7 +18,7 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model) : model_(&model
     else
       shown.nodes = surface_nodes(part.local()->mesh());
     if (shown.rigid) shown.body = shown.surface->body_mesh(part, part.parameters().rest());
-    if (!scene.coloring) continue;
+    if (!scene.coloring || values == Values::left_out) continue;
     const ParameterValues<double> rest = part.parameters().rest();
     meshes_.back().by_values = colors(*scene.coloring, part);
     if (shown.surface)

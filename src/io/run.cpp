@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <pliant/integrate/stable_step.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/run_files.h>
@@ -59,6 +60,7 @@ int automatic_threads(Scene& scene) {
     part->prepare();
     cost += part_alone + point_and_parameter * part->mass_points().n_points * part->n_s();
     if (part->continuum() != nullptr) cost += strain_point * part->continuum()->points().n_points;
+    if (part->local() != nullptr) cost += part->local()->cost();
   }
   const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);
@@ -72,7 +74,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const Clock::time_point start = Clock::now();
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_.threads);
-  const double stable_step = largest_stable_step(*simulation_);
+  const StableStep stable = stable_step(*simulation_);
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
   folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
   if (options_.existing == Existing::resume)
@@ -91,13 +93,14 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.width = scene.width;
   record_.height = scene.height;
   record_.steps = schedule_.steps();
-  record_.stable_step = stable_step;
+  record_.stable_step = stable.step;
   record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());
   record_.add_seconds("prepare", seconds_since(start));
-  if (schedule_.step() > stable_step) {
+  if (schedule_.step() > stable.step) {
     note("warning: the step of " + number_text(schedule_.step()) +
-         " s is above the largest stable one, about " + rounded_text(stable_step) + " s");
+         " s is above the largest stable one, about " + rounded_text(stable.step) + " s, set by " +
+         stable.limit);
   }
   const AssemblyReport& assembly = simulation_->assembly();
   if (assembly.iterations > 0)

@@ -11,7 +11,9 @@
 
 namespace pliant {
 
-std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings) {
+namespace {
+
+std::unique_ptr<LocalDeformation> make(const Part& part, const LocalSettings& settings) {
   switch (settings.basis) {
     case LocalSettings::Basis::polynomial:
       return std::make_unique<ModalDeformation>(part, settings, lay_polynomials(part, settings));
@@ -19,6 +21,43 @@ std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const
       return std::make_unique<ModalDeformation>(part, settings, lay_mesh_modes(part, settings));
     default:
       return std::make_unique<NodalDeformation>(part, settings);
+  }
+}
+
+/// An error with the name of the part.
+std::string named(const Part& part, const std::string& error) {
+  const std::string who = "part '" + part.name() + "': ";
+  return error.compare(0, who.size(), who) == 0 ? error : who + error;
+}
+
+}  // namespace
+
+LaidEnergies lay_energies(const Part& part, const LocalSettings& settings, const LocalMesh& mesh) {
+  LaidEnergies laid;
+  for (std::size_t k = 0; k < settings.energies.size(); ++k) {
+    try {
+      laid.all.push_back(settings.energies[k].lay(mesh));
+    } catch (const std::invalid_argument& e) {
+      throw LocalFault(named(part, e.what()), static_cast<int>(k));
+    }
+    const VecX<double> more = laid.all.back()->own_inertia();
+    if (more.size() == 0) continue;
+    if (laid.own_inertia.size() > 0)
+      throw LocalFault(named(part, "only one of its laws may have coordinates of its own, and '" +
+                                       settings.energies[k].name + "' is the second"),
+                       static_cast<int>(k));
+    laid.own_inertia = more;
+  }
+  return laid;
+}
+
+std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings) {
+  try {
+    return make(part, settings);
+  } catch (const LocalFault&) {
+    throw;
+  } catch (const std::invalid_argument& e) {
+    throw LocalFault(named(part, e.what()));
   }
 }
 

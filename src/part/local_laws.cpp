@@ -10,6 +10,7 @@
 #include <pliant/local/membrane.h>
 #include <pliant/local/membrane_laws.h>
 #include <pliant/local/pressure.h>
+#include <pliant/part/parameter_mesh.h>
 
 namespace pliant {
 
@@ -73,6 +74,15 @@ const std::vector<LocalLawInfo>& all_local_laws() {
         {"w1", "N/m", "Resists its variation.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
+       },
+       true},
+      {"loaded_membrane_uv",
+       "The same as published, over the rectangle of the parameters u and v: stiffer towards poles.",
+       true,
+       {{"w0", "N/m", "Resists the size of d.", 0, false, 0.0},
+        {"w1", "N/m", "Resists its variation.", 0, false}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LoadedMembrane>(parameter_mesh(mesh), Load{values[0], values[1]});
        },
        true},
       {"bending",

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <sstream>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -29,28 +29,31 @@ VecX<double> LocalMesh::areas() const {
 
 namespace {
 
-/// Moments of mass of order 0, 1 and 2 of a point, in units of a length.
+/// Moments of mass of order 0, 1 and 2 of a point.
 Vec<double, 10> moments(const Vec3<double>& x) {
   Vec<double, 10> f;
   f << 1, x[0], x[1], x[2], x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0];
   return f;
 }
 /// The same of a whole part.
-Vec<double, 10> moments(const Inertia<double>& whole, double unit) {
-  const Mat3<double> I = whole.M.block<3, 3>(3, 3) / (unit * unit);
+Vec<double, 10> moments(const Inertia<double>& whole) {
+  const Mat3<double> I = whole.M.block<3, 3>(3, 3);
   const Vec3<double> square = 0.5 * I.trace() * Vec3<double>::Ones() - I.diagonal();
   Vec<double, 10> f;
-  f << whole.mass, whole.moment / unit, square, -I(0, 1), -I(1, 2), -I(2, 0);
+  f << whole.mass, whole.moment, square, -I(0, 1), -I(1, 2), -I(2, 0);
   return f;
 }
 
 /// Changes masses as little as it takes, relative to themselves, to give them the mass, the centre and the
-/// second moments of the part without nodes.
-void match_moments(const Inertia<double>& whole, double unit, const Nodes& X, VecX<double>& mass) {
+/// second moments of the part without nodes. Returns the largest part of a moment that is still missing, of
+/// the most that it could be.
+double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>& mass) {
   const Eigen::Index n = X.rows();
+  const Vec<double, 10> unit = moments(Vec3<double>(X.cwiseAbs().colwise().maxCoeff().transpose()));
   MatX<double> F(10, n);
-  for (Eigen::Index k = 0; k < n; ++k) F.col(k) = moments(Vec3<double>(X.row(k).transpose() / unit));
-  const Vec<double, 10> missing = moments(whole, unit) - F * mass;
+  for (Eigen::Index k = 0; k < n; ++k)
+    F.col(k) = moments(Vec3<double>(X.row(k).transpose())).cwiseQuotient(unit);
+  const Vec<double, 10> wanted = moments(whole).cwiseQuotient(unit), missing = wanted - F * mass;
   // Least sum m c^2 with sum m c f = what is missing: c = f^T y.
   const Eigen::Matrix<double, 10, 10> A = F * mass.asDiagonal() * F.transpose();
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 10, 10>> solver;
@@ -58,6 +61,7 @@ void match_moments(const Inertia<double>& whole, double unit, const Nodes& X, Ve
   solver.compute(A);
   const VecX<double> change = F.transpose() * solver.solve(missing);
   mass.array() *= 1 + change.array();
+  return (wanted - F * mass).cwiseAbs().maxCoeff() / whole.mass;
 }
 
 /// Weights of the point of a triangle that is nearest to x.
@@ -149,12 +153,21 @@ NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
     Eigen::Map<Vec<double, 4>>(L.data()) = at;
   }
   if (mesh.tetrahedra.rows() == 4) return weights_in<LinearTetrahedron>(mesh, in, x, L);
+  if (mesh.tetrahedra.rows() == 10) return weights_in<QuadraticTetrahedron>(mesh, in, x, L);
   return weights_in<EnrichedTetrahedron>(mesh, in, x, L);
 }
 
-/// Triangles of a surface of 3 nodes a column, or of 7 (see Solid), each of which makes six.
+/// Triangles of a surface of 3 nodes a column, or of 6 or 7 (see Solid), which make four and six each.
 Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
   if (faces.rows() == 3) return faces;
+  if (faces.rows() == 6) {
+    constexpr int four[4][3] = {{0, 3, 5}, {1, 4, 3}, {2, 5, 4}, {3, 4, 5}};
+    Eigen::Matrix3Xi triangles(3, 4 * faces.cols());
+    for (Eigen::Index f = 0; f < faces.cols(); ++f)
+      for (int i = 0; i < 4; ++i)
+        triangles.col(4 * f + i) << faces(four[i][0], f), faces(four[i][1], f), faces(four[i][2], f);
+    return triangles;
+  }
   constexpr int round[7] = {0, 3, 1, 4, 2, 5, 0}, middle = 6;
   Eigen::Matrix3Xi triangles(3, 6 * faces.cols());
   for (Eigen::Index f = 0; f < faces.cols(); ++f)
@@ -172,8 +185,11 @@ LocalMesh lay_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.nodes = surface.material();
     mesh.triangles = surface.triangles();
   } else {
+    // Modes take the consistent mass, which is positive without the nodes on faces and in the middle.
+    const bool modes = settings.basis == LocalSettings::Basis::modes;
     const Solid solid(part, settings.resolution,
-                      settings.order == 2 ? Solid::Order::enriched : Solid::Order::linear);
+                      settings.order == 1 ? Solid::Order::linear
+                                          : (modes ? Solid::Order::quadratic : Solid::Order::enriched));
     mesh.nodes = solid.material();
     mesh.triangles = flat_triangles(solid.boundary());
     mesh.tetrahedra = solid.elements();
@@ -182,11 +198,17 @@ LocalMesh lay_local_mesh(const Part& part, const LocalSettings& settings) {
   mesh.mass = part.shell() ? mesh.areas() : lumped_mass(mesh.X, mesh.tetrahedra, 1);
   mesh.density = part.total_mass() / mesh.mass.sum();
   mesh.mass *= mesh.density;
-  match_moments(part.rest_inertia(), part.size(), mesh.X, mesh.mass);
-  if (!(mesh.mass.minCoeff() > 0))
-    throw std::invalid_argument("part '" + part.name() + "': a mesh of resolution " +
-                                std::to_string(settings.resolution) +
-                                " is too coarse for its masses to be positive");
+  constexpr double rounding = 1e-10;
+  const double missing = match_moments(part.rest_inertia(), mesh.X, mesh.mass);
+  const std::string of_mesh =
+      "part '" + part.name() + "': a mesh of resolution " + std::to_string(settings.resolution);
+  if (!(missing <= rounding)) {
+    std::ostringstream message;
+    message << of_mesh << " cannot have the mass, the centre and the inertia of the part: " << missing
+            << " of a moment is missing; expected another resolution, or a part that is less thin";
+    throw LocalFault(message.str());
+  }
+  if (!(mesh.mass.minCoeff() > 0)) throw LocalFault(of_mesh + " is too coarse for its masses to be positive");
   return mesh;
 }
 

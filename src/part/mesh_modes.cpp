@@ -1,7 +1,9 @@
-// The lowest modes of a mesh under W^T d = 0. With x = M^(1/2) d, K' = M^(-1/2) K M^(-1/2) and an orthonormal
-// basis Q of M^(1/2) G0, those of largest nu of
-//   x -> s - Y (Q^T Y)^-1 Q^T s,   s = (K' + sigma)^-1 x,   Y = (K' + sigma)^-1 Q,   nu = 1 / (omega^2 +
+// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0,
+// those of largest nu of
+//   x -> s - Y (Q^T Y)^-1 Q^T s,   s = C (K + sigma M)^-1 C^T x,   Y the same of Q,   nu = 1/(omega^2 +
 //   sigma)
+// M of curved elements is the consistent one, by which omega errs with the fourth power of an edge, from
+// above; of straight ones and of shells the lumped one, whose error opposes that of their stiffness.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,8 +17,12 @@
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 
+#include <pliant/local/solid_mass.h>
 #include <pliant/part/modal_basis.h>
 #include <pliant/part/part.h>
+
+#include "mass_root.h"
+#include "mode_conditions.h"
 
 namespace pliant {
 
@@ -30,94 +36,78 @@ constexpr Eigen::Index kDense = 400;
 constexpr Eigen::Index kMostCoordinates = 60'000;
 constexpr double kMostNumbers = 5e7;
 
-/// Elasticity of a mesh in mass-normalised coordinates.
+/// M over the nodes of a mesh.
+Sparse mass_of(const LocalMesh& mesh) {
+  const Eigen::Index n = mesh.X.rows();
+  std::vector<Eigen::Triplet<double>> entries;
+  if (!mesh.shell() && mesh.tetrahedra.rows() > 4) {
+    entries = consistent_mass(mesh.X, mesh.tetrahedra, mesh.density);
+  } else {
+    for (int k = 0; k < n; ++k) entries.emplace_back(k, k, mesh.mass[k]);
+  }
+  Sparse M(n, n);
+  M.setFromTriplets(entries.begin(), entries.end());
+  return M;
+}
+
+/// Throws where modes do not know a law.
+void check_laws(const std::string& of, const LaidEnergies& laid, const LocalSettings& settings) {
+  for (std::size_t k = 0; k < laid.all.size(); ++k)
+    if (laid.all[k]->of() != NodalEnergy::Of::displacement)
+      throw LocalFault(of + "modes know laws that are quadratic in d only, and not the law '" +
+                           settings.energies[k].name + "'; expected another law, or the basis \"nodes\"",
+                       static_cast<int>(k));
+  if (laid.all.empty()) throw LocalFault(of + "modes need a law; expected one at least");
+}
+
+/// Mass and stiffness of a mesh.
 struct MeshElasticity {
-  VecX<double> root;  ///< of the masses
+  MeshElasticity(const LocalMesh& mesh, const LaidEnergies& laid) : mass(mass_of(mesh), laid.own_inertia) {
+    const Eigen::Index n = mass.size();
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& energy : laid.all) energy->add_stiffness(VecX<double>::Zero(n), entries);
+    K.resize(n, n);
+    K.setFromTriplets(entries.begin(), entries.end());
+  }
+  MassRoot mass;
   Sparse K;
 };
 
-MeshElasticity lay_elasticity(const std::string& of, const LocalMesh& mesh, const LocalSettings& settings) {
-  std::vector<std::unique_ptr<NodalEnergy>> energies;
-  VecX<double> own;
-  for (const LocalLaw& law : settings.energies) {
-    energies.push_back(law.lay(mesh));
-    if (energies.back()->of() != NodalEnergy::Of::displacement)
-      throw std::invalid_argument(of + "modes know laws that are quadratic in d only, and not the law '" +
-                                  law.name + "'; expected another law, or the basis \"nodes\"");
-    const VecX<double> more = energies.back()->own_inertia();
-    if (more.size() == 0) continue;
-    if (own.size() > 0)
-      throw std::invalid_argument(of + "only one of its energies may have coordinates of its own");
-    own = more;
-  }
-  if (energies.empty()) throw std::invalid_argument(of + "modes need a law; expected one at least");
-  MeshElasticity elasticity;
-  elasticity.root.resize(3 * mesh.mass.size() + own.size());
-  elasticity.root << mesh.mass, mesh.mass, mesh.mass, own;
-  elasticity.root = elasticity.root.cwiseSqrt();
-  const Eigen::Index n = elasticity.root.size();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const auto& energy : energies) energy->add_stiffness(VecX<double>::Zero(n), entries);
-  elasticity.K.resize(n, n);
-  elasticity.K.setFromTriplets(entries.begin(), entries.end());
-  const VecX<double> inverse = elasticity.root.cwiseInverse();
-  elasticity.K = (inverse.asDiagonal() * elasticity.K * inverse.asDiagonal()).eval();
-  return elasticity;
-}
-
-/// An orthonormal basis of M^(1/2) G0: rigid motion and the dynamic parameters, at rest.
-MatX<double> conditions(const Part& part, const LocalMesh& mesh, const VecX<double>& root) {
+/// An orthonormal basis of C G0: rigid motion and the dynamic parameters, at rest.
+MatX<double> conditions(const Part& part, const LocalMesh& mesh, const MassRoot& mass) {
   constexpr double dependent = 1e-9;
-  const Eigen::Index n = mesh.X.rows();
-  const int n_s = part.n_s();
-  MatX<double> W = MatX<double>::Zero(root.size(), 6 + n_s);
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    W.col(i).segment(i * n, n).setOnes();
-    W.col(3 + i).segment(k * n, n) = mesh.X.col(j);  // e_i x X
-    W.col(3 + i).segment(j * n, n) = -mesh.X.col(k);
-  }
-  if (n_s > 0) {
-    VecMax<double> q_s(n_s);
-    for (int k = 0; k < n_s; ++k) q_s[k] = part.parameters().moving(k).rest_value();
-    std::vector<PointJet<double>> jets;
-    Counters unused;
-    part.points(mesh.nodes, q_s, VecMax<double>::Zero(n_s), jets, unused);
-    for (int k = 0; k < n_s; ++k)
-      for (Eigen::Index i = 0; i < n; ++i)
-        for (int r = 0; r < 3; ++r) W(i + r * n, 6 + k) = jets[static_cast<std::size_t>(i)].J(r, k);
-  }
-  W = (root.asDiagonal() * W).eval();
-  for (Eigen::Index c = 0; c < W.cols(); ++c)
-    if (W.col(c).norm() > 0) W.col(c).normalize();
-  Eigen::ColPivHouseholderQR<MatX<double>> qr(W);
-  qr.setThreshold(dependent);
-  return qr.householderQ() * MatX<double>::Identity(root.size(), qr.rank());
+  const MatX<double> G = rest_frame(part, mesh.nodes, mesh.X);
+  MatX<double> all = MatX<double>::Zero(mass.size(), G.cols());
+  all.topRows(G.rows()) = G;
+  return orthonormal_basis(mass.root(all), dependent);
 }
 
-/// (K' + sigma)^-1 on what the conditions leave, as Spectra asks for it.
+/// (K' + sigma)^-1, K' = C^-T K C^-1, on what the conditions leave, as Spectra asks for it.
 class Flexibility {
  public:
   using Scalar = double;
 
-  Flexibility(const Sparse& K, const MatX<double>& Q, double sigma) : Q_(Q) {
-    Sparse shifted = K;
-    for (Eigen::Index i = 0; i < K.rows(); ++i) shifted.coeffRef(i, i) += sigma;
-    factor_.compute(shifted);
+  Flexibility(const MeshElasticity& of, const MatX<double>& Q, double sigma) : mass_(of.mass), Q_(Q) {
+    factor_.compute(of.K + sigma * of.mass.whole());
     if (factor_.info() != Eigen::Success) return;
-    Y_ = factor_.solve(Q);
+    Y_ = yield(Q);
     inner_.compute(Q.transpose() * Y_);
   }
   bool exists() const { return factor_.info() == Eigen::Success && inner_.info() == Eigen::Success; }
   Eigen::Index rows() const { return Q_.rows(); }
   Eigen::Index cols() const { return Q_.rows(); }
   void perform_op(const double* in, double* out) const {
-    const VecX<double> s = factor_.solve(Eigen::Map<const VecX<double>>(in, rows()));
+    const VecX<double> s = yield(Eigen::Map<const VecX<double>>(in, rows()));
     const VecX<double> hold = inner_.solve(Q_.transpose() * s);
     Eigen::Map<VecX<double>>(out, rows()) = s - Y_ * hold;
   }
 
  private:
+  MatX<double> yield(const MatX<double>& x) const {
+    return mass_.root(MatX<double>(factor_.solve(mass_.transposed(x))));
+  }
+
+  const MassRoot& mass_;
   const MatX<double>& Q_;
   Eigen::SimplicialLDLT<Sparse> factor_;
   MatX<double> Y_;
@@ -131,11 +121,12 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k <= j; ++k) {
-        VecX<double> x = VecX<double>::Zero(elasticity.root.size());
-        x.segment(i * n, n) = mesh.X.col(j).cwiseProduct(mesh.X.col(k));
-        x = elasticity.root.cwiseProduct(x).eval();
+        VecX<double> d = VecX<double>::Zero(elasticity.mass.size());
+        d.segment(i * n, n) = mesh.X.col(j).cwiseProduct(mesh.X.col(k));
+        VecX<double> x = elasticity.mass.root(d);
         x -= (Q * (Q.transpose() * x)).eval();
-        const double size = x.squaredNorm(), omega2 = x.dot(elasticity.K * x) / size;
+        d = elasticity.mass.solve(x);
+        const double omega2 = d.dot(elasticity.K * d) / x.squaredNorm();
         if (omega2 > 0) least = std::min(least, omega2);
       }
   return 0.1 * least;
@@ -144,16 +135,17 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
 /// Columns: the modes in mass-normalised coordinates, of rising frequency.
 MatX<double> lowest(const std::string& of, const LocalMesh& mesh, const MeshElasticity& elasticity,
                     const MatX<double>& Q, Eigen::Index count) {
-  const Eigen::Index n = elasticity.root.size();
+  const Eigen::Index n = elasticity.mass.size();
   if (n <= kDense || 4 * count > n) {
     const Eigen::HouseholderQR<MatX<double>> qr(Q);
-    const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols());
-    const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(Z.transpose() * elasticity.K * Z);
+    const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols()),
+                       d = elasticity.mass.solve(Z);
+    const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(d.transpose() * (elasticity.K * d));
     return Z * modes.eigenvectors().leftCols(count);
   }
   constexpr double tolerance = 1e-13;
   constexpr int most_iterations = 1000;
-  Flexibility flexibility(elasticity.K, Q, shift_of(mesh, elasticity, Q));
+  Flexibility flexibility(elasticity, Q, shift_of(mesh, elasticity, Q));
   if (!flexibility.exists())
     throw std::invalid_argument(of + "its elasticity is not positive: its modes cannot be told");
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, std::min(n, 2 * count + 20));
@@ -183,42 +175,38 @@ ModalBasis lay_mesh_modes(const Part& part, const LocalSettings& settings) {
         of + std::to_string(settings.modes) + " modes of a mesh of " + std::to_string(n_nodes) +
         " nodes are too much to be told; expected at most " + std::to_string(kMostCoordinates / 3) +
         " nodes, and nodes times modes below " + std::to_string(static_cast<long>(kMostNumbers / 3)));
-  const MeshElasticity elasticity = lay_elasticity(of, *mesh, settings);
-  const MatX<double> Q = conditions(part, *mesh, elasticity.root);
-  const Eigen::Index left = elasticity.root.size() - Q.cols();
+  const LaidEnergies laid = lay_energies(part, settings, *mesh);
+  check_laws(of, laid, settings);
+  const MeshElasticity elasticity(*mesh, laid);
+  const MassRoot& root = elasticity.mass;
+  const MatX<double> Q = conditions(part, *mesh, root);
+  const Eigen::Index left = root.size() - Q.cols();
   if (settings.modes > left)
     throw std::invalid_argument(of + std::to_string(settings.modes) + " modes of a mesh that has " +
                                 std::to_string(left) + "; expected no more");
   MatX<double> x = lowest(of, *mesh, elasticity, Q, settings.modes);
   // By their energies, whose error is the square of that of the modes.
+  x = root.solve(x);
   const MatX<double> stiffness = x.transpose() * (elasticity.K * x);
   const Eigen::SelfAdjointEigenSolver<MatX<double>> inner(stiffness);
-  x = (x * inner.eigenvectors()).eval();
+  const MatX<double> modes = x * inner.eigenvectors();
   basis.omega2 = inner.eigenvalues().cwiseMax(0);
-  const MatX<double> modes = elasticity.root.cwiseInverse().asDiagonal() * x;
 
   // The fields that make them up, with the constant and X.
   constexpr double dependent = 1e-10;
-  const VecX<double> root = mesh->mass.cwiseSqrt();
   MatX<double> fields(n_nodes, 4 + 3 * settings.modes);
   fields.leftCols<4>() << VecX<double>::Ones(n_nodes), mesh->X;
   for (Eigen::Index j = 0; j < settings.modes; ++j)
     fields.middleCols<3>(4 + 3 * j) = modes.col(j).head(3 * n_nodes).reshaped(n_nodes, 3);
-  fields = (root.asDiagonal() * fields).eval();
-  for (Eigen::Index c = 0; c < fields.cols(); ++c)
-    if (fields.col(c).norm() > 0) fields.col(c).normalize();
-  Eigen::ColPivHouseholderQR<MatX<double>> qr(fields);
-  qr.setThreshold(dependent);
   const double mass = mesh->mass.sum();
-  const MatX<double> U = qr.householderQ() * MatX<double>::Identity(n_nodes, qr.rank());
-  const auto phi =
-      std::make_shared<const MatX<double>>(std::sqrt(mass) * root.cwiseInverse().asDiagonal() * U);
-  basis.mass = VecX<double>::Constant(qr.rank(), mass);
-  basis.project = phi->transpose() * (mesh->mass / mass).asDiagonal();
+  const auto phi = std::make_shared<const MatX<double>>(
+      std::sqrt(mass) * root.solve_of_nodes(orthonormal_basis(root.root_of_nodes(fields), dependent)));
+  basis.mass = VecX<double>::Constant(phi->cols(), mass);
+  basis.project = MatX<double>(root.of_nodes() * *phi).transpose() / mass;
   basis.points = mesh->nodes;
   basis.points_at_rest = mesh->X;
   basis.X = basis.project * mesh->X;
-  basis.B.resize(3 * qr.rank(), settings.modes);
+  basis.B.resize(3 * phi->cols(), settings.modes);
   for (Eigen::Index j = 0; j < settings.modes; ++j)
     basis.B.col(j) =
         MatX<double>(basis.project * modes.col(j).head(3 * n_nodes).reshaped(n_nodes, 3)).reshaped();

@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include "mode_conditions.h"
+#include "store_jets.h"
 
 namespace pliant {
 
@@ -39,13 +40,7 @@ ModalDeformation::ModalDeformation(const Part& part, const LocalSettings& settin
   mesh_ = std::move(basis_.mesh);
   oscillators_.omega2 = basis_.omega2;
   oscillators_.damping = settings.alpha + settings.beta * basis_.omega2.array();
-  if (part.n_s() > 0)
-    for (std::size_t first = 0; first < basis_.points.size(); first += Pack::kLanes) {
-      std::array<Material<double>, Pack::kLanes> four;
-      for (std::size_t i = 0; i < Pack::kLanes; ++i)
-        four[i] = basis_.points[std::min(first + i, basis_.points.size() - 1)];
-      packs_.push_back(gather(four.data()));
-    }
+  if (part.n_s() > 0) packs_ = packs_of(basis_.points);
   // What is no sum of modes goes to the frame and the parameters, as far as they can have it.
   const MatX<double> G = rest_frame(part, basis_);
   auto take = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of, VecX<double>& on_modes,
@@ -76,6 +71,11 @@ const char* ModalDeformation::unit(Eigen::Index) const {
   return "m kg^(1/2)";
 }
 
+double ModalDeformation::cost() const {
+  constexpr double number_of_B = 0.0005;  // read six times in an evaluation
+  return number_of_B * static_cast<double>(basis_.B.size());
+}
+
 std::string ModalDeformation::description() const {
   std::ostringstream text;
   const VecX<double> f = basis_.omega2.cwiseMax(0).cwiseSqrt() / (2 * kPi);
@@ -104,35 +104,11 @@ std::unique_ptr<LocalWorkspace> ModalDeformation::workspace() const {
 
 void ModalDeformation::project_shape(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
                                      ModalWorkspace& w, Counters& counters) const {
-  const auto n_s = static_cast<int>(q_s.size());
-  const auto n_points = static_cast<Eigen::Index>(basis_.points.size());
-  const VecX<double> q_s_dot = v_r.tail(n_s);
-  const bool moving = (q_s_dot.array() != 0).any();
-  const ParameterValues<double> values = part.parameters().expand<double>(q_s, q_s_dot);
-  w.at_points.setZero(n_points, kJ + 3 * n_s);
-  constexpr int kBlock = 8;
-  std::array<Jet<Pack>, kBlock> jets;
-  const auto packs = static_cast<int>(packs_.size());
-  for (int first = 0; first < packs; first += kBlock) {
-    const int count = std::min(kBlock, packs - first);
-    JetBatch<Pack> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
-    part.jets(values, packs_.data() + first, batch);
-    for (int i = 0; i < count; ++i) {
-      const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n_points);
-      const Jet<Pack>& jet = jets[static_cast<std::size_t>(i)];
-      auto store = [&](Eigen::Index column, const Vec3<Pack>& x) {
-        four.store(w.at_points.data() + column * n_points, n_points, x);
-      };
-      store(kS, jet.s);
-      if (moving) {
-        store(kS1, jet.s1);
-        store(kS2, jet.s2);
-      }
-      for (int k = 0; k < n_s; ++k) store(kJ + 3 * k, jet.J[static_cast<std::size_t>(k)]);
-    }
-  }
-  counters.jacobian_points += n_points;
-  counters.rate_points += moving ? n_points : 0;
+  const auto n = static_cast<Eigen::Index>(basis_.points.size());
+  w.at_points.setZero(n, kJ + 3 * q_s.size());
+  double* const first = w.at_points.data();
+  store_jets(part, q_s, v_r.tail(q_s.size()), packs_,
+             {n, first + kS * n, first + kS1 * n, first + kS2 * n, first + kJ * n}, counters);
   w.shape.noalias() = basis_.project * w.at_points;
 }
 

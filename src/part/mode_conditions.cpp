@@ -9,31 +9,51 @@
 
 namespace pliant {
 
-MatX<double> rest_frame(const Part& part, const ModalBasis& basis) {
+namespace {
+
+void normalise_columns(MatX<double>& A) {
+  for (Eigen::Index c = 0; c < A.cols(); ++c)
+    if (A.col(c).norm() > 0) A.col(c).normalize();
+}
+
+}  // namespace
+
+MatX<double> rest_frame(const Part& part, const std::vector<Material<double>>& points, const Nodes& X) {
   const int n_s = part.n_s();
-  const Eigen::Index n = basis.mass.size();
-  const auto n_points = static_cast<Eigen::Index>(basis.points.size());
+  const Eigen::Index n = X.rows();
   MatX<double> G = MatX<double>::Zero(3 * n, 6 + n_s);
-  const VecX<double> one = basis.project.rowwise().sum();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    G.col(i).segment(i * n, n) = one;
-    G.col(3 + i).segment(k * n, n) = basis.X.col(j);  // e_i x X
-    G.col(3 + i).segment(j * n, n) = -basis.X.col(k);
+    G.col(i).segment(i * n, n).setOnes();
+    G.col(3 + i).segment(k * n, n) = X.col(j);  // e_i x X
+    G.col(3 + i).segment(j * n, n) = -X.col(k);
   }
   if (n_s == 0) return G;
   VecMax<double> q_s(n_s);
   for (int k = 0; k < n_s; ++k) q_s[k] = part.parameters().moving(k).rest_value();
   std::vector<PointJet<double>> jets;
   Counters unused;
-  part.points(basis.points, q_s, VecMax<double>::Zero(n_s), jets, unused);
-  for (int k = 0; k < n_s; ++k) {
-    Nodes values(n_points, 3);
-    for (Eigen::Index i = 0; i < n_points; ++i)
-      values.row(i) = jets[static_cast<std::size_t>(i)].J.col(k).transpose();
-    G.col(6 + k) = Nodes(basis.project * values).reshaped();
-  }
+  part.points(points, q_s, VecMax<double>::Zero(n_s), jets, unused);
+  for (int k = 0; k < n_s; ++k)
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (int r = 0; r < 3; ++r) G(i + r * n, 6 + k) = jets[static_cast<std::size_t>(i)].J(r, k);
   return G;
+}
+
+MatX<double> rest_frame(const Part& part, const ModalBasis& basis) {
+  const MatX<double> at_points = rest_frame(part, basis.points, basis.points_at_rest);
+  const Eigen::Index n = basis.mass.size(), n_points = basis.points_at_rest.rows();
+  MatX<double> G(3 * n, at_points.cols());
+  for (int r = 0; r < 3; ++r)
+    G.middleRows(r * n, n).noalias() = basis.project * at_points.middleRows(r * n_points, n_points);
+  return G;
+}
+
+MatX<double> orthonormal_basis(MatX<double> A, double dependent) {
+  normalise_columns(A);
+  Eigen::ColPivHouseholderQR<MatX<double>> qr(A);
+  qr.setThreshold(dependent);
+  return qr.householderQ() * MatX<double>::Identity(A.rows(), qr.rank());
 }
 
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
@@ -41,8 +61,7 @@ void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
   const Eigen::Index n = basis.mass.size();
   const double mass = basis.mass[0];
   MatX<double> W = rest_frame(part, basis);
-  for (Eigen::Index c = 0; c < W.cols(); ++c)
-    if (W.col(c).norm() > 0) W.col(c).normalize();
+  normalise_columns(W);
   Eigen::ColPivHouseholderQR<MatX<double>> qr(W);
   qr.setThreshold(dependent);
   const Eigen::Index left = 3 * n - qr.rank();

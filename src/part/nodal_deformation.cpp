@@ -4,28 +4,18 @@
 #include <array>
 #include <stdexcept>
 
+#include "store_jets.h"
+
 namespace pliant {
 
 NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)
     : LocalDeformation(settings.alpha, settings.beta) {
   mesh_ = lay_local_mesh(part, settings);
-  for (std::size_t first = 0; first < mesh_.nodes.size(); first += Pack::kLanes) {
-    std::array<Material<double>, Pack::kLanes> four;
-    for (std::size_t i = 0; i < Pack::kLanes; ++i)
-      four[i] = mesh_.nodes[std::min(first + i, mesh_.nodes.size() - 1)];
-    packs_.push_back(gather(four.data()));
-  }
-  VecX<double> own;
-  for (const LocalSettings::Law& law : settings.energies) {
-    energies_.push_back(law.lay(mesh_));
-    laws_ += (laws_.empty() ? "" : ", ") + law.name;
-    const VecX<double> more = energies_.back()->own_inertia();
-    if (more.size() == 0) continue;
-    if (own.size() > 0)
-      throw std::invalid_argument("part '" + part.name() +
-                                  "': only one of its energies may have coordinates of its own");
-    own = more;
-  }
+  packs_ = packs_of(mesh_.nodes);
+  LaidEnergies laid = lay_energies(part, settings, mesh_);
+  energies_ = std::move(laid.all);
+  for (const LocalLaw& law : settings.energies) laws_ += (laws_.empty() ? "" : ", ") + law.name;
+  const VecX<double>& own = laid.own_inertia;
   inertia_.resize(3 * n_nodes() + own.size());
   inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
   mobility_ = inertia_.cwiseInverse();
@@ -48,6 +38,16 @@ std::string NodalDeformation::coordinate_name(Eigen::Index k) const {
 
 const char* NodalDeformation::unit(Eigen::Index k) const {
   return k < 3 * n_nodes() ? "m" : "1";
+}
+
+double NodalDeformation::cost() const {
+  // As bench/soft_step_bench and bench/solid_bench measure them.
+  constexpr double node = 0.02, triangle = 0.008, tetrahedron = 0.02, curved = 0.15;
+  const LocalMesh& m = mesh();
+  const double elements = m.shell() ? triangle * static_cast<double>(m.triangles.cols())
+                                    : (m.tetrahedra.rows() == 4 ? tetrahedron : curved) *
+                                          static_cast<double>(m.tetrahedra.cols());
+  return node * static_cast<double>(n_nodes()) + static_cast<double>(energies_.size()) * elements;
 }
 
 std::string NodalDeformation::description() const {

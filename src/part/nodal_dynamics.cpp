@@ -1,6 +1,7 @@
 #include <pliant/part/nodal_deformation.h>
 
 #include "node_sums.h"
+#include "store_jets.h"
 
 namespace pliant {
 
@@ -132,7 +133,6 @@ void shape_rates(const Part& part, const NodalDeformation& local, const VecX<dou
 void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
                                  LocalWorkspace& work, Counters& counters) const {
   NodalWorkspace& w = of(work);
-  const VecMax<double> q_s_dot = v_r.tail(q_s.size());
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
   w.x.resize(n_d());
@@ -140,33 +140,12 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
     if (w.s.rows() != n) w.s = mesh_.X;
     nodes(w.x, n) = w.s + nodes(w.d, n);
   } else {
-    const bool moving = any(q_s_dot);
     w.s.resize(n, 3);
     w.J.resize(3 * n, n_s);
     w.s1.setZero(n, 3);
     w.s2.setZero(n, 3);
-    const ParameterValues<double> values = part.parameters().expand<double>(VecMax<double>(q_s), q_s_dot);
-    constexpr int kBlock = 8;
-    std::array<Jet<Pack>, kBlock> jets;
-    const auto packs = static_cast<int>(packs_.size());
-    for (int first = 0; first < packs; first += kBlock) {
-      const int count = std::min(kBlock, packs - first);
-      JetBatch<Pack> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
-      part.jets(values, packs_.data() + first, batch);
-      for (int i = 0; i < count; ++i) {
-        const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n);
-        const Jet<Pack>& jet = jets[static_cast<std::size_t>(i)];
-        four.store(w.s.data(), n, jet.s);
-        if (moving) {
-          four.store(w.s1.data(), n, jet.s1);
-          four.store(w.s2.data(), n, jet.s2);
-        }
-        for (int k = 0; k < n_s; ++k)
-          four.store(w.J.data() + 3 * n * k, n, jet.J[static_cast<std::size_t>(k)]);
-      }
-    }
-    counters.jacobian_points += n;
-    counters.rate_points += moving ? n : 0;
+    store_jets(part, q_s, v_r.tail(n_s), packs_, {n, w.s.data(), w.s1.data(), w.s2.data(), w.J.data()},
+               counters);
     nodes(w.x, n) = w.s + nodes(w.d, n);
     w.u = w.s1 + nodes(w.d_dot, n);
   }

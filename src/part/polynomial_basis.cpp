@@ -88,9 +88,9 @@ ModalBasis lay_polynomials(const Part& part, const LocalSettings& settings) {
   std::vector<Elasticity> laws;
   for (const LocalLaw& law : settings.energies) {
     if (!law.linear)
-      throw std::invalid_argument(of +
-                                  "displacement polynomials know linear elasticity only, and not the law '" +
-                                  law.name + "'; expected \"elastic\", or the basis \"nodes\"");
+      throw LocalFault(of + "displacement polynomials know linear elasticity only, and not the law '" +
+                           law.name + "'; expected \"elastic\", or the basis \"nodes\"",
+                       static_cast<int>(laws.size()));
     laws.push_back(*law.linear);
   }
   if (settings.degree < 1 || settings.degree > 10)

@@ -60,8 +60,10 @@ schema::Record local_record() {
                 "of a solid. "
                 "Polynomials are shown by that surface.",
                 "8"),
-       optional("order", integer(between(1, 2)),
-                "Of the elements of a solid: 1 straight with 4 nodes, 2 curved with 15 nodes.", "1"),
+       optional(
+           "order", integer(between(1, 2)),
+           "Of the elements of a solid: 1 straight with 4 nodes, 2 curved, with 15 nodes (10 for modes).",
+           "1"),
        required("laws", array(tagged("type", std::move(laws)), 1), "Its energies, which add up.",
                 "[{\"type\": \"membrane\", \"E\": 1e5, \"thickness\": 0.001}]"),
        optional("alpha", number(at_least(0), "1/s"), "Damping of the nodes in proportion to mass.", "0"),

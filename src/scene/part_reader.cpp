@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <pliant/part/local_deformation.h>
 #include <pliant/part/registry.h>
 
 #include "direction_reader.h"
@@ -39,8 +40,12 @@ std::unique_ptr<Part> PartReader::read() {
   for (const JsonValue& d : r_.at("deformations").array()) deformations.push_back(d.string());
   const std::string name = r_.given("name") ? r_.text("name") : "?";
   const std::size_t before = faults_.errors();
-  part_ = make_part(name, r_.text("shape"), deformations, property("density"));
-  if (r_.boolean("shell")) part_->make_shell();
+  const double thickness = r_.given("thickness") ? r_.number("thickness") : 1;
+  part_ = make_part(name, r_.text("shape"), deformations, property("density") * thickness);
+  if (r_.boolean("shell"))
+    part_->make_shell();
+  else if (r_.given("thickness"))
+    faults_.place(r_.at("thickness"), "a solid has none; expected \"shell\": true, or no \"thickness\"");
   part_->damping(property("alpha"), property("beta"), property("drag"));
   if (r_.given("mass")) part_->mass(r_.number("mass"));
 
@@ -205,6 +210,13 @@ void PartReader::refused(const std::invalid_argument& e) {
   faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), without_name(e));
 }
 
+void PartReader::refused_locally(const LocalFault& e) {
+  const Reader local = r_.object("local");
+  const JsonValue& at =
+      e.law < 0 ? local.json() : local.objects("laws")[static_cast<std::size_t>(e.law)].json();
+  faults_.place(at, without_name(e));
+}
+
 /// What an error says, the name of the part left out.
 std::string PartReader::without_name(const std::invalid_argument& e) const {
   std::string message = e.what();
@@ -216,6 +228,8 @@ std::string PartReader::without_name(const std::invalid_argument& e) const {
 void PartReader::prepare() {
   try {
     part_->prepare();
+  } catch (const LocalFault& e) {
+    return refused_locally(e);
   } catch (const std::invalid_argument& e) {
     return refused(e);
   }

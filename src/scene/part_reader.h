@@ -37,6 +37,7 @@ class PartReader {
   void read_inertia(const Reader& r);
   void check_rigid();
   void refused(const std::invalid_argument& e);
+  void refused_locally(const LocalFault& e);
   std::string without_name(const std::invalid_argument& e) const;
   void prepare();
 

@@ -117,6 +117,8 @@ Record part_record() {
        optional("stiffness_matrix", record(stiffness), "A full K_s over some parameters."),
        optional("material", name(), "Name of an entry of materials; keys given here take precedence."),
        optional("shell", boolean(), "Mass on the surface only; the density is then per area.", "false"),
+       optional("thickness", number(above(0), "m"),
+                "Of a shell: its density is then per volume (kg/m^3), and times this per area."),
        optional("local", record(local_record()), "Local deformation; none when not given."),
        optional("mass", number(above(0), "kg"), "Total mass, instead of the density."),
        optional("inertia", record(inertia), "Mass and inertia of a rigid part."),

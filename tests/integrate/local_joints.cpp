@@ -155,6 +155,27 @@ TEST_CASE("a soft shell at a step that is too long: the part is named, and the s
   CHECK_THAT(what, test::has_text("'ball'") || test::has_text("ball."));
 }
 
+TEST_CASE("a rubber balloon whose pressure no stretch can hold: it is told that it burst", "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Sphere>>("balloon", 1);
+  part.rest({{"r", 0.1}}).make_shell();
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.energies = {local_law("neo_hookean_membrane", {2e5, 0.5, 5e-4}), local_law("pressure", {5000})};
+  part.deform_locally(settings);
+  Simulation simulation(body, "rk4");
+  const double h = 0.5 * largest_stable_step(simulation);
+  std::string what;
+  try {
+    for (int i = 0; i < 100000; ++i) simulation.step(h);
+  } catch (const NumericalFailure& failure) {
+    what = failure.what();
+  }
+  CHECK_THAT(what, test::has_text("part 'balloon' has burst"));
+  CHECK_THAT(what, test::has_text("no balance"));
+}
+
 TEST_CASE("an element that is inside out at time 0 fails with the name of its part", "[local]") {
   MultiBody body;
   auto& part = body.add<Primitive<Sphere>>("jelly", 1000);

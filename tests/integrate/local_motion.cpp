@@ -5,6 +5,7 @@
 #include <pliant/part/nodal_deformation.h>
 #include <pliant/part/surface.h>
 
+#include "draws.h"
 #include "motion.h"
 #include "spring_net.h"
 
@@ -16,12 +17,12 @@ using test::rush;
 
 namespace {
 
-/// A tumbling shell whose global parameters move too.
-Part& tumbling(MultiBody& body, int resolution, bool soft = true) {
+/// A tumbling shell whose global parameters move too. order: of the elements, 0 for a shell.
+Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0) {
   body.gravity.setZero();
   auto& part = body.add(make_part("shell", "superellipsoid", {"taper", "twist"}, 2));
-  part.make_shell()
-      .rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
+  if (order == 0) part.make_shell();
+  part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
       .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
       .move({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
   if (soft)
@@ -29,10 +30,37 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true) {
         .initial({{"a1", 0.52}, {"twist.angle", 0.3}})
         .initial_rate({{"a3", 0.4}, {"taper.tx", 0.3}});
   LocalSettings settings = net(resolution, 20);
+  if (order > 0) settings.energies = {local_law("elastic", {200, 0.3})};
+  settings.order = std::max(order, 1);
   settings.displacement = bump;
   settings.velocity = rush;
   part.deform_locally(settings);
   return part;
+}
+
+/// A force at a point of a part that does not move: the sums of m a and x x m a over the nodes are its own.
+void check_push(MultiBody& body, Part& part, const Material<double>& at) {
+  const Vec3<double> force(1, -2, 0.5);
+  body.force("push", point(part, at), force);
+  part.move({0, 0, 0}, {0, 0, 0});
+  Simulation simulation(body, "rk4");
+  State state = simulation.state();
+  state.v.setZero();
+  Workspace<double> work;
+  simulation.dynamics().accelerations(0, state.q, state.v, state, work);
+  const PartWorkspace<double>& w = work.parts[0];
+  const NodalDeformation& local = *part.local()->nodal();
+  Nodes a = nodes(w.local->d_ddot, local.n_nodes());
+  local.add_frame_velocities(w.a_r, 1, *w.local, a);
+  Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
+    sum += ma;
+    turning += nodes(NodalDeformation::of(*w.local).x, local.n_nodes()).row(i).transpose().cross(ma);
+  }
+  const Vec3<double> f = w.R.transpose() * force;
+  CHECK((sum - f).norm() <= 1e-12 * f.norm());
+  CHECK((turning - w.ports[0].p.cross(f)).norm() <= 1e-12 * f.norm());
 }
 
 /// W^T d of the part, of the scale of its largest term.
@@ -93,36 +121,27 @@ TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns 
           "[local]") {
   for (const bool soft : {false, true}) {
     MultiBody body;
-    Part& part = tumbling(body, 2, soft);
-    const Surface surface(part, 2);
-    Model first(body);
-    const auto n = static_cast<std::size_t>(surface.material().size());
-    for (std::size_t k = 0; k < n; k += 7) {
+    const Surface surface(tumbling(body, 2, soft), 2);
+    for (std::size_t k = 0; k < surface.material().size(); k += 7) {
       MultiBody pushed;
-      Part& shell = tumbling(pushed, 2, soft);
-      const Vec3<double> force(1, -2, 0.5);
-      pushed.force("push", point(shell, surface.material()[k]), force);
-      shell.move({0, 0, 0}, {0, 0, 0});
-      Simulation simulation(pushed, "rk4");
-      State state = simulation.state();
-      state.v.setZero();
-      Workspace<double> work;
-      simulation.dynamics().accelerations(0, state.q, state.v, state, work);
-      const PartWorkspace<double>& w = work.parts[0];
-      const NodalDeformation& local = *shell.local()->nodal();
-      Nodes a = nodes(w.local->d_ddot, local.n_nodes());
-      local.add_frame_velocities(w.a_r, 1, *w.local, a);
-      Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
-      for (Eigen::Index i = 0; i < a.rows(); ++i) {
-        const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
-        sum += ma;
-        turning += nodes(NodalDeformation::of(*w.local).x, local.n_nodes()).row(i).transpose().cross(ma);
-      }
-      const Vec3<double> f = w.R.transpose() * force;
-      CHECK((sum - f).norm() <= 1e-12 * f.norm());
-      CHECK((turning - w.ports[0].p.cross(f)).norm() <= 1e-12 * f.norm());
+      check_push(pushed, tumbling(pushed, 2, soft), surface.material()[k]);
     }
   }
+}
+
+TEST_CASE("N09: a force inside an element does so too, of shells and of solids of both orders", "[local]") {
+  test::Draws draw(9);
+  for (const bool soft : {false, true})
+    for (const int order : {0, 1, 2})  // 0: a shell
+      for (int i = 0; i < 6; ++i) {
+        CAPTURE(soft, order, i);
+        const double u = draw.uniform(-1.4, 1.4), v = draw.uniform(-3, 3), w = draw.uniform(0, 1);
+        MultiBody pushed;
+        Part& part = tumbling(pushed, 2, soft, order);
+        check_push(pushed, part, material_at(u, v, order == 0 ? 1 : w));
+        const NodeWeights at = part.local()->weights(part, material_at(u, v, order == 0 ? 1 : w));
+        CHECK(at.node.size() >= 3);
+      }
 }
 
 TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves straight", "[local]") {

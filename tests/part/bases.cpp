@@ -39,10 +39,12 @@ VecX<double> etas(int degree, double nu = 0.3) {
 struct LambErrors {
   double T2, S2, S1;
 };
-LambErrors lamb(int degree) {
-  const VecX<double> eta = etas(degree);
+LambErrors lamb(const VecX<double>& eta) {
   return {eta.segment(0, 5).mean() / 2.50113 - 1, eta.segment(5, 5).mean() / 2.64622 - 1,
           eta.segment(10, 3).mean() / 3.52999 - 1};
+}
+LambErrors lamb(int degree) {
+  return lamb(etas(degree));
 }
 
 std::string refusal(Part& part, const LocalSettings& settings) {
@@ -114,6 +116,30 @@ TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing, closer with e
   auto nearest = [](const VecX<double>& eta, double to) { return (eta.array() / to - 1).abs().minCoeff(); };
   CHECK(nearest(etas(5), 4.99551) <= 1e-4);
   CHECK(nearest(etas(7), 4.99551) <= 2e-6);
+}
+
+TEST_CASE("Lamb's sphere by modes of curved elements: their consistent mass, fourth order, from above",
+          "[bases]") {
+  auto of_mesh = [](int resolution) {
+    const auto part = make_part("ball", "sphere", {}, 1);
+    LocalSettings settings = polynomials(0);
+    settings.basis = Basis::modes;
+    settings.modes = 13;
+    settings.resolution = resolution;
+    settings.order = 2;
+    part->rest({{"r", 1}}).deform_locally(settings);
+    part->prepare();
+    return lamb(modal(*part).basis().omega2.cwiseSqrt());
+  };
+  const LambErrors two = of_mesh(2), three = of_mesh(3), four = of_mesh(4);
+  auto order = [](double coarse, double fine) { return std::log(coarse / fine) / std::log(4.0 / 3.0); };
+  CAPTURE(two.T2, three.T2, four.T2, two.S2, three.S2, four.S2, two.S1, three.S1, four.S1);
+  for (double LambErrors::*of : {&LambErrors::T2, &LambErrors::S2, &LambErrors::S1}) {
+    CHECK(four.*of > 0);
+    CHECK(order(three.*of, four.*of) >= 3.6);
+  }
+  CHECK(four.T2 <= 1.5e-4);
+  CHECK(four.S2 <= 5.2e-5);
 }
 
 TEST_CASE("polynomials do not lock near nu_P = 1/2", "[bases]") {

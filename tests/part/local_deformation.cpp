@@ -1,7 +1,10 @@
-// Meshes of local deformation: masses and moments, points among the nodes.
+// Meshes of local deformation: masses and moments, points among the nodes, the parameter rectangle.
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>
+#include <pliant/part/local_laws.h>
+#include <pliant/part/nodal_deformation.h>
+#include <pliant/part/parameter_mesh.h>
 #include <pliant/part/registry.h>
 
 #include "draws.h"
@@ -72,4 +75,88 @@ TEST_CASE("weights of a material point make up its place at rest", "[local]") {
     }
     if (kind.shell) CHECK(local.weights(*part, material_at(0, 0, 0.5)).node.empty());
   }
+}
+
+TEST_CASE("nodes of thin parts have their moments, each in its own measure", "[local]") {
+  for (const bool shell : {true, false}) {
+    const auto part = make_part("thin", "ellipsoid", {}, 3);
+    if (shell) part->make_shell();
+    part->rest({{"a1", 1}, {"a2", 1e-2}, {"a3", 1e-3}});
+    LocalSettings settings;
+    settings.resolution = 4;
+    part->deform_locally(settings);
+    part->prepare();
+    const LocalMesh& mesh = part->local()->mesh();
+    const Mat3<double> I = part->rest_inertia().M.block<3, 3>(3, 3);
+    for (int r = 0; r < 3; ++r) {
+      const double square = 0.5 * I.trace() - I(r, r);
+      CHECK(mesh.mass.dot(mesh.X.col(r).cwiseAbs2()) == Approx(square).epsilon(1e-8));
+    }
+  }
+}
+
+TEST_CASE("what a mesh cannot carry is refused", "[local]") {
+  const auto part = make_part("thread", "ellipsoid", {}, 3);
+  part->make_shell().rest({{"a1", 1}, {"a2", 1e-9}, {"a3", 1e-9}});
+  LocalSettings settings;
+  settings.resolution = 2;
+  part->deform_locally(settings);
+  CHECK_THROWS_WITH(part->prepare(), test::has_text("part 'thread': a mesh of resolution 2"));
+}
+
+TEST_CASE("the mesh of a shell covers its parameter rectangle once", "[local]") {
+  for (const auto& shape : all_shapes()) {
+    CAPTURE(shape->name());
+    const bool torus = shape->mesh() == MeshPattern::torus;
+    const auto part = make_part("soft", shape->name(), {}, 3);
+    part->make_shell();
+    for (const int resolution : {1, 2, 5}) {
+      LocalSettings settings;
+      settings.resolution = resolution;
+      part->deform_locally(settings);
+      part->prepare();
+      const ParameterMesh flat = parameter_mesh(part->local()->mesh());
+      double area = 0;
+      for (Eigen::Index t = 0; t < flat.triangles.cols(); ++t) {
+        const Eigen::Vector2d p = flat.uv.col(3 * t + 1) - flat.uv.col(3 * t),
+                              q = flat.uv.col(3 * t + 2) - flat.uv.col(3 * t);
+        area += 0.5 * std::abs(p[0] * q[1] - p[1] * q[0]);
+      }
+      CHECK(area == Approx((torus ? 4 : 2) * kPi * kPi).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("the loaded membrane over the rectangle: exact for a linear field, second order for others",
+          "[local]") {
+  const double w0 = 3, w1 = 7;
+  std::vector<double> errors;
+  for (const int resolution : {4, 8, 16}) {
+    const auto part = make_part("soft", "ellipsoid", {}, 3);
+    part->make_shell().rest({{"a1", 0.3}});
+    LocalSettings settings;
+    settings.resolution = resolution;
+    settings.energies = {local_law("loaded_membrane_uv", {w0, w1})};
+    part->deform_locally(settings);
+    part->prepare();
+    const NodalDeformation& local = *part->local()->nodal();
+    auto energy = [&](auto&& of) {
+      VecX<double> d = VecX<double>::Zero(local.n_d());
+      for (Eigen::Index k = 0; k < local.n_nodes(); ++k)
+        d[k] = of(angles(local.mesh().nodes[static_cast<std::size_t>(k)]));
+      return local.energies()[0]->energy(d);
+    };
+    // d = u: int 1 = 2 pi^2, int u^2 = pi^4 / 6.
+    CHECK(energy([](const MaterialAngles& at) { return at.u; }) ==
+          Approx(0.5 * (w1 * 2 * kPi * kPi + w0 * std::pow(kPi, 4) / 6)).epsilon(1e-12));
+    // d = cos^2 u cos v: int |grad d|^2 = 7 pi^2 / 8, int d^2 = 3 pi^2 / 8.
+    const double exact = kPi * kPi / 16 * (7 * w1 + 3 * w0);
+    errors.push_back(std::abs(energy([](const MaterialAngles& at) {
+                                return std::cos(at.u) * std::cos(at.u) * std::cos(at.v);
+                              }) / exact -
+                              1));
+  }
+  CAPTURE(errors[0], errors[1], errors[2]);
+  CHECK(std::log2(errors[1] / errors[2]) >= 1.9);
+  CHECK(errors[2] <= 0.02);
 }

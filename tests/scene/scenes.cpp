@@ -258,6 +258,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "local_basis",
                                         "local_basis_too_large",
                                         "local_law_of_the_other_kind",
+                                        "local_laws_that_clash",
                                         "material_called_by_an_extension",
                                         "negative_size",
                                         "nested_too_deep",

@@ -24,9 +24,12 @@ struct NamedMesh {
 
 class FrameMeshes {
  public:
+  /// Whether the values of vertices are told that the scene's coloring asks for.
+  enum class Values { told, left_out };
+
   /// Lays the surfaces of the visible parts. Both must outlive it. Throws std::invalid_argument on a bad
   /// resolution.
-  FrameMeshes(const Scene& scene, const Model& model);
+  FrameMeshes(const Scene& scene, const Model& model, Values values = Values::told);
 
   /// The meshes at a state, in the order of the parts; the reference is valid until the next call. Meshes of
   /// rigid parts are evaluated once and then only moved.

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -39,6 +40,12 @@ struct LocalLaw {
   std::optional<Elasticity> linear;  ///< of linear elasticity of a solid, which needs no mesh
 };
 
+/// A local deformation that cannot be.
+struct LocalFault : std::invalid_argument {
+  LocalFault(const std::string& what, int of_law = -1) : std::invalid_argument(what), law(of_law) {}
+  int law;  ///< number among the energies of the one at fault; -1: it is not that of one
+};
+
 /// How a part is to deform locally.
 struct LocalSettings {
   /// What S is made of: displacements of the nodes of a mesh; displacement polynomials over the body of a
@@ -48,7 +55,7 @@ struct LocalSettings {
   int degree = 4;      ///< of the polynomials, 1 to 10
   int modes = 20;      ///< how many
   int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
-  int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes
+  int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes (of modes 10)
   using Law = LocalLaw;
   std::vector<Law> energies;
   /// At time 0, from the place of a point at rest (body frame, m): m and m/s; none: zero.
@@ -122,6 +129,8 @@ class LocalDeformation {
   /// "d[17].x": the name of a local coordinate, and its unit.
   virtual std::string coordinate_name(Eigen::Index k) const = 0;
   virtual const char* unit(Eigen::Index k) const = 0;
+  /// Microseconds that an evaluation takes at the least, by which threads are chosen.
+  virtual double cost() const = 0;
   /// "600 local, of 200 nodes": in words.
   virtual std::string description() const = 0;
 
@@ -187,7 +196,15 @@ class LocalDeformation {
   double alpha_, beta_;
 };
 
-/// Throws std::invalid_argument when the mesh or an energy cannot be laid.
+/// The energies of a part on a mesh.
+struct LaidEnergies {
+  std::vector<std::unique_ptr<NodalEnergy>> all;
+  VecX<double> own_inertia;  ///< of the coordinates that one of them has of its own
+};
+/// Throws LocalFault where one cannot be laid, or a second one has coordinates of its own.
+LaidEnergies lay_energies(const Part& part, const LocalSettings& settings, const LocalMesh& mesh);
+
+/// Throws LocalFault when the mesh or an energy cannot be laid; the message names the part.
 std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings);
 
 /// Values of nodes at points, three a point.

@@ -16,7 +16,7 @@ struct LocalMesh {
   std::vector<Material<double>> nodes;
   Nodes X;                     ///< where they are at rest, body frame, m
   Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise from outside
-  Eigen::MatrixXi tetrahedra;  ///< 4 or 15 nodes a column, see Solid; none of a shell
+  Eigen::MatrixXi tetrahedra;  ///< 4, 10 or 15 nodes a column, see Solid; none of a shell
   VecX<double> mass;           ///< of each node, kg
   double density = 0;          ///< kg/m^3; of a shell kg/m^2
   bool shell() const { return tetrahedra.cols() == 0; }
@@ -24,8 +24,8 @@ struct LocalMesh {
   VecX<double> areas() const;
 };
 
-/// Its masses have the mass, the centre and the second moments of the part. Throws std::invalid_argument
-/// where none that are positive do.
+/// Its masses have the mass, the centre and the second moments of the part. Throws LocalFault where none that
+/// are positive do.
 LocalMesh lay_local_mesh(const Part& part, const LocalSettings& settings);
 
 /// Where a material point is among nodes: d = sum weight_i d_i.

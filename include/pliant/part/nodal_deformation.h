@@ -75,6 +75,7 @@ class NodalDeformation final : public LocalDeformation {
 
   std::string coordinate_name(Eigen::Index k) const override;
   const char* unit(Eigen::Index k) const override;
+  double cost() const override;
   std::string description() const override;
   NodeWeights weights(const Part& part, const Material<double>& m) const override;
   Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const override;

@@ -1,0 +1,164 @@
+// Where the material points of a part are at given values of its parameters: places, gradients, normals, and
+// the way back.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include <pliant/part/folds.h>
+#include <pliant/part/part.h>
+
+namespace pliant {
+
+void Part::jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+                JetBatch<Dual<1, Pack>>& batch) const {
+  constexpr int most = 8;
+  std::array<Material<Dual<1, Pack>>, most> still;
+  for (int first = 0; first < batch.count; first += most) {
+    JetBatch<Dual<1, Pack>> some{batch.jet + first, std::min(most, batch.count - first), 0, batch.level};
+    for (int i = 0; i < some.count; ++i) still[static_cast<std::size_t>(i)] = constant(at[first + i]);
+    jets(values, still.data(), some);
+    batch.n_columns = some.n_columns;
+  }
+}
+
+Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,
+                         const ParameterValues<double>& values) const {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(at.size()));
+  Jet<Pack> jet;
+  for (std::size_t first = 0; first < at.size(); first += Pack::kLanes) {
+    std::array<Material<double>, Pack::kLanes> four;
+    for (std::size_t i = 0; i < Pack::kLanes; ++i) four[i] = at[std::min(first + i, at.size() - 1)];
+    const Material<Pack> material = gather(four.data());
+    JetBatch<Pack> batch{&jet, 1, 0, Level::position};
+    jets(values, &material, batch);
+    for (std::size_t i = first; i < std::min(first + Pack::kLanes, at.size()); ++i)
+      for (int r = 0; r < 3; ++r)
+        out(r, static_cast<Eigen::Index>(i)) = jet.s[r][static_cast<int>(i - first)];
+  }
+  return out;
+}
+
+std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e,
+                                               const ParameterValues<double>& values) const {
+  std::vector<Mat3<double>> F(static_cast<std::size_t>(e.cols()));
+  Jet<Pack> jet;
+  for (Eigen::Index first = 0; first < e.cols(); first += Pack::kLanes) {
+    for (int r = 0; r < 3; ++r) {
+      for (int i = 0; i < Pack::kLanes; ++i)
+        jet.s[r].set(i, e(r, std::min<Eigen::Index>(first + i, e.cols() - 1)));
+      for (std::size_t c = 0; c < 3; ++c) jet.J[c][r] = Pack(static_cast<std::size_t>(r) == c ? 1.0 : 0.0);
+    }
+    JetBatch<Pack> batch{&jet, 1, 3, Level::jacobian};
+    deform(values, batch);
+    for (Eigen::Index i = first; i < std::min<Eigen::Index>(first + Pack::kLanes, e.cols()); ++i)
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c)
+          F[static_cast<std::size_t>(i)](r, c) =
+              jet.J[static_cast<std::size_t>(c)][r][static_cast<int>(i - first)];
+  }
+  return F;
+}
+
+Mat3<double> Part::material_gradient(double u, double v, double w,
+                                     const ParameterValues<double>& values) const {
+  const Vec3<Dual<3>> e = shape_->tangents(material_with_tangents(u, v, w), values.b.data());
+  Mat3<double> E;
+  Eigen::Matrix3Xd at(3, 1);
+  for (int r = 0; r < 3; ++r) {
+    at(r, 0) = e[r].v;
+    for (int c = 0; c < 3; ++c) E(r, c) = e[r].d[static_cast<std::size_t>(c)];
+  }
+  return chain_gradient(at, values)[0] * E;
+}
+
+namespace {
+
+/// How far below a tip, relative to the height, limits along z are taken.
+constexpr double kBelowTip = 1e-9;
+
+/// det(F) F^-T, finite where F is singular.
+Mat3<double> cofactors(const Mat3<double>& F) {
+  Mat3<double> C;
+  C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
+  return C;
+}
+bool is_singular(const Mat3<double>& F) {
+  return !(std::abs(F.determinant()) > 1e-13 * F.norm() * cofactors(F).norm());
+}
+Vec3<double> below_tip(const Vec3<double>& e) {
+  return {e[0], e[1], e[2] * (1 - kBelowTip)};
+}
+
+}  // namespace
+
+Vec3<double> Part::preimage(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  const Vec3<double> e = undeform(p, values);
+  const double* a = values.b.data();
+  const double h = shape_->half_height(a);
+  if (parameters_.all_links().empty() || std::abs(e[2]) < (1 - kBelowTip) * h) return e;
+  // At the end of the body: where a whole section is drawn into p, its point on the surface stands for it.
+  const Vec3<double> end = shape_->e(material_at(std::copysign(kPi / 2, e[2]), 0), a);
+  Jet<Pack> jet;
+  for (int r = 0; r < 3; ++r) jet.s[r] = Pack(end[r]);
+  JetBatch<Pack> batch{&jet, 1, 0, Level::position};
+  deform(values, batch);
+  const Vec3<double> deformed(jet.s[0][0], jet.s[1][0], jet.s[2][0]);
+  return (p - deformed).norm() <= std::min(1e-12 * h, 1e-6 * (e - end).norm()) ? end : e;
+}
+
+double Part::inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  return shape_->gauge(preimage(p, values), values.b.data()) - 1;
+}
+
+Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p,
+                                           const ParameterValues<double>& values) const {
+  Vec3<double> e = preimage(p, values);
+  Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  if (is_singular(F)) {
+    e = below_tip(e);
+    F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
+  }
+  return F.transpose().partialPivLu().solve(shape_->gauge_gradient(e, values.b.data()));
+}
+
+std::vector<Vec3<double>> Part::normals(const std::vector<Material<double>>& at,
+                                        const ParameterValues<double>& values) const {
+  Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(at.size()));
+  for (std::size_t i = 0; i < at.size(); ++i)
+    e.col(static_cast<Eigen::Index>(i)) = shape_->e(at[i], values.b.data());
+  const std::vector<Mat3<double>> gradients = chain_gradient(e, values);
+  // Barr 1984: n ~ det(F) F^-T n_e.
+  auto outward = [&](const Mat3<double>& F, const Vec3<double>& from) {
+    return Vec3<double>(cofactors(F) * shape_->gauge_gradient(from, values.b.data()));
+  };
+  std::vector<Vec3<double>> all;
+  all.reserve(at.size());
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Vec3<double> from = e.col(static_cast<Eigen::Index>(i));
+    Vec3<double> n = outward(gradients[i], from);
+    if (n.isZero(0)) {
+      const Vec3<double> below = below_tip(from);
+      n = outward(chain_gradient(Eigen::Matrix3Xd(below), values)[0], below);
+    }
+    all.push_back(n.normalized());
+  }
+  return all;
+}
+
+Vec3<double> Part::normal(const Material<double>& m, const ParameterValues<double>& values) const {
+  return normals({m}, values)[0];
+}
+
+bool Part::folded(const VecMax<double>& q_s) const {
+  const VecMax<double> still = VecMax<double>::Zero(q_s.size());
+  return folds(*this, parameters_.expand<double>(q_s, still));
+}
+
+Material<double> Part::label(const Vec3<double>& p, const ParameterValues<double>& values) const {
+  return shape_->label(preimage(p, values), values.b.data());
+}
+
+}  // namespace pliant
