@@ -19,6 +19,7 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   for (const LocalSettings::Law& law : settings.energies) {
     energies_.push_back(law.lay(mesh_));
     laws_ += (laws_.empty() ? "" : ", ") + law.name;
+    of_positions_ = of_positions_ || energies_.back()->of() == NodalEnergy::Of::position;
     const VecX<double> more = energies_.back()->own_inertia();
     if (more.size() == 0) continue;
     if (own.size() > 0)
