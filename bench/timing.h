@@ -11,7 +11,7 @@ namespace pliant::bench {
 
 /// Seconds that one call of f takes: the least of `repeats` batches, each as long as `batch` seconds.
 template <class F>
-double seconds_per_call(F&& f, double batch = 0.02, int repeats = 9) {
+double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   using clock = std::chrono::steady_clock;
   auto elapsed = [&](long calls) {
     const auto start = clock::now();

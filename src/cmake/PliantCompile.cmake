@@ -22,7 +22,7 @@ if(PLIANT_NATIVE)
   target_compile_options(pliant_options INTERFACE -march=native)
   # GCC 12 takes its own AVX-512 intrinsics for uninitialised reads, and sees them read small matrices, which they do
   # not reach at run time.
-  target_compile_options(pliant_warnings INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds
+  target_compile_options(pliant_warnings INTERFACE -Wno-uninitialized -Wno-maybe-uninitialized -Wno-array-bounds
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overread>
                                                    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow>)
 endif()

@@ -33,10 +33,11 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
     const int part = static_cast<int>(i);
     dynamics.evaluate_frame(state.q, state.v, part, work);
     PartWorkspace<double>& w = work.parts[i];
-    if (!(w.local->condition <= kWorstCondition)) {
+    const double condition = w.local->condition();
+    if (!(condition <= kWorstCondition)) {
       std::ostringstream message;
       message << "the motion of the nodes of part '" << m.part->name()
-              << "' no longer tells its frame and global parameters apart (condition " << w.local->condition
+              << "' no longer tells its frame and global parameters apart (condition " << condition
               << "); freeze some of the parameters";
       throw NumericalFailure(message.str(), t);
     }
@@ -46,12 +47,10 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
     const Eigen::Index n = local.n_nodes();
     const double size = m.part->size();
     Nodes &p = now.p_kept, &u = now.u_kept;
-    p = nodes(now.x, n);
-    u = nodes(now.d_dot, n);
-    local.add_frame_velocities(w.v_r, 1, now, u);
+    u.resize(n, 3);
+    local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
     for (int iteration = 0;; ++iteration) {
-      const VecMax<double> unmet = local.frame_share(nodes(now.d, n), now);
-      const VecMax<double> delta = now.solve_transposed(unmet);
+      const VecMax<double> delta = now.solve_transposed(now.unmet);
       if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
       if (iteration == kMostIterations) {
         std::ostringstream message;
@@ -60,6 +59,7 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
                 << "follow them";
         throw NumericalFailure(message.str(), t);
       }
+      if (iteration == 0) p = nodes(now.x, n);
       advance_part(m, state.q, world_velocity(w, delta), 1);
       const Vec3<double> turning = delta.segment<3>(3);
       const double angle = turning.norm();
@@ -72,8 +72,7 @@ void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<d
     }
     const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
     share_of(m, state.v) = world_velocity(w, v_r);
-    local.add_frame_velocities(v_r, -1, now, u);
-    Eigen::Map<Nodes>(state.v.data() + m.v0 + 6 + m.n_s, n, 3) = u;
+    local.add_frame_velocities(v_r, -1, now, u.data(), state.v.data() + m.v0 + 6 + m.n_s);
   }
 }
 

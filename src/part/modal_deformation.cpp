@@ -167,7 +167,6 @@ void ModalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
       w.C.bottomRows(3 + n_s) * w.C.bottomRows(3 + n_s).transpose();
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   w.factor.compute(w.scale.asDiagonal() * S * w.scale.asDiagonal());
-  w.condition = 1 / w.factor.rcond();
 }
 
 void ModalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,

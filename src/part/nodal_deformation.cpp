@@ -1,7 +1,6 @@
 #include <pliant/part/nodal_deformation.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "store_jets.h"
@@ -16,6 +15,8 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   energies_ = std::move(laid.all);
   for (const LocalLaw& law : settings.energies) laws_ += (laws_.empty() ? "" : ", ") + law.name;
   const VecX<double>& own = laid.own_inertia;
+  for (const auto& energy : energies_)
+    of_positions_ = of_positions_ || energy->of() == NodalEnergy::Of::position;
   inertia_.resize(3 * n_nodes() + own.size());
   inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
   mobility_ = inertia_.cwiseInverse();

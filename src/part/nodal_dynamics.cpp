@@ -9,73 +9,71 @@ using namespace node_sums;
 
 namespace {
 
-/// H = sum m [I, -[x]x, J]^T [I, -[s]x, J], from its sums: of m, m x, m s, m x s^T and those with J.
-struct FrameSums {
-  double mass = 0;
-  Vec3<double> x = Vec3<double>::Zero(), s = x;
-  Mat3<double> xs = Mat3<double>::Zero();
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxGlobal> J, x_J,
-      s_J;  ///< sum m J, m x cross J, m s cross J
-  MatMax<double, kMaxGlobal> JJ;
-
-  MatMax<double> matrix() const {
-    const auto n_s = J.cols();
-    MatMax<double> H(6 + n_s, 6 + n_s);
-    H.topLeftCorner<3, 3>() = mass * Mat3<double>::Identity();
-    H.block<3, 3>(0, 3) = -skew(s);
-    H.block<3, 3>(3, 0) = skew(x);
-    H.block<3, 3>(3, 3) = xs.trace() * Mat3<double>::Identity() - xs.transpose();
-    H.block(0, 6, 3, n_s) = J;
-    H.block(6, 0, n_s, 3) = J.transpose();
-    H.block(3, 6, 3, n_s) = x_J;
-    H.block(6, 3, n_s, 3) = s_J.transpose();
-    H.block(6, 6, n_s, n_s) = JJ;
-    return H;
-  }
-};
-
-/// The sums at positions x of nodes, reference shape s.
-FrameSums frame_sums(const double* at_x, const double* at_s, const double* mass, const NodalWorkspace& w,
-                     Eigen::Index n, int n_s) {
-  FrameSums sums;
-  VectorSum mx, ms;
-  OuterSum xs;
+/// sum m [I, -[s]x, J]^T [I, -[s]x, J] at positions s.
+MatMax<double> still_inertia(const double* at_s, const double* mass, const NodalWorkspace& w, Eigen::Index n,
+                             int n_s) {
+  MatMax<double> H(6 + n_s, 6 + n_s);
+  VectorSum ms;
+  OuterSum ss;
   Pack total(0.0);
   for_each_four(n, [&](const FourNodes& four) {
     const Pack m = four.load(mass);
-    const Vec3<Pack> x = four.load(at_x, n), m_s = times(m, four.load(at_s, n));
+    const Vec3<Pack> s = four.load(at_s, n), m_s = times(m, s);
     total += m;
-    mx.add(times(m, x));
     ms.add(m_s);
-    xs.add(x, m_s);
+    ss.add(s, m_s);
   });
-  sums.mass = sum(total);
-  sums.x = mx.total();
-  sums.s = ms.total();
-  sums.xs = xs.total();
-  sums.J.resize(3, n_s);
-  sums.x_J.resize(3, n_s);
-  sums.s_J.resize(3, n_s);
-  sums.JJ.resize(n_s, n_s);
+  const Mat3<double> outer = ss.total();
+  H.topLeftCorner<3, 3>() = sum(total) * Mat3<double>::Identity();
+  H.block<3, 3>(3, 0) = skew(ms.total());
+  H.block<3, 3>(3, 3) = outer.trace() * Mat3<double>::Identity() - outer;
   for (int k = 0; k < n_s; ++k) {
     VectorSum J;
-    OuterSum xJ, sJ;
+    OuterSum sJ;
     std::array<Pack, kMaxGlobal> JJ;
     JJ.fill(Pack(0.0));
     for_each_four(n, [&](const FourNodes& four) {
       const Vec3<Pack> mJ = times(four.load(mass), four.load(column(w, n, k), n));
       J.add(mJ);
-      xJ.add(four.load(at_x, n), mJ);
       sJ.add(four.load(at_s, n), mJ);
       for (int j = 0; j <= k; ++j) JJ[static_cast<std::size_t>(j)] += mJ.dot(four.load(column(w, n, j), n));
     });
-    sums.J.col(k) = J.total();
-    sums.x_J.col(k) = axial(xJ.total());
-    sums.s_J.col(k) = axial(sJ.total());
-    for (int j = 0; j <= k; ++j) sums.JJ(j, k) = sums.JJ(k, j) = sum(JJ[static_cast<std::size_t>(j)]);
+    H.block<1, 3>(6 + k, 0) = J.total().transpose();
+    H.block<1, 3>(6 + k, 3) = axial(sJ.total()).transpose();
+    for (int j = 0; j <= k; ++j) H(6 + k, 6 + j) = sum(JJ[static_cast<std::size_t>(j)]);
   }
-  return sums;
+  return H.selfadjointView<Eigen::Lower>();
 }
+
+/// Sums over displacements d of nodes.
+struct DisplacementSums {
+  Vec3<double> d;                                                    ///< sum m d
+  Mat3<double> d_s;                                                  ///< sum m d s^T
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxGlobal> d_x_J;  ///< sum m d x J_k
+  VecMax<double> J_d;                                                ///< sum m J_k . d
+
+  DisplacementSums(const double* mass, const NodalWorkspace& w, Eigen::Index n, int n_s)
+      : d_x_J(3, n_s), J_d(n_s) {
+    VectorSum md;
+    OuterSum ds;
+    for_each_four(n, [&](const FourNodes& four) {
+      const Vec3<Pack> m_d = times(four.load(mass), four.load(w.d.data(), n));
+      md.add(m_d);
+      ds.add(m_d, four.load(w.s.data(), n));
+    });
+    d = md.total();
+    d_s = ds.total();
+    for (int k = 0; k < n_s; ++k) {
+      OuterSum dJ;
+      for_each_four(n, [&](const FourNodes& four) {
+        dJ.add(times(four.load(mass), four.load(w.d.data(), n)), four.load(column(w, n, k), n));
+      });
+      const Mat3<double> d_J = dJ.total();
+      d_x_J.col(k) = axial(d_J);
+      J_d[k] = d_J.trace();
+    }
+  }
+};
 
 /// P and 2 Wdot^T d_dot + Wddot^T d of the global parameters, from derivatives of the jets along each.
 void shape_rates(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
@@ -160,9 +158,15 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
   const double* mass = inertia_.data();
-  const FrameSums sums = frame_sums(w.x.data(), w.s.data(), mass, w, n, n_s);
-  w.moment = sums.x;
-  if (n_s > 0 || w.H0.rows() == 0) w.H0 = frame_sums(w.s.data(), w.s.data(), mass, w, n, n_s).matrix();
+  if (n_s > 0 || w.H0.rows() == 0) w.H0 = still_inertia(w.s.data(), mass, w, n, n_s);
+  const DisplacementSums sums(mass, w, n, n_s);
+  w.moment = Vec3<double>(w.H0(5, 1), w.H0(3, 2), w.H0(4, 0)) + sums.d;
+  w.unmet.resize(6 + n_s);
+  w.unmet << sums.d, -axial(sums.d_s), sums.J_d;
+  MatMax<double> K = w.H0;
+  K.block<3, 3>(3, 0) += skew(sums.d);
+  K.block<3, 3>(3, 3) += sums.d_s.trace() * Mat3<double>::Identity() - sums.d_s.transpose();
+  K.block(3, 6, 3, n_s) += sums.d_x_J;
 
   w.rates.setZero(6 + n_s);
   MatMax<double> P = MatMax<double>::Zero(6 + n_s, 6 + n_s);
@@ -176,12 +180,11 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
         s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
         s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
       });
-    // J x d = d (J cross) : sum m J x d = sum m s x J - sum m x cross J.
-    P.block(3, 6, 3, n_s) = sums.s_J - sums.x_J;
+    P.block(3, 6, 3, n_s) = -sums.d_x_J;
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
     shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
   }
-  MatMax<double> K = sums.matrix() - P.transpose();
+  K -= P.transpose();
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();
   w.held.reset();
   for (int k = 0; k < n_s; ++k) {
@@ -193,21 +196,22 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
     w.rates[6 + k] = 0;
   }
   w.factor.compute(w.scale.asDiagonal() * K * w.scale.asDiagonal());
-  w.condition = 1 / w.factor.rcond();
   ++counters.mass_matrices;
 }
 
 void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
                               ThreadPool* pool) const {
   NodalWorkspace& w = of(work);
-  const Eigen::Index n = n_nodes(), size = n_d();
+  add_elasticity(w, pool);
+  // Inertia, gravity and drag; all forces together, and what they do to the frame.
+  const Eigen::Index n = n_nodes(), n_s = v_r.size() - 6;
   const VecMax<double> v = v_r;
   const FrameMotion frame(v, w, n);
   const Vec3<Pack> gravity = spread(g);
   const bool curved = w.s2.rows() == n;
   Pack square(0.0);
-  w.f.resize(size);
-  w.f.tail(size - 3 * n).setZero();
+  VectorSum f_d, f, torque_d, torque;
+  w.force.resize(n_d());
   for_each_four(n, [&](const FourNodes& four) {
     const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.rates_of_p(n), n);
     const Pack m = four.load(inertia_.data());
@@ -216,19 +220,42 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
     for (int r = 0; r < 3; ++r) turn[r] = spin[r] + u[r] + u[r];
     Vec3<Pack> b = cross(frame.omega, turn);
     if (curved) b = plus(b, four.load(w.s2.data(), n));
-    Vec3<Pack> force;
-    for (int r = 0; r < 3; ++r) force[r] = m * (gravity[r] - b[r]);
+    const Vec3<Pack> on_d = four.load(w.f_d.data(), n);
+    Vec3<Pack> all = on_d;
+    if (of_positions_) all = plus(all, four.load(w.f.data(), n));
+    for (int r = 0; r < 3; ++r) all[r] += m * (gravity[r] - b[r]);
     if (nu > 0) {
       const Vec3<Pack> velocity = plus(plus(frame.c, spin), u);
-      for (int r = 0; r < 3; ++r) force[r] -= m * Pack(nu) * velocity[r];
+      for (int r = 0; r < 3; ++r) all[r] -= m * Pack(nu) * velocity[r];
       square += m * velocity.dot(velocity);
     }
-    four.store(w.f.data(), n, force);
+    four.store(w.force.data(), n, all);
+    f_d.add(on_d);
+    f.add(all);
+    torque_d.add(cross(p, on_d));
+    torque.add(cross(four.load(w.s.data(), n), all));
   });
+  const Eigen::Index own = n_d() - 3 * n;
+  w.force.tail(own) = w.f_d.tail(own);
+  if (of_positions_) w.force.tail(own) += w.f.tail(own);
   w.drag = -nu * sum(square);
+  w.of_d.resize(6 + n_s);
+  w.of_all.resize(6 + n_s);
+  w.of_d.head<3>() = f_d.total();
+  w.of_d.segment<3>(3) = torque_d.total();
+  w.of_all.head<3>() = f.total();
+  w.of_all.segment<3>(3) = torque.total();
+  for (int k = 0; k < n_s; ++k) {
+    w.of_d[6 + k] = along_column(w.f_d.data(), w, n, k);
+    w.of_all[6 + k] = along_column(w.force.data(), w, n, k);
+  }
+}
+
+void NodalDeformation::add_elasticity(NodalWorkspace& w, ThreadPool* pool) const {
+  const Eigen::Index n = n_nodes(), size = n_d();
   w.f_d.setZero(size);
+  if (of_positions_) w.f.setZero(size);
   w.buffers.resize(energies_.size());
-  w.damping = 0;
   for (std::size_t k = 0; k < energies_.size(); ++k) {
     const NodalEnergy& energy = *energies_[k];
     if (energy.of() == NodalEnergy::Of::displacement)
@@ -236,6 +263,7 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
     else
       energy.add_force(w.x, w.f, w.buffers[k], pool);
   }
+  w.damping = 0;
   auto damp = [&](NodalEnergy::Of of, const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f) {
     VecX<double>& damping = w.force;
     damping.setZero(size);
@@ -246,10 +274,12 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
   };
   if (beta() > 0) {
     damp(NodalEnergy::Of::displacement, w.d, w.d_dot, w.f_d);
-    w.x_dot.resize(size);
-    w.x_dot.head(3 * n) = Eigen::Map<const VecX<double>>(w.rates_of_p(n), 3 * n);
-    w.x_dot.tail(size - 3 * n) = w.d_dot.tail(size - 3 * n);
-    damp(NodalEnergy::Of::position, w.x, w.x_dot, w.f);
+    if (of_positions_) {
+      w.x_dot.resize(size);
+      w.x_dot.head(3 * n) = Eigen::Map<const VecX<double>>(w.rates_of_p(n), 3 * n);
+      w.x_dot.tail(size - 3 * n) = w.d_dot.tail(size - 3 * n);
+      damp(NodalEnergy::Of::position, w.x, w.x_dot, w.f);
+    }
   }
   if (alpha() > 0) {
     w.damping -= alpha() * w.d_dot.dot(inertia_.cwiseProduct(w.d_dot));
@@ -258,37 +288,33 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
 }
 
 void NodalDeformation::push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const {
-  auto f = nodes(of(work).f_d, n_nodes());
-  for (std::size_t i = 0; i < at.node.size(); ++i) f.row(at.node[i]) += at.weight[i] * force.transpose();
+  NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  for (std::size_t i = 0; i < at.node.size(); ++i) {
+    const Eigen::Index node = at.node[i];
+    const Vec3<double> share = at.weight[i] * force;
+    auto at_node = [&](const double* columns) {
+      return Vec3<double>(columns[node], columns[node + n], columns[node + 2 * n]);
+    };
+    nodes(w.force, n).row(node) += share.transpose();
+    w.of_d.head<3>() += share;
+    w.of_d.segment<3>(3) += at_node(w.x.data()).cross(share);
+    w.of_all.head<3>() += share;
+    w.of_all.segment<3>(3) += at_node(w.s.data()).cross(share);
+    for (int k = 0; k + 6 < w.of_d.size(); ++k) {
+      const double along = at_node(column(w, n, k)).dot(share);
+      w.of_d[6 + k] += along;
+      w.of_all[6 + k] += along;
+    }
+  }
 }
 
 void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) const {
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  const auto n_s = static_cast<int>(f_r.size()) - 6;
-  w.force.resize(n_d());
   w.d_ddot.resize(n_d());
-  // sum G^T F_d and sum W^T y of all forces, y = F / m, in one pass over the nodes.
-  VecMax<double> of_d(6 + n_s), of_all(6 + n_s);
-  VectorSum f_d, f, torque_d, torque;
-  for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> on_d = four.load(w.f_d.data(), n), all = plus(on_d, four.load(w.f.data(), n));
-    f_d.add(on_d);
-    f.add(all);
-    torque_d.add(cross(four.load(w.x.data(), n), on_d));
-    torque.add(cross(four.load(w.s.data(), n), all));
-    four.store(w.force.data(), n, all);
-  });
-  of_d.head<3>() = f_d.total();
-  of_d.segment<3>(3) = torque_d.total();
-  of_all.head<3>() = f.total();
-  of_all.segment<3>(3) = torque.total();
-  for (int k = 0; k < n_s; ++k) {
-    of_d[6 + k] = along_column(w.f_d.data(), w, n, k);
-    of_all[6 + k] = along_column(w.force.data(), w, n, k);
-  }
-  w.kappa = w.solve(of_d - f_r);
-  const VecMax<double> a = w.solve_transposed(of_all - w.H0 * w.kappa + w.rates);
+  w.kappa = w.solve(w.of_d - f_r);
+  const VecMax<double> a = w.solve_transposed(w.of_all - w.H0 * w.kappa + w.rates);
   f_r = a;
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const FourNodes& four) {
@@ -297,20 +323,19 @@ void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) co
     const Vec3<Pack> by_kappa = pull.rigid(four.load(w.s.data(), n)),
                      by_frame = frame.rigid(four.load(w.x.data(), n));
     for (int r = 0; r < 3; ++r) d[r] -= by_kappa[r] + by_frame[r];
-    if (n_s > 0) {
+    if (a.size() > 6) {
       const Vec3<Pack> k = pull.shape(four), shape = frame.shape(four);
       for (int r = 0; r < 3; ++r) d[r] -= k[r] + shape[r];
     }
     four.store(w.d_ddot.data(), n, d);
   });
   const Eigen::Index own = n_d() - 3 * n;
-  w.force.tail(own) = w.f.tail(own) + w.f_d.tail(own);
   w.d_ddot.tail(own) = mobility_.tail(own).cwiseProduct(w.force.tail(own));
 }
 
 Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const LocalWorkspace& work) const {
   const NodalWorkspace& w = of(work);
-  return frame_sums(w.x.data(), w.x.data(), inertia_.data(), w, n_nodes(), 0).matrix();
+  return still_inertia(w.x.data(), inertia_.data(), w, n_nodes(), 0);
 }
 
 VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
@@ -337,13 +362,16 @@ VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
 }
 
 void NodalDeformation::add_frame_velocities(const VecMax<double>& v_r, double sign,
-                                            const LocalWorkspace& work, Eigen::Ref<Nodes> v) const {
+                                            const LocalWorkspace& work, const double* from,
+                                            double* to) const {
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  const FrameMotion frame(v_r, w, n);
+  const VecMax<double> v = sign * v_r;
+  const FrameMotion frame(v, w, n);
   for_each_four(n, [&](const FourNodes& four) {
-    const Vec3<Pack> by_frame = plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four));
-    four.store(v.data(), n, plus(four.load(v.data(), n), times(Pack(sign), by_frame)));
+    Vec3<Pack> by_frame = frame.rigid(four.load(w.x.data(), n));
+    if (v.size() > 6) by_frame = plus(by_frame, frame.shape(four));
+    four.store(to, n, plus(four.load(from, n), by_frame));
   });
 }
 

@@ -29,8 +29,7 @@ Surface::Surface(const Part& part, int resolution) {
   } else {
     const int round = 8 * resolution, tube = 4 * resolution;
     for (int j = 0; j < round; ++j)
-      for (int i = 0; i < tube; ++i)
-        places_.emplace_back(2 * kPi * i / tube, 2 * kPi * j / round, 0);
+      for (int i = 0; i < tube; ++i) places_.emplace_back(2 * kPi * i / tube, 2 * kPi * j / round, 0);
     auto at = [&](int i, int j) { return (j % round) * tube + i % tube; };
     for (int j = 0; j < round; ++j)
       for (int i = 0; i < tube; ++i) {

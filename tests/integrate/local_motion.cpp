@@ -51,7 +51,7 @@ void check_push(MultiBody& body, Part& part, const Material<double>& at) {
   const PartWorkspace<double>& w = work.parts[0];
   const NodalDeformation& local = *part.local()->nodal();
   Nodes a = nodes(w.local->d_ddot, local.n_nodes());
-  local.add_frame_velocities(w.a_r, 1, *w.local, a);
+  local.add_frame_velocities(w.a_r, 1, *w.local, a.data(), a.data());
   Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
   for (Eigen::Index i = 0; i < a.rows(); ++i) {
     const Vec3<double> ma = local.mesh().mass[i] * a.row(i).transpose();
@@ -165,7 +165,7 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
       const NodalDeformation& local = *part.local()->nodal();
       const Eigen::Index n = local.n_nodes();
       Nodes v = nodes(w.local->d_dot, local.n_nodes());
-      local.add_frame_velocities(w.v_r, 1, *w.local, v);
+      local.add_frame_velocities(w.v_r, 1, *w.local, v.data(), v.data());
       v *= w.R.transpose();
       const Nodes x =
           (nodes(NodalDeformation::of(*w.local).x, n) * w.R.transpose()).rowwise() + w.c.transpose();

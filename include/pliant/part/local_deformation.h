@@ -84,7 +84,6 @@ struct LocalWorkspace {
   Vec3<double> moment;    ///< sum m p
   /// Of (c, theta, q_s), those that move nothing right now; they have no acceleration.
   std::bitset<kMaxVelocities> held;
-  double condition = 1;          ///< of what tells (c, theta, q_s) and d apart; 1 at best
   double damping = 0, drag = 0;  ///< powers of the local damping, and of the drag, W
   VecX<double> force;            ///< on the local coordinates
   VecX<double> d_ddot;
@@ -93,6 +92,8 @@ struct LocalWorkspace {
   MatX<double> A, A_inverse;
   const LocalResponse* response = nullptr;  ///< if there is one, it tells A
 
+  /// Of what tells (c, theta, q_s) and d apart; 1 at best.
+  virtual double condition() const { return 1; }
   /// Takes A, whose rows depend on each other where points lie close together, and its inverse.
   void take_compliance(MatX<double> of_pushes);
 };

@@ -26,12 +26,15 @@ struct NodalWorkspace final : LocalWorkspace {
   MatX<double> J;  ///< of all nodes along x, y, z of the first parameter, then of the second
   Nodes s1, s2;    ///< J q_s_dot, Jdot q_s_dot
   // mass
+  VecMax<double> unmet;                        ///< W^T d, which is to be zero
   VecMax<double> scale;                        ///< of K: the diagonal of H0 becomes 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale K scale
   VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
   // forces, N
-  VecX<double> x_dot;   ///< rates of x in the body frame, where they damp
-  VecX<double> f, f_d;  ///< on all that nodes do; on d alone, the rest being told in f_r
+  VecX<double> x_dot;     ///< rates of x in the body frame, where they damp
+  VecX<double> f, f_d;    ///< of energies of positions; of those of d, which act on d alone
+  VecMax<double> of_d;    ///< sum G^T F_d
+  VecMax<double> of_all;  ///< sum W^T y of all forces, y = F / m
   VecMax<double> kappa;
   // what pushes on v_r and on the shared points do
   MatX<double> kappa_of, a_of;
@@ -40,6 +43,7 @@ struct NodalWorkspace final : LocalWorkspace {
 
   /// J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
+  double condition() const override { return 1 / factor.rcond(); }
   /// K^-1 b and K^-T b, with as many columns as b.
   template <class B>
   auto solve(const B& b) const {
@@ -104,9 +108,9 @@ class NodalDeformation final : public LocalDeformation {
   }
   /// sum W^T a over nodes.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
-  /// v += sign G v_r of all nodes.
+  /// to = from + sign G v_r of all nodes, which stand in both as in local coordinates; both may be one.
   void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
-                            Eigen::Ref<Nodes> v) const;
+                            const double* from, double* to) const;
   /// Places and velocities of all nodes as a frame sees them whose origin is shifted and which is turned,
   /// both as the frame before saw it: p <- turn^T (p - shift), u <- turn^T u.
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
@@ -115,10 +119,14 @@ class NodalDeformation final : public LocalDeformation {
   MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
   void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
                     Eigen::Ref<VecX<double>> d_dot) const override;
+  /// f and f_d of the energies, and their damping.
+  void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
+
   std::vector<Material<Pack>> packs_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
-  std::string laws_;  // their names
+  bool of_positions_ = false;  // whether one of them is
+  std::string laws_;           // their names
 };
 
 }  // namespace pliant
