@@ -91,13 +91,13 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
   double radius = 0.5 * spacing_;
   {  // Corners, edges and faces have their lowest points among those of the mesh.
     const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
-    const VecX<double> h = field(p);
+    const VecX<double> h = field.descent(p);
     best = {stencil[4], p.col(4), h[4]};
     if (h.minCoeff() >= h[4] - kRounding * part_->size()) return best;
   }
   for (int k = 0; k < kMostIterations && radius > kSmallest * spacing_; ++k) {
     const Eigen::Matrix3Xd p = lay(radius);
-    const VecX<double> h = field(p);
+    const VecX<double> h = field.descent(p);
     // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
     Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
                       (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
@@ -122,7 +122,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       const Eigen::Vector2d there = at + radius * step;
       const Material<double> m = material(there[0], there[1]);
       const Eigen::Matrix3Xd p_there = part_->s({m}, values);
-      const double height = field(p_there)[0];
+      const double height = field.descent(p_there)[0];
       if (height <= best.height) {
         best = {m, p_there.col(0), height};
         next = there;
@@ -161,8 +161,15 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
       }
     found.push_back(point);
   };
+  std::vector<Eigen::Index> seeds;
   for (const double band : {kLevel * size, kSag * size})
-    for (const Eigen::Index i : outermost(p, within(band), kSame * size)) add(descend(values, i, field));
+    for (const Eigen::Index i : outermost(p, within(band), kSame * size))
+      if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
+  for (const Eigen::Index i : seeds) {
+    LowPoint point = descend(values, i, field);
+    point.height = field.height(point.p);
+    add(point);
+  }
   found.erase(std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > most; }),
               found.end());
   return found;

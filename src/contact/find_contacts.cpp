@@ -115,12 +115,12 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
       carried(moving[0].d, moving[1].d, moving[2].d);
   const Vec3<double> n = a.R.transpose() * plane.normal;
   const double offset = plane.normal.dot(a.c - point);
-  const auto field = [&](const Eigen::Matrix3Xd& p) -> VecX<double> {
-    return (p.transpose() * n).array() + offset;
-  };
+  const CollisionSurface::Field field{
+      [&](const Vec3<double>& p) { return p.dot(n) + offset; },
+      [&](const Eigen::Matrix3Xd& p) -> VecX<double> { return (p.transpose() * n).array() + offset; }};
   const Rule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
   for (const CollisionSurface::LowPoint& low :
-       surfaces_[at(a.number)]->low_points(a.values, a.p, field(a.p), most, field)) {
+       surfaces_[at(a.number)]->low_points(a.values, a.p, field.descent(a.p), most, field)) {
     Contact contact;
     contact.a = {a.number, low.material};
     contact.plane = static_cast<int>(number);
@@ -145,21 +145,22 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& r
   auto into_b = [&](const Vec3<double>& p) -> Vec3<double> {
     return b.R.transpose() * (a.c + a.R * p - b.c);
   };
-  const auto field = [&](const Eigen::Matrix3Xd& p) {
-    VecX<double> heights(p.cols());
-    for (Eigen::Index i = 0; i < p.cols(); ++i) heights[i] = height(into_b(p.col(i)));
-    return heights;
-  };
+  const double thickness = surfaces_[at(b.number)]->thickness();
+  const CollisionSurface::Field field{[&](const Vec3<double>& p) { return height(into_b(p)); },
+                                      [&](const Eigen::Matrix3Xd& p) {
+                                        VecX<double> level(p.cols());
+                                        for (Eigen::Index k = 0; k < p.cols(); ++k)
+                                          level[k] =
+                                              thickness * b.part->inside_outside(into_b(p.col(k)), b.values);
+                                        return level;
+                                      }};
   const double reach = most + 0.1 * std::min(a.part->size(), b.part->size());
   const Eigen::AlignedBox3d near(b.box.min().array() - reach, b.box.max().array() + reach);
   VecX<double> heights = VecX<double>::Constant(a.x.cols(), a.part->size() + b.part->size());
   bool any = false;
   for (Eigen::Index i = 0; i < a.x.cols(); ++i)
     if (near.contains(a.x.col(i))) {
-      // Along the ray from the middle of b, which is no less than the distance and costs no gradient.
-      const Vec3<double> in_b = into_b(a.p.col(i));
-      const double beyond = b.part->inside_outside(in_b, b.values);
-      heights[i] = beyond / (1 + beyond) * in_b.norm();
+      heights[i] = height(into_b(a.p.col(i)));
       any = true;
     }
   if (!any) return;

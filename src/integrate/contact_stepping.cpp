@@ -114,6 +114,7 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
       const std::optional<double> tau = locate(method, before, now, length, impacts, state, work, counters);
       if (tau) {
         ++events;
+        ++counters.impacts;
         now += *tau;
         // What lies within rounding of the surface, or will by rounding.
         std::vector<Contact> there = finder_.find(state, now, kResting * resting_gap_);

@@ -212,6 +212,10 @@ void Run::write_record() {
   record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
   record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
   record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
+  record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
+  record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
+  record_.step_counters.contact_residual =
+      std::max(counted_steps_.contact_residual, session.contact_residual);
   record_.counters = counted_work_;
   record_.counters += simulation_->counters();
   for (const std::string& held : simulation_->held())

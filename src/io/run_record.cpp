@@ -96,6 +96,8 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                   {"evaluations", r.step_counters.evaluations},
                   {"limit_impulses", r.step_counters.limit_impulses},
                   {"factorisations", r.step_counters.factorisations},
+                  {"impacts", r.step_counters.impacts},
+                  {"contact_sweeps", r.step_counters.contact_sweeps},
                   {"jacobian_points", r.counters.jacobian_points},
                   {"rate_points", r.counters.rate_points},
                   {"mass_matrices", r.counters.mass_matrices},
@@ -106,6 +108,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"max_energy", r.max_energy},
                       {"max_kinetic", r.max_kinetic},
                       {"max_gap", r.max_gap},
+                      {"max_contact_residual", r.step_counters.contact_residual},
                       {"largest_stable_step", bound(r.stable_step)}};
   json["held"] = r.held;
   json["skipped"] = r.skipped;
@@ -158,6 +161,8 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     work.at("evaluations").get_to(r.step_counters.evaluations);
     work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
     r.step_counters.factorisations = work.value("factorisations", 0L);  // older runs had none
+    r.step_counters.impacts = work.value("impacts", 0L);
+    r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
     work.at("jacobian_points").get_to(r.counters.jacobian_points);
     work.at("rate_points").get_to(r.counters.rate_points);
     work.at("mass_matrices").get_to(r.counters.mass_matrices);
@@ -169,6 +174,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     monitors.at("max_energy").get_to(r.max_energy);
     monitors.at("max_kinetic").get_to(r.max_kinetic);
     monitors.at("max_gap").get_to(r.max_gap);
+    r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
     if (!monitors.at("largest_stable_step").is_null())
       monitors.at("largest_stable_step").get_to(r.stable_step);
     json.at("held").get_to(r.held);

@@ -13,8 +13,12 @@ class CollisionSurface {
  public:
   explicit CollisionSurface(const Part& part);
 
-  /// A field over points of the body frame (3 x n), in m: the height over what the surface may touch.
-  using Field = std::function<VecX<double>(const Eigen::Matrix3Xd&)>;
+  /// What the surface may touch, over points of the body frame.
+  struct Field {
+    std::function<double(const Vec3<double>&)> height;  ///< m
+    /// Cheaper, and zero where the height is: what a search goes down along (m, as far as it is small).
+    std::function<VecX<double>(const Eigen::Matrix3Xd&)> descent;
+  };
   struct LowPoint {
     Material<double> material;
     Vec3<double> p = Vec3<double>::Zero();  ///< body frame, m

@@ -15,6 +15,7 @@ struct StepCounters {
   long evaluations = 0;  ///< of the accelerations
   long limit_impulses = 0;
   long factorisations = 0;      ///< of the stiffness of nodes
+  long impacts = 0;             ///< whose time in the step was found
   long contact_sweeps = 0;      ///< over all contacts
   double contact_residual = 0;  ///< the worst of them, m/s
 };
