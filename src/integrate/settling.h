@@ -217,6 +217,7 @@ class Settling {
   /// Iterates until the joints are closed, or as near as they come.
   bool approach() {
     fresh_ = false;
+    tightened_.clear();
     bool pushed = false;
     for (int i = 0; i < kMostIterations; ++i) {
       Vector& x = kept_.x;
@@ -230,7 +231,10 @@ class Settling {
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
           pushed = pushed || !stays(row);
-          if (row.part < 0) return;
+          if (row.part < 0) {
+            tighten(row.k);
+            return;
+          }
           const PartModel& m = group_.model(row.part);
           double& q = state_.q[m.q0 + 7 + row.k];
           const Range range = limits_of(m, row.k);
@@ -353,6 +357,14 @@ class Settling {
                        [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
   }
 
+  /// Strings that this projection has pushed on: it ends with them at their length, not short of it.
+  void tighten(int k) {
+    if (!tightened(k)) tightened_.push_back(k);
+  }
+  bool tightened(int k) const {
+    return std::find(tightened_.begin(), tightened_.end(), k) != tightened_.end();
+  }
+
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
   /// The change that a row asks for at the least.
@@ -363,8 +375,9 @@ class Settling {
       if (mode == JointMode::off || mode == JointMode::closing) return kNever;
       const JointModel& string = model_.joints()[at(j)];
       const double C = work_.joints.C[string.row], rounding = left(string, Rows::coordinates);
-      if (std::abs(C) <= rounding) return stays(row) ? 0 : (row.sign > 0 ? -rounding : kNever);
-      return row.sign > 0 || stays(row) ? -row.sign * C : kNever;
+      const bool tight = stays(row) || tightened(row.k);
+      if (std::abs(C) <= rounding) return tight ? 0 : (row.sign > 0 ? -rounding : kNever);
+      return row.sign > 0 || tight ? -row.sign * C : kNever;
     }
     const PartModel& m = group_.model(row.part);
     const double q = state_.q[m.q0 + 7 + row.k];
@@ -404,6 +417,7 @@ class Settling {
   double entry_ = 0;    ///< widest gap of the closed joints before the projection, in lengths of the joint,
   int widest_ = -1;     ///< and whose it is
   bool fresh_ = false;  ///< whether the factor was that of the iteration before
+  std::vector<int> tightened_;  ///< see tighten()
 };
 
 }  // namespace pliant::settling

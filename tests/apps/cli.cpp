@@ -125,7 +125,7 @@ TEST_CASE("commands that tell") {
   const Result check = place.pliant("check top.json");
   CHECK(check.code == 0);
   CHECK(has(check.out, "500 steps"));
-  for (const char* kind : {"shapes", "deformations", "integrators", "functions"}) {
+  for (const char* kind : {"shapes", "deformations", "laws", "joints", "integrators", "functions"}) {
     const Result list = place.pliant(std::string("list ") + kind);
     CHECK(list.code == 0);
     CHECK(list.out.size() > 100);
