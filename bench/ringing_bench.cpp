@@ -73,7 +73,8 @@ class Bench {
         const double turn = 2 * kPi * kFrequency * h;
         error += std::string(method) == "rk4" ? -std::pow(turn, 4) / 120 : turn * turn / 24;
       }
-      const double time = bench::seconds_per_call([&] { simulation.step(h); }, 0.002, 60) * period / h;
+      const double time =
+          bench::seconds_per_call<bench::ProcessorClock>([&] { simulation.step(h); }, 0.002, 60) * period / h;
       char line[256];
       std::snprintf(line, sizeof line, "%s,%d,%d,%s,%.2f,%.4f,%.3f,%.3e\n", name.c_str(), fineness,
                     part.n_v(), method, period / h, time * 1e3, setup, std::abs(error));
