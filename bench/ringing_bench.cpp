@@ -73,7 +73,8 @@ class Bench {
         const double turn = 2 * kPi * kFrequency * h;
         error += std::string(method) == "rk4" ? -std::pow(turn, 4) / 120 : turn * turn / 24;
       }
-      const double time = bench::seconds_per_call([&] { simulation.step(h); }, 0.05, 5) * period / h;
+      const double time =
+          bench::seconds_per_call<bench::ProcessorClock>([&] { simulation.step(h); }, 0.002, 60) * period / h;
       char line[256];
       std::snprintf(line, sizeof line, "%s,%d,%d,%s,%.2f,%.4f,%.3f,%.3e\n", name.c_str(), fineness,
                     part.n_v(), method, period / h, time * 1e3, setup, std::abs(error));
@@ -125,7 +126,8 @@ int main(int argc, char** argv) {
     Bench bench(argc > 1 ? argv[1] : "");
     for (const int degree : {2, 3, 4, 5, 6, 7, 8}) bench.measure("polynomial", Basis::polynomial, degree, 1);
     for (const int order : {2, 1})
-      for (const int resolution : order == 1 ? std::vector<int>{2, 3, 4, 6, 8} : std::vector<int>{1, 2, 3}) {
+      for (const int resolution :
+           order == 1 ? std::vector<int>{2, 3, 4, 6, 8, 10, 12} : std::vector<int>{1, 2, 3, 4}) {
         const std::string kind = " of order " + std::to_string(order);
         const double found = bench.measure("modes" + kind, Basis::modes, resolution, order);
         bench.measure("nodes" + kind, Basis::nodes, resolution, order, found);

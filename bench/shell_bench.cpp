@@ -1,8 +1,9 @@
 // Time per triangle of a force evaluation by each shell energy, on spheres. CSV to standard output. Beside it
 // what an evaluation computes (multiply-adds: the larger of its products and its sums) and moves (bytes),
-// counted from the formulas, and how much of the bound by this machine's measured multiply-add peak and triad
-// bandwidth it reaches.
-#include <algorithm>
+// counted from the formulas; and how much it reaches of the bounds by this machine's multiply-add peak and by
+// its bandwidth, that of a triad over as many bytes, so in the same cache, both measured in this run.
+//
+//   shell_bench [FOLDER]     writes shell_bench.csv to FOLDER as well
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -14,6 +15,7 @@
 #include <pliant/local/pressure.h>
 
 #include "../tests/local/shell_meshes.h"
+#include "table_file.h"
 #include "timing.h"
 
 using namespace pliant;
@@ -31,7 +33,8 @@ double gather_bytes(int corners, double elements) {
 }
 
 struct Bench {
-  double peak, bandwidth;
+  double peak;
+  bench::TableFile& file;
 
   void measure(const std::string& name, const ShellMesh& mesh, const NodalEnergy& energy,
                const Work& work) const {
@@ -41,26 +44,38 @@ struct Bench {
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] += 1e-3 * std::sin(static_cast<double>(i));
     VecX<double> f = VecX<double>::Zero(x.size());
     NodalEnergy::Buffer buffer;
+    const auto triangles = static_cast<double>(mesh.n_triangles());
+    const double bandwidth = bench::triad_bandwidth(static_cast<std::size_t>(work.bytes * triangles));
     for (const int threads : {1, 2}) {
       ThreadPool pool(threads);
       const double seconds =
-          bench::seconds_per_call([&] { energy.add_force(x, f, buffer, &pool); }, 0.02, 7) /
-          static_cast<double>(mesh.n_triangles());
-      const double bound = std::max(work.multiply_adds / peak, work.bytes / bandwidth) / threads;
-      std::printf("%s,%ld,%d,%.3f,%.0f,%.0f,%.2f\n", name.c_str(), static_cast<long>(mesh.n_triangles()),
-                  threads, seconds * 1e9, work.multiply_adds, work.bytes, bound / seconds);
+          bench::seconds_per_call([&] { energy.add_force(x, f, buffer, &pool); }) / triangles;
+      const double arithmetic = work.multiply_adds / peak / threads,
+                   memory = work.bytes / bandwidth / threads;
+      char line[256];
+      std::snprintf(line, sizeof line, "%s,%.0f,%d,%.3f,%.0f,%.0f,%.1f,%.2f,%.2f\n", name.c_str(), triangles,
+                    threads, seconds * 1e9, work.multiply_adds, work.bytes, bandwidth * 1e-9,
+                    arithmetic / seconds, memory / seconds);
+      std::fputs(line, stdout);
       std::fflush(stdout);
+      file.row("%s", line);
     }
   }
 };
 
 }  // namespace
 
-int main() {
-  const Bench bench{bench::multiply_add_peak(), bench::triad_bandwidth()};
-  std::printf("# multiply-adds per second %.3g, triad %.3g bytes/s, one thread\n", bench.peak,
-              bench.bandwidth);
-  std::printf("energy,triangles,threads,ns_per_triangle,multiply_adds,bytes,part_of_bound\n");
+int main(int argc, char** argv) {
+  char head[256];
+  const double peak = bench::multiply_add_peak();
+  std::snprintf(head, sizeof head,
+                "# one thread: %.2f 1e9 multiply-adds/s\n"
+                "energy,triangles,threads,ns_per_triangle,multiply_adds,bytes,triad_gb_per_s,part_of_peak,"
+                "part_of_bandwidth\n",
+                peak * 1e-9);
+  std::fputs(head, stdout);
+  bench::TableFile file(argc > 1 ? std::string(argv[1]) + "/shell_bench.csv" : "", head);
+  const Bench bench{peak, file};
   const Sheet sheet{1e5, 0.3, 0.01};
   for (const int levels : {2, 3, 4, 5}) {
     const ShellMesh mesh = test::icosphere(levels, 1);

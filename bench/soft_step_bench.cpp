@@ -1,19 +1,25 @@
 // Time per triangle of a whole step of a spinning sphere with a linear membrane, beside its parts: the kernel
 // of the membrane alone, an evaluation of the accelerations, a step of RK4 (four evaluations) and of
-// semi-implicit Euler (one). CSV to standard output; the last column is in kernels per evaluation.
+// semi-implicit Euler (one), each half the longest stable one. The last column is in kernels per evaluation.
+// CSV to standard output.
+//
+//   soft_step_bench [FOLDER]     writes soft_step_bench.csv to FOLDER as well
 #include <cstdio>
+#include <exception>
+#include <string>
 
 #include <pliant/part/local_laws.h>
 #include <pliant/part/nodal_deformation.h>
 #include <pliant/pliant.h>
 
+#include "table_file.h"
 #include "timing.h"
 
 using namespace pliant;
 
 namespace {
 
-void measure(int resolution, int threads) {
+void measure(int resolution, int threads, bench::TableFile& file) {
   MultiBody body;
   auto& part = body.add<Primitive<Sphere>>("balloon", 1.0);
   part.make_shell().move({0, 0, 0}, {0.1, 0.2, 0.3});
@@ -23,9 +29,9 @@ void measure(int resolution, int threads) {
   settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return {1e-3 * X[1] * X[2], 0, 0}; };
   part.deform_locally(settings);
   Simulation rk4(body, "rk4", threads), euler(body, "semi_implicit_euler", threads);
-  const double h = 1e-7;
+  const double h = 0.5 * largest_stable_step(rk4), h_euler = 0.5 * largest_stable_step(euler);
   rk4.step(h);
-  euler.step(h);
+  euler.step(h_euler);
   const State& state = rk4.state();
   const PartModel& m = rk4.model().parts()[0];
   const NodalEnergy& membrane = *part.local()->nodal()->energies()[0];
@@ -37,21 +43,31 @@ void measure(int resolution, int threads) {
   Workspace<double> work;
   const double kernel = bench::seconds_per_call([&] { membrane.add_force(d, f, buffer, &pool); });
   auto row = [&](const char* what, double seconds, int evaluations) {
-    std::printf("%s,%.0f,%d,%.3f,%.2f\n", what, triangles, threads, seconds / triangles * 1e9,
-                seconds / evaluations / kernel);
+    char line[128];
+    std::snprintf(line, sizeof line, "%s,%.0f,%d,%.3f,%.2f\n", what, triangles, threads,
+                  seconds / triangles * 1e9, seconds / evaluations / kernel);
+    std::fputs(line, stdout);
     std::fflush(stdout);
+    file.row("%s", line);
   };
   row("kernel", kernel, 1);
   row("evaluation",
       bench::seconds_per_call([&] { rk4.dynamics().accelerations(0, state.q, state.v, state, work); }), 1);
-  row("semi_implicit_euler", bench::seconds_per_call([&] { euler.step(h); }), 1);
+  row("semi_implicit_euler", bench::seconds_per_call([&] { euler.step(h_euler); }), 1);
   row("rk4", bench::seconds_per_call([&] { rk4.step(h); }), 4);
 }
 
 }  // namespace
 
-int main() {
-  std::printf("what,triangles,threads,ns_per_triangle,kernels_per_evaluation\n");
-  for (const int resolution : {3, 5, 10, 21})
-    for (const int threads : {1, 2}) measure(resolution, threads);
+int main(int argc, char** argv) {
+  try {
+    const char* head = "what,triangles,threads,ns_per_triangle,kernels_per_evaluation\n";
+    std::fputs(head, stdout);
+    bench::TableFile file(argc > 1 ? std::string(argv[1]) + "/soft_step_bench.csv" : "", head);
+    for (const int resolution : {3, 5, 10, 21})
+      for (const int threads : {1, 2}) measure(resolution, threads, file);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "soft_step_bench: %s\n", e.what());
+    return 1;
+  }
 }

@@ -1,5 +1,6 @@
 #include <pliant/integrate/rk4.h>
 
+#include <algorithm>
 #include <complex>
 
 #include <Eigen/Eigenvalues>
@@ -9,11 +10,30 @@
 
 namespace pliant {
 
+namespace {
+
+/// sum += weight rate, or its first share, and to = from + step rate: in one pass over memory.
+void take(const VecX<double>& rate, double weight, bool first, VecX<double>& sum, const VecX<double>& from,
+          double step, VecX<double>& to) {
+  constexpr Eigen::Index in_cache = 512;
+  const Eigen::Index n = rate.size();
+  sum.resize(n);
+  for (Eigen::Index i = 0; i < n; i += in_cache) {
+    const Eigen::Index length = std::min(in_cache, n - i);
+    const auto now = rate.segment(i, length);
+    if (first)
+      sum.segment(i, length) = weight * now;
+    else
+      sum.segment(i, length) += weight * now;
+    to.segment(i, length) = from.segment(i, length) + step * now;
+  }
+}
+
+}  // namespace
+
 void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) {
   const double h = state.h, t = state.time();
   Vec<double, kWorks> work_sum = Vec<double, kWorks>::Zero();
-  q_sum_.setZero(state.q.size());
-  v_sum_.setZero(state.v.size());
   q_ = state.q;
   v_ = state.v;
   free_.prepare(dynamics.model(), 0.5 * h);
@@ -26,20 +46,19 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
     dynamics.coordinate_rates(q_, v_, q_dot_);
     free_.take_off(q_, v_, work.v_dot);
     free_.take_off(q_dot_);
-    q_sum_ += weight[stage] * q_dot_;
-    v_sum_ += weight[stage] * work.v_dot;
     work_sum += weight[stage] * work.power;
     if (stage == 3) break;
     if (!free_.empty() && stage != 1) {  // on to the next node
       free_.move(state.q, state.v);
-      free_.move(q_sum_, v_sum_);
+      if (stage > 0) free_.move(q_sum_, v_sum_);
       free_.move(q_dot_, work.v_dot);
     }
-    q_ = state.q + node[stage + 1] * h * q_dot_;
-    v_ = state.v + node[stage + 1] * h * work.v_dot;
+    const double step = node[stage + 1] * h;
+    take(q_dot_, weight[stage], stage == 0, q_sum_, state.q, step, q_);
+    take(work.v_dot, weight[stage], stage == 0, v_sum_, state.v, step, v_);
   }
-  state.q += h * q_sum_;
-  state.v += h * v_sum_;
+  state.q += h * (q_sum_ + weight[3] * q_dot_);
+  state.v += h * (v_sum_ + weight[3] * work.v_dot);
   state.work += h * work_sum;
   hold_inertialess(dynamics.model(), work, state.v);
   normalise_rotations(dynamics.model(), state.q);

@@ -7,6 +7,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <pliant/math/finite.h>
+
 #include "settling.h"
 
 namespace pliant {
@@ -258,7 +260,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
 void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
                    StepCounters& counters) {
   const Model& model = dynamics.model();
-  if (!state.q.allFinite() || !state.v.allFinite()) return;
+  if (!all_finite(state.q) || !all_finite(state.v)) return;
   for_each_alone(model, work, [&](const Group<double, kMaxVelocities>& group) {
     if (!passes(group.model(0), state)) return;
     dynamics.evaluate_masses(state.q, state.v, parts_of(group), work);

@@ -8,6 +8,7 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/math/finite.h>
 #include <pliant/part/nodal_deformation.h>
 
 namespace pliant {
@@ -24,7 +25,7 @@ constexpr double kWorstCondition = 1e8;
 
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
-  if (!state.q.allFinite() || !state.v.allFinite()) return;
+  if (!all_finite(state.q) || !all_finite(state.v)) return;
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.local == nullptr) continue;

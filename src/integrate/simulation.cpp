@@ -8,6 +8,7 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/local/inverted_element.h>
+#include <pliant/math/finite.h>
 
 namespace pliant {
 
@@ -172,7 +173,7 @@ void Simulation::switch_joints(double t, double near) {
 
 void Simulation::check(const State& before) {
   const bool joints = work_.joints.C.allFinite();
-  if (joints && state_.q.allFinite() && state_.v.allFinite() && state_.work.allFinite()) return;
+  if (joints && all_finite(state_.q) && all_finite(state_.v) && all_finite(state_.work)) return;
   std::string where;
   for (const JointModel& joint : model_.joints())
     if (!joints && where.empty() && !work_.joints.C.segment(joint.row, joint.rows).allFinite())

@@ -45,35 +45,20 @@ MatMax<double> still_inertia(const double* at_s, const double* mass, const Nodal
   return H.selfadjointView<Eigen::Lower>();
 }
 
-/// Sums over displacements d of nodes.
-struct DisplacementSums {
-  Vec3<double> d;                                                    ///< sum m d
-  Mat3<double> d_s;                                                  ///< sum m d s^T
-  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxGlobal> d_x_J;  ///< sum m d x J_k
-  VecMax<double> J_d;                                                ///< sum m J_k . d
-
-  DisplacementSums(const double* mass, const NodalWorkspace& w, Eigen::Index n, int n_s)
-      : d_x_J(3, n_s), J_d(n_s) {
-    VectorSum md;
-    OuterSum ds;
-    for_each_four(n, [&](const FourNodes& four) {
-      const Vec3<Pack> m_d = times(four.load(mass), four.load(w.d.data(), n));
-      md.add(m_d);
-      ds.add(m_d, four.load(w.s.data(), n));
-    });
-    d = md.total();
-    d_s = ds.total();
-    for (int k = 0; k < n_s; ++k) {
-      OuterSum dJ;
-      for_each_four(n, [&](const FourNodes& four) {
-        dJ.add(times(four.load(mass), four.load(w.d.data(), n)), four.load(column(w, n, k), n));
-      });
-      const Mat3<double> d_J = dJ.total();
-      d_x_J.col(k) = axial(d_J);
-      J_d[k] = d_J.trace();
-    }
-  }
-};
+/// Positions p = s + d of nodes and, of the same pass, sum m d and sum m d s^T.
+void place_nodes(const double* mass, Eigen::Index n, NodalWorkspace& w) {
+  VectorSum md;
+  OuterSum ds;
+  for_each_four(n, [&](const FourNodes& four) {
+    const Vec3<Pack> s = four.load(w.s.data(), n), d = four.load(w.d.data(), n),
+                     m_d = times(four.load(mass), d);
+    four.store(w.x.data(), n, plus(s, d));
+    md.add(m_d);
+    ds.add(m_d, s);
+  });
+  w.m_d = md.total();
+  w.m_d_s = ds.total();
+}
 
 /// P and 2 Wdot^T d_dot + Wddot^T d of the global parameters, from derivatives of the jets along each.
 void shape_rates(const Part& part, const NodalDeformation& local, const VecX<double>& q_s,
@@ -136,7 +121,6 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
   w.x.resize(n_d());
   if (n_s == 0) {
     if (w.s.rows() != n) w.s = mesh_.X;
-    nodes(w.x, n) = w.s + nodes(w.d, n);
   } else {
     w.s.resize(n, 3);
     w.J.resize(3 * n, n_s);
@@ -144,9 +128,9 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
     w.s2.setZero(n, 3);
     store_jets(part, q_s, v_r.tail(n_s), packs_, {n, w.s.data(), w.s1.data(), w.s2.data(), w.J.data()},
                counters);
-    nodes(w.x, n) = w.s + nodes(w.d, n);
     w.u = w.s1 + nodes(w.d_dot, n);
   }
+  place_nodes(inertia_.data(), n, w);
   const Eigen::Index own = n_d() - 3 * n;
   w.x.tail(own) = w.d.tail(own);
 }
@@ -159,14 +143,13 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
   const auto n_s = static_cast<int>(q_s.size());
   const double* mass = inertia_.data();
   if (n_s > 0 || w.H0.rows() == 0) w.H0 = still_inertia(w.s.data(), mass, w, n, n_s);
-  const DisplacementSums sums(mass, w, n, n_s);
-  w.moment = Vec3<double>(w.H0(5, 1), w.H0(3, 2), w.H0(4, 0)) + sums.d;
+  w.moment = Vec3<double>(w.H0(5, 1), w.H0(3, 2), w.H0(4, 0)) + w.m_d;
   w.unmet.resize(6 + n_s);
-  w.unmet << sums.d, -axial(sums.d_s), sums.J_d;
+  w.unmet.head<3>() = w.m_d;
+  w.unmet.segment<3>(3) = -axial(w.m_d_s);
   MatMax<double> K = w.H0;
-  K.block<3, 3>(3, 0) += skew(sums.d);
-  K.block<3, 3>(3, 3) += sums.d_s.trace() * Mat3<double>::Identity() - sums.d_s.transpose();
-  K.block(3, 6, 3, n_s) += sums.d_x_J;
+  K.block<3, 3>(3, 0) += skew(w.m_d);
+  K.block<3, 3>(3, 3) += w.m_d_s.trace() * Mat3<double>::Identity() - w.m_d_s.transpose();
 
   w.rates.setZero(6 + n_s);
   MatMax<double> P = MatMax<double>::Zero(6 + n_s, 6 + n_s);
@@ -180,7 +163,16 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
         s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
         s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
       });
-    P.block(3, 6, 3, n_s) = -sums.d_x_J;
+    for (int k = 0; k < n_s; ++k) {
+      OuterSum dJ;
+      for_each_four(n, [&](const FourNodes& four) {
+        dJ.add(times(four.load(mass), four.load(w.d.data(), n)), four.load(column(w, n, k), n));
+      });
+      const Mat3<double> d_J = dJ.total();
+      w.unmet[6 + k] = d_J.trace();
+      K.block<3, 1>(3, 6 + k) += axial(d_J);
+      P.block<3, 1>(3, 6 + k) = -axial(d_J);
+    }
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
     shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
   }

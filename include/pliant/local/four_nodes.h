@@ -36,9 +36,7 @@ class FourNodes {
 
  private:
   [[gnu::noinline]] Pack load_some(const double* from) const {
-    Pack x(0.0);
-    for (int i = 0; i < count_; ++i) x.set(i, from[i]);
-    return x;
+    return {from[0], count_ > 1 ? from[1] : 0.0, count_ > 2 ? from[2] : 0.0, 0.0};
   }
   [[gnu::noinline]] void store_some(double* to, const Pack& x) const {
     for (int i = 0; i < count_; ++i) to[i] = x[i];

@@ -20,11 +20,13 @@ namespace pliant {
 
 struct NodalWorkspace final : LocalWorkspace {
   // positions
-  VecX<double> x;  ///< positions p = s + d of the nodes, then the energies' own coordinates
-  Nodes s;         ///< reference shape
-  Nodes u;         ///< velocity J q_s_dot + d_dot; none where no parameter is dynamic, see rates_of_p()
-  MatX<double> J;  ///< of all nodes along x, y, z of the first parameter, then of the second
-  Nodes s1, s2;    ///< J q_s_dot, Jdot q_s_dot
+  VecX<double> x;      ///< positions p = s + d of the nodes, then the energies' own coordinates
+  Nodes s;             ///< reference shape
+  Nodes u;             ///< velocity J q_s_dot + d_dot; none where no parameter is dynamic, see rates_of_p()
+  MatX<double> J;      ///< of all nodes along x, y, z of the first parameter, then of the second
+  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot
+  Vec3<double> m_d;    ///< sum m d
+  Mat3<double> m_d_s;  ///< sum m d s^T
   // mass
   VecMax<double> unmet;                        ///< W^T d, which is to be zero
   VecMax<double> scale;                        ///< of K: the diagonal of H0 becomes 1
