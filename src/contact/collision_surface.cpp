@@ -14,6 +14,8 @@ namespace {
 constexpr int kResolution = 6;
 /// How far the surface may lie below the chords between its points, in sizes of the part.
 constexpr double kSag = 0.02;
+/// How far it may lie below the lowest of them, where it is thin and crosses something thin.
+constexpr double kSpacing = 0.1;
 /// Points this near in height, in sizes of the part, lie as low as each other.
 constexpr double kLevel = 1e-6;
 /// Points nearer than this, in sizes, are one.
@@ -146,7 +148,7 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
                                                                      const Field& field) const {
   const double size = part_->size(), lowest = heights.minCoeff();
   std::vector<LowPoint> found;
-  if (lowest > most + kSag * size) return found;
+  if (lowest > most + kSpacing * size) return found;
   auto within = [&](double band) {
     std::vector<Eigen::Index> some;
     for (Eigen::Index i = 0; i < heights.size(); ++i)

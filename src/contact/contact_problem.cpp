@@ -17,7 +17,9 @@ namespace {
 constexpr double kExact = 1e-13;
 constexpr int kMostRounds = 40, kSweepsARound = 12, kMostNewton = 20;
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 150;
+constexpr std::size_t kMostDense = 400;
+/// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
+constexpr double kFast = 1e-9;
 /// Share of the step so far in Newton's method.
 constexpr double kProximal = 1e-9;
 /// W_c of a contact is made of full rank by this share of its largest entry.
@@ -136,6 +138,12 @@ void ContactProblem::complete(Block& block) {
       found->Y.col(r).segment(side.first, n) += force;
     }
   }
+  double loose = 0;  // how far impulses move it as if there were no joints
+  for (const Side& side : block.sides)
+    for (const Response& response : block.responses)
+      if (response.mover == side.mover)
+        loose = std::max(loose,
+                         (side.J * response.Y.middleRows(side.first, side.J.cols())).diagonal().maxCoeff());
   for (Response& response : block.responses) {
     const Mover& mover = movers_[response.mover];
     if (mover.island == nullptr) continue;
@@ -154,6 +162,10 @@ void ContactProblem::complete(Block& block) {
       if (response.mover == side.mover)
         block.W.leftCols(block.rows) += side.J * response.Y.middleRows(side.first, side.J.cols());
   block.W = (0.5 * (block.W + block.W.transpose())).eval();
+  if (!(block.W.diagonal().maxCoeff() > kFast * loose)) {  // joints hold it fast
+    block.responses.clear();
+    return;
+  }
   block.W.diagonal().array() += kSoft * block.W.diagonal().maxCoeff();
 }
 
@@ -190,7 +202,10 @@ double ContactProblem::sweep(bool forward) {
 double ContactProblem::residual() const {
   double worst = 0;
   for (const Block& block : blocks_) {
-    if (block.responses.empty()) continue;
+    if (block.responses.empty()) {  // fixed, or held fast by joints: it cannot be stopped
+      worst = std::max(worst, -velocity(block)[0]);
+      continue;
+    }
     const Vec3<double> dp = met(block, velocity(block)) - block.p;
     worst = std::max(worst, (block.W * dp).lpNorm<Eigen::Infinity>());
   }

@@ -53,6 +53,15 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
   for (const ContactPlane& plane : body.contact.planes)
     if (!names.insert(plane.name).second)
       throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
+  auto check = [](double friction, double restitution) {
+    if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
+      throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
+  };
+  check(body.contact.friction, body.contact.restitution);
+  for (const ContactPair& pair : body.contact.pairs) {
+    check(pair.friction, pair.restitution);
+    if (pair.a == pair.b) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
+  }
   for (const ContactPair& pair : body.contact.pairs)
     for (const std::string& name : {pair.a, pair.b})
       if (names.count(name) == 0)
@@ -181,7 +190,8 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& r
     }
     contact.normal = b.R * gradient.normalized();
     contact.x = a.c + a.R * low.p;
-    if (!contact.normal.allFinite()) continue;
+    if (!std::isfinite(contact.gap) || !contact.normal.allFinite() || !(contact.normal.norm() > 0.5))
+      continue;
     contact.a = {a.number, low.material};
     contact.b = {b.number, b.part->label(in_b, b.values)};
     contact.friction = rule.friction;

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <sstream>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_failure.h>
 
 namespace pliant {
 
@@ -19,6 +21,8 @@ constexpr double kResting = 1e-6;
 constexpr double kSlow = 1e-3;
 /// Most pairs whose impacts in one step are told in time, and most such times in a step.
 constexpr std::size_t kMostPairs = 3;
+/// Most parts of a step, so that nothing passes through anything.
+constexpr double kMostParts = 1e4;
 constexpr int kMostEvents = 200;
 /// An impact is told in time when the gap is this small, in sizes, or the time known to this part of the
 /// step.
@@ -57,15 +61,15 @@ ContactStepping::ContactStepping(const Dynamics& dynamics) : dynamics_(dynamics)
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
 }
 
-/// Contacts at the start of a step that do not open.
+/// Contacts at the start of a step that neither open nor rebound.
 std::vector<Contact> ContactStepping::resting_at(const State& state, double t, double slow) {
   if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t)
     last_ = finder_.find(state, t, resting_gap_);
   std::vector<Contact> resting = last_;
   resting.erase(std::remove_if(resting.begin(), resting.end(),
                                [&](const Contact& c) {
-                                 return c.gap >= -resting_gap_ &&
-                                        finder_.velocity(state, c).dot(c.normal) > slow;
+                                 const double u = finder_.velocity(state, c).dot(c.normal);
+                                 return c.gap >= -resting_gap_ && (u > slow || -c.restitution * u > slow);
                                }),
                 resting.end());
   return resting;
@@ -83,6 +87,12 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   int events = 0;
   for (double now = state.time(); now < end - near;) {
     const ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
+    if (!(around.h > (end - now) / kMostParts)) {
+      std::ostringstream message;
+      message << "parts move so fast past each other that a step of " << h << " s would be " << kMostParts
+              << " and more; a smaller step than " << h << " s may cure it";
+      throw NumericalFailure(message.str(), now);
+    }
     const double length = around.h >= end - now - near ? end - now : around.h;
     if (now != start + static_cast<double>(number) * h || length != h) set_step(state, now, length);
     if (around.empty) {
@@ -116,8 +126,20 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
         ++events;
         ++counters.impacts;
         now += *tau;
-        // What lies within rounding of the surface, or will by rounding.
-        std::vector<Contact> there = finder_.find(state, now, kResting * resting_gap_);
+        // What rests has fallen freely until then as what is in flight has: it is held first.
+        std::vector<Contact> lying = finder_.find(state, now, resting_gap_);
+        lying.erase(std::remove_if(lying.begin(), lying.end(),
+                                   [&](const Contact& c) { return !has_pair(resting, c); }),
+                    lying.end());
+        for (Contact& contact : lying) contact.restitution = 0;
+        if (!lying.empty()) settle(reach, *tau, slow, state, now, std::move(lying), work, counters);
+        std::vector<Contact> there = finder_.find(state, now, resting_gap_);
+        there.erase(std::remove_if(there.begin(), there.end(),
+                                   [&](const Contact& c) {
+                                     return c.gap > kResting * resting_gap_ && !has_pair(resting, c) &&
+                                            !has_pair(impacts, c);
+                                   }),
+                    there.end());
         for (Contact& contact : there)
           if (has_pair(resting, contact)) contact.restitution = 0;
         settle(0, 0, slow, state, now, std::move(there), work, counters);
@@ -250,6 +272,7 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
   parts.assign(touched.begin(), touched.end());
   Workspace<double> scratch;
   const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch);
+  const double booked = state.work.sum();  // limits and joints have works of their own
 
   double most = 0;
   for (const Contact& contact : contacts)
@@ -284,7 +307,8 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
   settle_limits(dynamics_, t, state, work, counters);
   contacts_.insert(contacts_.end(), contacts.begin(), contacts.end());
   impulses_.insert(impulses_.end(), solution.impulse.begin(), solution.impulse.end());
-  const double change = dynamics_.energy(t, state.q, state.v, parts, scratch) - energy;
+  const double change =
+      dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
   state.work[static_cast<int>(Work::friction)] += solution.friction_work;
   state.work[static_cast<int>(Work::contact)] += change - solution.friction_work;
 }

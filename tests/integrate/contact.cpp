@@ -77,6 +77,47 @@ TEST_CASE("N50: a block on a slope stays below the angle of friction, and slides
   }
 }
 
+TEST_CASE("what rests stays where it is while something else bounces", "[contact]") {
+  MultiBody body;
+  body.contact.friction = 1;
+  body.contact.restitution = 0.8;
+  const Eigen::Quaterniond R = tilted(kPi / 6);
+  const Vec3<double> n = R * Vec3<double>::UnitZ();
+  box(body, "block", {0.1, 0.1, 0.1}, 0.1 * n, R);
+  ball(body, "ball", 0.05, Vec3<double>(0, 1, 0) + 0.4 * n);
+  body.plane("slope", Vec3<double>(0, 0, 0), n);
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 1, 500);
+  CHECK(simulation.step_counters().impacts > 1);
+  CHECK((simulation.state().q.head<3>() - 0.1 * n).norm() < 1e-12);
+}
+
+TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
+  std::vector<double> balance;
+  for (const double h : {4e-3, 2e-3, 1e-3}) {
+    MultiBody body;
+    Part& part = body.add(make_part("soft", "ellipsoid", {}, 1000));
+    part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place({0, 0, 0.3});
+    part.stiffness({{"a3", 3000}}).limits("a3", {0.09, 0.12});
+    floor(body);
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.4, static_cast<int>(std::lround(0.4 / h)));
+    CHECK(simulation.ledger().work[static_cast<int>(Work::limits)] < 0);
+    balance.push_back(std::abs(simulation.ledger().balance));
+  }
+  CHECK(balance.back() < 1e-6);
+}
+
+TEST_CASE("what blows up fails with contact as it does without", "[contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  Part& a = ball(body, "a", 0.1, {0, 0, 0});
+  Part& b = ball(body, "b", 0.1, {0.5, 0, 0});
+  body.spring("spring", point(a, 0, 0, 0), point(b, 0, 0, 0), 1e9);
+  Simulation simulation(body, "rk4");
+  CHECK_THROWS_AS(test::run(simulation, 10, 1000), NumericalFailure);
+}
+
 TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
   std::vector<double> errors;
   for (const double h : {4e-3, 2e-3, 1e-3}) {
@@ -284,4 +325,6 @@ TEST_CASE("contact that cannot be is refused by name", "[contact]") {
   CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1}), test::has_text("there already"));
   body.contact.pairs.push_back({"ball", "celing"});
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("celing"));
+  body.contact.pairs.back() = {"ball", "floor", true, -1, 0};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("friction"));
 }

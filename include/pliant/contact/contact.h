@@ -14,8 +14,8 @@ struct ContactSide {
 struct Contact {
   ContactSide a, b;                             ///< b may be a plane
   int plane = -1;                               ///< its number
-  Vec3<double> x;                               ///< where they meet, m, world
-  Vec3<double> normal;                          ///< from b to a, of length 1, world
+  Vec3<double> x = Vec3<double>::Zero();        ///< where they meet, m, world
+  Vec3<double> normal = Vec3<double>::Zero();   ///< from b to a, of length 1, world
   double gap = 0;                               ///< m; negative: so deep
   Vec3<double> carried = Vec3<double>::Zero();  ///< velocity of the plane there, m/s
   double friction = 0, restitution = 0;

@@ -27,7 +27,7 @@ struct ContactSolution {
 class ContactProblem {
  public:
   /// work: evaluated with masses and factors for every part that the contacts touch. contacts, work: must
-  /// outlive it. resting: whether a contact has been there before, so that it does not rebound.
+  /// outlive it.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 

@@ -23,7 +23,7 @@ class ContactFinder {
   /// What a step of h seconds from a state comes near to.
   struct Neighbourhood {
     bool empty = true;  ///< nothing touches in it
-    double h;           ///< so long that no part passes through another, s
+    double h = 0;       ///< so long that no part passes through another, s
   };
   Neighbourhood neighbourhood(const State& state, double t, double h) const;
   /// The least gap of a part over another or a plane, m; no more than `most`.
