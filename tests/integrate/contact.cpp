@@ -108,6 +108,23 @@ TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
   CHECK(balance.back() < 1e-6);
 }
 
+TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  body.contact.active = true;
+  body.contact.friction = 0;
+  for (const bool second : {false, true}) {
+    Part& part = body.add(make_part(second ? "b" : "a", "ellipsoid", {}, 1000));
+    part.rest({{"a1", 0.5}, {"a2", 0.01}, {"a3", 0.01}});
+    if (second)
+      part.place({0.02, 0, 0.1}, Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 2, Vec3<double>::UnitZ())))
+          .move({0, 0, -1}, {0, 0, 0});
+  }
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.3, 150);
+  CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // a turns a little
+}
+
 TEST_CASE("what blows up fails with contact as it does without", "[contact]") {
   MultiBody body;
   body.contact.active = true;
