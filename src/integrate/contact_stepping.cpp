@@ -30,7 +30,7 @@ constexpr double kGap = 1e-13, kTime = 1e-15;
 constexpr int kMostTrials = 60;
 /// Points of one contact at the start and the end of a step are nearer than this, in sizes.
 constexpr double kSamePoint = 0.2;
-/// Bodies that overlap are parted at most at this speed, in sizes of the smaller one a second.
+/// Bodies that overlap are parted at most at this speed, in sizes of side a a second.
 constexpr double kPartingSpeed = 1;
 constexpr int kMostPartings = 4;
 /// Overlaps below this share of what counts as resting are left.
@@ -61,6 +61,13 @@ ContactStepping::ContactStepping(const Dynamics& dynamics) : dynamics_(dynamics)
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
 }
 
+/// Surfaces of this pair that are nearer than this rest on each other, m.
+double ContactStepping::resting_gap(const Contact& contact) const {
+  const std::vector<PartModel>& parts = dynamics_.model().parts();
+  const double a = parts[at(contact.a.part)].part->size();
+  return kResting * (contact.b.part < 0 ? a : std::min(a, parts[at(contact.b.part)].part->size()));
+}
+
 /// Contacts at the start of a step that neither open nor rebound.
 std::vector<Contact> ContactStepping::resting_at(const State& state, double t, double slow) {
   if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t)
@@ -69,7 +76,8 @@ std::vector<Contact> ContactStepping::resting_at(const State& state, double t, d
   resting.erase(std::remove_if(resting.begin(), resting.end(),
                                [&](const Contact& c) {
                                  const double u = finder_.velocity(state, c).dot(c.normal);
-                                 return c.gap >= -resting_gap_ && (u > slow || -c.restitution * u > slow);
+                                 return c.gap > resting_gap(c) ||
+                                        (c.gap >= -resting_gap(c) && (u > slow || -c.restitution * u > slow));
                                }),
                 resting.end());
   return resting;
@@ -109,7 +117,9 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
     // parted them.
     std::vector<Contact> contacts = finder_.find(state, after, resting.empty() ? 0 : resting_gap_);
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
-                                  [&](const Contact& c) { return c.gap > 0 && !has_pair(resting, c); }),
+                                  [&](const Contact& c) {
+                                    return c.gap > 0 && (c.gap > resting_gap(c) || !has_pair(resting, c));
+                                  }),
                    contacts.end());
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
@@ -128,16 +138,18 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
         now += *tau;
         // What rests has fallen freely until then as what is in flight has: it is held first.
         std::vector<Contact> lying = finder_.find(state, now, resting_gap_);
-        lying.erase(std::remove_if(lying.begin(), lying.end(),
-                                   [&](const Contact& c) { return !has_pair(resting, c); }),
-                    lying.end());
+        lying.erase(
+            std::remove_if(lying.begin(), lying.end(),
+                           [&](const Contact& c) { return c.gap > resting_gap(c) || !has_pair(resting, c); }),
+            lying.end());
         for (Contact& contact : lying) contact.restitution = 0;
         if (!lying.empty()) settle(reach, *tau, slow, state, now, std::move(lying), work, counters);
         std::vector<Contact> there = finder_.find(state, now, resting_gap_);
         there.erase(std::remove_if(there.begin(), there.end(),
                                    [&](const Contact& c) {
-                                     return c.gap > kResting * resting_gap_ && !has_pair(resting, c) &&
-                                            !has_pair(impacts, c);
+                                     return c.gap > resting_gap(c) ||
+                                            (c.gap > kResting * resting_gap(c) && !has_pair(resting, c) &&
+                                             !has_pair(impacts, c));
                                    }),
                     there.end());
         for (Contact& contact : there)
@@ -258,7 +270,6 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
                              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
   const Model& model = dynamics_.model();
   evaluate(state, t, contacts, work);
-  std::vector<int> parts;
   std::set<int> touched;
   for (const Contact& contact : contacts)
     for (const int part : {contact.a.part, contact.b.part}) {
@@ -269,7 +280,7 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
       else
         touched.insert(model.islands()[at(island)].parts.begin(), model.islands()[at(island)].parts.end());
     }
-  parts.assign(touched.begin(), touched.end());
+  const std::vector<int> parts(touched.begin(), touched.end());
   Workspace<double> scratch;
   const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch);
   const double booked = state.work.sum();  // limits and joints have works of their own

@@ -42,7 +42,7 @@ const char* NodalDeformation::unit(Eigen::Index k) const {
 }
 
 double NodalDeformation::cost() const {
-  // As bench/soft_step_bench and bench/solid_bench measure them.
+  // Nodes and triangles as bench/soft_step_bench measures them; the others are estimates.
   constexpr double node = 0.02, triangle = 0.008, tetrahedron = 0.02, curved = 0.15;
   const LocalMesh& m = mesh();
   const double elements = m.shell() ? triangle * static_cast<double>(m.triangles.cols())

@@ -125,6 +125,25 @@ TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") 
   CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // a turns a little
 }
 
+TEST_CASE("a small ball bounces on a huge body as it does on a plane", "[contact]") {
+  std::vector<double> heights;
+  for (const bool huge : {false, true}) {
+    MultiBody body;
+    body.contact.restitution = 0.5;
+    ball(body, "ball", 0.005, {0, 0, 0.1});
+    if (huge)
+      box(body, "ground", {500, 500, 500}, {0, 0, -500}).fix();
+    else
+      floor(body);
+    body.contact.active = true;
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 1, 500);
+    heights.push_back(simulation.state().q[2]);
+  }
+  CHECK(heights[0] == Approx(0.005).margin(1e-10));
+  CHECK(heights[1] == Approx(0.005).margin(1e-8));
+}
+
 TEST_CASE("what blows up fails with contact as it does without", "[contact]") {
   MultiBody body;
   body.contact.active = true;

@@ -27,6 +27,7 @@ class ContactStepping {
   const std::vector<Vec3<double>>& impulses() const { return impulses_; }
 
  private:
+  double resting_gap(const Contact& contact) const;
   std::vector<Contact> resting_at(const State& state, double t, double slow);
   std::optional<double> locate(Integrator& method, const State& before, double t, double h,
                                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
@@ -40,7 +41,7 @@ class ContactStepping {
 
   const Dynamics& dynamics_;
   ContactFinder finder_;
-  double resting_gap_ = 0;  ///< m
+  double resting_gap_ = 0;  ///< of the largest part, m
   // What lies near each other in a state that was looked at last.
   VecX<double> last_q_;
   double last_t_ = 0;

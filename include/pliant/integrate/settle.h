@@ -26,12 +26,12 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
 /// After the coordinates moved: parameters that came to a limit are on it to the last bit.
 void settle_on_limits(const Model& model, State& state);
 
-/// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
-/// projected back in the mass metric, and stopped by impulses.
 /// Parts that deform locally meet their reference conditions again, at time t (s); no node moves by it.
 /// Throws NumericalFailure where the conditions no longer tell the coordinates apart.
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
 
+/// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
+/// projected back in the mass metric, and stopped by impulses.
 void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
                    StepCounters& counters);
 
