@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/body/multibody.h>
+#include <pliant/contact/find_on_mesh.h>
 
 namespace pliant {
 
@@ -53,6 +54,15 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
   for (const ContactPlane& plane : body.contact.planes)
     if (!names.insert(plane.name).second)
       throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
+  for (const ContactObstacle& obstacle : body.contact.obstacles) {
+    if (!names.insert(obstacle.name).second)
+      throw std::invalid_argument("an obstacle and something else are both called '" + obstacle.name + "'");
+    try {
+      obstacles_.emplace_back(obstacle.vertices, obstacle.triangles);
+    } catch (const std::invalid_argument& fault) {
+      throw std::invalid_argument("obstacle '" + obstacle.name + "': " + fault.what());
+    }
+  }
   auto check = [](double friction, double restitution) {
     if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
       throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
@@ -65,7 +75,8 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
   for (const ContactPair& pair : body.contact.pairs)
     for (const std::string& name : {pair.a, pair.b})
       if (names.count(name) == 0)
-        throw std::invalid_argument("contact of '" + name + "': there is no part or plane of that name");
+        throw std::invalid_argument("contact of '" + name +
+                                    "': there is no part, plane or obstacle of that name");
   std::set<std::pair<int, int>> joined;
   for (const JointModel& joint : model.joints())
     for (const PortRef& one : joint.at)
@@ -76,6 +87,10 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
     for (const ContactPlane& plane : body.contact.planes) {
       on_planes_.push_back(rule_of(m.part->name(), plane.name));
       if (m.q0 < 0) on_planes_.back().touch = false;
+    }
+    for (const ContactObstacle& obstacle : body.contact.obstacles) {
+      on_obstacles_.push_back(rule_of(m.part->name(), obstacle.name));
+      if (m.q0 < 0) on_obstacles_.back().touch = false;
     }
   }
   on_parts_.resize(at(n) * at(n));
@@ -140,6 +155,21 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
+  }
+}
+
+void ContactFinder::find_on_obstacle(const Placed& a, std::size_t number, double t, double most,
+                                     std::vector<Contact>& found) const {
+  if (!model_->body().contact.obstacles[number].acts_at(t)) return;
+  const std::size_t first = found.size();
+  find_on_mesh({*a.part, *surfaces_[at(a.number)], a.values, a.c, a.R, a.p, a.box}, obstacles_[number], most,
+               found);
+  const Rule& rule = on_obstacles_[at(a.number) * obstacles_.size() + number];
+  for (std::size_t k = first; k < found.size(); ++k) {
+    found[k].a.part = a.number;
+    found[k].obstacle = static_cast<int>(number);
+    found[k].friction = rule.friction;
+    found[k].restitution = rule.restitution;
   }
 }
 
@@ -209,6 +239,10 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   for (int i = 0; i < n; ++i)
     for (std::size_t k = 0; k < planes; ++k)
       if (on_planes_[at(i) * planes + k].touch) find_on_plane(placed[at(i)], k, t, most, found);
+  for (int i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      if (on_obstacles_[at(i) * obstacles_.size() + k].touch)
+        find_on_obstacle(placed[at(i)], k, t, most, found);
   // Sweep and prune along x.
   std::vector<int> order(at(n));
   for (int i = 0; i < n; ++i) order[at(i)] = i;
@@ -294,6 +328,18 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
         if (planes[k].normal.dot(all[at(i)].c - planes[k].point.value(when)) < all[at(i)].reach)
           near.empty = false;
     }
+  const auto& obstacles = model_->body().contact.obstacles;
+  for (int i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      const Swept& a = all[at(i)];
+      if (!on_obstacles_[at(i) * obstacles.size() + k].touch ||
+          !(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h)) ||
+          !obstacles_[k].comes_near(a.c, a.reach))
+        continue;
+      near.empty = false;
+      const double way = h * (a.c_dot.norm() + a.speed), thin = kThinShare * surfaces_[at(i)]->thickness();
+      if (way > thin) near.h = std::min(near.h, h * thin / way);
+    }
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n; ++j) {
       if (!on_parts_[at(i) * at(n) + at(j)].touch) continue;
@@ -310,7 +356,9 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
   const Placed a = place(state, of.a.part);
-  if (of.b.part < 0) {
+  if (of.obstacle >= 0) {
+    find_on_obstacle(a, at(of.obstacle), t, std::min(most, a.part->size()), found);
+  } else if (of.b.part < 0) {
     find_on_plane(a, at(of.plane), t, most, found);
   } else {
     const Placed b = place(state, of.b.part);

@@ -41,7 +41,8 @@ std::size_t at(int i) {
 }
 
 bool same_pair(const Contact& one, const Contact& other) {
-  return one.a.part == other.a.part && one.b.part == other.b.part && one.plane == other.plane;
+  return one.a.part == other.a.part && one.b.part == other.b.part && one.plane == other.plane &&
+         one.obstacle == other.obstacle;
 }
 
 bool has_pair(const std::vector<Contact>& some, const Contact& contact) {

@@ -1,10 +1,12 @@
-// Who touches whom: planes, friction and restitution, and pairs that are out of the ordinary.
+// Who touches whom: planes, obstacles, friction and restitution, and pairs that are out of the ordinary.
 #pragma once
 
 #include <deque>
 #include <limits>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <pliant/math/time_function.h>
 
@@ -21,7 +23,18 @@ struct ContactPlane {
   bool acts_at(double t) const { return on <= t && t < off; }
 };
 
-/// How two things touch that are named: parts or planes.
+/// An immobile body whose surface is a triangle mesh, one-sided where it is open (contact/obstacle_mesh.h).
+struct ContactObstacle {
+  std::string name;
+  Eigen::Matrix3Xd vertices;   ///< m, world
+  Eigen::Matrix3Xi triangles;  ///< columns of these, counter-clockwise seen from the side that is free
+  double on = 0;               ///< it is there from this time, s
+  double off = std::numeric_limits<double>::infinity();  ///< until that, s
+
+  bool acts_at(double t) const { return on <= t && t < off; }
+};
+
+/// How two things touch that are named: parts, planes or obstacles.
 struct ContactPair {
   std::string a, b;
   bool touch = true;  ///< false: they pass through each other
@@ -30,12 +43,13 @@ struct ContactPair {
 
 struct ContactSettings {
   bool active = false;        ///< whether anything touches at all
-  bool between_parts = true;  ///< whether parts touch parts, or planes alone
+  bool between_parts = true;  ///< whether parts touch parts, or planes and obstacles alone
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
   /// Parts that a joint ties together touch only where a pair says so.
   std::vector<ContactPair> pairs;
   std::deque<ContactPlane> planes;
+  std::deque<ContactObstacle> obstacles;
 };
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// Which surfaces meet: broad phase by boxes, then the low points of each part over planes and other parts.
+// Which surfaces meet: broad phase by boxes, then the low points of each part over planes, obstacles and
+// other parts.
 #pragma once
 
 #include <memory>
@@ -7,13 +8,14 @@
 #include <pliant/body/model.h>
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
+#include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
 
 class ContactFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
-  /// for parts that deform locally.
+  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, for
+  /// obstacles that are no meshes (ObstacleMesh), and for parts that deform locally.
   explicit ContactFinder(const Model& model);
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
@@ -26,7 +28,7 @@ class ContactFinder {
     double h = 0;       ///< so long that no part passes through another, s
   };
   Neighbourhood neighbourhood(const State& state, double t, double h) const;
-  /// The least gap of a part over another or a plane, m; no more than `most`.
+  /// The least gap of a part over another, a plane or an obstacle, m; no more than `most`.
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
@@ -39,14 +41,18 @@ class ContactFinder {
   Placed place(const State& state, int part) const;
   void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
                      std::vector<Contact>& found) const;
+  void find_on_obstacle(const Placed& a, std::size_t obstacle, double t, double most,
+                        std::vector<Contact>& found) const;
   /// Low points of a over b.
   void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
                     std::vector<Contact>& found) const;
 
   const Model* model_;
   std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
-  std::vector<Rule> on_planes_;                              // part after part, plane after plane
-  std::vector<Rule> on_parts_;                               // of parts i < j, n_parts x n_parts
+  std::vector<ObstacleMesh> obstacles_;
+  std::vector<Rule> on_planes_;     // part after part, plane after plane
+  std::vector<Rule> on_obstacles_;  // likewise
+  std::vector<Rule> on_parts_;      // of parts i < j, n_parts x n_parts
 };
 
 }  // namespace pliant
