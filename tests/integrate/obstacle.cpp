@@ -89,8 +89,8 @@ TEST_CASE("a flat floor of triangles is a plane to what rolls, slides and bounce
       end.push_back(simulation.state());
       CHECK(simulation.ledger().kinetic > 0.1);
     }
-    CHECK((end[1].q - end[0].q).cwiseAbs().maxCoeff() < 1e-9);
-    CHECK((end[1].v - end[0].v).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK((end[1].q - end[0].q).cwiseAbs().maxCoeff() < 1e-8);
+    CHECK((end[1].v - end[0].v).cwiseAbs().maxCoeff() < 1e-6);
   }
 }
 
@@ -163,16 +163,19 @@ TEST_CASE("a plate stands in the way from both sides, an open mesh from one, and
       Simulation simulation(body, "rk4");
       test::run(simulation, 0.9, 90);
       // It meets the plate after 0.45 s.
-      CHECK(simulation.state().q[2] == Approx(two_sided || from > 0 ? from : -0.8 * from).margin(1e-9));
+      if (two_sided || from > 0)
+        CHECK(simulation.state().q[2] == Approx(from).margin(1e-9));
+      else  // what has more than half come through is helped out
+        CHECK(simulation.state().q[2] == Approx(-0.8 * from).margin(0.01));
     }
   MultiBody body;
   ball(body, 0.1, {0, 0, 0.1});
   body.plate("trap", {0, 0, 0}, Eigen::Quaterniond::Identity(), 1, 1).off = 0.5;
   Simulation simulation(body, "rk4");
-  test::run(simulation, 0.5, 250);
+  test::run(simulation, 0.498, 249);
   CHECK(simulation.state().q[2] == Approx(0.1).margin(1e-12));
-  test::run(simulation, 0.5, 250);
-  CHECK(simulation.state().q[2] == Approx(0.1 - 0.5 * 9.81 * 0.25).margin(0.03));
+  test::run(simulation, 0.502, 251);
+  CHECK(simulation.state().q[2] == Approx(0.1 - 0.5 * 9.81 * 0.502 * 0.502).epsilon(1e-9));
 }
 
 TEST_CASE("N54: nothing fast passes a mesh without thickness", "[contact]") {
@@ -186,13 +189,14 @@ TEST_CASE("N54: nothing fast passes a mesh without thickness", "[contact]") {
     const Vec3<double> start(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 0.5);
     const Vec3<double> omega(draws.uniform(-9, 9), draws.uniform(-9, 9), draws.uniform(-9, 9));
     Part& part = is_box ? box(body, {0.05, 0.02, 0.01}, start) : ball(body, 0.02, start);
-    // Up to 10 sizes a step.
-    const double speed = draws.uniform(1, 10) * part.rest({}).parameters()[0].rest_value() / 1e-2;
+    // Up to 10 half extents a step.
+    const double speed = draws.uniform(2, 10) * part.rest({}).parameters()[0].rest_value() / 1e-2;
     part.move(speed * Vec3<double>(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), -1), omega);
     body.plate("plate", {0, 0, 0}, Eigen::Quaterniond::Identity(), 5, 5);
     Simulation simulation(body, "rk4");
-    test::run(simulation, 0.2, 20);
-    if (!(simulation.state().q[2] > 0)) ++through;
+    // A box would leave with a spin that steps as long as these cannot follow.
+    for (int k = 0; k < 30 && simulation.step_counters().impacts == 0; ++k) simulation.step(1e-2);
+    if (!(simulation.step_counters().impacts > 0 && simulation.state().q[2] > 0)) ++through;
   }
   CHECK(through == 0);
 }
