@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-schema::Record contact_record() {
+schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
   using namespace schema;
   const Record plane{
       "plane",
@@ -22,19 +22,21 @@ schema::Record contact_record() {
        optional("off", number(above(0), "s"), "When it goes; never when not given.")}};
   const Record pair{
       "pair",
-      "How two parts, or a part and a plane, touch.",
+      "How two parts, or a part and a plane or an obstacle, touch.",
       {required("between", array(name(), 2, 2), "Their names.", "[\"ball\", \"floor\"]"),
        optional("touch", boolean(), "Whether they touch; parts that a joint ties do not but for this.",
                 "true"),
        optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
        optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
   return {"contact",
-          "Parts touch planes and each other; when not given, they pass through everything.",
+          "Parts touch planes, obstacles and each other; when not given, they pass through everything.",
           {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
            optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
                     "0"),
            optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
+           optional("obstacles", array(record(obstacle_record(orientation, color))),
+                    "Meshes and plates that do not move.", "[]"),
            optional("pairs", array(record(pair)), "Pairs that are out of the ordinary.", "[]")}};
 }
 
@@ -62,10 +64,11 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
 }  // namespace
 
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
-                  const TimeReader& times, SceneFaults& faults, MultiBody& body) {
+                  const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene) {
   for (const auto& [name, part] : parts)
     if (part.part != nullptr && part.prepared && part.part->local() != nullptr)
       faults.place(contact.json(), "part \"" + name + "\" deforms locally; contact is of parts that do not");
+  MultiBody& body = scene.body;
   ContactSettings& settings = body.contact;
   settings.active = true;
   settings.friction = contact.number("friction");
@@ -75,13 +78,17 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
   for (const ContactPlane& plane : settings.planes) names.push_back(plane.name);
+  for (const Reader& r : contact.objects("obstacles")) {
+    read_obstacle(r, names, folder, faults, scene);
+    if (r.given("name")) names.push_back(r.text("name"));
+  }
   for (const Reader& r : contact.objects("pairs")) {
     if (!r.complete() || !r.given("between")) continue;
     const JsonValue::Array& between = r.at("between").array();
     bool known = true;
     for (const JsonValue& name : between)
       if (std::find(names.begin(), names.end(), name.string()) == names.end()) {
-        faults.unknown(name, "part or plane", names);
+        faults.unknown(name, "part, plane or obstacle", names);
         known = false;
       }
     if (!known) continue;
