@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -30,7 +32,13 @@ struct Corners {
 void add_mesh(const aiMesh& mesh, const aiMatrix4x4& place, Corners& all) {
   const int first = static_cast<int>(all.vertices.size());
   for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-    const aiVector3D x = place * mesh.mVertices[i];
+    const aiVector3D own = mesh.mVertices[i];
+    if (!std::isfinite(own.x) || !std::isfinite(own.y) || !std::isfinite(own.z)) {
+      std::ostringstream message;
+      message << "vertex " << i << " is not finite: (" << own.x << ", " << own.y << ", " << own.z << ")";
+      throw std::invalid_argument(message.str());
+    }
+    const aiVector3D x = place * own;
     all.vertices.emplace_back(x.x, x.y, x.z);
   }
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
