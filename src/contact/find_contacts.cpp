@@ -20,6 +20,8 @@ constexpr double kThinShare = 0.4;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// Gaps over an obstacle are told up to this, in sizes of the part.
+constexpr double kSeen = 0.1;
 /// Normals of one contact differ by less than this.
 constexpr double kSameNormal = 0.2;
 
@@ -357,7 +359,8 @@ double ContactFinder::least_gap(const State& state, double t, const Contact& of,
   std::vector<Contact> found;
   const Placed a = place(state, of.a.part);
   if (of.obstacle >= 0) {
-    find_on_obstacle(a, at(of.obstacle), t, std::min(most, a.part->size()), found);
+    most = std::min(most, kSeen * a.part->size());
+    find_on_obstacle(a, at(of.obstacle), t, most, found);
   } else if (of.b.part < 0) {
     find_on_plane(a, at(of.plane), t, most, found);
   } else {

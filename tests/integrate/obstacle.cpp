@@ -2,10 +2,12 @@
 // passed, and meshes that are none are refused.
 #include "catch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include <pliant/contact/obstacle_mesh.h>
+#include <pliant/part/surface.h>
 
 #include "draws.h"
 #include "motion.h"
@@ -126,6 +128,58 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
     CHECK(std::abs(simulation.state().q[1] - 0.05) < 1e-9);
     if (slope < 0) CHECK(highest < 1e-4);
     CHECK(std::abs(simulation.ledger().balance) < 1e-6);
+  }
+}
+
+TEST_CASE("what tumbles over rough ground neither sinks in nor lets a peak in, and gains no energy",
+          "[contact]") {
+  constexpr int n = 12;
+  for (const std::string shape : {"sphere", "ellipsoid", "box", "capsule"}) {
+    INFO(shape);
+    Draws draws(100 + shape.size());
+    const Mesh ground = sheet(n, 0, [&](double x, double y) -> Vec3<double> {
+      return {x, y, std::max(std::abs(x), std::abs(y)) == 1 ? 0.4 : draws.uniform(0, 0.12)};
+    });
+    const auto height = [&](const Vec3<double>& at) {
+      const double u = (at[0] + 1) * n / 2, v = (at[1] + 1) * n / 2;
+      const int i = std::clamp(static_cast<int>(u), 0, n - 1), j = std::clamp(static_cast<int>(v), 0, n - 1);
+      const auto z = [&](int a, int b) { return ground.x(2, (i + a) * (n + 1) + j + b); };
+      const double du = u - i, dv = v - j;
+      return du > dv ? z(0, 0) + du * (z(1, 0) - z(0, 0)) + dv * (z(1, 1) - z(1, 0))
+                     : z(0, 0) + dv * (z(0, 1) - z(0, 0)) + du * (z(1, 1) - z(0, 1));
+    };
+    MultiBody body;
+    Part& part = body.add(make_part(shape, shape, {}, 1000));
+    if (shape == "sphere") part.rest({{"r", 0.15}});
+    if (shape == "ellipsoid" || shape == "box") part.rest({{"a1", 0.2}, {"a2", 0.12}, {"a3", 0.07}});
+    if (shape == "capsule") part.rest({{"r", 0.1}, {"l", 0.15}});
+    part.place({0.03, -0.1, 0.5}, Eigen::Quaterniond(0.4, 0.3, -0.6, 0.5).normalized())
+        .move({0.7, 0.4, 0}, {2, -1, 0});
+    body.obstacle("ground", ground.x, ground.triangles);
+    Simulation simulation(body, "rk4");
+    const Surface surface(part, 8);
+    const double energy = simulation.ledger().energy();
+    double below = 0, peak = 0, gain = 0;
+    for (int k = 0; k < 100; ++k) {
+      test::run(simulation, 0.01, 5);
+      const Model& model = simulation.model();
+      const ParameterValues<double> values = model.values(simulation.state(), 0);
+      const Vec3<double> c = model.position(simulation.state(), 0);
+      const Mat3<double> R = model.orientation(simulation.state(), 0).toRotationMatrix();
+      const Eigen::Matrix3Xd p = part.s(surface.material(), values);
+      for (Eigen::Index i = 0; i < p.cols(); ++i) {
+        const Vec3<double> x = c + R * p.col(i);
+        below = std::max(below, height(x) - x[2]);
+      }
+      for (Eigen::Index i = 0; i < ground.x.cols(); ++i)
+        peak = std::max(peak, -part.inside_outside(R.transpose() * (ground.x.col(i) - c), values));
+      gain = std::max(gain, simulation.ledger().energy() - energy);
+    }
+    CHECK(simulation.step_counters().impacts > 3);
+    CHECK(below < 1e-9);
+    CHECK(peak < 1e-9);
+    CHECK(gain < 1e-9);
+    CHECK(std::abs(simulation.ledger().balance) < 1e-9);
   }
 }
 
