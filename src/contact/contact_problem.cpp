@@ -5,19 +5,28 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <pliant/body/group.h>
-#include <pliant/solve/coulomb.h>
 
 namespace pliant {
 
 namespace {
 
-/// Sweeps end when impulses change velocities by less than this, relative to what there is to stop.
-constexpr double kExact = 1e-13;
-constexpr int kMostRounds = 40, kSweepsARound = 12, kMostNewton = 20;
+/// Sweeps end when impulses change velocities by less than this, relative to what there is to stop; or by so
+/// many units of rounding of the velocities themselves.
+constexpr double kExact = 1e-13, kUlps = 8;
+constexpr int kMostRounds = 8, kSweepsARound = 12, kMostNewton = 20, kMostSweeps = 600;
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 400;
+constexpr std::size_t kMostDense = 60;
+/// Sweeps before that are extrapolated from.
+constexpr int kHistory = 8;
+/// Extrapolation starts anew when it has made things worse by this factor.
+constexpr double kWorse = 4;
+/// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
+/// shares of their W.
+constexpr double kLeft = 1e-6;
+constexpr double kYielding = 1e-4;
 /// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
 constexpr double kFast = 1e-9;
 /// Share of the step so far in Newton's method.
@@ -171,25 +180,72 @@ void ContactProblem::complete(Block& block) {
 
 Vec3<double> ContactProblem::velocity(const Block& block) const {
   Vec3<double> u = block.constant;
-  for (const Side& side : block.sides) u += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
+  for (const Side& side : block.sides)
+    u.noalias() += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
+  if (softness_ > 0) u += softness_ * block.W.diagonal().cwiseProduct(block.p);
   return u;
 }
 
 /// The impulse that its law asks for when u is the velocity with the impulse it has.
-Vec3<double> ContactProblem::met(const Block& block, const Vec3<double>& u) {
-  if (block.rows == 1) return {std::max(0.0, block.p[0] - u[0] / block.W(0, 0)), 0, 0};
-  return solve_coulomb(block.W, u - block.W * block.p, block.mu);
+Vec3<double> ContactProblem::met(const Block& block, const Vec3<double>& u) const {
+  if (block.rows == 1) return {std::max(0.0, block.p[0] - u[0] / ((1 + softness_) * block.W(0, 0))), 0, 0};
+  Vec3<double> b = u - block.W * block.p;
+  if (softness_ > 0) b -= softness_ * block.W.diagonal().cwiseProduct(block.p);
+  return block.law.push(b);
 }
 
 void ContactProblem::push(const Block& block, const Vec3<double>& impulse) {
   for (const Response& response : block.responses)
-    movers_[response.mover].x += response.Y * impulse.head(block.rows);
+    movers_[response.mover].x.noalias() += response.Y * impulse.head(block.rows);
 }
 
-double ContactProblem::sweep(bool forward) {
+std::vector<ContactProblem::Cluster> ContactProblem::clusters() const {
+  std::vector<std::size_t> leader(movers_.size());
+  for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = i;
+  auto leader_of = [&](std::size_t i) {
+    while (leader[i] != i) i = leader[i] = leader[leader[i]];
+    return i;
+  };
+  for (const Block& block : blocks_)
+    for (const Side& side : block.sides) {
+      const std::size_t one = leader_of(block.sides.front().mover), other = leader_of(side.mover);
+      leader[std::max(one, other)] = std::min(one, other);
+    }
+  std::vector<Cluster> all;
+  std::vector<int> number(movers_.size(), -1);
+  for (std::size_t i = 0; i < movers_.size(); ++i) {
+    int& mine = number[leader_of(i)];
+    if (mine < 0) {
+      mine = static_cast<int>(all.size());
+      all.emplace_back();
+    }
+    all[at(mine)].movers.push_back(i);
+  }
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (!blocks_[k].sides.empty())
+      all[at(number[leader_of(blocks_[k].sides.front().mover)])].blocks.push_back(k);
+  return all;
+}
+
+/// Velocities that count as zero.
+double ContactProblem::rounding(const Cluster& cluster) const {
+  double scale = 0, terms = 0;
+  for (const std::size_t k : cluster.blocks) {
+    const Block& block = blocks_[k];
+    scale = std::max(scale, velocity(block).lpNorm<Eigen::Infinity>());
+    for (const Side& side : block.sides)
+      terms = std::max(
+          terms, side.J.lpNorm<Eigen::Infinity>() *
+                     movers_[side.mover].x.segment(side.first, side.J.cols()).lpNorm<Eigen::Infinity>());
+  }
+  return std::max(kExact * scale, kUlps * std::numeric_limits<double>::epsilon() * terms);
+}
+
+double ContactProblem::sweep(const Cluster& cluster, bool forward) {
   double change = 0;
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    Block& block = blocks_[forward ? k : blocks_.size() - 1 - k];
+  const std::size_t n = cluster.blocks.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    Block& block = blocks_[cluster.blocks[forward ? k : n - 1 - k]];
     if (block.responses.empty()) continue;
     const Vec3<double> p = met(block, velocity(block)), dp = p - block.p;
     push(block, dp);
@@ -199,9 +255,10 @@ double ContactProblem::sweep(bool forward) {
   return change;
 }
 
-double ContactProblem::residual() const {
+double ContactProblem::residual(const Cluster& cluster) const {
   double worst = 0;
-  for (const Block& block : blocks_) {
+  for (const std::size_t k : cluster.blocks) {
+    const Block& block = blocks_[k];
     if (block.responses.empty()) {  // fixed, or held fast by joints: it cannot be stopped
       worst = std::max(worst, -velocity(block)[0]);
       continue;
@@ -212,44 +269,58 @@ double ContactProblem::residual() const {
   return worst;
 }
 
-/// The matrix that takes the impulses of all blocks to their velocities.
-MatX<double> ContactProblem::matrix() const {
-  const auto n = static_cast<Eigen::Index>(3 * blocks_.size());
-  MatX<double> A = MatX<double>::Zero(n, n);
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    for (std::size_t j = 0; j < blocks_.size(); ++j)
-      for (const Side& side : blocks_[i].sides)
-        for (const Response& response : blocks_[j].responses)
-          if (response.mover == side.mover)
-            A.block(3 * i, 3 * j, 3, blocks_[j].rows) +=
-                side.J * response.Y.middleRows(side.first, side.J.cols());
-  return A;
+void ContactProblem::take(const Cluster& cluster, Iterate& iterate) const {
+  Eigen::Index n = 0;
+  for (const std::size_t i : cluster.movers) n += movers_[i].x.size();
+  iterate.p.resize(static_cast<Eigen::Index>(3 * cluster.blocks.size()));
+  iterate.x.resize(n);
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    iterate.p.segment<3>(static_cast<Eigen::Index>(3 * k)) = blocks_[cluster.blocks[k]].p;
+  n = 0;
+  for (const std::size_t i : cluster.movers) {
+    iterate.x.segment(n, movers_[i].x.size()) = movers_[i].x;
+    n += movers_[i].x.size();
+  }
 }
 
-/// Newton's method on Coulomb's law of all contacts at once in the form of Alart and Curnier (1991),
+void ContactProblem::set(const Cluster& cluster, const Iterate& iterate) {
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    blocks_[cluster.blocks[k]].p = iterate.p.segment<3>(static_cast<Eigen::Index>(3 * k));
+  Eigen::Index n = 0;
+  for (const std::size_t i : cluster.movers) {
+    movers_[i].x = iterate.x.segment(n, movers_[i].x.size());
+    n += movers_[i].x.size();
+  }
+}
+
+/// Newton's method on Coulomb's law of all contacts of a cluster at once in the form of Alart and Curnier
+/// (1991),
 ///   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t,
 /// with a share of the step so far in u, so that impulses that depend on each other stay as near as they can.
-/// Returns whether it came nearer to the solution than before.
-bool ContactProblem::newton(double exact) {
-  if (blocks_.size() > kMostDense) return false;
-  const MatX<double> A = matrix();
-  const Eigen::Index n = A.rows();
-  double best = residual();
-  const double start = best;
-  std::vector<Vec3<double>> p_best;
-  std::vector<VecX<double>> x_best;
-  auto keep = [&] {
-    p_best.clear();
-    x_best.clear();
-    for (const Block& block : blocks_) p_best.push_back(block.p);
-    for (const Mover& mover : movers_) x_best.push_back(mover.x);
-  };
-  keep();
-  for (int step = 0; step < kMostNewton && best > exact; ++step) {
+/// Leaves the best it has seen; returns whether that is better than what it began with.
+bool ContactProblem::newton(const Cluster& cluster) {
+  const std::vector<std::size_t>& ours = cluster.blocks;
+  const auto n = static_cast<Eigen::Index>(3 * ours.size());
+  MatX<double> A = MatX<double>::Zero(n, n);  // takes the impulses to their velocities
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    for (std::size_t j = 0; j < ours.size(); ++j)
+      for (const Side& side : blocks_[ours[i]].sides)
+        for (const Response& response : blocks_[ours[j]].responses)
+          if (response.mover == side.mover)
+            A.block(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j), 3,
+                    blocks_[ours[j]].rows) += side.J * response.Y.middleRows(side.first, side.J.cols());
+  if (softness_ > 0)
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      A.diagonal().segment<3>(static_cast<Eigen::Index>(3 * i)) += softness_ * blocks_[ours[i]].W.diagonal();
+  Iterate best;
+  take(cluster, best);
+  best.residual = residual(cluster);
+  const double start = best.residual;
+  for (int step = 0; step < kMostNewton && best.residual > cluster.exact; ++step) {
     MatX<double> K = MatX<double>::Zero(n, n);
     VecX<double> F = VecX<double>::Zero(n);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const Block& block = blocks_[k];
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      const Block& block = blocks_[ours[k]];
       const auto row = static_cast<Eigen::Index>(3 * k);
       const Vec3<double> u = velocity(block);
       const double scale = block.W.diagonal().maxCoeff(), r = 1 / scale, ahead = block.p[0] - r * u[0];
@@ -283,34 +354,130 @@ bool ContactProblem::newton(double exact) {
     }
     const VecX<double> change = -K.partialPivLu().solve(F);
     if (!change.allFinite()) break;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      Block& block = blocks_[k];
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      Block& block = blocks_[ours[k]];
       const Vec3<double> dp = change.segment<3>(static_cast<Eigen::Index>(3 * k));
       push(block, dp);
       block.p += dp;
     }
-    const double now = residual();
-    if (now < best) {
-      best = now;
-      keep();
+    const double now = residual(cluster);
+    if (now < best.residual) {
+      take(cluster, best);
+      best.residual = now;
     }
   }
-  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k].p = p_best[k];
-  for (std::size_t k = 0; k < movers_.size(); ++k) movers_[k].x = x_best[k];
-  return best < start;
+  set(cluster, best);
+  return best.residual < start;
 }
 
-int ContactProblem::iterate() {
-  double scale = 0;
-  for (const Block& block : blocks_) scale = std::max(scale, velocity(block).lpNorm<Eigen::Infinity>());
-  const double exact = kExact * scale;
-  int sweeps = 0;
-  for (int round = 0; round < kMostRounds; ++round) {
-    for (int i = 0; i < kSweepsARound; ++i, ++sweeps)
-      if (sweep(i % 2 == 0) <= exact) return sweeps + 1;
-    if (newton(exact) && residual() <= exact) return sweeps;
+/// Sweeps there and back as a fixed point p = g(p), extrapolated from the last of them to where p - g(p)
+/// would be least if g were linear (Anderson 1965), which it is once contacts have settled on whether they
+/// slide. Leaves the best it has seen; returns whether that is exact.
+bool ContactProblem::accelerate(const Cluster& cluster, int most, int& sweeps) {
+  const auto n = static_cast<Eigen::Index>(3 * cluster.blocks.size());
+  VecX<double> weight(n);  // impulses as velocities
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    weight.segment<3>(static_cast<Eigen::Index>(3 * k))
+        .setConstant(std::max(blocks_[cluster.blocks[k]].W(0, 0), std::numeric_limits<double>::min()));
+  Iterate now, next, best;
+  take(cluster, now);
+  MatX<double> dr(n, kHistory), dp(n, kHistory), dx(now.x.size(), kHistory);
+  VecX<double> last_r, last_p, last_x;
+  int filled = 0, slot = 0;
+  for (int i = 0; i < most; i += 2) {
+    sweep(cluster, true);
+    const double change = sweep(cluster, false);
+    sweeps += 2;
+    take(cluster, next);
+    const VecX<double> r = weight.cwiseProduct(next.p - now.p);
+    next.residual = std::max(change, r.lpNorm<Eigen::Infinity>());
+    if (next.residual < best.residual) best = next;
+    if (next.residual <= cluster.exact) return true;
+    if (!(next.residual <= kWorse * best.residual)) {
+      filled = 0;
+      slot = 0;
+      now = best;
+      last_r.resize(0);
+      set(cluster, now);
+      continue;
+    }
+    if (last_r.size() > 0) {
+      dr.col(slot) = r - last_r;
+      dp.col(slot) = next.p - last_p;
+      dx.col(slot) = next.x - last_x;
+      slot = (slot + 1) % kHistory;
+      filled = std::min(filled + 1, kHistory);
+    }
+    last_r = r;
+    last_p = next.p;
+    last_x = next.x;
+    now = next;
+    if (filled > 0) {
+      const VecX<double> gamma = dr.leftCols(filled).colPivHouseholderQr().solve(r);
+      if (gamma.allFinite()) {
+        now.p.noalias() -= dp.leftCols(filled) * gamma;
+        now.x.noalias() -= dx.leftCols(filled) * gamma;
+      }
+    }
+    set(cluster, now);
   }
-  return sweeps;
+  set(cluster, best);
+  return false;
+}
+
+/// Returns whether it found the solution.
+bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
+  if (cluster.blocks.size() == 1) {
+    sweep(cluster, true);
+    ++sweeps;
+    return residual(cluster) <= cluster.exact;
+  }
+  if (cluster.blocks.size() > kMostDense) return accelerate(cluster, kMostSweeps, sweeps);
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (accelerate(cluster, kSweepsARound, sweeps)) return true;
+    if (newton(cluster) && residual(cluster) <= cluster.exact) return true;
+  }
+  return false;
+}
+
+/// Contacts of a cluster give way by this share of W.
+void ContactProblem::yield(const Cluster& cluster, double softness) {
+  softness_ = softness;
+  for (const std::size_t k : cluster.blocks) {
+    Block& block = blocks_[k];
+    Mat3<double> W = block.W;
+    W.diagonal() *= 1 + softness;
+    block.law = CoulombLaw(W, block.mu);
+  }
+}
+
+/// Each cluster by itself. What has no solution, as where joints and contacts contradict each other, or where
+/// none is found, is solved with contacts that yield, which has one; the better of the two stays.
+void ContactProblem::iterate(ContactSolution& solution) {
+  for (const Block& block : blocks_)
+    if (block.sides.empty()) solution.residual = std::max(solution.residual, -velocity(block)[0]);
+  for (Cluster& cluster : clusters()) {
+    if (cluster.blocks.empty()) continue;
+    yield(cluster, 0);
+    cluster.exact = rounding(cluster);
+    const double allowed = kLeft / kExact * cluster.exact;
+    Iterate start, found;
+    take(cluster, start);
+    const bool solved = iterate(cluster, solution.sweeps);
+    double left = residual(cluster);
+    if (!solved && left > allowed) {
+      ++solution.fallbacks;
+      take(cluster, found);
+      set(cluster, start);
+      yield(cluster, kYielding);
+      iterate(cluster, solution.sweeps);
+      yield(cluster, 0);
+      const double yielding = residual(cluster);
+      if (!(yielding < left)) set(cluster, found);
+      left = std::min(left, yielding);
+    }
+    solution.residual = std::max(solution.residual, left);
+  }
 }
 
 ContactSolution ContactProblem::solve(double slowest_rebound) {
@@ -321,8 +488,7 @@ ContactSolution ContactProblem::solve(double slowest_rebound) {
   }
   std::vector<Vec3<double>> before;
   for (const Block& block : blocks_) before.push_back(velocity(block));
-  solution.sweeps = iterate();
-  solution.residual = residual();
+  iterate(solution);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     const Block& block = blocks_[k];
     solution.impulse.push_back(block.axes * block.p);
@@ -342,7 +508,8 @@ void ContactProblem::part_bodies(double most) {
     blocks_[k].constant.setZero();
     if (k < contacts_.size()) blocks_[k].constant[0] = std::max(contacts_[k].gap, -most);
   }
-  iterate();
+  ContactSolution solution;
+  iterate(solution);
 }
 
 }  // namespace pliant

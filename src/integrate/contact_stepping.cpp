@@ -292,6 +292,7 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
   ContactProblem problem(model, state, work, contacts);
   const ContactSolution solution = problem.solve(slowest_rebound);
   counters.contact_sweeps += solution.sweeps;
+  counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
   move(problem.movers(), work, 0, true, state);
   if (reach * h > 0) {

@@ -4,10 +4,12 @@
 // the parts that joints tie together, is a mover; its velocities x stand as in body/group.h.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <pliant/body/dynamics.h>
 #include <pliant/contact/contact.h>
+#include <pliant/solve/coulomb.h>
 
 namespace pliant {
 
@@ -22,6 +24,7 @@ struct ContactSolution {
   double friction_work = 0;           ///< J
   double residual = 0;                ///< what Coulomb's law misses at the worst contact, m/s
   int sweeps = 0;
+  int fallbacks = 0;  ///< groups of contacts that were left with more than rounding of it
 };
 
 class ContactProblem {
@@ -59,6 +62,17 @@ class ContactProblem {
     Mat3<double> axes = Mat3<double>::Identity();  ///< normal and tangents, columns, world
     Vec3<double> constant = Vec3<double>::Zero();  ///< added to u
     Vec3<double> p = Vec3<double>::Zero();
+    CoulombLaw law;
+  };
+  /// Blocks and movers that push on each other and on nothing else.
+  struct Cluster {
+    std::vector<std::size_t> blocks, movers;
+    double exact = 0;  ///< velocities below this are rounding, m/s
+  };
+  /// Impulses and velocities of a cluster.
+  struct Iterate {
+    VecX<double> p, x;
+    double residual = std::numeric_limits<double>::infinity();
   };
 
   std::size_t mover_of(int part);
@@ -67,13 +81,19 @@ class ContactProblem {
   void add_limits(const State& state);
   void complete(Block& block);
   Vec3<double> velocity(const Block& block) const;
-  static Vec3<double> met(const Block& block, const Vec3<double>& u);
+  Vec3<double> met(const Block& block, const Vec3<double>& u) const;
   void push(const Block& block, const Vec3<double>& impulse);
-  double sweep(bool forward);
-  double residual() const;
-  MatX<double> matrix() const;
-  bool newton(double exact);
-  int iterate();
+  std::vector<Cluster> clusters() const;
+  double rounding(const Cluster& cluster) const;
+  double sweep(const Cluster& cluster, bool forward);
+  double residual(const Cluster& cluster) const;
+  void take(const Cluster& cluster, Iterate& iterate) const;
+  void set(const Cluster& cluster, const Iterate& iterate);
+  bool newton(const Cluster& cluster);
+  bool accelerate(const Cluster& cluster, int most, int& sweeps);
+  bool iterate(const Cluster& cluster, int& sweeps);
+  void yield(const Cluster& cluster, double softness);
+  void iterate(ContactSolution& solution);
 
   const Model& model_;
   Workspace<double>& work_;
@@ -81,6 +101,7 @@ class ContactProblem {
   std::vector<Mover> movers_;
   std::vector<int> mover_number_;  // of each part; -1: not there yet
   std::vector<Block> blocks_;      // the contacts first
+  double softness_ = 0;            // of all contacts, as a share of their W
 };
 
 }  // namespace pliant

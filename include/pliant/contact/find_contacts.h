@@ -1,7 +1,9 @@
-// Which surfaces meet: broad phase by boxes, then the low points of each part over planes and other parts.
+// Which surfaces meet: a tree of boxes tells which parts are near each other, then the low points of each
+// part over planes and other parts.
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/model.h>
@@ -10,11 +12,13 @@
 
 namespace pliant {
 
+/// Not for several threads at once: it keeps what it works with from call to call.
 class ContactFinder {
  public:
   /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
   /// for parts that deform locally.
   explicit ContactFinder(const Model& model);
+  ~ContactFinder();
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -35,18 +39,27 @@ class ContactFinder {
     double friction = 0, restitution = 0;
   };
   struct Placed;
-  Rule rule_of(const std::string& a, const std::string& b) const;
-  Placed place(const State& state, int part) const;
-  void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
-                     std::vector<Contact>& found) const;
+  struct Scratch;
+  class OverPart;
+  void set_rules();
+  const Rule& rule_of(int i, int j) const;
+  void place(const State& state, int part) const;
+  bool is_still(int part) const;
+  const Eigen::Matrix3Xd& points_of(int part) const;
+  Eigen::AlignedBox3d body_box(int part) const;
+  Eigen::AlignedBox3d world_box(int part) const;
+  void place_planes(double t) const;
+  void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
+  void find_between(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
-                    std::vector<Contact>& found) const;
+  void find_on_part(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
-  std::vector<Rule> on_planes_;                              // part after part, plane after plane
-  std::vector<Rule> on_parts_;                               // of parts i < j, n_parts x n_parts
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;         // of each part
+  std::vector<Rule> on_planes_;                                     // part after part, plane after plane
+  Rule on_parts_;                                                   // of most pairs of parts
+  std::vector<std::pair<std::pair<int, int>, Rule>> out_of_order_;  // of pairs i < j, sorted
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace pliant
