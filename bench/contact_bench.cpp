@@ -154,7 +154,7 @@ int main(int argc, char** argv) try {
       {"rigid", false, 1, 10000}, {"3 parameters", true, 1, 10000}, {"rigid, heap", false, 5, 1000}};
   std::printf("microseconds per body and step\n%-14s %6s %8s | %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
               "system", "bodies", "contacts", "step", "still", "motion", "near", "find", "solve", "deepest",
-              "residual");
+              "residual", "fallbacks");
   for (const System& system : systems) {
     std::vector<Cost> costs;
     for (int n = 10; n <= std::min(most, system.most); n *= 10) {

@@ -1,7 +1,9 @@
 #include <pliant/contact/contact_problem.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,11 +18,11 @@ namespace {
 /// Sweeps end when impulses change velocities by less than this, relative to what there is to stop; or by so
 /// many units of rounding of the velocities themselves.
 constexpr double kExact = 1e-13, kUlps = 8;
-constexpr int kMostRounds = 8, kSweepsARound = 12, kMostNewton = 20, kMostSweeps = 600;
+constexpr int kMostNewton = 20;
+/// Rounds of so many sweeps, which are extrapolated from so many before them.
+constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 /// Most blocks that are solved as one system.
 constexpr std::size_t kMostDense = 60;
-/// Sweeps before that are extrapolated from.
-constexpr int kHistory = 8;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
@@ -373,7 +375,7 @@ bool ContactProblem::newton(const Cluster& cluster) {
 /// Sweeps there and back as a fixed point p = g(p), extrapolated from the last of them to where p - g(p)
 /// would be least if g were linear (Anderson 1965), which it is once contacts have settled on whether they
 /// slide. Leaves the best it has seen; returns whether that is exact.
-bool ContactProblem::accelerate(const Cluster& cluster, int most, int& sweeps) {
+bool ContactProblem::relax(const Cluster& cluster, int most, int history, int& sweeps) {
   const auto n = static_cast<Eigen::Index>(3 * cluster.blocks.size());
   VecX<double> weight(n);  // impulses as velocities
   for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
@@ -381,7 +383,7 @@ bool ContactProblem::accelerate(const Cluster& cluster, int most, int& sweeps) {
         .setConstant(std::max(blocks_[cluster.blocks[k]].W(0, 0), std::numeric_limits<double>::min()));
   Iterate now, next, best;
   take(cluster, now);
-  MatX<double> dr(n, kHistory), dp(n, kHistory), dx(now.x.size(), kHistory);
+  MatX<double> dr(n, history), dp(n, history), dx(now.x.size(), history);
   VecX<double> last_r, last_p, last_x;
   int filled = 0, slot = 0;
   for (int i = 0; i < most; i += 2) {
@@ -393,6 +395,10 @@ bool ContactProblem::accelerate(const Cluster& cluster, int most, int& sweeps) {
     next.residual = std::max(change, r.lpNorm<Eigen::Infinity>());
     if (next.residual < best.residual) best = next;
     if (next.residual <= cluster.exact) return true;
+    if (history == 0) {
+      now = next;
+      continue;
+    }
     if (!(next.residual <= kWorse * best.residual)) {
       filled = 0;
       slot = 0;
@@ -405,8 +411,8 @@ bool ContactProblem::accelerate(const Cluster& cluster, int most, int& sweeps) {
       dr.col(slot) = r - last_r;
       dp.col(slot) = next.p - last_p;
       dx.col(slot) = next.x - last_x;
-      slot = (slot + 1) % kHistory;
-      filled = std::min(filled + 1, kHistory);
+      slot = (slot + 1) % history;
+      filled = std::min(filled + 1, history);
     }
     last_r = r;
     last_p = next.p;
@@ -432,10 +438,11 @@ bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
     ++sweeps;
     return residual(cluster) <= cluster.exact;
   }
-  if (cluster.blocks.size() > kMostDense) return accelerate(cluster, kMostSweeps, sweeps);
-  for (int round = 0; round < kMostRounds; ++round) {
-    if (accelerate(cluster, kSweepsARound, sweeps)) return true;
-    if (newton(cluster) && residual(cluster) <= cluster.exact) return true;
+  // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
+  const bool dense = cluster.blocks.size() <= kMostDense;
+  for (const auto& [most, history] : kRounds) {
+    if (relax(cluster, most, history, sweeps)) return true;
+    if (dense && newton(cluster) && residual(cluster) <= cluster.exact) return true;
   }
   return false;
 }

@@ -357,8 +357,9 @@ void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
   ours.clear();
   theirs.clear();
   find_on_part(a, b, rule, most, ours);
-  // What is convex is no nearer than w of one point of it and its gradient there tell.
-  if (ours.empty() && scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes) return;
+  // Two ellipsoids touch at one point, and are no nearer than w of one of them and its gradient there tell.
+  const bool at_one_point = scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes;
+  if (at_one_point && ours.empty()) return;
   find_on_part(b, a, rule, most, theirs);
   const double same =
       kSame * std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size());
@@ -366,7 +367,8 @@ void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
     auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
-      return (other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal;
+      return at_one_point ||
+             ((other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal);
     });
     if (twin == ours.end())
       ours.push_back(contact);

@@ -90,7 +90,7 @@ class ContactProblem {
   void take(const Cluster& cluster, Iterate& iterate) const;
   void set(const Cluster& cluster, const Iterate& iterate);
   bool newton(const Cluster& cluster);
-  bool accelerate(const Cluster& cluster, int most, int& sweeps);
+  bool relax(const Cluster& cluster, int most, int history, int& sweeps);
   bool iterate(const Cluster& cluster, int& sweeps);
   void yield(const Cluster& cluster, double softness);
   void iterate(ContactSolution& solution);
