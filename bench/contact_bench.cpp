@@ -64,10 +64,6 @@ void build(MultiBody& body, const System& system, int n) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 Cost measure(const System& system, int n) {
   MultiBody body, apart;
   build(body, system, n);
@@ -82,9 +78,9 @@ Cost measure(const System& system, int n) {
   auto per_body = [&](double seconds, int count) { return seconds * 1e6 / n / count; };
   double seconds = 0;
   for (int i = 0; i < steps; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = bench::ProcessorClock::now();
     simulation.step(kStep);
-    const double taken = seconds_since(start);
+    const double taken = std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
     seconds += taken;
     if (i >= steps - still) cost.still_step += per_body(taken, still);
     if (i % 10 != 0) continue;
@@ -96,7 +92,9 @@ Cost measure(const System& system, int n) {
   cost.fallbacks = simulation.step_counters().contact_fallbacks;
   const State state = simulation.state();
   const double t = state.time();
-  auto stage = [&](auto&& act) { return per_body(bench::seconds_per_call(act, 0.01, 5), 1); };
+  auto stage = [&](auto&& act) {
+    return per_body(bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5), 1);
+  };
   loose.set_state(state);
   cost.motion = stage([&] {
     loose.set_state(state);

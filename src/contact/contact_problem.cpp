@@ -201,7 +201,7 @@ void ContactProblem::push(const Block& block, const Vec3<double>& impulse) {
     movers_[response.mover].x.noalias() += response.Y * impulse.head(block.rows);
 }
 
-std::vector<ContactProblem::Cluster> ContactProblem::clusters() const {
+std::vector<ContactProblem::Cluster> ContactProblem::clusters() {
   std::vector<std::size_t> leader(movers_.size());
   for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = i;
   auto leader_of = [&](std::size_t i) {
@@ -213,19 +213,39 @@ std::vector<ContactProblem::Cluster> ContactProblem::clusters() const {
       const std::size_t one = leader_of(block.sides.front().mover), other = leader_of(side.mover);
       leader[std::max(one, other)] = std::min(one, other);
     }
-  std::vector<Cluster> all;
-  std::vector<int> number(movers_.size(), -1);
+  std::vector<std::size_t> number(movers_.size()), blocks, movers;
+  auto count = [](std::vector<std::size_t>& counts, std::size_t i) { ++counts[i + 1]; };
   for (std::size_t i = 0; i < movers_.size(); ++i) {
-    int& mine = number[leader_of(i)];
-    if (mine < 0) {
-      mine = static_cast<int>(all.size());
-      all.emplace_back();
+    const std::size_t first = leader_of(i);  // no later than i
+    if (first == i) {
+      number[i] = movers.size();
+      movers.push_back(0);
+    } else {
+      number[i] = number[first];
     }
-    all[at(mine)].movers.push_back(i);
   }
+  const std::size_t n = movers.size();
+  auto cluster_of = [&](const Block& block) { return number[block.sides.front().mover]; };
+  movers.assign(n + 1, 0);
+  blocks.assign(n + 1, 0);
+  for (const std::size_t i : number) count(movers, i);
+  for (const Block& block : blocks_)
+    if (!block.sides.empty()) count(blocks, cluster_of(block));
+  for (std::size_t i = 0; i < n; ++i) {
+    movers[i + 1] += movers[i];
+    blocks[i + 1] += blocks[i];
+  }
+  clustered_.resize(blocks[n] + movers[n]);
+  std::size_t *const all_blocks = clustered_.data(), *const all_movers = all_blocks + blocks[n];
+  std::vector<Cluster> all;
+  all.reserve(n);
+  for (std::size_t i = 0; i < n; ++i)
+    all.push_back({{all_blocks + blocks[i], all_blocks + blocks[i + 1]},
+                   {all_movers + movers[i], all_movers + movers[i + 1]},
+                   0});
+  for (std::size_t i = 0; i < movers_.size(); ++i) all_movers[movers[number[i]]++] = i;
   for (std::size_t k = 0; k < blocks_.size(); ++k)
-    if (!blocks_[k].sides.empty())
-      all[at(number[leader_of(blocks_[k].sides.front().mover)])].blocks.push_back(k);
+    if (!blocks_[k].sides.empty()) all_blocks[blocks[cluster_of(blocks_[k])]++] = k;
   return all;
 }
 
@@ -301,7 +321,7 @@ void ContactProblem::set(const Cluster& cluster, const Iterate& iterate) {
 /// with a share of the step so far in u, so that impulses that depend on each other stay as near as they can.
 /// Leaves the best it has seen; returns whether that is better than what it began with.
 bool ContactProblem::newton(const Cluster& cluster) {
-  const std::vector<std::size_t>& ours = cluster.blocks;
+  const Numbers& ours = cluster.blocks;
   const auto n = static_cast<Eigen::Index>(3 * ours.size());
   MatX<double> A = MatX<double>::Zero(n, n);  // takes the impulses to their velocities
   for (std::size_t i = 0; i < ours.size(); ++i)
@@ -433,11 +453,6 @@ bool ContactProblem::relax(const Cluster& cluster, int most, int history, int& s
 
 /// Returns whether it found the solution.
 bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
-  if (cluster.blocks.size() == 1) {
-    sweep(cluster, true);
-    ++sweeps;
-    return residual(cluster) <= cluster.exact;
-  }
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
   const bool dense = cluster.blocks.size() <= kMostDense;
   for (const auto& [most, history] : kRounds) {
@@ -454,7 +469,7 @@ void ContactProblem::yield(const Cluster& cluster, double softness) {
     Block& block = blocks_[k];
     Mat3<double> W = block.W;
     W.diagonal() *= 1 + softness;
-    block.law = CoulombLaw(W, block.mu);
+    block.law = CoulombLaw(W, block.rows == 1 ? 0 : block.mu);
   }
 }
 
@@ -464,9 +479,15 @@ void ContactProblem::iterate(ContactSolution& solution) {
   for (const Block& block : blocks_)
     if (block.sides.empty()) solution.residual = std::max(solution.residual, -velocity(block)[0]);
   for (Cluster& cluster : clusters()) {
-    if (cluster.blocks.empty()) continue;
+    if (cluster.blocks.size() == 0) continue;
     yield(cluster, 0);
     cluster.exact = rounding(cluster);
+    if (cluster.blocks.size() == 1) {
+      sweep(cluster, true);
+      ++solution.sweeps;
+      solution.residual = std::max(solution.residual, residual(cluster));
+      continue;
+    }
     const double allowed = kLeft / kExact * cluster.exact;
     Iterate start, found;
     take(cluster, start);

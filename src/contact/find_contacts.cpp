@@ -350,9 +350,20 @@ void ContactFinder::find_on_part(int a, int b, const Rule& rule, double most,
   }
 }
 
+/// Whether a plane across the line of their centres parts two bodies, by more than `most`.
+bool ContactFinder::are_apart(int a, int b, double most) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  const Vec3<double> d = other.c - one.c;
+  auto extent = [&](const Placed& placed) {  // along d, times its length
+    return placed.axes ? placed.axes->cwiseProduct(placed.R.transpose() * d).norm() : placed.reach * d.norm();
+  };
+  return d.squaredNorm() - extent(one) - extent(other) > most * d.norm();
+}
+
 /// Contacts of a pair, each point once though both surfaces are searched.
 void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
                                  std::vector<Contact>& found) const {
+  if (are_apart(a, b, most)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();
   theirs.clear();

@@ -64,9 +64,17 @@ class ContactProblem {
     Vec3<double> p = Vec3<double>::Zero();
     CoulombLaw law;
   };
+  /// Some of a list of numbers.
+  struct Numbers {
+    const std::size_t *first, *last;
+    const std::size_t* begin() const { return first; }
+    const std::size_t* end() const { return last; }
+    std::size_t size() const { return static_cast<std::size_t>(last - first); }
+    std::size_t operator[](std::size_t i) const { return first[i]; }
+  };
   /// Blocks and movers that push on each other and on nothing else.
   struct Cluster {
-    std::vector<std::size_t> blocks, movers;
+    Numbers blocks, movers;
     double exact = 0;  ///< velocities below this are rounding, m/s
   };
   /// Impulses and velocities of a cluster.
@@ -83,7 +91,7 @@ class ContactProblem {
   Vec3<double> velocity(const Block& block) const;
   Vec3<double> met(const Block& block, const Vec3<double>& u) const;
   void push(const Block& block, const Vec3<double>& impulse);
-  std::vector<Cluster> clusters() const;
+  std::vector<Cluster> clusters();
   double rounding(const Cluster& cluster) const;
   double sweep(const Cluster& cluster, bool forward);
   double residual(const Cluster& cluster) const;
@@ -99,9 +107,10 @@ class ContactProblem {
   Workspace<double>& work_;
   const std::vector<Contact>& contacts_;
   std::vector<Mover> movers_;
-  std::vector<int> mover_number_;  // of each part; -1: not there yet
-  std::vector<Block> blocks_;      // the contacts first
-  double softness_ = 0;            // of all contacts, as a share of their W
+  std::vector<int> mover_number_;       // of each part; -1: not there yet
+  std::vector<Block> blocks_;           // the contacts first
+  std::vector<std::size_t> clustered_;  // the blocks of each cluster, then the movers of each
+  double softness_ = 0;                 // of all contacts, as a share of their W
 };
 
 }  // namespace pliant

@@ -50,6 +50,7 @@ class ContactFinder {
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;
   void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
+  bool are_apart(int a, int b, double most) const;
   void find_between(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
   void find_on_part(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
