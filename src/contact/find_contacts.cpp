@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <pliant/body/multibody.h>
+#include <pliant/contact/node_motion.h>
 
 namespace pliant {
 
@@ -45,10 +46,7 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
   std::set<std::string> names;
   for (const PartModel& m : model.parts()) {
     names.insert(m.part->name());
-    if (m.local != nullptr)
-      throw std::invalid_argument("part '" + m.part->name() +
-                                  "' deforms locally, and contact is of parts that do not");
-    surfaces_.push_back(std::make_unique<CollisionSurface>(*m.part));
+    surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
   }
   for (const ContactPlane& plane : body.contact.planes)
     if (!names.insert(plane.name).second)
@@ -92,6 +90,18 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
     }
 }
 
+bool ContactFinder::smooth(int part) const {
+  return surfaces_[at(part)] != nullptr;
+}
+
+ContactRule ContactFinder::between(int part, int other) const {
+  return on_parts_[at(std::min(part, other)) * model_->parts().size() + at(std::max(part, other))];
+}
+
+ContactRule ContactFinder::on_plane(int part, std::size_t plane) const {
+  return on_planes_[at(part) * model_->body().contact.planes.size() + plane];
+}
+
 ContactFinder::Rule ContactFinder::rule_of(const std::string& a, const std::string& b) const {
   const ContactSettings& settings = model_->body().contact;
   for (const ContactPair& pair : settings.pairs)
@@ -109,6 +119,7 @@ ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
                 {},
                 {},
                 {}};
+  if (!smooth(part)) return placed;
   placed.p = surfaces_[at(part)]->points(placed.values);
   placed.x = (placed.R * placed.p).colwise() + placed.c;
   placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff(), placed.x.rowwise().maxCoeff());
@@ -208,7 +219,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   const std::size_t planes = model_->body().contact.planes.size();
   for (int i = 0; i < n; ++i)
     for (std::size_t k = 0; k < planes; ++k)
-      if (on_planes_[at(i) * planes + k].touch) find_on_plane(placed[at(i)], k, t, most, found);
+      if (smooth(i) && on_planes_[at(i) * planes + k].touch) find_on_plane(placed[at(i)], k, t, most, found);
   // Sweep and prune along x.
   std::vector<int> order(at(n));
   for (int i = 0; i < n; ++i) order[at(i)] = i;
@@ -221,7 +232,8 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
       const Placed &one = placed[at(order[at(k)])], &other = placed[at(order[at(l)])];
       if (other.box.min()[0] > one.box.max()[0] + most) break;
       const int i = std::min(one.number, other.number), j = std::max(one.number, other.number);
-      if (on_parts_[at(i) * at(n) + at(j)].touch && one.box.squaredExteriorDistance(other.box) <= most * most)
+      if (smooth(i) && smooth(j) && on_parts_[at(i) * at(n) + at(j)].touch &&
+          one.box.squaredExteriorDistance(other.box) <= most * most)
         pairs.emplace_back(i, j);
     }
   std::sort(pairs.begin(), pairs.end());
@@ -252,6 +264,13 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
   auto of = [&](const ContactSide& side) -> Vec3<double> {
     const PartModel& m = model_->parts()[at(side.part)];
     if (m.q0 < 0) return Vec3<double>::Zero();
+    if (side.at_nodes()) {
+      Vec3<double> u = Vec3<double>::Zero();
+      for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+        u += side.weight[static_cast<Eigen::Index>(k)] *
+             node_motion(*model_, state, side.part, side.node[k]).x_dot;
+      return u;
+    }
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());
     std::vector<PointJet<double>> jets;
@@ -273,6 +292,10 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   std::vector<Swept> all;
   for (int i = 0; i < n; ++i) {
     const PartModel& m = model_->parts()[at(i)];
+    if (!smooth(i)) {
+      all.emplace_back();
+      continue;
+    }
     Swept swept{model_->position(state, i), Vec3<double>::Zero(), 0, 0};
     // A parameter may be larger than at rest: the ball is about where the points are.
     swept.reach = surfaces_[at(i)]->points(model_->values(state, i)).colwise().norm().maxCoeff();
@@ -288,7 +311,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   const auto& planes = model_->body().contact.planes;
   for (int i = 0; i < n; ++i)
     for (std::size_t k = 0; k < planes.size(); ++k) {
-      if (!on_planes_[at(i) * planes.size() + k].touch || !(planes[k].acts_at(t) || planes[k].acts_at(t + h)))
+      if (!smooth(i) || !on_planes_[at(i) * planes.size() + k].touch ||
+          !(planes[k].acts_at(t) || planes[k].acts_at(t + h)))
         continue;
       for (const double when : {t, t + h})
         if (planes[k].normal.dot(all[at(i)].c - planes[k].point.value(when)) < all[at(i)].reach)
@@ -296,7 +320,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
     }
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n; ++j) {
-      if (!on_parts_[at(i) * at(n) + at(j)].touch) continue;
+      if (!smooth(i) || !smooth(j) || !on_parts_[at(i) * at(n) + at(j)].touch) continue;
       const Swept &a = all[at(i)], &b = all[at(j)];
       if ((a.c - b.c).norm() > a.reach + b.reach) continue;
       near.empty = false;

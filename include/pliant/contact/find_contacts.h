@@ -10,11 +10,21 @@
 
 namespace pliant {
 
+/// How two things touch.
+struct ContactRule {
+  bool touch = true;
+  double friction = 0, restitution = 0;
+};
+
 class ContactFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
-  /// for parts that deform locally.
+  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument for
+  /// a pair that names nothing of the body.
   explicit ContactFinder(const Model& model);
+
+  /// Of two parts, and of a part and a plane.
+  ContactRule between(int part, int other) const;
+  ContactRule on_plane(int part, std::size_t plane) const;
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -30,11 +40,10 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  struct Rule {
-    bool touch = true;
-    double friction = 0, restitution = 0;
-  };
+  using Rule = ContactRule;
   struct Placed;
+  /// Whether a part is this class's.
+  bool smooth(int part) const;
   Rule rule_of(const std::string& a, const std::string& b) const;
   Placed place(const State& state, int part) const;
   void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
