@@ -10,6 +10,7 @@
 #include <Eigen/QR>
 
 #include <pliant/body/group.h>
+#include <pliant/contact/node_motion.h>
 
 namespace pliant {
 
@@ -44,7 +45,12 @@ std::size_t at(int i) {
 
 ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                                const std::vector<Contact>& contacts)
-    : model_(model), work_(work), contacts_(contacts), mover_number_(model.parts().size(), -1) {
+    : model_(model),
+      state_(state),
+      work_(work),
+      contacts_(contacts),
+      mover_number_(model.parts().size(), -1),
+      of_nodes_(model.parts().size()) {
   for (const Contact& contact : contacts) {
     Block block;
     block.mu = contact.friction;
@@ -66,20 +72,63 @@ std::size_t ContactProblem::mover_of(int part) {
   const int number = static_cast<int>(movers_.size());
   if (m.island >= 0) {
     mover.island = &model_.islands()[at(m.island)];
-    mover.before.resize(mover.island->n_v);
-    for (std::size_t i = 0; i < mover.island->parts.size(); ++i) {
-      const int other = mover.island->parts[i];
-      mover_number_[at(other)] = number;
-      mover.before.segment(mover.island->first[i], model_.parts()[at(other)].n_x()) =
-          work_.parts[at(other)].v_r;
-    }
+    for (const int other : mover.island->parts) mover_number_[at(other)] = number;
   } else {
     mover.part = part;
-    mover.before = work_.parts[at(part)].v_r;
     mover_number_[at(part)] = number;
   }
+  mover.before = velocities_of(mover, state_);
   mover.x = mover.before;
   movers_.push_back(std::move(mover));
+  return at(number);
+}
+
+/// Of a state whose coordinates may be those of an earlier time.
+VecX<double> ContactProblem::velocities_of(const Mover& mover, const State& state) const {
+  if (mover.node >= 0) return node_motion(model_, state, mover.part, mover.node).x_dot;
+  auto take = [&](int part, Eigen::Ref<VecX<double>> x) {
+    take_velocity(model_.parts()[at(part)], work_.parts[at(part)], state.v, x);
+  };
+  VecX<double> x;
+  if (mover.island == nullptr) {
+    x.resize(model_.parts()[at(mover.part)].n_x());
+    take(mover.part, x);
+    return x;
+  }
+  x.resize(mover.island->n_v);
+  for (std::size_t i = 0; i < mover.island->parts.size(); ++i) {
+    const int part = mover.island->parts[i];
+    take(part, x.segment(mover.island->first[i], model_.parts()[at(part)].n_x()));
+  }
+  return x;
+}
+
+std::vector<Vec3<double>> ContactProblem::velocities(const State& of) const {
+  std::vector<VecX<double>> x;
+  for (const Mover& mover : movers_) x.push_back(velocities_of(mover, of));
+  std::vector<Vec3<double>> all;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    Vec3<double> u = -blocks_[k].axes.transpose() * contacts_[k].carried;
+    for (const Side& side : blocks_[k].sides) u += side.J * x[side.mover].segment(side.first, side.J.cols());
+    all.push_back(blocks_[k].axes * u);
+  }
+  return all;
+}
+
+std::size_t ContactProblem::mover_of_node(int part, int node) {
+  std::vector<int>& numbers = of_nodes_[at(part)];
+  if (numbers.empty())
+    numbers.resize(at(static_cast<int>(model_.parts()[at(part)].local->mesh().X.rows())), -1);
+  int& number = numbers[at(node)];
+  if (number < 0) {
+    number = static_cast<int>(movers_.size());
+    Mover mover;
+    mover.part = part;
+    mover.node = node;
+    mover.before = velocities_of(mover, state_);
+    mover.x = mover.before;
+    movers_.push_back(std::move(mover));
+  }
   return at(number);
 }
 
@@ -93,16 +142,24 @@ int ContactProblem::first_in(const Mover& mover, int part) const {
 void ContactProblem::add_side(Block& block, const ContactSide& side, const Vec3<double>& x, double sign) {
   const PartModel& m = model_.parts()[at(side.part)];
   if (m.q0 < 0) return;
+  if (side.at_nodes()) {
+    for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+      block.sides.push_back({mover_of_node(side.part, side.node[k]), 0,
+                             sign * side.weight[static_cast<Eigen::Index>(k)] * block.axes.transpose()});
+    return;
+  }
   const PartWorkspace<double>& w = work_.parts[at(side.part)];
   const std::size_t mover = mover_of(side.part);
-  std::vector<PointJet<double>> jets;
-  Counters counters;
-  m.part->points({side.material}, w.q_s, w.q_s_dot, jets, counters);
   const Mat3<double> D = sign * block.axes.transpose() * w.R;
   Side s{mover, first_in(movers_[mover], side.part), MatX<double>(3, m.n_x())};
   s.J.leftCols<3>() = D;
   s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (x - w.c));
-  s.J.rightCols(m.n_s) = D * jets[0].J;
+  if (m.n_s > 0) {
+    std::vector<PointJet<double>> jets;
+    Counters counters;
+    m.part->points({side.material}, w.q_s, w.q_s_dot, jets, counters);
+    s.J.rightCols(m.n_s) = D * jets[0].J;
+  }
   block.sides.push_back(std::move(s));
 }
 
@@ -110,12 +167,13 @@ void ContactProblem::add_side(Block& block, const ContactSide& side, const Vec3<
 void ContactProblem::add_limits(const State& state) {
   for (std::size_t i = 0; i < movers_.size(); ++i) {
     const Mover& mover = movers_[i];
+    if (mover.node >= 0) continue;
     const std::vector<int> alone{mover.part};
     for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         const int mode = state.at_limit[at(m.limit0 + k)];
-        if (mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
+        if (m.local != nullptr || mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
         Block block;
         block.rows = 1;
         Side side{i, first_in(mover, part), MatX<double>::Zero(3, m.n_x())};
@@ -136,6 +194,11 @@ void ContactProblem::complete(Block& block) {
     if (found == block.responses.end()) {
       block.responses.push_back({side.mover, MatX<double>::Zero(mover.x.size(), block.rows)});
       found = block.responses.end() - 1;
+    }
+    if (mover.node >= 0) {
+      found->Y += side.J.topRows(block.rows).transpose() /
+                  model_.parts()[at(mover.part)].local->mesh().mass[mover.node];
+      continue;
     }
     const int n = static_cast<int>(side.J.cols());
     int part = mover.part;
@@ -508,19 +571,21 @@ void ContactProblem::iterate(ContactSolution& solution) {
   }
 }
 
-ContactSolution ContactProblem::solve(double slowest_rebound) {
+ContactSolution ContactProblem::solve(double since_of_limits) {
   ContactSolution solution;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const double u = velocity(blocks_[k])[0], e = contacts_[k].restitution;
-    if (u < 0 && -e * u > slowest_rebound) blocks_[k].constant[0] += e * u;
-  }
-  std::vector<Vec3<double>> before;
-  for (const Block& block : blocks_) before.push_back(velocity(block));
+  for (std::size_t k = 0; k < contacts_.size(); ++k) blocks_[k].constant[0] -= contacts_[k].rebound;
   iterate(solution);
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+  for (Mover& mover : movers_) mover.shift.setZero(mover.x.size());
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
+    const double since = k < contacts_.size() ? contacts_[k].since : since_of_limits;
+    for (const Response& response : block.responses)
+      movers_[response.mover].shift += since * response.Y * block.p.head(block.rows);
+    if (k >= contacts_.size()) continue;
     solution.impulse.push_back(block.axes * block.p);
-    solution.friction_work += 0.5 * block.p.tail<2>().dot((before[k] + velocity(block)).tail<2>());
+    Vec3<double> u = velocity(block);
+    u[0] += contacts_[k].rebound;
+    solution.velocity.push_back(block.axes * u);
   }
   return solution;
 }
@@ -538,6 +603,7 @@ void ContactProblem::part_bodies(double most) {
   }
   ContactSolution solution;
   iterate(solution);
+  for (Mover& mover : movers_) mover.shift = mover.x;
 }
 
 }  // namespace pliant

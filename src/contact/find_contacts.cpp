@@ -10,6 +10,7 @@
 #include <pliant/body/multibody.h>
 #include <pliant/contact/box_tree.h>
 #include <pliant/contact/ellipsoid_points.h>
+#include <pliant/contact/node_motion.h>
 
 namespace pliant {
 
@@ -126,10 +127,8 @@ ContactFinder::~ContactFinder() = default;
 
 ContactFinder::ContactFinder(const Model& model) : model_(&model), scratch_(std::make_unique<Scratch>()) {
   for (const PartModel& m : model.parts()) {
-    if (m.local != nullptr)
-      throw std::invalid_argument("part '" + m.part->name() +
-                                  "' deforms locally, and contact is of parts that do not");
-    surfaces_.push_back(std::make_unique<CollisionSurface>(*m.part));
+    if (m.local == nullptr) smooth_.push_back(static_cast<int>(surfaces_.size()));
+    surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
   }
   set_rules();
   const std::size_t n = model.parts().size();
@@ -180,6 +179,14 @@ void ContactFinder::set_rules() {
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < planes; ++k)
       if (model_->parts()[at(i)].q0 < 0) on_planes_[at(i) * at(planes) + at(k)].touch = false;
+}
+
+ContactRule ContactFinder::between(int part, int other) const {
+  return rule_of(std::min(part, other), std::max(part, other));
+}
+
+ContactRule ContactFinder::on_plane(int part, std::size_t plane) const {
+  return on_planes_[at(part) * model_->body().contact.planes.size() + plane];
 }
 
 const ContactFinder::Rule& ContactFinder::rule_of(int i, int j) const {
@@ -390,21 +397,21 @@ void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
 }
 
 std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
-  const int n = static_cast<int>(model_->parts().size());
   Scratch& s = *scratch_;
   place_planes(t);
   std::vector<Contact> found;
-  for (int i = 0; i < n; ++i) {
+  for (const int i : smooth_) {
     place(state, i);
     for (std::size_t k = 0; k < s.planes.size(); ++k)
       if (on_planes_[at(i) * s.planes.size() + k].touch) find_on_plane(i, k, most, found);
   }
   if (!on_parts_.touch && out_of_order_.empty()) return found;
-  s.boxes.resize(at(n));
-  for (int i = 0; i < n; ++i) s.boxes[at(i)] = world_box(i);
+  s.boxes.clear();
+  for (const int i : smooth_) s.boxes.push_back(world_box(i));
   s.tree.build(s.boxes);
   s.tree.near_pairs(most, s.pairs);
-  for (const auto& [i, j] : s.pairs) {
+  for (const auto& [one, other] : s.pairs) {
+    const int i = smooth_[at(one)], j = smooth_[at(other)];
     const Rule& rule = rule_of(i, j);
     if (rule.touch) find_between(i, j, rule, most, found);
   }
@@ -415,6 +422,13 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
   auto of = [&](const ContactSide& side) -> Vec3<double> {
     const PartModel& m = model_->parts()[at(side.part)];
     if (m.q0 < 0) return Vec3<double>::Zero();
+    if (side.at_nodes()) {
+      Vec3<double> u = Vec3<double>::Zero();
+      for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+        u += side.weight[static_cast<Eigen::Index>(k)] *
+             node_motion(*model_, state, side.part, side.node[k]).x_dot;
+      return u;
+    }
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());
     const Vec3<double> p = R.transpose() * (contact.x - state.q.segment<3>(m.q0));
@@ -434,12 +448,11 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
   Neighbourhood near;
   near.h = h;
-  const int n = static_cast<int>(model_->parts().size());
   Scratch& s = *scratch_;
-  s.balls.resize(at(n));
+  s.balls.resize(model_->parts().size());
   const double free_fall = model_->body().gravity.norm() * h;
   double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < n; ++i) {
+  for (const int i : smooth_) {
     const PartModel& m = model_->parts()[at(i)];
     place(state, i);
     Scratch::Ball& ball = s.balls[at(i)];
@@ -459,7 +472,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
     if (!(planes[k].acts_at(t) || planes[k].acts_at(t + h))) continue;
     for (const double when : {t, t + h}) {
       const Vec3<double> point = planes[k].point.value(when);
-      for (int i = 0; i < n && near.empty; ++i)
+      for (const int i : smooth_)
         if (on_planes_[at(i) * planes.size() + k].touch &&
             planes[k].normal.dot(s.balls[at(i)].c - point) < s.balls[at(i)].reach)
           near.empty = false;
@@ -467,14 +480,15 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   }
   if (!on_parts_.touch && out_of_order_.empty()) return near;
   if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
-  s.boxes.resize(at(n));
-  for (int i = 0; i < n; ++i) {
+  s.boxes.clear();
+  for (const int i : smooth_) {
     const Scratch::Ball& ball = s.balls[at(i)];
-    s.boxes[at(i)] = Eigen::AlignedBox3d(ball.c.array() - ball.reach, ball.c.array() + ball.reach);
+    s.boxes.emplace_back(ball.c.array() - ball.reach, ball.c.array() + ball.reach);
   }
   s.tree.build(s.boxes);
   s.tree.near_pairs(0, s.pairs);
-  for (const auto& [i, j] : s.pairs) {
+  for (const auto& [one, other] : s.pairs) {
+    const int i = smooth_[at(one)], j = smooth_[at(other)];
     if (!rule_of(i, j).touch) continue;
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include <pliant/part/local_deformation.h>
 #include <pliant/scene/time_value.h>
 
 #include "direction_reader.h"
@@ -64,8 +65,12 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
                   const TimeReader& times, SceneFaults& faults, MultiBody& body) {
   for (const auto& [name, part] : parts)
-    if (part.part != nullptr && part.prepared && part.part->local() != nullptr)
-      faults.place(contact.json(), "part \"" + name + "\" deforms locally; contact is of parts that do not");
+    if (part.part != nullptr && part.prepared && part.part->local() != nullptr &&
+        part.part->local()->nodal() == nullptr)
+      faults.place(contact.json(),
+                   "part \"" + name +
+                       "\" deforms by modes of its whole body; contact is of parts that deform "
+                       "at the nodes of a mesh, and of those that do not deform locally");
   ContactSettings& settings = body.contact;
   settings.active = true;
   settings.friction = contact.number("friction");

@@ -105,7 +105,9 @@ TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
     CHECK(simulation.ledger().work[static_cast<int>(Work::limits)] < 0);
     balance.push_back(std::abs(simulation.ledger().balance));
   }
-  CHECK(balance.back() < 1e-6);
+  CAPTURE(balance[0], balance[1], balance[2]);
+  CHECK(test::observed_order(balance) > 1.8);
+  CHECK(balance.back() < 2e-4);  // of 8 J that the floor takes up
 }
 
 TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") {
@@ -226,27 +228,34 @@ TEST_CASE("parts that collide keep their momenta, and lose the energy that e say
   }
   // Any shapes, with friction: what one gains the other loses.
   for (int trial = 0; trial < 3; ++trial) {
-    MultiBody body;
-    body.gravity.setZero();
-    body.contact.active = true;
-    box(body, "a", {0.1, 0.15, 0.2}, {0, 0, 0}).move({2, 0.1, 0}, draws.vector(3));
-    Part& b = body.add(make_part("b", "ellipsoid", {}, 500));
-    b.rest({{"a1", 0.2}, {"a2", 0.1}, {"a3", 0.15}}).place({0.6, 0.05, 0.03});
-    b.stiffness({{"a1", 3000}}).move({-1, 0, 0}, draws.vector(3));
-    Simulation simulation(body, "rk4");
-    const Ledger before = simulation.ledger();
-    bool met = false;
-    for (int i = 0; i < 150; ++i) {
-      simulation.step(2e-3);
-      met = met || !simulation.contact()->contacts().empty();
+    const Vec3<double> spin_a = draws.vector(3), spin_b = draws.vector(3);
+    std::vector<double> balance;
+    for (const int steps : {75, 150, 300}) {
+      MultiBody body;
+      body.gravity.setZero();
+      body.contact.active = true;
+      box(body, "a", {0.1, 0.15, 0.2}, {0, 0, 0}).move({2, 0.1, 0}, spin_a);
+      Part& b = body.add(make_part("b", "ellipsoid", {}, 500));
+      b.rest({{"a1", 0.2}, {"a2", 0.1}, {"a3", 0.15}}).place({0.6, 0.05, 0.03});
+      b.stiffness({{"a1", 3000}}).move({-1, 0, 0}, spin_b);
+      Simulation simulation(body, "rk4");
+      const Ledger before = simulation.ledger();
+      bool met = false;
+      for (int i = 0; i < steps; ++i) {
+        simulation.step(0.3 / steps);
+        met = met || !simulation.contact()->contacts().empty();
+      }
+      REQUIRE(met);
+      const Ledger after = simulation.ledger();
+      CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
+      CHECK(after.energy() < before.energy());
+      balance.push_back(std::abs(after.balance) / before.kinetic);
+      const Model& model = simulation.model();
+      CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
     }
-    REQUIRE(met);
-    const Ledger after = simulation.ledger();
-    CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
-    CHECK(after.energy() < before.energy());
-    CHECK(std::abs(after.balance) < 1e-4);
-    const Model& model = simulation.model();
-    CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
+    CAPTURE(trial, balance[0], balance[1], balance[2]);
+    CHECK(balance.back() < 2e-3);
+    CHECK(balance.back() < 0.5 * balance.front());
   }
 }
 

@@ -1,14 +1,21 @@
 // A contact: two surfaces that meet at a point, or nearly do.
 #pragma once
 
+#include <array>
+
 #include <pliant/shape/material.h>
 
 namespace pliant {
 
-/// The side of a contact that is on a part.
+/// The side of a contact that is on a part: a material point, or of a part that deforms at the nodes of a
+/// mesh a point between up to three of them.
 struct ContactSide {
-  int part = -1;              ///< number of the part; -1: a plane
-  Material<double> material;  ///< the point of it
+  int part = -1;                                ///< number of the part; -1: a plane
+  Material<double> material;                    ///< the point of it
+  std::array<int, 3> node{-1, -1, -1};          ///< or between these, as many as are not -1
+  Vec3<double> weight = Vec3<double>::UnitX();  ///< with these, whose sum is 1
+
+  bool at_nodes() const { return node[0] >= 0; }
 };
 
 struct Contact {
@@ -19,6 +26,10 @@ struct Contact {
   double gap = 0;                               ///< m; negative: so deep
   Vec3<double> carried = Vec3<double>::Zero();  ///< velocity of the plane there, m/s
   double friction = 0, restitution = 0;
+  /// What its impulse pushes moves by this times the change of velocity: how long ago it acted, s.
+  double since = 0;
+  /// Velocity at which the sides part after it, no less, m/s.
+  double rebound = 0;
 };
 
 }  // namespace pliant

@@ -1,7 +1,9 @@
 // The contacts of bodies that push on each other at once, at velocity level (design 1.6): each contact has a
 // velocity u of its sides against each other and an impulse p that meets Coulomb's law (solve/coulomb.h),
 // while the joints of each body hold and no parameter leaves its limits. What moves as one, a part alone or
-// the parts that joints tie together, is a mover; its velocities x stand as in body/group.h.
+// the parts that joints tie together, is a mover; its velocities x stand as in body/group.h. Parts that
+// deform at the nodes of a mesh have lumped masses: what pushes a node moves that node alone, and every node
+// is a mover of its own, with its velocity in the world.
 #pragma once
 
 #include <limits>
@@ -15,27 +17,33 @@ namespace pliant {
 
 struct Mover {
   int part = -1;                   ///< a part alone
+  int node = -1;                   ///< or this node of it
   const Island* island = nullptr;  ///< or this
   VecX<double> before, x;          ///< velocities before and after the impulses
+  VecX<double> shift;              ///< how far they moved it, see Contact::since
 };
 
 struct ContactSolution {
-  std::vector<Vec3<double>> impulse;  ///< of each contact, N s, world, on side a
-  double friction_work = 0;           ///< J
-  double residual = 0;                ///< what Coulomb's law misses at the worst contact, m/s
+  std::vector<Vec3<double>> impulse;   ///< of each contact, N s, world, on side a
+  std::vector<Vec3<double>> velocity;  ///< after it, of side a against side b, m/s, world
+  double residual = 0;                 ///< what Coulomb's law misses at the worst contact, m/s
   int sweeps = 0;
   int fallbacks = 0;  ///< groups of contacts that were left with more than rounding of it
 };
 
 class ContactProblem {
  public:
-  /// work: evaluated with masses and factors for every part that the contacts touch. contacts, work: must
-  /// outlive it.
+  /// work: evaluated with masses and factors for every part that the contacts touch, but for those that
+  /// deform at nodes. state, contacts, work: must outlive it.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
-  /// slowest_rebound: m/s; impacts below it do not rebound.
-  ContactSolution solve(double slowest_rebound);
+  /// Impulses of the contacts, with the rebound that each of them asks for, and of limits, whose `since` is
+  /// that of all.
+  ContactSolution solve(double since_of_limits);
+  /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
+  /// another state.
+  std::vector<Vec3<double>> velocities(const State& of) const;
   /// Without friction, and for changes of x instead of velocities: what takes the gaps to zero where they are
   /// negative, by at most `most` m.
   void part_bodies(double most);
@@ -84,10 +92,12 @@ class ContactProblem {
   };
 
   std::size_t mover_of(int part);
+  std::size_t mover_of_node(int part, int node);
   int first_in(const Mover& mover, int part) const;
   void add_side(Block& block, const ContactSide& side, const Vec3<double>& x, double sign);
   void add_limits(const State& state);
   void complete(Block& block);
+  VecX<double> velocities_of(const Mover& mover, const State& state) const;
   Vec3<double> velocity(const Block& block) const;
   Vec3<double> met(const Block& block, const Vec3<double>& u) const;
   void push(const Block& block, const Vec3<double>& impulse);
@@ -104,13 +114,15 @@ class ContactProblem {
   void iterate(ContactSolution& solution);
 
   const Model& model_;
+  const State& state_;
   Workspace<double>& work_;
   const std::vector<Contact>& contacts_;
   std::vector<Mover> movers_;
-  std::vector<int> mover_number_;       // of each part; -1: not there yet
-  std::vector<Block> blocks_;           // the contacts first
-  std::vector<std::size_t> clustered_;  // the blocks of each cluster, then the movers of each
-  double softness_ = 0;                 // of all contacts, as a share of their W
+  std::vector<int> mover_number_;           // of each part; -1: not there yet
+  std::vector<std::vector<int>> of_nodes_;  // the same of the nodes of each part that deforms at them
+  std::vector<Block> blocks_;               // the contacts first
+  std::vector<std::size_t> clustered_;      // the blocks of each cluster, then the movers of each
+  double softness_ = 0;                     // of all contacts, as a share of their W
 };
 
 }  // namespace pliant

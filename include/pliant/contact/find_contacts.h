@@ -12,13 +12,23 @@
 
 namespace pliant {
 
+/// How two things touch.
+struct ContactRule {
+  bool touch = true;
+  double friction = 0, restitution = 0;
+};
+
 /// Not for several threads at once: it keeps what it works with from call to call.
 class ContactFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
-  /// for parts that deform locally.
+  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument for
+  /// a pair that names nothing of the body.
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
+
+  /// Of two parts, and of a part and a plane.
+  ContactRule between(int part, int other) const;
+  ContactRule on_plane(int part, std::size_t plane) const;
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -34,10 +44,7 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  struct Rule {
-    bool touch = true;
-    double friction = 0, restitution = 0;
-  };
+  using Rule = ContactRule;
   struct Placed;
   struct Scratch;
   class OverPart;
@@ -56,10 +63,11 @@ class ContactFinder {
   void find_on_part(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;         // of each part
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;         // of each part that is this class's
   std::vector<Rule> on_planes_;                                     // part after part, plane after plane
   Rule on_parts_;                                                   // of most pairs of parts
   std::vector<std::pair<std::pair<int, int>, Rule>> out_of_order_;  // of pairs i < j, sorted
+  std::vector<int> smooth_;                                         // numbers of these parts
   std::unique_ptr<Scratch> scratch_;
 };
 

@@ -9,6 +9,7 @@
 
 #include <pliant/contact/contact_problem.h>
 #include <pliant/contact/find_contacts.h>
+#include <pliant/contact/mesh_finder.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
@@ -32,15 +33,23 @@ class ContactStepping {
   std::optional<double> locate(Integrator& method, const State& before, double t, double h,
                                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
                                StepCounters& counters) const;
-  void settle(double reach, double h, double slowest_rebound, State& state, double t,
+  void time_impacts(const State& before, const State& state, double reach, double h, double slow,
+                    std::vector<Contact>& contacts) const;
+  void settle(const State& before, double since_of_limits, double h, State& state, double t,
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+  void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
+                 StepCounters& counters) const;
+  void part_overlaps(double most, bool meshes, State& state, double t, Workspace<double>& work,
+                     StepCounters& counters);
+  std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;
-  void move(const std::vector<Mover>& movers, const Workspace<double>& work, double scale, bool as_velocity,
-            State& state) const;
+  void give_velocities(const std::vector<Mover>& movers, const Workspace<double>& work, State& state) const;
+  void shift(const std::vector<Mover>& movers, const Workspace<double>& work, State& state) const;
 
   const Dynamics& dynamics_;
   ContactFinder finder_;
+  MeshFinder meshes_;
   double resting_gap_ = 0;  ///< of the largest part, m
   // What lies near each other in a state that was looked at last.
   VecX<double> last_q_;

@@ -1,0 +1,47 @@
+// Contacts of parts that deform locally: their nodes on planes, their surfaces as meshes against those of
+// other parts.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <pliant/contact/contact.h>
+#include <pliant/contact/contact_mesh.h>
+#include <pliant/contact/find_contacts.h>
+#include <pliant/contact/mesh_touches.h>
+
+namespace pliant {
+
+class MeshFinder {
+ public:
+  /// rules: of the pairs; both must outlive it.
+  MeshFinder(const Model& model, const ContactFinder& rules);
+
+  bool empty() const { return planes_.empty() && pairs_.empty(); }
+  /// Where surfaces have gone through each other at a state and a time, s. Appends.
+  void find(const State& state, double t, std::vector<Contact>& found) const;
+  /// What a step from a state comes near to, on top of what is in `near` already.
+  void approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const;
+
+ private:
+  struct OnPlane {
+    int part;
+    std::size_t plane;
+    ContactRule rule;
+  };
+  struct Pair {
+    int a, b;
+    ContactRule rule;
+  };
+  ContactSide side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
+                   const Vec3<double>& x) const;
+  PlacedMesh place(const State& state, int part) const;
+
+  const Model* model_;
+  std::map<int, ContactMesh> meshes_;  // of each part that needs one
+  std::vector<OnPlane> planes_;
+  std::vector<Pair> pairs_;  // one of the two deforms locally
+};
+
+}  // namespace pliant
