@@ -23,13 +23,15 @@ constexpr int kMostNewton = 20;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 60;
+constexpr std::size_t kMostDense = 100;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
 /// shares of their W.
-constexpr double kLeft = 1e-6;
+constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
 constexpr double kYielding = 1e-4;
+/// Impulses that stay bounded may leave this many times what others leave.
+constexpr double kBounded = 2;
 /// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
 constexpr double kFast = 1e-9;
 /// Share of the step so far in Newton's method.
@@ -519,6 +521,7 @@ bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
   const bool dense = cluster.blocks.size() <= kMostDense;
   for (const auto& [most, history] : kRounds) {
+    if (!dense && history == 0) continue;  // it would take too long
     if (relax(cluster, most, history, sweeps)) return true;
     if (dense && newton(cluster) && residual(cluster) <= cluster.exact) return true;
   }
@@ -545,13 +548,19 @@ void ContactProblem::iterate(ContactSolution& solution) {
     if (cluster.blocks.size() == 0) continue;
     yield(cluster, 0);
     cluster.exact = rounding(cluster);
+    for (const std::size_t k : cluster.blocks)
+      if (k < begin_.size()) {
+        blocks_[k].p = blocks_[k].axes.transpose() * begin_[k];
+        push(blocks_[k], blocks_[k].p);
+      }
     if (cluster.blocks.size() == 1) {
       sweep(cluster, true);
       ++solution.sweeps;
       solution.residual = std::max(solution.residual, residual(cluster));
       continue;
     }
-    const double allowed = kLeft / kExact * cluster.exact;
+    const bool many = cluster.blocks.size() > kMostDense;
+    const double allowed = (many ? kLeftOfMany : kLeft) / kExact * cluster.exact;
     Iterate start, found;
     take(cluster, start);
     const bool solved = iterate(cluster, solution.sweeps);
@@ -564,8 +573,10 @@ void ContactProblem::iterate(ContactSolution& solution) {
       iterate(cluster, solution.sweeps);
       yield(cluster, 0);
       const double yielding = residual(cluster);
-      if (!(yielding < left)) set(cluster, found);
-      left = std::min(left, yielding);
+      if (yielding < kBounded * left)
+        left = yielding;
+      else
+        set(cluster, found);
     }
     solution.residual = std::max(solution.residual, left);
   }
@@ -591,6 +602,7 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
 }
 
 void ContactProblem::part_bodies(double most) {
+  begin_.clear();
   for (Mover& mover : movers_) {
     mover.before.setZero();
     mover.x.setZero();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/dynamics.h>
@@ -38,6 +39,9 @@ class ContactProblem {
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
+  /// Impulses that the search begins with, N s, world, one for each contact: the nearer to the solution, the
+  /// shorter it is.
+  void begin_with(std::vector<Vec3<double>> impulse) { begin_ = std::move(impulse); }
   /// Impulses of the contacts, with the rebound that each of them asks for, and of limits, whose `since` is
   /// that of all.
   ContactSolution solve(double since_of_limits);
@@ -122,7 +126,8 @@ class ContactProblem {
   std::vector<std::vector<int>> of_nodes_;  // the same of the nodes of each part that deforms at them
   std::vector<Block> blocks_;               // the contacts first
   std::vector<std::size_t> clustered_;      // the blocks of each cluster, then the movers of each
-  double softness_ = 0;                     // of all contacts, as a share of their W
+  std::vector<Vec3<double>> begin_;
+  double softness_ = 0;  // of all contacts, as a share of their W
 };
 
 }  // namespace pliant
