@@ -17,6 +17,11 @@ namespace {
 /// Sweeps end when impulses change velocities by less than this, relative to what there is to stop.
 constexpr double kExact = 1e-13;
 constexpr int kMostRounds = 40, kSweepsARound = 12, kMostNewton = 20;
+/// The same where nodes are pushed, many at a time and lightly coupled.
+constexpr double kExactOfNodes = 1e-8;
+constexpr int kRoundsOfNodes = 3, kSweepsOfNodes = 100;
+/// Most blocks with nodes that are solved as one system.
+constexpr std::size_t kMostDenseOfNodes = 60;
 /// Most blocks that are solved as one system.
 constexpr std::size_t kMostDense = 400;
 /// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
@@ -294,7 +299,6 @@ MatX<double> ContactProblem::matrix() const {
 /// with a share of the step so far in u, so that impulses that depend on each other stay as near as they can.
 /// Returns whether it came nearer to the solution than before.
 bool ContactProblem::newton(double exact) {
-  if (blocks_.size() > kMostDense) return false;
   const MatX<double> A = matrix();
   const Eigen::Index n = A.rows();
   double best = residual();
@@ -366,12 +370,15 @@ bool ContactProblem::newton(double exact) {
 int ContactProblem::iterate() {
   double scale = 0;
   for (const Block& block : blocks_) scale = std::max(scale, velocity(block).lpNorm<Eigen::Infinity>());
-  const double exact = kExact * scale;
+  const bool nodes = std::any_of(movers_.begin(), movers_.end(), [](const Mover& m) { return m.node >= 0; });
+  const double exact = (nodes ? kExactOfNodes : kExact) * scale;
+  const int in_round = nodes ? kSweepsOfNodes : kSweepsARound, rounds = nodes ? kRoundsOfNodes : kMostRounds;
+  const std::size_t most_dense = nodes ? kMostDenseOfNodes : kMostDense;
   int sweeps = 0;
-  for (int round = 0; round < kMostRounds; ++round) {
-    for (int i = 0; i < kSweepsARound; ++i, ++sweeps)
+  for (int round = 0; round < rounds; ++round) {
+    for (int i = 0; i < in_round; ++i, ++sweeps)
       if (sweep(i % 2 == 0) <= exact) return sweeps + 1;
-    if (newton(exact) && residual() <= exact) return sweeps;
+    if (blocks_.size() <= most_dense && newton(exact) && residual() <= exact) return sweeps;
   }
   return sweeps;
 }
@@ -397,7 +404,9 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
 }
 
 void ContactProblem::part_bodies(double most) {
+  std::vector<VecX<double>> rates;
   for (Mover& mover : movers_) {
+    rates.push_back(mover.before);
     mover.before.setZero();
     mover.x.setZero();
   }
@@ -408,7 +417,10 @@ void ContactProblem::part_bodies(double most) {
     if (k < contacts_.size()) blocks_[k].constant[0] = std::max(contacts_[k].gap, -most);
   }
   iterate();
-  for (Mover& mover : movers_) mover.shift = mover.x;
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    movers_[k].shift = movers_[k].x;
+    movers_[k].before = movers_[k].x = rates[k];
+  }
 }
 
 }  // namespace pliant
