@@ -19,6 +19,8 @@ namespace {
 /// Sweeps end when impulses change velocities by less than this, relative to what there is to stop; or by so
 /// many units of rounding of the velocities themselves.
 constexpr double kExact = 1e-13, kUlps = 8;
+/// The same where nodes are pushed, many at a time and lightly coupled.
+constexpr double kExactOfNodes = 1e-8;
 constexpr int kMostNewton = 20;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
@@ -307,6 +309,7 @@ std::vector<ContactProblem::Cluster> ContactProblem::clusters() {
   for (std::size_t i = 0; i < n; ++i)
     all.push_back({{all_blocks + blocks[i], all_blocks + blocks[i + 1]},
                    {all_movers + movers[i], all_movers + movers[i + 1]},
+                   0,
                    0});
   for (std::size_t i = 0; i < movers_.size(); ++i) all_movers[movers[number[i]]++] = i;
   for (std::size_t k = 0; k < blocks_.size(); ++k)
@@ -314,8 +317,8 @@ std::vector<ContactProblem::Cluster> ContactProblem::clusters() {
   return all;
 }
 
-/// Velocities that count as zero.
-double ContactProblem::rounding(const Cluster& cluster) const {
+/// Velocities of a cluster that count as zero, and those that may be left.
+void ContactProblem::set_scale(Cluster& cluster) const {
   double scale = 0, terms = 0;
   for (const std::size_t k : cluster.blocks) {
     const Block& block = blocks_[k];
@@ -325,7 +328,12 @@ double ContactProblem::rounding(const Cluster& cluster) const {
           terms, side.J.lpNorm<Eigen::Infinity>() *
                      movers_[side.mover].x.segment(side.first, side.J.cols()).lpNorm<Eigen::Infinity>());
   }
-  return std::max(kExact * scale, kUlps * std::numeric_limits<double>::epsilon() * terms);
+  const bool nodes = std::any_of(cluster.movers.begin(), cluster.movers.end(),
+                                 [&](std::size_t i) { return movers_[i].node >= 0; });
+  cluster.exact = std::max((nodes ? kExactOfNodes : kExact) * scale,
+                           kUlps * std::numeric_limits<double>::epsilon() * terms);
+  cluster.allowed =
+      std::max(cluster.exact, (cluster.blocks.size() > kMostDense ? kLeftOfMany : kLeft) * scale);
 }
 
 double ContactProblem::sweep(const Cluster& cluster, bool forward) {
@@ -547,7 +555,7 @@ void ContactProblem::iterate(ContactSolution& solution) {
   for (Cluster& cluster : clusters()) {
     if (cluster.blocks.size() == 0) continue;
     yield(cluster, 0);
-    cluster.exact = rounding(cluster);
+    set_scale(cluster);
     for (const std::size_t k : cluster.blocks)
       if (k < begin_.size()) {
         blocks_[k].p = blocks_[k].axes.transpose() * begin_[k];
@@ -559,13 +567,11 @@ void ContactProblem::iterate(ContactSolution& solution) {
       solution.residual = std::max(solution.residual, residual(cluster));
       continue;
     }
-    const bool many = cluster.blocks.size() > kMostDense;
-    const double allowed = (many ? kLeftOfMany : kLeft) / kExact * cluster.exact;
     Iterate start, found;
     take(cluster, start);
     const bool solved = iterate(cluster, solution.sweeps);
     double left = residual(cluster);
-    if (!solved && left > allowed) {
+    if (!solved && left > cluster.allowed) {
       ++solution.fallbacks;
       take(cluster, found);
       set(cluster, start);
@@ -603,7 +609,9 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
 
 void ContactProblem::part_bodies(double most) {
   begin_.clear();
+  std::vector<VecX<double>> rates;
   for (Mover& mover : movers_) {
+    rates.push_back(mover.before);
     mover.before.setZero();
     mover.x.setZero();
   }
@@ -615,7 +623,10 @@ void ContactProblem::part_bodies(double most) {
   }
   ContactSolution solution;
   iterate(solution);
-  for (Mover& mover : movers_) mover.shift = mover.x;
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    movers_[k].shift = movers_[k].x;
+    movers_[k].before = movers_[k].x = rates[k];
+  }
 }
 
 }  // namespace pliant

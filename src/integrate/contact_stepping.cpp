@@ -70,11 +70,9 @@ void for_each_part(const std::vector<Mover>& movers, F&& act) {
     if (mover.node >= 0) act(mover, mover.part, 0);
 }
 
-/// Adds to the displacements, or rates, of a node what moves it by x in the world.
-void move_node(const Model& model, const Mover& mover, const State& state, const Vec3<double>& x,
-               Eigen::Ref<VecX<double>> q_d) {
+/// Adds to the displacements, or rates, of a node.
+void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Eigen::Ref<VecX<double>> q_d) {
   const Eigen::Index n = model.parts()[at(mover.part)].local->mesh().X.rows();
-  const Vec3<double> d = model.orientation(state, mover.part).conjugate() * x;
   for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
@@ -315,25 +313,22 @@ void ContactStepping::evaluate(const State& state, double t, const std::vector<C
     dynamics_.factor_joints(t, state.q, state.v, state.joints, dynamics_.model().islands()[at(i)], work);
 }
 
-void ContactStepping::give_velocities(const std::vector<Mover>& movers, const Workspace<double>& work,
-                                      State& state) const {
+/// The velocities that impulses gave, and the ways they went since.
+void ContactStepping::move(const std::vector<Mover>& movers, const Workspace<double>& work,
+                           State& state) const {
   for_each_part(movers, [&](const Mover& mover, int part, int first) {
     const PartModel& m = dynamics_.model().parts()[at(part)];
-    if (mover.node >= 0)
-      return move_node(dynamics_.model(), mover, state, mover.x - mover.before,
-                       state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
-    give_velocity(m, work.parts[at(part)], mover.x.segment(first, m.n_x()), state.v);
-  });
-}
-
-void ContactStepping::shift(const std::vector<Mover>& movers, const Workspace<double>& work,
-                            State& state) const {
-  for_each_part(movers, [&](const Mover& mover, int part, int first) {
-    const PartModel& m = dynamics_.model().parts()[at(part)];
-    if (mover.node >= 0)
-      return move_node(dynamics_.model(), mover, state, mover.shift,
-                       state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
-    advance_with(m, work.parts[at(part)], mover.shift.segment(first, m.n_x()), 1, state.q);
+    if (mover.node < 0) {
+      give_velocity(m, work.parts[at(part)], mover.x.segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], mover.shift.segment(first, m.n_x()), 1, state.q);
+    }
+    const Eigen::Quaterniond to_body = dynamics_.model().orientation(state, part).conjugate();
+    const Vec3<double> shift = to_body * mover.shift, change = to_body * (mover.x - mover.before),
+                       omega = state.v.segment<3>(m.v0 + 3);
+    move_node(dynamics_.model(), mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    // Its velocity is omega x p + d_dot, and p has moved.
+    move_node(dynamics_.model(), mover, change - omega.cross(shift),
+              state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
   });
 }
 
@@ -381,8 +376,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     const double moved = c.since * (solution.velocity[k] - finder_.velocity(state, c)).dot(c.normal);
     deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
-  give_velocities(problem.movers(), work, state);
-  if (h > 0) shift(problem.movers(), work, state);
+  move(problem.movers(), work, state);
   if (h > 0 || deep) reconcile(parts, state, t, work, counters);
   if (h > 0 && (smooth || deep)) part_overlaps(most, deep, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
@@ -424,7 +418,7 @@ void ContactStepping::part_overlaps(double most, bool meshes, State& state, doub
     ContactProblem parting(model, state, work, deep);
     parting.part_bodies(left);
     left -= std::min(left, deepest);
-    shift(parting.movers(), work, state);
+    move(parting.movers(), work, state);
     reconcile(parts, state, t, work, counters);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);

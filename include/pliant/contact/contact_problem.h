@@ -87,7 +87,8 @@ class ContactProblem {
   /// Blocks and movers that push on each other and on nothing else.
   struct Cluster {
     Numbers blocks, movers;
-    double exact = 0;  ///< velocities below this are rounding, m/s
+    double exact = 0;    ///< velocities below this are rounding, m/s
+    double allowed = 0;  ///< and what may be left
   };
   /// Impulses and velocities of a cluster.
   struct Iterate {
@@ -106,7 +107,7 @@ class ContactProblem {
   Vec3<double> met(const Block& block, const Vec3<double>& u) const;
   void push(const Block& block, const Vec3<double>& impulse);
   std::vector<Cluster> clusters();
-  double rounding(const Cluster& cluster) const;
+  void set_scale(Cluster& cluster) const;
   double sweep(const Cluster& cluster, bool forward);
   double residual(const Cluster& cluster) const;
   void take(const Cluster& cluster, Iterate& iterate) const;
