@@ -143,6 +143,18 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
         part.continuum()->add_force(part, w.q_s, w.q_s_dot, part.beta(), w.f.tail(n), w.counters);
 }
 
+// power of gravity that changes, -m g_dot . x of the mass centre
+template <class S>
+void change_gravity(const PartModel& m, const TimeVector& gravity, double t, PartWorkspace<S>& w) {
+  const Vec3<Taylor2<double>> g = gravity.at(t);
+  Vec3<S> m_x = w.c * S(m.part->total_mass());
+  if (m.local == nullptr)
+    m_x += w.R * w.inertia.moment;
+  else if constexpr (std::is_same_v<S, double>)
+    m_x += w.R * m.local->motion(w.v_r, *w.local).moment;
+  for (int k = 0; k < 3; ++k) w.power[static_cast<int>(Work::actuation)] -= m_x[k] * g[k].d;
+}
+
 // forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
 template <class S>
 void own_forces(const PartModel& m, const Vec3<double>& gravity, double t, PartWorkspace<S>& w,
@@ -280,6 +292,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
       for (int i = 0; i < n_parts; ++i) task(i);
   };
 
+  const Vec3<double> gravity = model.body().gravity_at(t);
   each_part([&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
@@ -288,7 +301,8 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     if (m.q0 < 0) return;
     masses<S>(m, w);
     try {
-      own_forces<S>(m, model.body().gravity, t, w, pool_);
+      own_forces<S>(m, gravity, t, w, pool_);
+      if (model.body().changing_gravity) change_gravity<S>(m, *model.body().changing_gravity, t, w);
     } catch (const InvertedElement& failure) {
       throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
     }

@@ -18,7 +18,7 @@ constexpr long kCheapBlocks = 10000;
 }  // namespace
 
 Model::Model(MultiBody& body) : body_(&body) {
-  if (!body.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
+  if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity is not finite");
   for (const auto& part : body.parts()) {
     part->prepare();
     PartModel m;

@@ -303,7 +303,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       const auto v = state.v.segment(m.v0, m.n_v());
       swept.c_dot = v.head<3>();
       swept.speed = swept.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
-      const double free_fall = model_->body().gravity.norm() * h;
+      const double free_fall = model_->body().gravity_at(t).norm() * h;
       swept.reach += h * (swept.c_dot.norm() + swept.speed + free_fall);
     }
     all.push_back(swept);

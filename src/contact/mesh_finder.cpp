@@ -142,7 +142,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
       }
       if (m.local != nullptr)
         swept.speed += m.local->displacements(v.data() + 6 + m.n_s).rowwise().norm().maxCoeff();
-      swept.reach += h * (swept.speed + model_->body().gravity.norm() * h);
+      swept.reach += h * (swept.speed + model_->body().gravity_at(t).norm() * h);
     }
     all.emplace(part, swept);
   }

@@ -117,7 +117,7 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   const double start = state.start, h = state.h, end = state.time() + h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
-  const double slow = kSlow * dynamics_.model().body().gravity.norm() * h;
+  const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
   const double reach = method.reach();
   contacts_.clear();
   impulses_.clear();
