@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -40,64 +39,20 @@ struct ContactFinder::Placed {
 };
 
 ContactFinder::ContactFinder(const Model& model) : model_(&model) {
-  const MultiBody& body = model.body();
+  const ContactRules rules(model);
   const int n = static_cast<int>(model.parts().size());
-  std::set<std::string> names;
   for (const PartModel& m : model.parts()) {
-    names.insert(m.part->name());
     if (m.local != nullptr)
       throw std::invalid_argument("part '" + m.part->name() +
                                   "' deforms locally, and contact is of parts that do not");
     surfaces_.push_back(std::make_unique<CollisionSurface>(*m.part));
   }
-  for (const ContactPlane& plane : body.contact.planes)
-    if (!names.insert(plane.name).second)
-      throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
-  auto check = [](double friction, double restitution) {
-    if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
-      throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
-  };
-  check(body.contact.friction, body.contact.restitution);
-  for (const ContactPair& pair : body.contact.pairs) {
-    check(pair.friction, pair.restitution);
-    if (pair.a == pair.b) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
-  }
-  for (const ContactPair& pair : body.contact.pairs)
-    for (const std::string& name : {pair.a, pair.b})
-      if (names.count(name) == 0)
-        throw std::invalid_argument("contact of '" + name + "': there is no part or plane of that name");
-  std::set<std::pair<int, int>> joined;
-  for (const JointModel& joint : model.joints())
-    for (const PortRef& one : joint.at)
-      for (const PortRef& other : joint.at)
-        if (one.part >= 0 && other.part > one.part) joined.insert({one.part, other.part});
-  for (int i = 0; i < n; ++i) {
-    const PartModel& m = model.parts()[at(i)];
-    for (const ContactPlane& plane : body.contact.planes) {
-      on_planes_.push_back(rule_of(m.part->name(), plane.name));
-      if (m.q0 < 0) on_planes_.back().touch = false;
-    }
-  }
   on_parts_.resize(at(n) * at(n));
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) {
-      const std::string &a = body.parts()[at(i)]->name(), &b = body.parts()[at(j)]->name();
-      Rule& rule = on_parts_[at(i) * at(n) + at(j)];
-      rule = rule_of(a, b);
-      const bool named =
-          std::any_of(body.contact.pairs.begin(), body.contact.pairs.end(),
-                      [&](const ContactPair& p) { return (p.a == a && p.b == b) || (p.a == b && p.b == a); });
-      if (!named && (!body.contact.between_parts || joined.count({i, j}) > 0)) rule.touch = false;
-      if (model.parts()[at(i)].q0 < 0 && model.parts()[at(j)].q0 < 0) rule.touch = false;
-    }
-}
-
-ContactFinder::Rule ContactFinder::rule_of(const std::string& a, const std::string& b) const {
-  const ContactSettings& settings = model_->body().contact;
-  for (const ContactPair& pair : settings.pairs)
-    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a))
-      return {pair.touch, pair.friction, pair.restitution};
-  return {true, settings.friction, settings.restitution};
+  for (int i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
+      on_planes_.push_back(rules.on_plane(i, static_cast<int>(k)));
+    for (int j = i + 1; j < n; ++j) on_parts_[at(i) * at(n) + at(j)] = rules.of_parts(i, j);
+  }
 }
 
 ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
@@ -127,7 +82,7 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
   const CollisionSurface::Field field{
       [&](const Vec3<double>& p) { return p.dot(n) + offset; },
       [&](const Eigen::Matrix3Xd& p) -> VecX<double> { return (p.transpose() * n).array() + offset; }};
-  const Rule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
+  const ContactRule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
   for (const CollisionSurface::LowPoint& low :
        surfaces_[at(a.number)]->low_points(a.values, a.p, field.descent(a.p), most, field)) {
     Contact contact;
@@ -143,7 +98,7 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
   }
 }
 
-void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+void ContactFinder::find_on_part(const Placed& a, const Placed& b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
   // To first order the distance to b is w - 1 over the length of its gradient.
   auto height = [&](const Vec3<double>& in_b, Vec3<double>* gradient = nullptr) {
@@ -227,7 +182,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   std::sort(pairs.begin(), pairs.end());
   for (const auto& [i, j] : pairs) {
     const Placed &a = placed[at(i)], &b = placed[at(j)];
-    const Rule& rule = on_parts_[at(i) * at(n) + at(j)];
+    const ContactRule& rule = on_parts_[at(i) * at(n) + at(j)];
     std::vector<Contact> ours, theirs;
     find_on_part(a, b, rule, most, ours);
     find_on_part(b, a, rule, most, theirs);

@@ -363,4 +363,54 @@ TEST_CASE("contact that cannot be is refused by name", "[contact]") {
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("celing"));
   body.contact.pairs.back() = {"ball", "floor", true, -1, 0};
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("friction"));
+  body.contact.pairs.back() = {"ball", "ball"};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("itself"));
+  body.contact.pairs.clear();
+  body.contact.groups = {{"round", {"ball", "egg"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("egg"));
+  body.contact.groups = {{"floor", {"ball"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("'floor'"));
+  body.contact.groups = {{"round", {"ball"}}, {"all", {"round", "floor"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("members are parts and planes"));
+}
+
+TEST_CASE("of pairs and groups the most particular counts, and of those the last", "[contact]") {
+  MultiBody body;
+  body.contact.friction = 0.1;
+  body.contact.restitution = 0.2;
+  for (const char* name : {"a", "b", "c", "d"}) ball(body, name, 0.1, {0, 0, 1});
+  floor(body);
+  body.contact.groups = {{"pair", {"a", "b"}}, {"most", {"a", "b", "c"}}, {"world", {"floor"}}};
+  body.contact.pairs = {{"a", "b", true, 0.9, {}},     {"most", "most", false, {}, {}},
+                        {"c", "pair", true, {}, 0.7},  {"pair", "pair", true, 0.3, {}},
+                        {"pair", "world", true, 0, 1}, {"floor", "b", true, 0.6, {}},
+                        {"b", "floor", false, {}, {}}};
+  body.ball("tie", point(*body.find("c"), 0, 0), point(*body.find("d"), 0, 0));
+  body.ball("bond", point(*body.find("b"), 0, 0), point(*body.find("c"), 0, 0));
+  const Model model(body);
+  const ContactRules rules(model);
+  auto is = [](const ContactRule& rule, bool touch, double friction, double restitution) {
+    CHECK(rule.touch == touch);
+    CHECK(rule.friction == friction);
+    CHECK(rule.restitution == restitution);
+  };
+  is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts over pairs of groups
+  is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group over two groups
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint ties them, and no pair names both
+  is(rules.of_parts(2, 3), false, 0.1, 0.2);
+  is(rules.of_parts(0, 3), true, 0.1, 0.2);
+  is(rules.on_plane(0, 0), true, 0, 1);
+  is(rules.on_plane(1, 0), false, 0.1, 0.2);  // the last of two
+  is(rules.on_plane(3, 0), true, 0.1, 0.2);
+}
+
+TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
+  MultiBody body;
+  body.contact.friction = 0.4;
+  ball(body, "ball", 0.1, {0, 0, 0.1}).move({1, 0, 0}, {0, 0, 0});
+  floor(body);
+  body.contact.pairs = {{"ball", "floor"}};
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 1, 500);
+  CHECK(simulation.state().v[0] == Approx(5.0 / 7));
 }

@@ -7,13 +7,14 @@
 #include <pliant/body/model.h>
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
+#include <pliant/contact/contact_rules.h>
 
 namespace pliant {
 
 class ContactFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, and
-  /// for parts that deform locally.
+  /// The model must outlive it. Throws std::invalid_argument, see ContactRules, and for parts that deform
+  /// locally.
   explicit ContactFinder(const Model& model);
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
@@ -30,23 +31,18 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  struct Rule {
-    bool touch = true;
-    double friction = 0, restitution = 0;
-  };
   struct Placed;
-  Rule rule_of(const std::string& a, const std::string& b) const;
   Placed place(const State& state, int part) const;
   void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
                      std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+  void find_on_part(const Placed& a, const Placed& b, const ContactRule& rule, double most,
                     std::vector<Contact>& found) const;
 
   const Model* model_;
   std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
-  std::vector<Rule> on_planes_;                              // part after part, plane after plane
-  std::vector<Rule> on_parts_;                               // of parts i < j, n_parts x n_parts
+  std::vector<ContactRule> on_planes_;                       // part after part, plane after plane
+  std::vector<ContactRule> on_parts_;                        // of parts i < j, n_parts x n_parts
 };
 
 }  // namespace pliant
