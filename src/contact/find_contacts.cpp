@@ -18,6 +18,8 @@ constexpr double kThinShare = 0.4;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// How far the surface may be outside the box of its points, in sizes of the part.
+constexpr double kBulge = 0.05;
 /// Normals of one contact differ by less than this.
 constexpr double kSameNormal = 0.2;
 
@@ -66,7 +68,9 @@ ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
                 {}};
   placed.p = surfaces_[at(part)]->points(placed.values);
   placed.x = (placed.R * placed.p).colwise() + placed.c;
-  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff(), placed.x.rowwise().maxCoeff());
+  const double bulge = kBulge * placed.part->size();
+  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff().array() - bulge,
+                                   placed.x.rowwise().maxCoeff().array() + bulge);
   return placed;
 }
 

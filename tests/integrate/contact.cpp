@@ -414,3 +414,16 @@ TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
   test::run(simulation, 1, 500);
   CHECK(simulation.state().v[0] == Approx(5.0 / 7));
 }
+
+TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  box(body, "table", {1, 1, 0.05}, {0, 0, -0.05}).fix();
+  ball(body, "ball", 0.1, {-0.5, 0, 0.1}).move({0.5, 0, 0}, {0, 5, 0});
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 250; ++i) {
+    simulation.step(4e-3);
+    REQUIRE(std::abs(simulation.state().q[2] - 0.1) < 1e-9);
+  }
+  CHECK(simulation.state().q[0] == Approx(0).margin(1e-4));
+}
