@@ -29,7 +29,7 @@ std::size_t at(int i) {
 
 }  // namespace
 
-/// A part where it is.
+/// A part where it is, and how its frame moves if that is prescribed.
 struct ContactFinder::Placed {
   int number;
   const Part* part;
@@ -38,6 +38,9 @@ struct ContactFinder::Placed {
   Mat3<double> R;
   Eigen::Matrix3Xd p, x;    ///< points of its surface, body frame and world
   Eigen::AlignedBox3d box;  ///< world
+  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< world
+
+  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
 ContactFinder::ContactFinder(const Model& model) : model_(&model) {
@@ -57,12 +60,12 @@ ContactFinder::ContactFinder(const Model& model) : model_(&model) {
   }
 }
 
-ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
+ContactFinder::Placed ContactFinder::place(const State& state, double t, int part) const {
   Placed placed{part,
                 model_->parts()[at(part)].part,
                 model_->values(state, part),
-                model_->position(state, part),
-                model_->orientation(state, part).toRotationMatrix(),
+                model_->position(state, part, t),
+                model_->orientation(state, part, t).toRotationMatrix(),
                 {},
                 {},
                 {}};
@@ -71,6 +74,11 @@ ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
   const double bulge = kBulge * placed.part->size();
   placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff().array() - bulge,
                                    placed.x.rowwise().maxCoeff().array() + bulge);
+  if (const PrescribedMotion* motion = placed.part->motion()) {
+    const MovingFrame frame = motion->at(t);
+    placed.c_dot = frame.c_dot;
+    placed.omega = frame.omega;
+  }
   return placed;
 }
 
@@ -153,6 +161,7 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Contact
       continue;
     contact.a = {a.number, low.material};
     contact.b = {b.number, b.part->label(in_b, b.values)};
+    contact.carried = b.carries(contact.x) - a.carries(contact.x);
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
@@ -162,7 +171,7 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Contact
 std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
   const int n = static_cast<int>(model_->parts().size());
   std::vector<Placed> placed;
-  for (int i = 0; i < n; ++i) placed.push_back(place(state, i));
+  for (int i = 0; i < n; ++i) placed.push_back(place(state, t, i));
   std::vector<Contact> found;
   const std::size_t planes = model_->body().contact.planes.size();
   for (int i = 0; i < n; ++i)
@@ -194,6 +203,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
     for (Contact& contact : theirs) {
       std::swap(contact.a, contact.b);
       contact.normal = -contact.normal;
+      contact.carried = -contact.carried;
       auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
         return (other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal;
       });
@@ -209,8 +219,8 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
   auto of = [&](const ContactSide& side) -> Vec3<double> {
+    if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
-    if (m.q0 < 0) return Vec3<double>::Zero();
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());
     std::vector<PointJet<double>> jets;
@@ -218,7 +228,7 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     m.part->points({side.material}, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
     return v.head<3>() + R * (v.segment<3>(3).cross(jets[0].p) + jets[0].p1);
   };
-  return of(contact.a) - (contact.b.part < 0 ? contact.carried : of(contact.b));
+  return of(contact.a) - of(contact.b) - contact.carried;
 }
 
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
@@ -232,7 +242,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   std::vector<Swept> all;
   for (int i = 0; i < n; ++i) {
     const PartModel& m = model_->parts()[at(i)];
-    Swept swept{model_->position(state, i), Vec3<double>::Zero(), 0, 0};
+    Swept swept{model_->position(state, i, t), Vec3<double>::Zero(), 0, 0};
     // A parameter may be larger than at rest: the ball is about where the points are.
     swept.reach = surfaces_[at(i)]->points(model_->values(state, i)).colwise().norm().maxCoeff();
     if (m.q0 >= 0) {
@@ -241,6 +251,12 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       swept.speed = swept.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
       const double free_fall = model_->body().gravity.norm() * h;
       swept.reach += h * (swept.c_dot.norm() + swept.speed + free_fall);
+    } else if (m.motion != nullptr) {
+      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
+      swept.c_dot = (then.c - now.c) / h;
+      swept.speed = swept.reach * std::max(now.omega.norm(), then.omega.norm()) +
+                    std::max((now.c_dot - swept.c_dot).norm(), (then.c_dot - swept.c_dot).norm());
+      swept.reach += h * (swept.c_dot.norm() + swept.speed);
     }
     all.push_back(swept);
   }
@@ -268,11 +284,11 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
-  const Placed a = place(state, of.a.part);
+  const Placed a = place(state, t, of.a.part);
   if (of.b.part < 0) {
     find_on_plane(a, at(of.plane), t, most, found);
   } else {
-    const Placed b = place(state, of.b.part);
+    const Placed b = place(state, t, of.b.part);
     find_on_part(a, b, {}, most, found);
     find_on_part(b, a, {}, most, found);
   }

@@ -32,7 +32,7 @@ class ContactFinder {
 
  private:
   struct Placed;
-  Placed place(const State& state, int part) const;
+  Placed place(const State& state, double t, int part) const;
   void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
                      std::vector<Contact>& found) const;
   /// Low points of a over b.
