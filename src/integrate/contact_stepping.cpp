@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
@@ -56,9 +57,27 @@ void set_step(State& state, double t, double h) {
 
 }  // namespace
 
+void ContactRecord::clear() {
+  contacts.clear();
+  impulses.clear();
+  sliding.clear();
+  joint_impulses.setZero();
+}
+
 ContactStepping::ContactStepping(const Dynamics& dynamics) : dynamics_(dynamics), finder_(dynamics.model()) {
+  for (ContactRecord* record : {&record_, &record_before_})
+    record->joint_impulses.setZero(dynamics.model().n_rows());
   for (const PartModel& m : dynamics.model().parts())
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
+}
+
+void ContactStepping::begin_step() {
+  std::swap(record_, record_before_);
+  record_.clear();
+}
+
+void ContactStepping::undo_step() {
+  std::swap(record_, record_before_);
 }
 
 /// Surfaces of this pair that are nearer than this rest on each other, m.
@@ -90,8 +109,6 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double slow = kSlow * dynamics_.model().body().gravity.norm() * h;
   const double reach = method.reach();
-  contacts_.clear();
-  impulses_.clear();
   int events = 0;
   for (double now = state.time(); now < end - near;) {
     const ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
@@ -316,8 +333,10 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
     }
   }
   settle_limits(dynamics_, t, state, work, counters);
-  contacts_.insert(contacts_.end(), contacts.begin(), contacts.end());
-  impulses_.insert(impulses_.end(), solution.impulse.begin(), solution.impulse.end());
+  record_.contacts.insert(record_.contacts.end(), contacts.begin(), contacts.end());
+  record_.impulses.insert(record_.impulses.end(), solution.impulse.begin(), solution.impulse.end());
+  record_.sliding.insert(record_.sliding.end(), solution.sliding.begin(), solution.sliding.end());
+  problem.add_joint_impulses(record_.joint_impulses);
   const double change =
       dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
   state.work[static_cast<int>(Work::friction)] += solution.friction_work;

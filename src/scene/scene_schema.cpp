@@ -197,7 +197,12 @@ Record make_scene_record() {
       "What is recorded and drawn.",
       {optional("frame_rate", number(above(0), "1/s"), "Recorded states and frames per second.", "25"),
        optional("size", array(integer(between(16, 8192)), 2, 2), "Width and height of frames, pixels.",
-                "[640, 480]")}};
+                "[640, 480]"),
+       optional(
+           "contacts", boolean(),
+           "Whether contacts.csv and joint_impulses.csv tell of the last step before each recorded state "
+           "what touched, with which impulse, and what joints took up of it.",
+           "false")}};
   const Record camera{
       "camera",
       "From where frames are seen; found from the motion when not given.",

@@ -415,6 +415,54 @@ TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
   CHECK(simulation.state().v[0] == Approx(5.0 / 7));
 }
 
+TEST_CASE("contacts are those of a whole step, however many parts it has", "[contact]") {
+  MultiBody body;
+  Part& lies = box(body, "box", {0.1, 0.1, 0.1}, {0, 0, 0.1});
+  ball(body, "falls", 0.05, {1, 0, 0.05 + 0.5 * kG * 0.0101 * 0.0101});
+  Part& hangs = ball(body, "hangs", 0.05, {2, 0, 1});
+  body.ball("hook", point(hangs, kPi / 2, 0), world(2, 0, 1.05)).during(0.0137, 1);
+  floor(body);
+  Simulation simulation(body, "rk4");
+  simulation.step(0.02);  // the ball lands in it, and the joint switches
+  CHECK(simulation.step_counters().impacts == 1);
+  Vec3<double> sum = Vec3<double>::Zero();
+  for (std::size_t k = 0; k < simulation.contact()->contacts().size(); ++k)
+    if (simulation.contact()->contacts()[k].a.part == 0) sum += simulation.contact()->impulses()[k];
+  CHECK(sum[2] == Approx(lies.total_mass() * kG * 0.02).epsilon(1e-9));
+  CHECK_THROWS(simulation.step(-1));
+  CHECK(!simulation.contact()->contacts().empty());
+  simulation.set_state(simulation.state());
+  CHECK(simulation.contact()->contacts().empty());
+}
+
+TEST_CASE("what a joint takes up of an impact is the momentum that its part gains", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  Part& left = ball(body, "left", 0.1, {0, 0, 0.2}).move({0, 0, -2}, {0, 0, 0});
+  Part& right = ball(body, "right", 0.05, {0.15, 0, 0.2}).move({0, 0, -2}, {0, 0, 0});
+  body.weld("rod", point(right, 0, kPi), point(left, 0, 0));
+  floor(body);
+  Simulation simulation(body, "rk4");
+  const ContactRecord& record = simulation.contact()->record();
+  for (int i = 0; i < 100 && record.contacts.empty(); ++i) {
+    CHECK(record.joint_impulses.isZero(0));
+    simulation.step(1e-3);
+  }
+  REQUIRE(record.contacts.size() == 1);
+  Workspace<double> work;
+  const State& state = simulation.state();
+  const Dynamics& dynamics = simulation.dynamics();
+  dynamics.evaluate_joints(state.time(), state.q, state.v, state.joints, simulation.model().islands()[0],
+                           work);
+  const Vec3<double> impulse = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
+  const Vec3<double> gained = right.total_mass() * (state.v.segment<3>(6) - Vec3<double>(0, 0, -2));
+  // For the rest of the step the joint turns what flies on.
+  CHECK((impulse - gained).norm() < 0.02 * gained.norm());
+  CHECK(impulse[2] > right.total_mass());
+  CHECK(record.impulses[0][2] ==
+        Approx(simulation.ledger().momentum[2] + 2 * (left.total_mass() + right.total_mass())));
+}
+
 TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
   MultiBody body;
   body.contact.active = true;

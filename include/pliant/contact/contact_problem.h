@@ -19,6 +19,7 @@ struct Mover {
 
 struct ContactSolution {
   std::vector<Vec3<double>> impulse;  ///< of each contact, N s, world, on side a
+  std::vector<double> sliding;        ///< speed along each contact after it, m/s
   double friction_work = 0;           ///< J
   double residual = 0;                ///< what Coulomb's law misses at the worst contact, m/s
   int sweeps = 0;
@@ -38,6 +39,8 @@ class ContactProblem {
   void part_bodies(double most);
 
   const std::vector<Mover>& movers() const { return movers_; }
+  /// Adds what the joints take up of the impulses: on the parts act C_q^T of it, N s. rows: of all joints.
+  void add_joint_impulses(VecX<double>& rows) const;
 
  private:
   struct Side {
@@ -47,7 +50,8 @@ class ContactProblem {
   };
   struct Response {
     std::size_t mover;
-    MatX<double> Y;  ///< change of x by unit impulses
+    MatX<double> Y;       ///< change of x by unit impulses
+    MatX<double> lambda;  ///< impulses of the joints of an island with it
   };
   /// A contact, or one row of a limit, whose other two are zero.
   struct Block {
