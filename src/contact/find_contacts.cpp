@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +19,8 @@ constexpr double kThinShare = 0.4;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// How far the surface may be outside the box of its points, in sizes of the part.
+constexpr double kBulge = 0.05;
 /// Normals of one contact differ by less than this.
 constexpr double kSameNormal = 0.2;
 
@@ -29,7 +30,7 @@ std::size_t at(int i) {
 
 }  // namespace
 
-/// A part where it is.
+/// A part where it is, and how its frame moves if that is prescribed.
 struct ContactFinder::Placed {
   int number;
   const Part* part;
@@ -38,91 +39,49 @@ struct ContactFinder::Placed {
   Mat3<double> R;
   Eigen::Matrix3Xd p, x;    ///< points of its surface, body frame and world
   Eigen::AlignedBox3d box;  ///< world
+  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< world
+
+  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
 ContactFinder::ContactFinder(const Model& model) : model_(&model) {
-  const MultiBody& body = model.body();
+  const ContactRules rules(model);
   const int n = static_cast<int>(model.parts().size());
-  std::set<std::string> names;
   for (const PartModel& m : model.parts()) {
-    names.insert(m.part->name());
     surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
   }
-  for (const ContactPlane& plane : body.contact.planes)
-    if (!names.insert(plane.name).second)
-      throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
-  auto check = [](double friction, double restitution) {
-    if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
-      throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
-  };
-  check(body.contact.friction, body.contact.restitution);
-  for (const ContactPair& pair : body.contact.pairs) {
-    check(pair.friction, pair.restitution);
-    if (pair.a == pair.b) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
-  }
-  for (const ContactPair& pair : body.contact.pairs)
-    for (const std::string& name : {pair.a, pair.b})
-      if (names.count(name) == 0)
-        throw std::invalid_argument("contact of '" + name + "': there is no part or plane of that name");
-  std::set<std::pair<int, int>> joined;
-  for (const JointModel& joint : model.joints())
-    for (const PortRef& one : joint.at)
-      for (const PortRef& other : joint.at)
-        if (one.part >= 0 && other.part > one.part) joined.insert({one.part, other.part});
-  for (int i = 0; i < n; ++i) {
-    const PartModel& m = model.parts()[at(i)];
-    for (const ContactPlane& plane : body.contact.planes) {
-      on_planes_.push_back(rule_of(m.part->name(), plane.name));
-      if (m.q0 < 0) on_planes_.back().touch = false;
-    }
-  }
   on_parts_.resize(at(n) * at(n));
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) {
-      const std::string &a = body.parts()[at(i)]->name(), &b = body.parts()[at(j)]->name();
-      Rule& rule = on_parts_[at(i) * at(n) + at(j)];
-      rule = rule_of(a, b);
-      const bool named =
-          std::any_of(body.contact.pairs.begin(), body.contact.pairs.end(),
-                      [&](const ContactPair& p) { return (p.a == a && p.b == b) || (p.a == b && p.b == a); });
-      if (!named && (!body.contact.between_parts || joined.count({i, j}) > 0)) rule.touch = false;
-      if (model.parts()[at(i)].q0 < 0 && model.parts()[at(j)].q0 < 0) rule.touch = false;
-    }
+  for (int i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
+      on_planes_.push_back(rules.on_plane(i, static_cast<int>(k)));
+    for (int j = i + 1; j < n; ++j) on_parts_[at(i) * at(n) + at(j)] = rules.of_parts(i, j);
+  }
 }
 
 bool ContactFinder::smooth(int part) const {
   return surfaces_[at(part)] != nullptr;
 }
 
-ContactRule ContactFinder::between(int part, int other) const {
-  return on_parts_[at(std::min(part, other)) * model_->parts().size() + at(std::max(part, other))];
-}
-
-ContactRule ContactFinder::on_plane(int part, std::size_t plane) const {
-  return on_planes_[at(part) * model_->body().contact.planes.size() + plane];
-}
-
-ContactFinder::Rule ContactFinder::rule_of(const std::string& a, const std::string& b) const {
-  const ContactSettings& settings = model_->body().contact;
-  for (const ContactPair& pair : settings.pairs)
-    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a))
-      return {pair.touch, pair.friction, pair.restitution};
-  return {true, settings.friction, settings.restitution};
-}
-
-ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
+ContactFinder::Placed ContactFinder::place(const State& state, double t, int part) const {
   Placed placed{part,
                 model_->parts()[at(part)].part,
                 model_->values(state, part),
-                model_->position(state, part),
-                model_->orientation(state, part).toRotationMatrix(),
+                model_->position(state, part, t),
+                model_->orientation(state, part, t).toRotationMatrix(),
                 {},
                 {},
                 {}};
   if (!smooth(part)) return placed;
   placed.p = surfaces_[at(part)]->points(placed.values);
   placed.x = (placed.R * placed.p).colwise() + placed.c;
-  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff(), placed.x.rowwise().maxCoeff());
+  const double bulge = kBulge * placed.part->size();
+  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff().array() - bulge,
+                                   placed.x.rowwise().maxCoeff().array() + bulge);
+  if (const PrescribedMotion* motion = placed.part->motion()) {
+    const MovingFrame frame = motion->at(t);
+    placed.c_dot = frame.c_dot;
+    placed.omega = frame.omega;
+  }
   return placed;
 }
 
@@ -138,7 +97,7 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
   const CollisionSurface::Field field{
       [&](const Vec3<double>& p) { return p.dot(n) + offset; },
       [&](const Eigen::Matrix3Xd& p) -> VecX<double> { return (p.transpose() * n).array() + offset; }};
-  const Rule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
+  const ContactRule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
   for (const CollisionSurface::LowPoint& low :
        surfaces_[at(a.number)]->low_points(a.values, a.p, field.descent(a.p), most, field)) {
     Contact contact;
@@ -154,7 +113,7 @@ void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t,
   }
 }
 
-void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+void ContactFinder::find_on_part(const Placed& a, const Placed& b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
   // To first order the distance to b is w - 1 over the length of its gradient.
   auto height = [&](const Vec3<double>& in_b, Vec3<double>* gradient = nullptr) {
@@ -205,6 +164,7 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& r
       continue;
     contact.a = {a.number, low.material};
     contact.b = {b.number, b.part->label(in_b, b.values)};
+    contact.carried = b.carries(contact.x) - a.carries(contact.x);
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
@@ -214,7 +174,7 @@ void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& r
 std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
   const int n = static_cast<int>(model_->parts().size());
   std::vector<Placed> placed;
-  for (int i = 0; i < n; ++i) placed.push_back(place(state, i));
+  for (int i = 0; i < n; ++i) placed.push_back(place(state, t, i));
   std::vector<Contact> found;
   const std::size_t planes = model_->body().contact.planes.size();
   for (int i = 0; i < n; ++i)
@@ -239,7 +199,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   std::sort(pairs.begin(), pairs.end());
   for (const auto& [i, j] : pairs) {
     const Placed &a = placed[at(i)], &b = placed[at(j)];
-    const Rule& rule = on_parts_[at(i) * at(n) + at(j)];
+    const ContactRule& rule = on_parts_[at(i) * at(n) + at(j)];
     std::vector<Contact> ours, theirs;
     find_on_part(a, b, rule, most, ours);
     find_on_part(b, a, rule, most, theirs);
@@ -247,6 +207,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
     for (Contact& contact : theirs) {
       std::swap(contact.a, contact.b);
       contact.normal = -contact.normal;
+      contact.carried = -contact.carried;
       auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
         return (other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal;
       });
@@ -262,8 +223,8 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
   auto of = [&](const ContactSide& side) -> Vec3<double> {
+    if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
-    if (m.q0 < 0) return Vec3<double>::Zero();
     if (side.at_nodes()) {
       Vec3<double> u = Vec3<double>::Zero();
       for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
@@ -278,7 +239,7 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     m.part->points({side.material}, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
     return v.head<3>() + R * (v.segment<3>(3).cross(jets[0].p) + jets[0].p1);
   };
-  return of(contact.a) - (contact.b.part < 0 ? contact.carried : of(contact.b));
+  return of(contact.a) - of(contact.b) - contact.carried;
 }
 
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
@@ -296,7 +257,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       all.emplace_back();
       continue;
     }
-    Swept swept{model_->position(state, i), Vec3<double>::Zero(), 0, 0};
+    Swept swept{model_->position(state, i, t), Vec3<double>::Zero(), 0, 0};
     // A parameter may be larger than at rest: the ball is about where the points are.
     swept.reach = surfaces_[at(i)]->points(model_->values(state, i)).colwise().norm().maxCoeff();
     if (m.q0 >= 0) {
@@ -305,6 +266,12 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       swept.speed = swept.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
       const double free_fall = model_->body().gravity_at(t).norm() * h;
       swept.reach += h * (swept.c_dot.norm() + swept.speed + free_fall);
+    } else if (m.motion != nullptr) {
+      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
+      swept.c_dot = (then.c - now.c) / h;
+      swept.speed = swept.reach * std::max(now.omega.norm(), then.omega.norm()) +
+                    std::max((now.c_dot - swept.c_dot).norm(), (then.c_dot - swept.c_dot).norm());
+      swept.reach += h * (swept.c_dot.norm() + swept.speed);
     }
     all.push_back(swept);
   }
@@ -333,11 +300,11 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
-  const Placed a = place(state, of.a.part);
+  const Placed a = place(state, t, of.a.part);
   if (of.b.part < 0) {
     find_on_plane(a, at(of.plane), t, most, found);
   } else {
-    const Placed b = place(state, of.b.part);
+    const Placed b = place(state, t, of.b.part);
     find_on_part(a, b, {}, most, found);
     find_on_part(b, a, {}, most, found);
   }

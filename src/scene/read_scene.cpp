@@ -93,6 +93,9 @@ class SceneReader {
       faults_.value(output.given("frame_rate") ? output.at("frame_rate") : time.at("end"),
                     "it makes " + brief(scene_->end * scene_->frame_rate) + " frames to the end at " +
                         brief(scene_->end) + " s; expected at most 1e12");
+    scene_->contacts = output.boolean("contacts");
+    if (scene_->contacts && !root_.given("contact"))
+      faults_.warn(output.at("contacts"), "it has no effect, because nothing touches without \"contact\"");
     const std::vector<double> size = output.numbers("size");
     scene_->width = static_cast<int>(size[0]);
     scene_->height = static_cast<int>(size[1]);

@@ -7,24 +7,15 @@
 #include <pliant/body/model.h>
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
+#include <pliant/contact/contact_rules.h>
 
 namespace pliant {
 
-/// How two things touch.
-struct ContactRule {
-  bool touch = true;
-  double friction = 0, restitution = 0;
-};
-
 class ContactFinder {
  public:
-  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument for
-  /// a pair that names nothing of the body.
+  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
+  /// ContactRules.
   explicit ContactFinder(const Model& model);
-
-  /// Of two parts, and of a part and a plane.
-  ContactRule between(int part, int other) const;
-  ContactRule on_plane(int part, std::size_t plane) const;
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -40,22 +31,20 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  using Rule = ContactRule;
   struct Placed;
   /// Whether a part is this class's.
   bool smooth(int part) const;
-  Rule rule_of(const std::string& a, const std::string& b) const;
-  Placed place(const State& state, int part) const;
+  Placed place(const State& state, double t, int part) const;
   void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
                      std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+  void find_on_part(const Placed& a, const Placed& b, const ContactRule& rule, double most,
                     std::vector<Contact>& found) const;
 
   const Model* model_;
   std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
-  std::vector<Rule> on_planes_;                              // part after part, plane after plane
-  std::vector<Rule> on_parts_;                               // of parts i < j, n_parts x n_parts
+  std::vector<ContactRule> on_planes_;                       // part after part, plane after plane
+  std::vector<ContactRule> on_parts_;                        // of parts i < j, n_parts x n_parts
 };
 
 }  // namespace pliant
