@@ -1,6 +1,7 @@
 #include <pliant/integrate/contact_stepping.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -43,17 +44,43 @@ std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-bool same_pair(const Contact& one, const Contact& other) {
-  return one.a.part == other.a.part && one.b.part == other.b.part && one.plane == other.plane;
-}
-
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
 }
 
-bool has_pair(const std::vector<Contact>& some, const Contact& contact) {
-  return std::any_of(some.begin(), some.end(), [&](const Contact& c) { return same_pair(c, contact); });
-}
+/// Contacts by what touches what.
+class Pairs {
+ public:
+  /// The contacts must outlive it.
+  explicit Pairs(const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts) all_.emplace_back(key(contact), &contact);
+    std::sort(all_.begin(), all_.end());
+  }
+  bool has(const Contact& contact) const {
+    const auto [first, last] = range(contact);
+    return first != last;
+  }
+  /// Whether some contact of the same pair is one that `is` says it is.
+  template <class F>
+  bool has(const Contact& contact, F&& is) const {
+    const auto [first, last] = range(contact);
+    return std::any_of(first, last, [&](const Entry& entry) { return is(*entry.second); });
+  }
+
+ private:
+  using Key = std::array<int, 3>;
+  using Entry = std::pair<Key, const Contact*>;
+  static Key key(const Contact& contact) { return {contact.a.part, contact.b.part, contact.plane}; }
+  std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
+      const Contact& contact) const {
+    struct Before {
+      bool operator()(const Entry& entry, const Key& k) const { return entry.first < k; }
+      bool operator()(const Key& k, const Entry& entry) const { return k < entry.first; }
+    };
+    return std::equal_range(all_.begin(), all_.end(), key(contact), Before{});
+  }
+  std::vector<Entry> all_;
+};
 
 /// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
 template <class F>
@@ -160,22 +187,24 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
     if (!state.q.allFinite() || !state.v.allFinite()) break;
     const double after = now + length;
     const std::vector<Contact> resting = resting_at(before, now, slow);
+    const Pairs rest(resting);
     // Those that meet at the end, and of those that rested on each other all that are near: rounding may have
     // parted them.
     std::vector<Contact> contacts = finder_.find(state, after, resting.empty() ? 0 : resting_gap_);
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
                                   [&](const Contact& c) {
-                                    return c.gap > 0 && (c.gap > resting_gap(c) || !has_pair(resting, c));
+                                    return c.gap > 0 && (c.gap > resting_gap(c) || !rest.has(c));
                                   }),
                    contacts.end());
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
       const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
-      for (const Contact& other : resting)
-        if (same_pair(contact, other) &&
-            (contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size))
-          contact.since = reach * length;
-      if (!has_pair(resting, contact) && !has_pair(impacts, contact)) impacts.push_back(contact);
+      if (rest.has(contact, [&](const Contact& other) {
+            return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
+          }))
+        contact.since = reach * length;
+      if (impacts.size() <= kMostPairs && !rest.has(contact) && !Pairs(impacts).has(contact))
+        impacts.push_back(contact);
     }
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
       const std::optional<double> tau = locate(method, before, now, length, impacts, state, work, counters);
@@ -185,10 +214,9 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
         now += *tau;
         // What rests has fallen freely until then as what is in flight has: it is held first.
         std::vector<Contact> lying = finder_.find(state, now, resting_gap_);
-        lying.erase(
-            std::remove_if(lying.begin(), lying.end(),
-                           [&](const Contact& c) { return c.gap > resting_gap(c) || !has_pair(resting, c); }),
-            lying.end());
+        lying.erase(std::remove_if(lying.begin(), lying.end(),
+                                   [&](const Contact& c) { return c.gap > resting_gap(c) || !rest.has(c); }),
+                    lying.end());
         for (Contact& contact : lying) contact.since = reach * *tau;
         meshes_.find(state, now, lying);
         time_impacts(before, state, reach, *tau, slow, lying);
@@ -197,13 +225,13 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
         there.erase(std::remove_if(there.begin(), there.end(),
                                    [&](const Contact& c) {
                                      return c.gap > resting_gap(c) ||
-                                            (c.gap > kResting * resting_gap(c) && !has_pair(resting, c) &&
-                                             !has_pair(impacts, c));
+                                            (c.gap > kResting * resting_gap(c) && !rest.has(c) &&
+                                             !Pairs(impacts).has(c));
                                    }),
                     there.end());
         for (Contact& contact : there) {
           const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
-          if (!has_pair(resting, contact) && rebound > slow) contact.rebound = rebound;
+          if (!rest.has(contact) && rebound > slow) contact.rebound = rebound;
         }
         settle(state, 0, 0, state, now, std::move(there), work, counters);
         continue;
@@ -377,6 +405,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
   const ContactSolution solution = problem.solve(since_of_limits);
   counters.contact_sweeps += solution.sweeps;
+  counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
   bool smooth = false, deep = false;
   for (std::size_t k = 0; k < contacts.size(); ++k) {

@@ -6,10 +6,13 @@
 // is a mover of its own, with its velocity in the world.
 #pragma once
 
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/dynamics.h>
 #include <pliant/contact/contact.h>
+#include <pliant/solve/coulomb.h>
 
 namespace pliant {
 
@@ -26,6 +29,7 @@ struct ContactSolution {
   std::vector<Vec3<double>> velocity;  ///< after it, of side a against side b, m/s, world
   double residual = 0;                 ///< what Coulomb's law misses at the worst contact, m/s
   int sweeps = 0;
+  int fallbacks = 0;  ///< groups of contacts that were left with more than rounding of it
 };
 
 class ContactProblem {
@@ -35,6 +39,9 @@ class ContactProblem {
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
+  /// Impulses that the search begins with, N s, world, one for each contact: the nearer to the solution, the
+  /// shorter it is.
+  void begin_with(std::vector<Vec3<double>> impulse) { begin_ = std::move(impulse); }
   /// Impulses of the contacts, with the rebound that each of them asks for, and of limits, whose `since` is
   /// that of all.
   ContactSolution solve(double since_of_limits);
@@ -70,6 +77,26 @@ class ContactProblem {
     Mat3<double> axes = Mat3<double>::Identity();  ///< normal and tangents, columns, world
     Vec3<double> constant = Vec3<double>::Zero();  ///< added to u
     Vec3<double> p = Vec3<double>::Zero();
+    CoulombLaw law;
+  };
+  /// Some of a list of numbers.
+  struct Numbers {
+    const std::size_t *first, *last;
+    const std::size_t* begin() const { return first; }
+    const std::size_t* end() const { return last; }
+    std::size_t size() const { return static_cast<std::size_t>(last - first); }
+    std::size_t operator[](std::size_t i) const { return first[i]; }
+  };
+  /// Blocks and movers that push on each other and on nothing else.
+  struct Cluster {
+    Numbers blocks, movers;
+    double exact = 0;    ///< velocities below this are rounding, m/s
+    double allowed = 0;  ///< and what may be left
+  };
+  /// Impulses and velocities of a cluster.
+  struct Iterate {
+    VecX<double> p, x;
+    double residual = std::numeric_limits<double>::infinity();
   };
 
   std::size_t mover_of(int part);
@@ -80,13 +107,19 @@ class ContactProblem {
   void complete(Block& block);
   VecX<double> velocities_of(const Mover& mover, const State& state) const;
   Vec3<double> velocity(const Block& block) const;
-  static Vec3<double> met(const Block& block, const Vec3<double>& u);
+  Vec3<double> met(const Block& block, const Vec3<double>& u) const;
   void push(const Block& block, const Vec3<double>& impulse);
-  double sweep(bool forward);
-  double residual() const;
-  MatX<double> matrix() const;
-  bool newton(double exact);
-  int iterate();
+  std::vector<Cluster> clusters();
+  void set_scale(Cluster& cluster) const;
+  double sweep(const Cluster& cluster, bool forward);
+  double residual(const Cluster& cluster) const;
+  void take(const Cluster& cluster, Iterate& iterate) const;
+  void set(const Cluster& cluster, const Iterate& iterate);
+  bool newton(const Cluster& cluster);
+  bool relax(const Cluster& cluster, int most, int history, int& sweeps);
+  bool iterate(const Cluster& cluster, int& sweeps);
+  void yield(const Cluster& cluster, double softness);
+  void iterate(ContactSolution& solution);
 
   const Model& model_;
   const State& state_;
@@ -96,6 +129,9 @@ class ContactProblem {
   std::vector<int> mover_number_;           // of each part; -1: not there yet
   std::vector<std::vector<int>> of_nodes_;  // the same of the nodes of each part that deforms at them
   std::vector<Block> blocks_;               // the contacts first
+  std::vector<std::size_t> clustered_;      // the blocks of each cluster, then the movers of each
+  std::vector<Vec3<double>> begin_;
+  double softness_ = 0;  // of all contacts, as a share of their W
 };
 
 }  // namespace pliant

@@ -1,7 +1,9 @@
-// Which surfaces meet: broad phase by boxes, then the low points of each part over planes and other parts.
+// Which surfaces meet: a tree of boxes tells which parts are near each other, then the low points of each
+// part over planes and other parts.
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/model.h>
@@ -11,11 +13,13 @@
 
 namespace pliant {
 
+/// Not for several threads at once: it keeps what it works with from call to call.
 class ContactFinder {
  public:
   /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
   /// ContactRules.
   explicit ContactFinder(const Model& model);
+  ~ContactFinder();
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -32,19 +36,27 @@ class ContactFinder {
 
  private:
   struct Placed;
-  /// Whether a part is this class's.
-  bool smooth(int part) const;
-  Placed place(const State& state, double t, int part) const;
-  void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
-                     std::vector<Contact>& found) const;
+  struct Scratch;
+  class OverPart;
+  void place(const State& state, double t, int part) const;
+  bool is_still(int part) const;
+  const Eigen::Matrix3Xd& points_of(int part) const;
+  Eigen::AlignedBox3d body_box(int part) const;
+  Eigen::AlignedBox3d world_box(int part) const;
+  void place_planes(double t) const;
+  void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
+  bool are_apart(int a, int b, double most) const;
+  void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(const Placed& a, const Placed& b, const ContactRule& rule, double most,
-                    std::vector<Contact>& found) const;
+  void find_on_part(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
-  std::vector<ContactRule> on_planes_;                       // part after part, plane after plane
-  std::vector<ContactRule> on_parts_;                        // of parts i < j, n_parts x n_parts
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part that is this class's
+  ContactRules rules_;
+  std::vector<ContactRule> on_planes_;  // part after part, plane after plane
+  bool any_pairs_;                      // whether parts may touch parts
+  std::vector<int> smooth_;             // numbers of these parts
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace pliant
