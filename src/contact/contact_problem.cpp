@@ -196,7 +196,7 @@ void ContactProblem::complete(Block& block) {
                               [&](const Response& r) { return r.mover == side.mover; });
     const Mover& mover = movers_[side.mover];
     if (found == block.responses.end()) {
-      block.responses.push_back({side.mover, MatX<double>::Zero(mover.x.size(), block.rows)});
+      block.responses.push_back({side.mover, MatX<double>::Zero(mover.x.size(), block.rows), {}});
       found = block.responses.end() - 1;
     }
     if (mover.node >= 0) {
@@ -226,11 +226,12 @@ void ContactProblem::complete(Block& block) {
     const Mover& mover = movers_[response.mover];
     if (mover.island == nullptr) continue;
     const Group<double, Eigen::Dynamic> group(model_, work_, *mover.island, true);
+    response.lambda.setZero(mover.island->rows, block.rows);
     for (int r = 0; r < block.rows; ++r) {
       VecX<double> x = response.Y.col(r), rows;
       for (int round = 0; round < (group.is_rough() ? 2 : 1); ++round) {
         group.joint_rows(x, rows);
-        group.correct(rows, x);
+        response.lambda.col(r) += group.correct(rows, x);
       }
       response.Y.col(r) = x;
     }
@@ -605,6 +606,19 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
     solution.velocity.push_back(block.axes * u);
   }
   return solution;
+}
+
+void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
+  for (const Block& block : blocks_)
+    for (const Response& response : block.responses) {
+      const Island* island = movers_[response.mover].island;
+      if (island == nullptr) continue;
+      const VecX<double> lambda = response.lambda * block.p.head(block.rows);
+      for (const int j : island->joints) {
+        const JointModel& joint = model_.joints()[at(j)];
+        rows.segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
+      }
+    }
 }
 
 void ContactProblem::part_bodies(double most) {

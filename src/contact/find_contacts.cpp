@@ -23,6 +23,8 @@ constexpr double kThinShare = 0.4;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// How far the surface may be outside the box of its points, in sizes of the part.
+constexpr double kBulge = 0.05;
 /// Normals of one contact differ by less than this.
 constexpr double kSameNormal = 0.2;
 
@@ -36,9 +38,12 @@ std::size_t at(int i) {
 struct ContactFinder::Placed {
   Vec3<double> c;
   Mat3<double> R;
+  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
   double reach;  ///< radius of a ball about c that it is in, m
   std::optional<Vec3<double>> axes;
   bool has_points;  ///< whether those of Scratch are of now
+
+  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
 struct ContactFinder::Scratch {
@@ -125,77 +130,22 @@ class OverPlane final : public CollisionSurface::Field {
 
 ContactFinder::~ContactFinder() = default;
 
-ContactFinder::ContactFinder(const Model& model) : model_(&model), scratch_(std::make_unique<Scratch>()) {
+ContactFinder::ContactFinder(const Model& model)
+    : model_(&model),
+      rules_(model),
+      any_pairs_(model.body().contact.between_parts || !model.body().contact.pairs.empty()),
+      scratch_(std::make_unique<Scratch>()) {
   for (const PartModel& m : model.parts()) {
     if (m.local == nullptr) smooth_.push_back(static_cast<int>(surfaces_.size()));
     surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
   }
-  set_rules();
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
+    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
+      on_planes_.push_back(rules_.on_plane(i, static_cast<int>(k)));
   const std::size_t n = model.parts().size();
   scratch_->parts.resize(n);
   scratch_->points.resize(n);
   for (const PartModel& m : model.parts()) scratch_->values.push_back(m.part->parameters().rest());
-}
-
-void ContactFinder::set_rules() {
-  const MultiBody& body = model_->body();
-  const int n = static_cast<int>(model_->parts().size()),
-            planes = static_cast<int>(body.contact.planes.size());
-  auto check = [](double friction, double restitution) {
-    if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
-      throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
-  };
-  check(body.contact.friction, body.contact.restitution);
-  std::map<std::string, int> number;  // of parts, then of planes
-  for (const PartModel& m : model_->parts()) number.emplace(m.part->name(), static_cast<int>(number.size()));
-  for (const ContactPlane& plane : body.contact.planes)
-    if (!number.emplace(plane.name, static_cast<int>(number.size())).second)
-      throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
-  const Rule usual{true, body.contact.friction, body.contact.restitution};
-  on_parts_ = usual;
-  on_parts_.touch = body.contact.between_parts;
-  on_planes_.assign(at(n) * at(planes), usual);
-  std::map<std::pair<int, int>, Rule> between;
-  for (const ContactPair& pair : body.contact.pairs) {
-    check(pair.friction, pair.restitution);
-    if (pair.a == pair.b) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
-    for (const std::string& name : {pair.a, pair.b})
-      if (number.count(name) == 0)
-        throw std::invalid_argument("contact of '" + name + "': there is no part or plane of that name");
-    const int one = number.at(pair.a), other = number.at(pair.b);
-    between.emplace(std::minmax(one, other), Rule{pair.touch, pair.friction, pair.restitution});
-  }
-  for (const JointModel& joint : model_->joints())
-    for (const PortRef& one : joint.at)
-      for (const PortRef& other : joint.at)
-        if (one.part >= 0 && other.part > one.part)
-          between.emplace(std::pair(one.part, other.part), Rule{false, usual.friction, usual.restitution});
-  for (const auto& [pair, rule] : between) {
-    if (pair.second < n)
-      out_of_order_.emplace_back(pair, rule);
-    else if (pair.first < n)
-      on_planes_[at(pair.first) * at(planes) + at(pair.second - n)] = rule;
-  }
-  for (int i = 0; i < n; ++i)
-    for (int k = 0; k < planes; ++k)
-      if (model_->parts()[at(i)].q0 < 0) on_planes_[at(i) * at(planes) + at(k)].touch = false;
-}
-
-ContactRule ContactFinder::between(int part, int other) const {
-  return rule_of(std::min(part, other), std::max(part, other));
-}
-
-ContactRule ContactFinder::on_plane(int part, std::size_t plane) const {
-  return on_planes_[at(part) * model_->body().contact.planes.size() + plane];
-}
-
-const ContactFinder::Rule& ContactFinder::rule_of(int i, int j) const {
-  static const Rule none{false, 0, 0};
-  if (model_->parts()[at(i)].q0 < 0 && model_->parts()[at(j)].q0 < 0) return none;
-  const std::pair<int, int> pair(i, j);
-  const auto found = std::lower_bound(out_of_order_.begin(), out_of_order_.end(), pair,
-                                      [](const auto& entry, const auto& key) { return entry.first < key; });
-  return found != out_of_order_.end() && found->first == pair ? found->second : on_parts_;
 }
 
 /// Whether the shape stays what it is at rest.
@@ -203,7 +153,7 @@ bool ContactFinder::is_still(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
 }
 
-void ContactFinder::place(const State& state, int i) const {
+void ContactFinder::place(const State& state, double t, int i) const {
   const PartModel& m = model_->parts()[at(i)];
   ParameterValues<double>& values = scratch_->values[at(i)];
   if (!is_still(i))
@@ -213,8 +163,13 @@ void ContactFinder::place(const State& state, int i) const {
       values.b_dot[parameter] = state.v[m.v0 + 6 + k];
     }
   Placed& placed = scratch_->parts[at(i)];
-  placed.c = model_->position(state, i);
-  placed.R = model_->orientation(state, i).toRotationMatrix();
+  placed.c = model_->position(state, i, t);
+  placed.R = model_->orientation(state, i, t).toRotationMatrix();
+  if (m.motion != nullptr) {
+    const MovingFrame frame = m.motion->at(t);
+    placed.c_dot = frame.c_dot;
+    placed.omega = frame.omega;
+  }
   placed.axes = surfaces_[at(i)]->semi_axes(values);
   placed.reach = surfaces_[at(i)]->reach(values);
   placed.has_points = false;
@@ -247,6 +202,7 @@ Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
     const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
     middle += placed.R * box.center();
     half = placed.R.cwiseAbs() * (0.5 * box.sizes());
+    half.array() += kBulge * model_->parts()[at(i)].part->size();
   }
   return {middle - half, middle + half};
 }
@@ -268,7 +224,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   const double offset = normal.dot(placed.c - now.point);
   if (offset - placed.reach > most) return;
   const Vec3<double> n = placed.R.transpose() * normal;
-  const Rule& rule = on_planes_[at(a) * scratch_->planes.size() + number];
+  const ContactRule& rule = on_planes_[at(a) * scratch_->planes.size() + number];
   const CollisionSurface& surface = *surfaces_[at(a)];
   const ParameterValues<double>& values = scratch_->values[at(a)];
   auto add = [&](const CollisionSurface::LowPoint& low) {
@@ -296,7 +252,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, most, field)) add(low);
 }
 
-void ContactFinder::find_on_part(int a, int b, const Rule& rule, double most,
+void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
   const Placed &on = scratch_->parts[at(a)], &over = scratch_->parts[at(b)];
   const Part &part_a = *model_->parts()[at(a)].part, &part_b = *model_->parts()[at(b)].part;
@@ -311,6 +267,7 @@ void ContactFinder::find_on_part(int a, int b, const Rule& rule, double most,
     if (!std::isfinite(gap) || !contact.normal.allFinite() || !(contact.normal.norm() > 0.5)) return;
     contact.a = {a, low.material};
     contact.b = {b, part_b.label(field.into_b(low.p), values_b)};
+    contact.carried = over.carries(contact.x) - on.carries(contact.x);
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
@@ -368,7 +325,7 @@ bool ContactFinder::are_apart(int a, int b, double most) const {
 }
 
 /// Contacts of a pair, each point once though both surfaces are searched.
-void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
+void ContactFinder::find_between(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, most)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
@@ -384,6 +341,7 @@ void ContactFinder::find_between(int a, int b, const Rule& rule, double most,
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
+    contact.carried = -contact.carried;
     auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
       return at_one_point ||
              ((other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal);
@@ -401,18 +359,18 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   place_planes(t);
   std::vector<Contact> found;
   for (const int i : smooth_) {
-    place(state, i);
+    place(state, t, i);
     for (std::size_t k = 0; k < s.planes.size(); ++k)
       if (on_planes_[at(i) * s.planes.size() + k].touch) find_on_plane(i, k, most, found);
   }
-  if (!on_parts_.touch && out_of_order_.empty()) return found;
+  if (!any_pairs_) return found;
   s.boxes.clear();
   for (const int i : smooth_) s.boxes.push_back(world_box(i));
   s.tree.build(s.boxes);
   s.tree.near_pairs(most, s.pairs);
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_[at(one)], j = smooth_[at(other)];
-    const Rule& rule = rule_of(i, j);
+    const ContactRule rule = rules_.of_parts(i, j);
     if (rule.touch) find_between(i, j, rule, most, found);
   }
   return found;
@@ -420,8 +378,8 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
   auto of = [&](const ContactSide& side) -> Vec3<double> {
+    if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
-    if (m.q0 < 0) return Vec3<double>::Zero();
     if (side.at_nodes()) {
       Vec3<double> u = Vec3<double>::Zero();
       for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
@@ -442,7 +400,7 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     }
     return v.head<3>() + R * p_dot;
   };
-  return of(contact.a) - (contact.b.part < 0 ? contact.carried : of(contact.b));
+  return of(contact.a) - of(contact.b) - contact.carried;
 }
 
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
@@ -450,15 +408,23 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   near.h = h;
   Scratch& s = *scratch_;
   s.balls.resize(model_->parts().size());
-  const double free_fall = model_->body().gravity.norm() * h;
+  const double free_fall = model_->body().gravity_at(t).norm() * h;
   double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
   for (const int i : smooth_) {
     const PartModel& m = model_->parts()[at(i)];
-    place(state, i);
+    place(state, t, i);
     Scratch::Ball& ball = s.balls[at(i)];
     // A parameter may be larger than at rest: the ball is about where the surface is.
     ball = {s.parts[at(i)].c, Vec3<double>::Zero(), 0, s.parts[at(i)].reach};
     thinnest = std::min(thinnest, surfaces_[at(i)]->thickness());
+    if (m.motion != nullptr) {
+      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
+      ball.c_dot = (then.c - now.c) / h;
+      ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
+                   std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
+      ball.reach += h * (ball.c_dot.norm() + ball.speed);
+      fastest = std::max(fastest, ball.c_dot.norm() + ball.speed);
+    }
     if (m.q0 < 0) continue;
     const auto v = state.v.segment(m.v0, m.n_v());
     ball.c_dot = v.head<3>();
@@ -478,7 +444,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
           near.empty = false;
     }
   }
-  if (!on_parts_.touch && out_of_order_.empty()) return near;
+  if (!any_pairs_) return near;
   if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
   s.boxes.clear();
   for (const int i : smooth_) {
@@ -489,7 +455,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   s.tree.near_pairs(0, s.pairs);
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_[at(one)], j = smooth_[at(other)];
-    if (!rule_of(i, j).touch) continue;
+    if (!rules_.of_parts(i, j).touch) continue;
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
@@ -502,12 +468,12 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
-  place(state, of.a.part);
+  place(state, t, of.a.part);
   if (of.b.part < 0) {
     place_planes(t);
     find_on_plane(of.a.part, at(of.plane), most, found);
   } else {
-    place(state, of.b.part);
+    place(state, t, of.b.part);
     find_between(of.a.part, of.b.part, {}, most, found);
   }
   double least = most;

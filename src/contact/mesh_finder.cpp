@@ -22,7 +22,8 @@ std::size_t at(int i) {
 
 }  // namespace
 
-MeshFinder::MeshFinder(const Model& model, const ContactFinder& rules) : model_(&model) {
+MeshFinder::MeshFinder(const Model& model) : model_(&model) {
+  const ContactRules rules(model);
   const int n = static_cast<int>(model.parts().size());
   auto soft = [&](int i) { return model.parts()[at(i)].local != nullptr; };
   auto need = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
@@ -34,7 +35,7 @@ MeshFinder::MeshFinder(const Model& model, const ContactFinder& rules) : model_(
           "' deforms by modes of its whole body, and contact is of parts that deform at "
           "the nodes of a mesh");
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
-      const ContactRule rule = rules.on_plane(i, k);
+      const ContactRule rule = rules.on_plane(i, static_cast<int>(k));
       if (!rule.touch) continue;
       need(i);
       planes_.push_back({i, k, rule});
@@ -43,7 +44,7 @@ MeshFinder::MeshFinder(const Model& model, const ContactFinder& rules) : model_(
   for (int i = 0; i < n; ++i)
     for (int j = i + 1; j < n; ++j) {
       if (!soft(i) && !soft(j)) continue;
-      const ContactRule rule = rules.between(i, j);
+      const ContactRule rule = rules.of_parts(i, j);
       if (!rule.touch) continue;
       need(i);
       need(j);
@@ -51,11 +52,19 @@ MeshFinder::MeshFinder(const Model& model, const ContactFinder& rules) : model_(
     }
 }
 
-PlacedMesh MeshFinder::place(const State& state, int part) const {
+PlacedMesh MeshFinder::place(const State& state, double t, int part) const {
   const ContactMesh& mesh = meshes_.at(part);
-  const Mat3<double> R = model_->orientation(state, part).toRotationMatrix();
+  const Mat3<double> R = model_->orientation(state, part, t).toRotationMatrix();
   return PlacedMesh(mesh,
-                    (R * mesh.positions(*model_, state, part)).colwise() + model_->position(state, part));
+                    (R * mesh.positions(*model_, state, part)).colwise() + model_->position(state, part, t));
+}
+
+/// Velocity that a prescribed motion gives a point of a part, m/s.
+Vec3<double> MeshFinder::carries(int part, double t, const Vec3<double>& x) const {
+  const PrescribedMotion* motion = model_->parts()[at(part)].motion;
+  if (motion == nullptr) return Vec3<double>::Zero();
+  const MovingFrame frame = motion->at(t);
+  return frame.velocity(x - frame.c);
 }
 
 ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
@@ -67,7 +76,7 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
     for (std::size_t k = 0; k < 3; ++k)
       if (point.vertex[k] >= 0) side.node[k] = placed.mesh->node(point.vertex[k]);
     side.weight = point.weight;
-  } else {
+  } else if (m.q0 >= 0) {
     side.material =
         m.part->label(model_->orientation(state, part).conjugate() * (x - model_->position(state, part)),
                       model_->values(state, part));
@@ -77,7 +86,7 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
 
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
   std::map<int, PlacedMesh> placed;
-  for (const auto& entry : meshes_) placed.emplace(entry.first, place(state, entry.first));
+  for (const auto& entry : meshes_) placed.emplace(entry.first, place(state, t, entry.first));
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
     if (!plane.acts_at(t)) continue;
@@ -111,6 +120,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
       contact.x = touch.x;
       contact.normal = touch.normal;
       contact.gap = touch.gap;
+      contact.carried = carries(pair.b, t, touch.x) - carries(pair.a, t, touch.x);
       contact.friction = pair.rule.friction;
       contact.restitution = pair.rule.restitution;
       found.push_back(contact);
@@ -126,7 +136,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
   std::map<int, Swept> all;
   for (const auto& [part, mesh] : meshes_) {
     const PartModel& m = model_->parts()[at(part)];
-    Swept swept{model_->position(state, part), 0,
+    Swept swept{model_->position(state, part, t), 0,
                 mesh.positions(*model_, state, part).colwise().norm().maxCoeff()};
     if (m.q0 >= 0) {
       const auto v = state.v.segment(m.v0, m.n_v());
@@ -142,7 +152,13 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
       }
       if (m.local != nullptr)
         swept.speed += m.local->displacements(v.data() + 6 + m.n_s).rowwise().norm().maxCoeff();
-      swept.reach += h * (swept.speed + model_->body().gravity.norm() * h);
+      swept.reach += h * (swept.speed + model_->body().gravity_at(t).norm() * h);
+    } else if (m.motion != nullptr) {
+      for (const double when : {t, t + h}) {
+        const MovingFrame frame = m.motion->at(when);
+        swept.speed = std::max(swept.speed, frame.c_dot.norm() + swept.reach * frame.omega.norm());
+      }
+      swept.reach += h * swept.speed;
     }
     all.emplace(part, swept);
   }

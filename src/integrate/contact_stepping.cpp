@@ -112,10 +112,28 @@ void set_step(State& state, double t, double h) {
 
 }  // namespace
 
+void ContactRecord::clear() {
+  contacts.clear();
+  impulses.clear();
+  sliding.clear();
+  joint_impulses.setZero();
+}
+
 ContactStepping::ContactStepping(const Dynamics& dynamics)
-    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model(), finder_) {
+    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model()) {
+  for (ContactRecord* record : {&record_, &record_before_})
+    record->joint_impulses.setZero(dynamics.model().n_rows());
   for (const PartModel& m : dynamics.model().parts())
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
+}
+
+void ContactStepping::begin_step() {
+  std::swap(record_, record_before_);
+  record_.clear();
+}
+
+void ContactStepping::undo_step() {
+  std::swap(record_, record_before_);
 }
 
 /// Surfaces of this pair that are nearer than this rest on each other, m.
@@ -145,10 +163,8 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   const double start = state.start, h = state.h, end = state.time() + h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
-  const double slow = kSlow * dynamics_.model().body().gravity.norm() * h;
+  const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
   const double reach = method.reach();
-  contacts_.clear();
-  impulses_.clear();
   int events = 0;
   for (double now = state.time(); now < end - near;) {
     ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
@@ -412,8 +428,13 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   if (broken)
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
-  contacts_.insert(contacts_.end(), contacts.begin(), contacts.end());
-  impulses_.insert(impulses_.end(), solution.impulse.begin(), solution.impulse.end());
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;
+    record_.contacts.push_back(contacts[k]);
+    record_.impulses.push_back(solution.impulse[k]);
+    record_.sliding.push_back((u - u.dot(n) * n).norm());
+  }
+  problem.add_joint_impulses(record_.joint_impulses);
 }
 
 /// Moves bodies that overlap apart, by at most so many m.

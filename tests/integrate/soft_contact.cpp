@@ -44,9 +44,8 @@ double lowest(const Simulation& simulation) {
 
 /// How deep surfaces are in each other, m.
 double deepest(const Simulation& simulation) {
-  const ContactFinder rules(simulation.model());
   std::vector<Contact> found;
-  MeshFinder(simulation.model(), rules).find(simulation.state(), simulation.time(), found);
+  MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);
   double deep = 0;
   for (const Contact& contact : found) deep = std::max(deep, -contact.gap);
   return deep;

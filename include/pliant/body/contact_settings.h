@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,18 @@ struct ContactPlane {
   bool acts_at(double t) const { return on <= t && t < off; }
 };
 
-/// How two things touch that are named: parts or planes.
+/// Parts and planes that pairs can name together.
+struct ContactGroup {
+  std::string name;
+  std::vector<std::string> members;
+};
+
+/// How two things touch that are named: parts, planes or groups; a group with itself says it of its members.
+/// Of several pairs that two things are in, that with the fewest groups counts, and of these the last.
 struct ContactPair {
   std::string a, b;
-  bool touch = true;  ///< false: they pass through each other
-  double friction = 0, restitution = 0;
+  bool touch = true;                                ///< false: they pass through each other
+  std::optional<double> friction{}, restitution{};  ///< those of the settings where not given
 };
 
 struct ContactSettings {
@@ -33,8 +41,9 @@ struct ContactSettings {
   bool between_parts = true;  ///< whether parts touch parts, or planes alone
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
-  /// Parts that a joint ties together touch only where a pair says so.
+  /// Parts that a joint ties together touch only where a pair names both.
   std::vector<ContactPair> pairs;
+  std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
 };
 

@@ -19,12 +19,14 @@ struct ContactSide {
 };
 
 struct Contact {
-  ContactSide a, b;                             ///< b may be a plane
-  int plane = -1;                               ///< its number
-  Vec3<double> x = Vec3<double>::Zero();        ///< where they meet, m, world
-  Vec3<double> normal = Vec3<double>::Zero();   ///< from b to a, of length 1, world
-  double gap = 0;                               ///< m; negative: so deep
-  Vec3<double> carried = Vec3<double>::Zero();  ///< velocity of the plane there, m/s
+  ContactSide a, b;                            ///< b may be a plane
+  int plane = -1;                              ///< its number
+  Vec3<double> x = Vec3<double>::Zero();       ///< where they meet, m, world
+  Vec3<double> normal = Vec3<double>::Zero();  ///< from b to a, of length 1, world
+  double gap = 0;                              ///< m; negative: so deep
+  /// Velocity there of side b against side a as far as it is prescribed: of a plane, or a part without
+  /// coordinates, m/s.
+  Vec3<double> carried = Vec3<double>::Zero();
   double friction = 0, restitution = 0;
   /// What its impulse pushes moves by this times the change of velocity: how long ago it acted, s.
   double since = 0;

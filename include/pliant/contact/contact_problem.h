@@ -53,6 +53,8 @@ class ContactProblem {
   void part_bodies(double most);
 
   const std::vector<Mover>& movers() const { return movers_; }
+  /// Adds what the joints take up of the impulses: on the parts act C_q^T of it, N s. rows: of all joints.
+  void add_joint_impulses(VecX<double>& rows) const;
 
  private:
   struct Side {
@@ -62,7 +64,8 @@ class ContactProblem {
   };
   struct Response {
     std::size_t mover;
-    MatX<double> Y;  ///< change of x by unit impulses
+    MatX<double> Y;       ///< change of x by unit impulses
+    MatX<double> lambda;  ///< impulses of the joints of an island with it
   };
   /// A contact, or one row of a limit, whose other two are zero.
   struct Block {

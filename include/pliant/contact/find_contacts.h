@@ -9,26 +9,17 @@
 #include <pliant/body/model.h>
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
+#include <pliant/contact/contact_rules.h>
 
 namespace pliant {
-
-/// How two things touch.
-struct ContactRule {
-  bool touch = true;
-  double friction = 0, restitution = 0;
-};
 
 /// Not for several threads at once: it keeps what it works with from call to call.
 class ContactFinder {
  public:
-  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument for
-  /// a pair that names nothing of the body.
+  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
+  /// ContactRules.
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
-
-  /// Of two parts, and of a part and a plane.
-  ContactRule between(int part, int other) const;
-  ContactRule on_plane(int part, std::size_t plane) const;
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -44,13 +35,10 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  using Rule = ContactRule;
   struct Placed;
   struct Scratch;
   class OverPart;
-  void set_rules();
-  const Rule& rule_of(int i, int j) const;
-  void place(const State& state, int part) const;
+  void place(const State& state, double t, int part) const;
   bool is_still(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
   Eigen::AlignedBox3d body_box(int part) const;
@@ -58,16 +46,16 @@ class ContactFinder {
   void place_planes(double t) const;
   void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
   bool are_apart(int a, int b, double most) const;
-  void find_between(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
+  void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(int a, int b, const Rule& rule, double most, std::vector<Contact>& found) const;
+  void find_on_part(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;         // of each part that is this class's
-  std::vector<Rule> on_planes_;                                     // part after part, plane after plane
-  Rule on_parts_;                                                   // of most pairs of parts
-  std::vector<std::pair<std::pair<int, int>, Rule>> out_of_order_;  // of pairs i < j, sorted
-  std::vector<int> smooth_;                                         // numbers of these parts
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part that is this class's
+  ContactRules rules_;
+  std::vector<ContactRule> on_planes_;  // part after part, plane after plane
+  bool any_pairs_;                      // whether parts may touch parts
+  std::vector<int> smooth_;             // numbers of these parts
   std::unique_ptr<Scratch> scratch_;
 };
 

@@ -8,6 +8,7 @@
 
 #include <pliant/contact/contact.h>
 #include <pliant/contact/contact_mesh.h>
+#include <pliant/contact/contact_rules.h>
 #include <pliant/contact/find_contacts.h>
 #include <pliant/contact/mesh_touches.h>
 
@@ -15,8 +16,8 @@ namespace pliant {
 
 class MeshFinder {
  public:
-  /// rules: of the pairs; both must outlive it.
-  MeshFinder(const Model& model, const ContactFinder& rules);
+  /// The model must outlive it. Throws std::invalid_argument for parts that deform by modes.
+  explicit MeshFinder(const Model& model);
 
   bool empty() const { return planes_.empty() && pairs_.empty(); }
   /// Where surfaces have gone through each other at a state and a time, s. Appends.
@@ -36,7 +37,8 @@ class MeshFinder {
   };
   ContactSide side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
                    const Vec3<double>& x) const;
-  PlacedMesh place(const State& state, int part) const;
+  PlacedMesh place(const State& state, double t, int part) const;
+  Vec3<double> carries(int part, double t, const Vec3<double>& x) const;
 
   const Model* model_;
   std::map<int, ContactMesh> meshes_;  // of each part that needs one

@@ -14,18 +14,33 @@
 
 namespace pliant {
 
+/// What impulses did in a step: an entry for each time that they acted at a contact. Impacts within a step,
+/// and parts that move far in it, have it made in several parts.
+struct ContactRecord {
+  std::vector<Contact> contacts;
+  std::vector<Vec3<double>> impulses;  ///< on their sides a, N s, world
+  std::vector<double> sliding;         ///< speeds along them afterwards, m/s
+  VecX<double> joint_impulses;  ///< that equations of joints took up of them: on the parts act C_q^T of it
+
+  void clear();
+};
+
 class ContactStepping {
  public:
   /// dynamics: must outlive it. Throws std::invalid_argument, see ContactFinder.
   explicit ContactStepping(const Dynamics& dynamics);
 
+  /// A new step begins, which may come in parts; the one that began last counts for nothing.
+  void begin_step();
+  void undo_step();
   /// Advances q, v and work by state.h; the caller counts the step.
   void step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters);
 
   const ContactFinder& finder() const { return finder_; }
-  /// Contacts of the last step, and the impulses on their sides a, N s; empty where nothing touched.
-  const std::vector<Contact>& contacts() const { return contacts_; }
-  const std::vector<Vec3<double>>& impulses() const { return impulses_; }
+  /// Of the last whole step; empty where nothing touched.
+  const ContactRecord& record() const { return record_; }
+  const std::vector<Contact>& contacts() const { return record_.contacts; }
+  const std::vector<Vec3<double>>& impulses() const { return record_.impulses; }
 
  private:
   double resting_gap(const Contact& contact) const;
@@ -54,8 +69,7 @@ class ContactStepping {
   VecX<double> last_q_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<Contact> contacts_;
-  std::vector<Vec3<double>> impulses_;
+  ContactRecord record_, record_before_;
 };
 
 }  // namespace pliant
