@@ -47,7 +47,9 @@ void print_part(const pliant::PartModel& model) {
   std::cout << (part.shell() ? ", shell" : "") << "\n";
   print_parameters(part);
   const int frozen = part.parameters().size() - part.parameters().n_dynamic();
-  if (part.fixed())
+  if (part.motion() != nullptr)
+    std::cout << "  moves as prescribed: no degrees of freedom\n";
+  else if (part.fixed())
     std::cout << "  fixed: no degrees of freedom\n";
   else
     std::cout << "  degrees of freedom: " << part.n_v() << " (6 of the frame, " << part.n_s()

@@ -25,8 +25,12 @@ int velocities(const PartModel& part) {
 
 /// The motion of a point of a part while no generalised velocity changes: x_ddot = R b of design 1.2.
 template <class S>
-PointMotion<S> port_motion(const PartModel& part, const PartWorkspace<S>& w, int port) {
+PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<S>& w, int port) {
   PointMotion<S> motion{w.port_x[at(port)], w.port_x_dot[at(port)], Vec3<S>::Constant(S(0.0))};
+  if (part.motion != nullptr) {
+    const MovingFrame frame = part.motion->at(t);
+    motion.x_ddot = frame.acceleration(frame.R * part.rigid_ports[at(port)].p).template cast<S>();
+  }
   if (part.q0 < 0) return motion;
   const PointJet<S>& jet = w.ports[at(port)];
   const Vec3<S> omega = w.v_r.template segment<3>(3);
@@ -75,7 +79,7 @@ void evaluate_joints(const Model& model, const Island& island, double t,
     for (int k = 0; k < n_points; ++k) {
       const PortRef& ref = joint.at[at(k)];
       if (ref.part >= 0) {
-        motion[at(k)] = port_motion(model.parts()[at(ref.part)], parts[at(ref.part)], ref.port);
+        motion[at(k)] = port_motion(model.parts()[at(ref.part)], t, parts[at(ref.part)], ref.port);
         continue;
       }
       const Vec3<Taylor2<double>> x = joint.joint->points()[at(k)].world.at(t);

@@ -33,6 +33,8 @@ std::string Dynamics::diagnose(double t, const VecX<double>& q, const VecX<doubl
   accelerations(t, q, v, modes, work);
   auto of_part = [&](std::size_t i) { return " of part '" + model_->parts()[i].part->name() + "'"; };
   for (std::size_t i = 0; i < work.parts.size(); ++i) {
+    if (!work.parts[i].c.allFinite() || !work.parts[i].R.allFinite())
+      return "the prescribed motion" + of_part(i);
     if (model_->parts()[i].q0 < 0) continue;
     if (!work.parts[i].inertia.M.allFinite()) return "the mass matrix M" + of_part(i);
     if (work.parts[i].local && !work.parts[i].local->force.allFinite())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <pliant/body/one_sided_rows.h>
 #include <pliant/local/inverted_element.h>
@@ -43,12 +44,14 @@ void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
 
 // positions: frames, parameters and attachment points in the world, Eqs. (1) and (9)
 template <class S>
-void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorkspace<S>& w) {
+void positions(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v, PartWorkspace<S>& w) {
   const Part& part = *m.part;
   const auto n_ports = m.ports.size();
+  std::optional<MovingFrame> prescribed;
   if (m.q0 < 0) {
-    w.c = part.c0().template cast<S>();
-    w.R = m.R0.template cast<S>();
+    if (m.motion != nullptr) prescribed = m.motion->at(t);
+    w.c = (prescribed ? prescribed->c : part.c0()).template cast<S>();
+    w.R = (prescribed ? prescribed->R : m.R0).template cast<S>();
     w.q_s.resize(0);
     w.q_s_dot.resize(0);
     w.v_r.resize(0);
@@ -89,6 +92,10 @@ void positions(const PartModel& m, const VecX<S>& q, const VecX<S>& v, PartWorks
   w.port_force.assign(n_ports, Vec3<S>::Constant(S(0.0)));
   for (std::size_t k = 0; k < n_ports; ++k) {
     w.port_x[k] = w.c + w.R * w.ports[k].p;  // Eq. (1)
+    if (prescribed) {
+      w.port_x_dot[k] = prescribed->velocity(prescribed->R * m.rigid_ports[k].p).template cast<S>();
+      continue;
+    }
     if (m.q0 < 0) {
       w.port_x_dot[k].setConstant(S(0.0));
       continue;
@@ -141,6 +148,18 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
   if (part.continuum() != nullptr)
     w.power[static_cast<int>(Work::damping)] +=
         part.continuum()->add_force(part, w.q_s, w.q_s_dot, part.beta(), w.f.tail(n), w.counters);
+}
+
+// power of gravity that changes, -m g_dot . x of the mass centre
+template <class S>
+void change_gravity(const PartModel& m, const TimeVector& gravity, double t, PartWorkspace<S>& w) {
+  const Vec3<Taylor2<double>> g = gravity.at(t);
+  Vec3<S> m_x = w.c * S(m.part->total_mass());
+  if (m.local == nullptr)
+    m_x += w.R * w.inertia.moment;
+  else if constexpr (std::is_same_v<S, double>)
+    m_x += w.R * m.local->motion(w.v_r, *w.local).moment;
+  for (int k = 0; k < 3; ++k) w.power[static_cast<int>(Work::actuation)] -= m_x[k] * g[k].d;
 }
 
 // forces of a part alone: inertial, gravity, elasticity and damping of its global parameters, drag
@@ -280,15 +299,17 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
       for (int i = 0; i < n_parts; ++i) task(i);
   };
 
+  const Vec3<double> gravity = model.body().gravity_at(t);
   each_part([&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
-    positions<S>(m, q, v, w);
+    positions<S>(m, t, q, v, w);
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
     masses<S>(m, w);
     try {
-      own_forces<S>(m, model.body().gravity, t, w, pool_);
+      own_forces<S>(m, gravity, t, w, pool_);
+      if (model.body().changing_gravity) change_gravity<S>(m, *model.body().changing_gravity, t, w);
     } catch (const InvertedElement& failure) {
       throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
     }
@@ -307,6 +328,9 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     if (ref.part < 0) return;
     work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)] +=
         force * S(sign);
+  };
+  auto moves = [&](const PortRef& ref) {
+    return ref.part >= 0 && parts[static_cast<std::size_t>(ref.part)].q0 >= 0;
   };
   for (const SpringModel& s : model.springs()) {
     const WorldPoint<S> a = at_port(s.a, s.spring->a), b = at_port(s.b, s.spring->b);
@@ -328,8 +352,8 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     push(s.b, force, -1);
     work.power[static_cast<int>(Work::spring_damping)] -= damping.dot(d_dot);
     // The hand that moves an anchor exerts the opposite of the spring's pull on it.
-    if (s.a.part < 0) work.power[static_cast<int>(Work::anchors)] -= force.dot(a.x_dot);
-    if (s.b.part < 0) work.power[static_cast<int>(Work::anchors)] += force.dot(b.x_dot);
+    if (!moves(s.a)) work.power[static_cast<int>(Work::anchors)] -= force.dot(a.x_dot);
+    if (!moves(s.b)) work.power[static_cast<int>(Work::anchors)] += force.dot(b.x_dot);
   }
   for (const ForceModel& f : model.forces()) {
     const WorldPoint<S> at = at_port(f.at, f.force->at);
@@ -347,7 +371,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
         force = (work.parts[static_cast<std::size_t>(f.at.part)].R * force).eval();
     }
     push(f.at, force, 1);
-    work.power[static_cast<int>(Work::forces)] += force.dot(at.x_dot);
+    if (moves(f.at)) work.power[static_cast<int>(Work::forces)] += force.dot(at.x_dot);
   }
   for (const TorqueModel& m : model.torques()) {
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(m.part)];
@@ -471,12 +495,13 @@ void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<doubl
   for (const std::vector<int>* joints : {&island.joints, &island.strings})
     for (const int j : *joints)
       work.joints.modes[static_cast<std::size_t>(j)] = modes[static_cast<std::size_t>(j)];
-  for (const int i : island.anchors)
-    if (work.parts[static_cast<std::size_t>(i)].port_x.empty())
-      positions<double>(model_->parts()[static_cast<std::size_t>(i)], q, v,
-                        work.parts[static_cast<std::size_t>(i)]);
+  for (const int i : island.anchors) {
+    const PartModel& m = model_->parts()[static_cast<std::size_t>(i)];
+    PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
+    if (m.motion != nullptr || w.port_x.empty()) positions<double>(m, t, q, v, w);
+  }
   for (const int i : island.parts)
-    positions<double>(model_->parts()[static_cast<std::size_t>(i)], q, v,
+    positions<double>(model_->parts()[static_cast<std::size_t>(i)], t, q, v,
                       work.parts[static_cast<std::size_t>(i)]);
   pliant::evaluate_joints<double>(*model_, island, t, work.parts, work.joints);
 }
@@ -530,7 +555,7 @@ void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int 
   work.parts.resize(model_->parts().size());
   const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
-  positions<double>(m, q, v, w);
+  positions<double>(m, 0, q, v, w);  // of a part that has coordinates, which tell them at any time
   masses<double>(m, w);
 }
 
@@ -556,7 +581,7 @@ double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v, 
     if (!ours(spring.a) && !ours(spring.b)) continue;
     for (const PortRef& ref : {spring.a, spring.b})
       if (ref.part >= 0 && !ours(ref))
-        positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], q, v,
+        positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], t, q, v,
                           work.parts[static_cast<std::size_t>(ref.part)]);
     add_energy(t, spring, work, ledger);
   }

@@ -5,7 +5,8 @@
 
 namespace pliant {
 
-Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work) const {
+Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work,
+                              const VecX<double>& lambda) const {
   const JointModel& m = model_->joints()[static_cast<std::size_t>(joint)];
   std::array<PointMotion<double>, kMaxJointPoints> motion;
   for (std::size_t k = 0; k < m.at.size(); ++k) {
@@ -20,8 +21,7 @@ Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work
   m.joint->evaluate(t, motion.data(), rows);
   Wrench sum{Vec3<double>::Zero(), Vec3<double>::Zero()};
   for (int k = 0; k < m.joint->n_first(); ++k) {
-    const Vec3<double> force =
-        rows.C_x.middleCols(3 * k, 3).transpose() * work.joints.lambda.segment(m.row, m.rows);
+    const Vec3<double> force = rows.C_x.middleCols(3 * k, 3).transpose() * lambda.segment(m.row, m.rows);
     sum.force += force;
     sum.torque += (motion[static_cast<std::size_t>(k)].x - motion[0].x).cross(force);
   }

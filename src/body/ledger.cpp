@@ -5,7 +5,7 @@ namespace pliant {
 
 void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
                           Ledger& ledger) const {
-  const Vec3<double>& g = model_->body().gravity;
+  const Vec3<double> g = model_->body().gravity_at(t);
   if (m.local != nullptr) {
     const LocalMotion motion = m.local->motion(w.v_r, *w.local);
     ledger.kinetic += motion.kinetic;

@@ -18,13 +18,14 @@ constexpr long kCheapBlocks = 10000;
 }  // namespace
 
 Model::Model(MultiBody& body) : body_(&body) {
-  if (!body.gravity.allFinite()) throw std::invalid_argument("gravity is not finite");
+  if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity is not finite");
   for (const auto& part : body.parts()) {
     part->prepare();
     PartModel m;
     m.part = part.get();
     m.use = part->use();
     m.n_s = part->n_s();
+    m.motion = part->motion();
     m.local = part->local();
     m.drag = part->drag();
     m.q0 = part->fixed() ? -1 : n_q_;
@@ -116,6 +117,7 @@ void Model::add_joint(const Joint& joint) {
     }
     const int part = m.at.back().part;
     const PartModel& of = parts_[static_cast<std::size_t>(part)];
+    m.driven = m.driven || of.motion != nullptr;
     if (of.q0 < 0) continue;
     length = std::min(length, of.part->size());
     const bool known =
@@ -340,13 +342,15 @@ ParameterValues<double> Model::values(const State& state, int part) const {
   return m.part->parameters().expand<double>(q_s, q_s_dot);
 }
 
-Vec3<double> Model::position(const State& state, int part) const {
+Vec3<double> Model::position(const State& state, int part, double t) const {
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  if (m.motion != nullptr) return m.motion->position.value(t);
   return m.q0 < 0 ? m.part->c0() : Vec3<double>(state.q.segment<3>(m.q0));
 }
 
-Eigen::Quaterniond Model::orientation(const State& state, int part) const {
+Eigen::Quaterniond Model::orientation(const State& state, int part, double t) const {
   const PartModel& m = parts_[static_cast<std::size_t>(part)];
+  if (m.motion != nullptr) return m.motion->orientation_at(t);
   if (m.q0 < 0) return m.part->R0();
   const auto theta = state.q.segment<4>(m.q0 + 3);
   return {theta[0], theta[1], theta[2], theta[3]};

@@ -12,6 +12,9 @@ namespace {
 
 /// Edges along a quarter of a great circle.
 constexpr int kResolution = 6;
+/// The same of few points that tell how far the part reaches, and by how much it may reach beyond them.
+constexpr int kFew = 2;
+constexpr double kBeyondFew = 1.1;
 /// How far the surface may lie below the chords between its points, in sizes of the part.
 constexpr double kSag = 0.02;
 /// How far it may lie below the lowest of them, where it is thin and crosses something thin.
@@ -62,17 +65,49 @@ std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector
 
 }  // namespace
 
-CollisionSurface::CollisionSurface(const Part& part)
-    : part_(&part), surface_(part, kResolution), spacing_(0.5 * kPi / kResolution) {
-  const Eigen::Matrix3Xd p = points(part.parameters().rest());
-  thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
+CollisionSurface::CollisionSurface(const Part& part) : part_(&part), spacing_(0.5 * kPi / kResolution) {
+  if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest()))
+    thickness_ = 2 * axes->minCoeff();
+  else
+    thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
+}
+
+const CollisionSurface::Laid& CollisionSurface::laid() const {
+  if (!laid_) {
+    Surface surface(*part_, kResolution);
+    Eigen::Matrix3Xd p = part_->s(surface.material(), part_->parameters().rest());
+    const double sag = kSag * part_->size();
+    const Eigen::AlignedBox3d box(p.rowwise().minCoeff().array() - sag, p.rowwise().maxCoeff().array() + sag);
+    const double reach = (1 + kSag) * p.colwise().norm().maxCoeff();
+    std::vector<Material<double>> few;
+    if (part_->parameters().n_dynamic() > 0) few = Surface(*part_, kFew).material();
+    laid_.emplace(Laid{std::move(surface), std::move(p), box, reach, std::move(few)});
+  }
+  return *laid_;
+}
+
+std::optional<Vec3<double>> CollisionSurface::semi_axes(const ParameterValues<double>& values) const {
+  if (!part_->parameters().links().empty()) return std::nullopt;
+  return part_->shape().semi_axes(values.b.data());
+}
+
+CollisionSurface::LowPoint CollisionSurface::ellipsoid_point(const ParameterValues<double>& values,
+                                                             const Vec3<double>& axes,
+                                                             const Vec3<double>& y) const {
+  return {part_->shape().mesh_label(y, values.b.data()), axes.cwiseProduct(y), 0};
+}
+
+double CollisionSurface::reach(const ParameterValues<double>& values) const {
+  if (const std::optional<Vec3<double>> axes = semi_axes(values)) return axes->maxCoeff();
+  if (part_->parameters().n_dynamic() == 0) return laid().reach;
+  return kBeyondFew * part_->s(laid().few, values).colwise().norm().maxCoeff();
 }
 
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
   // A stencil of three by three places about the best so far; a quadratic through its heights tells the next.
   const bool ball = part_->shape().mesh() == MeshPattern::ball;
-  const Vec3<double> start = surface_.places()[static_cast<std::size_t>(i)];
+  const Vec3<double> start = laid().surface.places()[static_cast<std::size_t>(i)];
   Vec3<double> e1{1, 0, 0}, e2{0, 1, 0};
   if (ball) {
     e1 = start.unitOrthogonal();
@@ -90,16 +125,22 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       stencil[static_cast<std::size_t>(j)] = material(at[0] + size * (j % 3 - 1), at[1] + size * (j / 3 - 1));
     return part_->s(stencil, values);
   };
+  using Heights = Vec<double, 9>;
+  auto heights = [&](const Eigen::Matrix3Xd& p) {
+    Heights h;
+    for (int k = 0; k < 9; ++k) h[k] = field.descent(p.col(k));
+    return h;
+  };
   double radius = 0.5 * spacing_;
   {  // Corners, edges and faces have their lowest points among those of the mesh.
     const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
-    const VecX<double> h = field.descent(p);
+    const Heights h = heights(p);
     best = {stencil[4], p.col(4), h[4]};
     if (h.minCoeff() >= h[4] - kRounding * part_->size()) return best;
   }
   for (int k = 0; k < kMostIterations && radius > kSmallest * spacing_; ++k) {
     const Eigen::Matrix3Xd p = lay(radius);
-    const VecX<double> h = field.descent(p);
+    const Heights h = heights(p);
     // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
     Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
                       (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
@@ -124,7 +165,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       const Eigen::Vector2d there = at + radius * step;
       const Material<double> m = material(there[0], there[1]);
       const Eigen::Matrix3Xd p_there = part_->s({m}, values);
-      const double height = field.descent(p_there)[0];
+      const double height = field.descent(p_there.col(0));
       if (height <= best.height) {
         best = {m, p_there.col(0), height};
         next = there;

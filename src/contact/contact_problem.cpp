@@ -1,23 +1,39 @@
 #include <pliant/contact/contact_problem.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <pliant/body/group.h>
-#include <pliant/solve/coulomb.h>
+#include <pliant/contact/node_motion.h>
 
 namespace pliant {
 
 namespace {
 
-/// Sweeps end when impulses change velocities by less than this, relative to what there is to stop.
-constexpr double kExact = 1e-13;
-constexpr int kMostRounds = 40, kSweepsARound = 12, kMostNewton = 20;
+/// Sweeps end when impulses change velocities by less than this, relative to what there is to stop; or by so
+/// many units of rounding of the velocities themselves.
+constexpr double kExact = 1e-13, kUlps = 8;
+/// The same where nodes are pushed, many at a time and lightly coupled.
+constexpr double kExactOfNodes = 1e-8;
+constexpr int kMostNewton = 20;
+/// Rounds of so many sweeps, which are extrapolated from so many before them.
+constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 400;
+constexpr std::size_t kMostDense = 100;
+/// Extrapolation starts anew when it has made things worse by this factor.
+constexpr double kWorse = 4;
+/// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
+/// shares of their W.
+constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
+constexpr double kYielding = 1e-4;
+/// Impulses that stay bounded may leave this many times what others leave.
+constexpr double kBounded = 2;
 /// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
 constexpr double kFast = 1e-9;
 /// Share of the step so far in Newton's method.
@@ -33,7 +49,12 @@ std::size_t at(int i) {
 
 ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                                const std::vector<Contact>& contacts)
-    : model_(model), work_(work), contacts_(contacts), mover_number_(model.parts().size(), -1) {
+    : model_(model),
+      state_(state),
+      work_(work),
+      contacts_(contacts),
+      mover_number_(model.parts().size(), -1),
+      of_nodes_(model.parts().size()) {
   for (const Contact& contact : contacts) {
     Block block;
     block.mu = contact.friction;
@@ -55,20 +76,63 @@ std::size_t ContactProblem::mover_of(int part) {
   const int number = static_cast<int>(movers_.size());
   if (m.island >= 0) {
     mover.island = &model_.islands()[at(m.island)];
-    mover.before.resize(mover.island->n_v);
-    for (std::size_t i = 0; i < mover.island->parts.size(); ++i) {
-      const int other = mover.island->parts[i];
-      mover_number_[at(other)] = number;
-      mover.before.segment(mover.island->first[i], model_.parts()[at(other)].n_x()) =
-          work_.parts[at(other)].v_r;
-    }
+    for (const int other : mover.island->parts) mover_number_[at(other)] = number;
   } else {
     mover.part = part;
-    mover.before = work_.parts[at(part)].v_r;
     mover_number_[at(part)] = number;
   }
+  mover.before = velocities_of(mover, state_);
   mover.x = mover.before;
   movers_.push_back(std::move(mover));
+  return at(number);
+}
+
+/// Of a state whose coordinates may be those of an earlier time.
+VecX<double> ContactProblem::velocities_of(const Mover& mover, const State& state) const {
+  if (mover.node >= 0) return node_motion(model_, state, mover.part, mover.node).x_dot;
+  auto take = [&](int part, Eigen::Ref<VecX<double>> x) {
+    take_velocity(model_.parts()[at(part)], work_.parts[at(part)], state.v, x);
+  };
+  VecX<double> x;
+  if (mover.island == nullptr) {
+    x.resize(model_.parts()[at(mover.part)].n_x());
+    take(mover.part, x);
+    return x;
+  }
+  x.resize(mover.island->n_v);
+  for (std::size_t i = 0; i < mover.island->parts.size(); ++i) {
+    const int part = mover.island->parts[i];
+    take(part, x.segment(mover.island->first[i], model_.parts()[at(part)].n_x()));
+  }
+  return x;
+}
+
+std::vector<Vec3<double>> ContactProblem::velocities(const State& of) const {
+  std::vector<VecX<double>> x;
+  for (const Mover& mover : movers_) x.push_back(velocities_of(mover, of));
+  std::vector<Vec3<double>> all;
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    Vec3<double> u = -blocks_[k].axes.transpose() * contacts_[k].carried;
+    for (const Side& side : blocks_[k].sides) u += side.J * x[side.mover].segment(side.first, side.J.cols());
+    all.push_back(blocks_[k].axes * u);
+  }
+  return all;
+}
+
+std::size_t ContactProblem::mover_of_node(int part, int node) {
+  std::vector<int>& numbers = of_nodes_[at(part)];
+  if (numbers.empty())
+    numbers.resize(at(static_cast<int>(model_.parts()[at(part)].local->mesh().X.rows())), -1);
+  int& number = numbers[at(node)];
+  if (number < 0) {
+    number = static_cast<int>(movers_.size());
+    Mover mover;
+    mover.part = part;
+    mover.node = node;
+    mover.before = velocities_of(mover, state_);
+    mover.x = mover.before;
+    movers_.push_back(std::move(mover));
+  }
   return at(number);
 }
 
@@ -82,16 +146,24 @@ int ContactProblem::first_in(const Mover& mover, int part) const {
 void ContactProblem::add_side(Block& block, const ContactSide& side, const Vec3<double>& x, double sign) {
   const PartModel& m = model_.parts()[at(side.part)];
   if (m.q0 < 0) return;
+  if (side.at_nodes()) {
+    for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+      block.sides.push_back({mover_of_node(side.part, side.node[k]), 0,
+                             sign * side.weight[static_cast<Eigen::Index>(k)] * block.axes.transpose()});
+    return;
+  }
   const PartWorkspace<double>& w = work_.parts[at(side.part)];
   const std::size_t mover = mover_of(side.part);
-  std::vector<PointJet<double>> jets;
-  Counters counters;
-  m.part->points({side.material}, w.q_s, w.q_s_dot, jets, counters);
   const Mat3<double> D = sign * block.axes.transpose() * w.R;
   Side s{mover, first_in(movers_[mover], side.part), MatX<double>(3, m.n_x())};
   s.J.leftCols<3>() = D;
   s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (x - w.c));
-  s.J.rightCols(m.n_s) = D * jets[0].J;
+  if (m.n_s > 0) {
+    std::vector<PointJet<double>> jets;
+    Counters counters;
+    m.part->points({side.material}, w.q_s, w.q_s_dot, jets, counters);
+    s.J.rightCols(m.n_s) = D * jets[0].J;
+  }
   block.sides.push_back(std::move(s));
 }
 
@@ -99,12 +171,13 @@ void ContactProblem::add_side(Block& block, const ContactSide& side, const Vec3<
 void ContactProblem::add_limits(const State& state) {
   for (std::size_t i = 0; i < movers_.size(); ++i) {
     const Mover& mover = movers_[i];
+    if (mover.node >= 0) continue;
     const std::vector<int> alone{mover.part};
     for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         const int mode = state.at_limit[at(m.limit0 + k)];
-        if (mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
+        if (m.local != nullptr || mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
         Block block;
         block.rows = 1;
         Side side{i, first_in(mover, part), MatX<double>::Zero(3, m.n_x())};
@@ -123,8 +196,13 @@ void ContactProblem::complete(Block& block) {
                               [&](const Response& r) { return r.mover == side.mover; });
     const Mover& mover = movers_[side.mover];
     if (found == block.responses.end()) {
-      block.responses.push_back({side.mover, MatX<double>::Zero(mover.x.size(), block.rows)});
+      block.responses.push_back({side.mover, MatX<double>::Zero(mover.x.size(), block.rows), {}});
       found = block.responses.end() - 1;
+    }
+    if (mover.node >= 0) {
+      found->Y += side.J.topRows(block.rows).transpose() /
+                  model_.parts()[at(mover.part)].local->mesh().mass[mover.node];
+      continue;
     }
     const int n = static_cast<int>(side.J.cols());
     int part = mover.part;
@@ -148,11 +226,12 @@ void ContactProblem::complete(Block& block) {
     const Mover& mover = movers_[response.mover];
     if (mover.island == nullptr) continue;
     const Group<double, Eigen::Dynamic> group(model_, work_, *mover.island, true);
+    response.lambda.setZero(mover.island->rows, block.rows);
     for (int r = 0; r < block.rows; ++r) {
       VecX<double> x = response.Y.col(r), rows;
       for (int round = 0; round < (group.is_rough() ? 2 : 1); ++round) {
         group.joint_rows(x, rows);
-        group.correct(rows, x);
+        response.lambda.col(r) += group.correct(rows, x);
       }
       response.Y.col(r) = x;
     }
@@ -171,25 +250,98 @@ void ContactProblem::complete(Block& block) {
 
 Vec3<double> ContactProblem::velocity(const Block& block) const {
   Vec3<double> u = block.constant;
-  for (const Side& side : block.sides) u += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
+  for (const Side& side : block.sides)
+    u.noalias() += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
+  if (softness_ > 0) u += softness_ * block.W.diagonal().cwiseProduct(block.p);
   return u;
 }
 
 /// The impulse that its law asks for when u is the velocity with the impulse it has.
-Vec3<double> ContactProblem::met(const Block& block, const Vec3<double>& u) {
-  if (block.rows == 1) return {std::max(0.0, block.p[0] - u[0] / block.W(0, 0)), 0, 0};
-  return solve_coulomb(block.W, u - block.W * block.p, block.mu);
+Vec3<double> ContactProblem::met(const Block& block, const Vec3<double>& u) const {
+  if (block.rows == 1) return {std::max(0.0, block.p[0] - u[0] / ((1 + softness_) * block.W(0, 0))), 0, 0};
+  Vec3<double> b = u - block.W * block.p;
+  if (softness_ > 0) b -= softness_ * block.W.diagonal().cwiseProduct(block.p);
+  return block.law.push(b);
 }
 
 void ContactProblem::push(const Block& block, const Vec3<double>& impulse) {
   for (const Response& response : block.responses)
-    movers_[response.mover].x += response.Y * impulse.head(block.rows);
+    movers_[response.mover].x.noalias() += response.Y * impulse.head(block.rows);
 }
 
-double ContactProblem::sweep(bool forward) {
+std::vector<ContactProblem::Cluster> ContactProblem::clusters() {
+  std::vector<std::size_t> leader(movers_.size());
+  for (std::size_t i = 0; i < leader.size(); ++i) leader[i] = i;
+  auto leader_of = [&](std::size_t i) {
+    while (leader[i] != i) i = leader[i] = leader[leader[i]];
+    return i;
+  };
+  for (const Block& block : blocks_)
+    for (const Side& side : block.sides) {
+      const std::size_t one = leader_of(block.sides.front().mover), other = leader_of(side.mover);
+      leader[std::max(one, other)] = std::min(one, other);
+    }
+  std::vector<std::size_t> number(movers_.size()), blocks, movers;
+  auto count = [](std::vector<std::size_t>& counts, std::size_t i) { ++counts[i + 1]; };
+  for (std::size_t i = 0; i < movers_.size(); ++i) {
+    const std::size_t first = leader_of(i);  // no later than i
+    if (first == i) {
+      number[i] = movers.size();
+      movers.push_back(0);
+    } else {
+      number[i] = number[first];
+    }
+  }
+  const std::size_t n = movers.size();
+  auto cluster_of = [&](const Block& block) { return number[block.sides.front().mover]; };
+  movers.assign(n + 1, 0);
+  blocks.assign(n + 1, 0);
+  for (const std::size_t i : number) count(movers, i);
+  for (const Block& block : blocks_)
+    if (!block.sides.empty()) count(blocks, cluster_of(block));
+  for (std::size_t i = 0; i < n; ++i) {
+    movers[i + 1] += movers[i];
+    blocks[i + 1] += blocks[i];
+  }
+  clustered_.resize(blocks[n] + movers[n]);
+  std::size_t *const all_blocks = clustered_.data(), *const all_movers = all_blocks + blocks[n];
+  std::vector<Cluster> all;
+  all.reserve(n);
+  for (std::size_t i = 0; i < n; ++i)
+    all.push_back({{all_blocks + blocks[i], all_blocks + blocks[i + 1]},
+                   {all_movers + movers[i], all_movers + movers[i + 1]},
+                   0,
+                   0});
+  for (std::size_t i = 0; i < movers_.size(); ++i) all_movers[movers[number[i]]++] = i;
+  for (std::size_t k = 0; k < blocks_.size(); ++k)
+    if (!blocks_[k].sides.empty()) all_blocks[blocks[cluster_of(blocks_[k])]++] = k;
+  return all;
+}
+
+/// Velocities of a cluster that count as zero, and those that may be left.
+void ContactProblem::set_scale(Cluster& cluster) const {
+  double scale = 0, terms = 0;
+  for (const std::size_t k : cluster.blocks) {
+    const Block& block = blocks_[k];
+    scale = std::max(scale, velocity(block).lpNorm<Eigen::Infinity>());
+    for (const Side& side : block.sides)
+      terms = std::max(
+          terms, side.J.lpNorm<Eigen::Infinity>() *
+                     movers_[side.mover].x.segment(side.first, side.J.cols()).lpNorm<Eigen::Infinity>());
+  }
+  const bool nodes = std::any_of(cluster.movers.begin(), cluster.movers.end(),
+                                 [&](std::size_t i) { return movers_[i].node >= 0; });
+  cluster.exact = std::max((nodes ? kExactOfNodes : kExact) * scale,
+                           kUlps * std::numeric_limits<double>::epsilon() * terms);
+  cluster.allowed =
+      std::max(cluster.exact, (cluster.blocks.size() > kMostDense ? kLeftOfMany : kLeft) * scale);
+}
+
+double ContactProblem::sweep(const Cluster& cluster, bool forward) {
   double change = 0;
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    Block& block = blocks_[forward ? k : blocks_.size() - 1 - k];
+  const std::size_t n = cluster.blocks.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    Block& block = blocks_[cluster.blocks[forward ? k : n - 1 - k]];
     if (block.responses.empty()) continue;
     const Vec3<double> p = met(block, velocity(block)), dp = p - block.p;
     push(block, dp);
@@ -199,9 +351,10 @@ double ContactProblem::sweep(bool forward) {
   return change;
 }
 
-double ContactProblem::residual() const {
+double ContactProblem::residual(const Cluster& cluster) const {
   double worst = 0;
-  for (const Block& block : blocks_) {
+  for (const std::size_t k : cluster.blocks) {
+    const Block& block = blocks_[k];
     if (block.responses.empty()) {  // fixed, or held fast by joints: it cannot be stopped
       worst = std::max(worst, -velocity(block)[0]);
       continue;
@@ -212,44 +365,58 @@ double ContactProblem::residual() const {
   return worst;
 }
 
-/// The matrix that takes the impulses of all blocks to their velocities.
-MatX<double> ContactProblem::matrix() const {
-  const auto n = static_cast<Eigen::Index>(3 * blocks_.size());
-  MatX<double> A = MatX<double>::Zero(n, n);
-  for (std::size_t i = 0; i < blocks_.size(); ++i)
-    for (std::size_t j = 0; j < blocks_.size(); ++j)
-      for (const Side& side : blocks_[i].sides)
-        for (const Response& response : blocks_[j].responses)
-          if (response.mover == side.mover)
-            A.block(3 * i, 3 * j, 3, blocks_[j].rows) +=
-                side.J * response.Y.middleRows(side.first, side.J.cols());
-  return A;
+void ContactProblem::take(const Cluster& cluster, Iterate& iterate) const {
+  Eigen::Index n = 0;
+  for (const std::size_t i : cluster.movers) n += movers_[i].x.size();
+  iterate.p.resize(static_cast<Eigen::Index>(3 * cluster.blocks.size()));
+  iterate.x.resize(n);
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    iterate.p.segment<3>(static_cast<Eigen::Index>(3 * k)) = blocks_[cluster.blocks[k]].p;
+  n = 0;
+  for (const std::size_t i : cluster.movers) {
+    iterate.x.segment(n, movers_[i].x.size()) = movers_[i].x;
+    n += movers_[i].x.size();
+  }
 }
 
-/// Newton's method on Coulomb's law of all contacts at once in the form of Alart and Curnier (1991),
+void ContactProblem::set(const Cluster& cluster, const Iterate& iterate) {
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    blocks_[cluster.blocks[k]].p = iterate.p.segment<3>(static_cast<Eigen::Index>(3 * k));
+  Eigen::Index n = 0;
+  for (const std::size_t i : cluster.movers) {
+    movers_[i].x = iterate.x.segment(n, movers_[i].x.size());
+    n += movers_[i].x.size();
+  }
+}
+
+/// Newton's method on Coulomb's law of all contacts of a cluster at once in the form of Alart and Curnier
+/// (1991),
 ///   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t,
 /// with a share of the step so far in u, so that impulses that depend on each other stay as near as they can.
-/// Returns whether it came nearer to the solution than before.
-bool ContactProblem::newton(double exact) {
-  if (blocks_.size() > kMostDense) return false;
-  const MatX<double> A = matrix();
-  const Eigen::Index n = A.rows();
-  double best = residual();
-  const double start = best;
-  std::vector<Vec3<double>> p_best;
-  std::vector<VecX<double>> x_best;
-  auto keep = [&] {
-    p_best.clear();
-    x_best.clear();
-    for (const Block& block : blocks_) p_best.push_back(block.p);
-    for (const Mover& mover : movers_) x_best.push_back(mover.x);
-  };
-  keep();
-  for (int step = 0; step < kMostNewton && best > exact; ++step) {
+/// Leaves the best it has seen; returns whether that is better than what it began with.
+bool ContactProblem::newton(const Cluster& cluster) {
+  const Numbers& ours = cluster.blocks;
+  const auto n = static_cast<Eigen::Index>(3 * ours.size());
+  MatX<double> A = MatX<double>::Zero(n, n);  // takes the impulses to their velocities
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    for (std::size_t j = 0; j < ours.size(); ++j)
+      for (const Side& side : blocks_[ours[i]].sides)
+        for (const Response& response : blocks_[ours[j]].responses)
+          if (response.mover == side.mover)
+            A.block(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j), 3,
+                    blocks_[ours[j]].rows) += side.J * response.Y.middleRows(side.first, side.J.cols());
+  if (softness_ > 0)
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      A.diagonal().segment<3>(static_cast<Eigen::Index>(3 * i)) += softness_ * blocks_[ours[i]].W.diagonal();
+  Iterate best;
+  take(cluster, best);
+  best.residual = residual(cluster);
+  const double start = best.residual;
+  for (int step = 0; step < kMostNewton && best.residual > cluster.exact; ++step) {
     MatX<double> K = MatX<double>::Zero(n, n);
     VecX<double> F = VecX<double>::Zero(n);
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      const Block& block = blocks_[k];
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      const Block& block = blocks_[ours[k]];
       const auto row = static_cast<Eigen::Index>(3 * k);
       const Vec3<double> u = velocity(block);
       const double scale = block.W.diagonal().maxCoeff(), r = 1 / scale, ahead = block.p[0] - r * u[0];
@@ -283,56 +450,182 @@ bool ContactProblem::newton(double exact) {
     }
     const VecX<double> change = -K.partialPivLu().solve(F);
     if (!change.allFinite()) break;
-    for (std::size_t k = 0; k < blocks_.size(); ++k) {
-      Block& block = blocks_[k];
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      Block& block = blocks_[ours[k]];
       const Vec3<double> dp = change.segment<3>(static_cast<Eigen::Index>(3 * k));
       push(block, dp);
       block.p += dp;
     }
-    const double now = residual();
-    if (now < best) {
-      best = now;
-      keep();
+    const double now = residual(cluster);
+    if (now < best.residual) {
+      take(cluster, best);
+      best.residual = now;
     }
   }
-  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k].p = p_best[k];
-  for (std::size_t k = 0; k < movers_.size(); ++k) movers_[k].x = x_best[k];
-  return best < start;
+  set(cluster, best);
+  return best.residual < start;
 }
 
-int ContactProblem::iterate() {
-  double scale = 0;
-  for (const Block& block : blocks_) scale = std::max(scale, velocity(block).lpNorm<Eigen::Infinity>());
-  const double exact = kExact * scale;
-  int sweeps = 0;
-  for (int round = 0; round < kMostRounds; ++round) {
-    for (int i = 0; i < kSweepsARound; ++i, ++sweeps)
-      if (sweep(i % 2 == 0) <= exact) return sweeps + 1;
-    if (newton(exact) && residual() <= exact) return sweeps;
+/// Sweeps there and back as a fixed point p = g(p), extrapolated from the last of them to where p - g(p)
+/// would be least if g were linear (Anderson 1965), which it is once contacts have settled on whether they
+/// slide. Leaves the best it has seen; returns whether that is exact.
+bool ContactProblem::relax(const Cluster& cluster, int most, int history, int& sweeps) {
+  const auto n = static_cast<Eigen::Index>(3 * cluster.blocks.size());
+  VecX<double> weight(n);  // impulses as velocities
+  for (std::size_t k = 0; k < cluster.blocks.size(); ++k)
+    weight.segment<3>(static_cast<Eigen::Index>(3 * k))
+        .setConstant(std::max(blocks_[cluster.blocks[k]].W(0, 0), std::numeric_limits<double>::min()));
+  Iterate now, next, best;
+  take(cluster, now);
+  MatX<double> dr(n, history), dp(n, history), dx(now.x.size(), history);
+  VecX<double> last_r, last_p, last_x;
+  int filled = 0, slot = 0;
+  for (int i = 0; i < most; i += 2) {
+    sweep(cluster, true);
+    const double change = sweep(cluster, false);
+    sweeps += 2;
+    take(cluster, next);
+    const VecX<double> r = weight.cwiseProduct(next.p - now.p);
+    next.residual = std::max(change, r.lpNorm<Eigen::Infinity>());
+    if (next.residual < best.residual) best = next;
+    if (next.residual <= cluster.exact) return true;
+    if (history == 0) {
+      now = next;
+      continue;
+    }
+    if (!(next.residual <= kWorse * best.residual)) {
+      filled = 0;
+      slot = 0;
+      now = best;
+      last_r.resize(0);
+      set(cluster, now);
+      continue;
+    }
+    if (last_r.size() > 0) {
+      dr.col(slot) = r - last_r;
+      dp.col(slot) = next.p - last_p;
+      dx.col(slot) = next.x - last_x;
+      slot = (slot + 1) % history;
+      filled = std::min(filled + 1, history);
+    }
+    last_r = r;
+    last_p = next.p;
+    last_x = next.x;
+    now = next;
+    if (filled > 0) {
+      const VecX<double> gamma = dr.leftCols(filled).colPivHouseholderQr().solve(r);
+      if (gamma.allFinite()) {
+        now.p.noalias() -= dp.leftCols(filled) * gamma;
+        now.x.noalias() -= dx.leftCols(filled) * gamma;
+      }
+    }
+    set(cluster, now);
   }
-  return sweeps;
+  set(cluster, best);
+  return false;
 }
 
-ContactSolution ContactProblem::solve(double slowest_rebound) {
+/// Returns whether it found the solution.
+bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
+  // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
+  const bool dense = cluster.blocks.size() <= kMostDense;
+  for (const auto& [most, history] : kRounds) {
+    if (!dense && history == 0) continue;  // it would take too long
+    if (relax(cluster, most, history, sweeps)) return true;
+    if (dense && newton(cluster) && residual(cluster) <= cluster.exact) return true;
+  }
+  return false;
+}
+
+/// Contacts of a cluster give way by this share of W.
+void ContactProblem::yield(const Cluster& cluster, double softness) {
+  softness_ = softness;
+  for (const std::size_t k : cluster.blocks) {
+    Block& block = blocks_[k];
+    Mat3<double> W = block.W;
+    W.diagonal() *= 1 + softness;
+    block.law = CoulombLaw(W, block.rows == 1 ? 0 : block.mu);
+  }
+}
+
+/// Each cluster by itself. What has no solution, as where joints and contacts contradict each other, or where
+/// none is found, is solved with contacts that yield, which has one; the better of the two stays.
+void ContactProblem::iterate(ContactSolution& solution) {
+  for (const Block& block : blocks_)
+    if (block.sides.empty()) solution.residual = std::max(solution.residual, -velocity(block)[0]);
+  for (Cluster& cluster : clusters()) {
+    if (cluster.blocks.size() == 0) continue;
+    yield(cluster, 0);
+    set_scale(cluster);
+    for (const std::size_t k : cluster.blocks)
+      if (k < begin_.size()) {
+        blocks_[k].p = blocks_[k].axes.transpose() * begin_[k];
+        push(blocks_[k], blocks_[k].p);
+      }
+    if (cluster.blocks.size() == 1) {
+      sweep(cluster, true);
+      ++solution.sweeps;
+      solution.residual = std::max(solution.residual, residual(cluster));
+      continue;
+    }
+    Iterate start, found;
+    take(cluster, start);
+    const bool solved = iterate(cluster, solution.sweeps);
+    double left = residual(cluster);
+    if (!solved && left > cluster.allowed) {
+      ++solution.fallbacks;
+      take(cluster, found);
+      set(cluster, start);
+      yield(cluster, kYielding);
+      iterate(cluster, solution.sweeps);
+      yield(cluster, 0);
+      const double yielding = residual(cluster);
+      if (yielding < kBounded * left)
+        left = yielding;
+      else
+        set(cluster, found);
+    }
+    solution.residual = std::max(solution.residual, left);
+  }
+}
+
+ContactSolution ContactProblem::solve(double since_of_limits) {
   ContactSolution solution;
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const double u = velocity(blocks_[k])[0], e = contacts_[k].restitution;
-    if (u < 0 && -e * u > slowest_rebound) blocks_[k].constant[0] += e * u;
-  }
-  std::vector<Vec3<double>> before;
-  for (const Block& block : blocks_) before.push_back(velocity(block));
-  solution.sweeps = iterate();
-  solution.residual = residual();
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+  for (std::size_t k = 0; k < contacts_.size(); ++k) blocks_[k].constant[0] -= contacts_[k].rebound;
+  iterate(solution);
+  for (Mover& mover : movers_) mover.shift.setZero(mover.x.size());
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
     const Block& block = blocks_[k];
+    const double since = k < contacts_.size() ? contacts_[k].since : since_of_limits;
+    for (const Response& response : block.responses)
+      movers_[response.mover].shift += since * response.Y * block.p.head(block.rows);
+    if (k >= contacts_.size()) continue;
     solution.impulse.push_back(block.axes * block.p);
-    solution.friction_work += 0.5 * block.p.tail<2>().dot((before[k] + velocity(block)).tail<2>());
+    Vec3<double> u = velocity(block);
+    u[0] += contacts_[k].rebound;
+    solution.velocity.push_back(block.axes * u);
   }
   return solution;
 }
 
+void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
+  for (const Block& block : blocks_)
+    for (const Response& response : block.responses) {
+      const Island* island = movers_[response.mover].island;
+      if (island == nullptr) continue;
+      const VecX<double> lambda = response.lambda * block.p.head(block.rows);
+      for (const int j : island->joints) {
+        const JointModel& joint = model_.joints()[at(j)];
+        rows.segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
+      }
+    }
+}
+
 void ContactProblem::part_bodies(double most) {
+  begin_.clear();
+  std::vector<VecX<double>> rates;
   for (Mover& mover : movers_) {
+    rates.push_back(mover.before);
     mover.before.setZero();
     mover.x.setZero();
   }
@@ -342,7 +635,12 @@ void ContactProblem::part_bodies(double most) {
     blocks_[k].constant.setZero();
     if (k < contacts_.size()) blocks_[k].constant[0] = std::max(contacts_[k].gap, -most);
   }
-  iterate();
+  ContactSolution solution;
+  iterate(solution);
+  for (std::size_t k = 0; k < movers_.size(); ++k) {
+    movers_[k].shift = movers_[k].x;
+    movers_[k].before = movers_[k].x = rates[k];
+  }
 }
 
 }  // namespace pliant

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <stdexcept>
-#include <utility>
 
 #include <pliant/body/multibody.h>
+#include <pliant/contact/box_tree.h>
+#include <pliant/contact/ellipsoid_points.h>
 #include <pliant/contact/find_on_mesh.h>
+#include <pliant/contact/node_motion.h>
 
 namespace pliant {
 
@@ -20,6 +24,8 @@ constexpr double kThinShare = 0.4;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// How far the surface may be outside the box of its points, in sizes of the part.
+constexpr double kBulge = 0.05;
 /// Gaps over an obstacle are told up to this, in sizes of the part.
 constexpr double kSeen = 0.1;
 /// Normals of one contact differ by less than this.
@@ -33,340 +39,476 @@ std::size_t at(int i) {
 
 /// A part where it is.
 struct ContactFinder::Placed {
-  int number;
-  const Part* part;
-  ParameterValues<double> values;
   Vec3<double> c;
   Mat3<double> R;
-  Eigen::Matrix3Xd p, x;    ///< points of its surface, body frame and world
-  Eigen::AlignedBox3d box;  ///< world
+  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
+  double reach;  ///< radius of a ball about c that it is in, m
+  std::optional<Vec3<double>> axes;
+  bool has_points;  ///< whether those of Scratch are of now
+
+  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
-ContactFinder::ContactFinder(const Model& model) : model_(&model) {
-  const MultiBody& body = model.body();
-  const int n = static_cast<int>(model.parts().size());
-  std::set<std::string> names;
-  for (const PartModel& m : model.parts()) {
-    names.insert(m.part->name());
-    if (m.local != nullptr)
-      throw std::invalid_argument("part '" + m.part->name() +
-                                  "' deforms locally, and contact is of parts that do not");
-    surfaces_.push_back(std::make_unique<CollisionSurface>(*m.part));
+struct ContactFinder::Scratch {
+  std::vector<ParameterValues<double>> values;  ///< of each part
+  std::vector<Placed> parts;
+  std::vector<Eigen::Matrix3Xd> points;  ///< of parts that change, body frame
+  struct PlaneNow {
+    bool acts;
+    Vec3<double> point, carried;
+  };
+  std::vector<PlaneNow> planes;
+  MeshSearch mesh_search;
+  struct Ball {
+    Vec3<double> c, c_dot;
+    double speed, reach;  ///< of any point against the frame's origin, m/s; the ball and the way, m
+  };
+  std::vector<Ball> balls;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  BoxTree tree;
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<Contact> ours, theirs;
+  std::vector<Material<double>> material{1};
+  std::vector<PointJet<double>> jets;
+};
+
+/// w - 1 of a part b, over points of the frame of a; to first order the distance to b is that over the length
+/// of its gradient.
+class ContactFinder::OverPart final : public CollisionSurface::Field {
+ public:
+  OverPart(const Placed& a, const Placed& b, const Part& part, const ParameterValues<double>& values,
+           double thickness)
+      : R_(b.R.transpose() * a.R),
+        d_(b.R.transpose() * (a.c - b.c)),
+        part_(part),
+        values_(values),
+        axes_(b.axes),
+        thickness_(thickness) {}
+
+  const Mat3<double>& R() const { return R_; }
+  const Vec3<double>& d() const { return d_; }
+  Vec3<double> into_b(const Vec3<double>& p) const { return d_ + R_ * p; }
+  double height(const Vec3<double>& in_b, Vec3<double>& gradient) const {
+    if (axes_) {
+      const Vec3<double> y = in_b.cwiseQuotient(*axes_);
+      const double w = y.norm();
+      gradient = y.cwiseQuotient(*axes_) / w;
+      return (w - 1) / gradient.norm();
+    }
+    gradient = part_.inside_outside_gradient(in_b, values_);
+    return part_.inside_outside(in_b, values_) / gradient.norm();
   }
-  for (const ContactPlane& plane : body.contact.planes)
-    if (!names.insert(plane.name).second)
-      throw std::invalid_argument("a part and a plane are both called '" + plane.name + "'");
-  for (const ContactObstacle& obstacle : body.contact.obstacles) {
-    if (!names.insert(obstacle.name).second)
-      throw std::invalid_argument("an obstacle and something else are both called '" + obstacle.name + "'");
+  double height(const Vec3<double>& p) const override {
+    Vec3<double> gradient;
+    return height(into_b(p), gradient);
+  }
+  double descent(const Vec3<double>& p) const override {
+    const Vec3<double> in_b = into_b(p);
+    return thickness_ * (axes_ ? in_b.cwiseQuotient(*axes_).norm() - 1 : part_.inside_outside(in_b, values_));
+  }
+
+ private:
+  Mat3<double> R_;
+  Vec3<double> d_;
+  const Part& part_;
+  const ParameterValues<double>& values_;
+  const std::optional<Vec3<double>>& axes_;
+  double thickness_;
+};
+
+ContactFinder::~ContactFinder() = default;
+
+ContactFinder::ContactFinder(const Model& model)
+    : model_(&model),
+      rules_(model),
+      any_pairs_(model.body().contact.between_parts || !model.body().contact.pairs.empty()),
+      scratch_(std::make_unique<Scratch>()) {
+  for (const PartModel& m : model.parts()) {
+    if (m.local == nullptr) smooth_.push_back(static_cast<int>(surfaces_.size()));
+    surfaces_.push_back(m.local == nullptr ? std::make_unique<CollisionSurface>(*m.part) : nullptr);
+  }
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
+    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
+      on_planes_.push_back(rules_.on_plane(i, static_cast<int>(k)));
+  for (const ContactObstacle& obstacle : model.body().contact.obstacles) {
     try {
       obstacles_.emplace_back(obstacle.vertices, obstacle.triangles);
     } catch (const std::invalid_argument& fault) {
       throw std::invalid_argument("obstacle '" + obstacle.name + "': " + fault.what());
     }
   }
-  auto check = [](double friction, double restitution) {
-    if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
-      throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
-  };
-  check(body.contact.friction, body.contact.restitution);
-  for (const ContactPair& pair : body.contact.pairs) {
-    check(pair.friction, pair.restitution);
-    if (pair.a == pair.b) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      on_obstacles_.push_back(rules_.on_obstacle(i, static_cast<int>(k)));
+  const std::size_t n = model.parts().size();
+  scratch_->parts.resize(n);
+  scratch_->points.resize(n);
+  for (const PartModel& m : model.parts()) scratch_->values.push_back(m.part->parameters().rest());
+}
+
+/// Whether the shape stays what it is at rest.
+bool ContactFinder::is_still(int i) const {
+  return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
+}
+
+void ContactFinder::place(const State& state, double t, int i) const {
+  const PartModel& m = model_->parts()[at(i)];
+  ParameterValues<double>& values = scratch_->values[at(i)];
+  if (!is_still(i))
+    for (int k = 0; k < m.n_s; ++k) {
+      const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
+      values.b[parameter] = state.q[m.q0 + 7 + k];
+      values.b_dot[parameter] = state.v[m.v0 + 6 + k];
+    }
+  Placed& placed = scratch_->parts[at(i)];
+  placed.c = model_->position(state, i, t);
+  placed.R = model_->orientation(state, i, t).toRotationMatrix();
+  if (m.motion != nullptr) {
+    const MovingFrame frame = m.motion->at(t);
+    placed.c_dot = frame.c_dot;
+    placed.omega = frame.omega;
   }
-  for (const ContactPair& pair : body.contact.pairs)
-    for (const std::string& name : {pair.a, pair.b})
-      if (names.count(name) == 0)
-        throw std::invalid_argument("contact of '" + name +
-                                    "': there is no part, plane or obstacle of that name");
-  std::set<std::pair<int, int>> joined;
-  for (const JointModel& joint : model.joints())
-    for (const PortRef& one : joint.at)
-      for (const PortRef& other : joint.at)
-        if (one.part >= 0 && other.part > one.part) joined.insert({one.part, other.part});
-  for (int i = 0; i < n; ++i) {
-    const PartModel& m = model.parts()[at(i)];
-    for (const ContactPlane& plane : body.contact.planes) {
-      on_planes_.push_back(rule_of(m.part->name(), plane.name));
-      if (m.q0 < 0) on_planes_.back().touch = false;
-    }
-    for (const ContactObstacle& obstacle : body.contact.obstacles) {
-      on_obstacles_.push_back(rule_of(m.part->name(), obstacle.name));
-      if (m.q0 < 0) on_obstacles_.back().touch = false;
-    }
+  placed.axes = surfaces_[at(i)]->semi_axes(values);
+  placed.reach = surfaces_[at(i)]->reach(values);
+  placed.has_points = false;
+}
+
+const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {
+  if (is_still(i)) return surfaces_[at(i)]->rest_points();
+  Eigen::Matrix3Xd& points = scratch_->points[at(i)];
+  if (!scratch_->parts[at(i)].has_points) points = surfaces_[at(i)]->points(scratch_->values[at(i)]);
+  scratch_->parts[at(i)].has_points = true;
+  return points;
+}
+
+/// A box about a part in its own frame.
+Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
+  const Placed& placed = scratch_->parts[at(i)];
+  if (placed.axes) return {-*placed.axes, *placed.axes};
+  if (is_still(i)) return surfaces_[at(i)]->rest_box();
+  const Eigen::Matrix3Xd& p = points_of(i);
+  return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
+}
+
+/// A box about it in the world; of a part that changes the one about its ball.
+Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
+  const Placed& placed = scratch_->parts[at(i)];
+  Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);
+  if (placed.axes) {
+    half = (placed.R * placed.axes->asDiagonal()).rowwise().norm();
+  } else if (is_still(i)) {
+    const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
+    middle += placed.R * box.center();
+    half = placed.R.cwiseAbs() * (0.5 * box.sizes());
+    half.array() += kBulge * model_->parts()[at(i)].part->size();
   }
-  on_parts_.resize(at(n) * at(n));
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) {
-      const std::string &a = body.parts()[at(i)]->name(), &b = body.parts()[at(j)]->name();
-      Rule& rule = on_parts_[at(i) * at(n) + at(j)];
-      rule = rule_of(a, b);
-      const bool named =
-          std::any_of(body.contact.pairs.begin(), body.contact.pairs.end(),
-                      [&](const ContactPair& p) { return (p.a == a && p.b == b) || (p.a == b && p.b == a); });
-      if (!named && (!body.contact.between_parts || joined.count({i, j}) > 0)) rule.touch = false;
-      if (model.parts()[at(i)].q0 < 0 && model.parts()[at(j)].q0 < 0) rule.touch = false;
-    }
+  return {middle - half, middle + half};
 }
 
-ContactFinder::Rule ContactFinder::rule_of(const std::string& a, const std::string& b) const {
-  const ContactSettings& settings = model_->body().contact;
-  for (const ContactPair& pair : settings.pairs)
-    if ((pair.a == a && pair.b == b) || (pair.a == b && pair.b == a))
-      return {pair.touch, pair.friction, pair.restitution};
-  return {true, settings.friction, settings.restitution};
+void ContactFinder::place_planes(double t) const {
+  scratch_->planes.clear();
+  for (const ContactPlane& plane : model_->body().contact.planes) {
+    const Vec3<Taylor2<double>> moving = plane.point.at(t);
+    scratch_->planes.push_back(
+        {plane.acts_at(t), {moving[0].v, moving[1].v, moving[2].v}, {moving[0].d, moving[1].d, moving[2].d}});
+  }
 }
 
-ContactFinder::Placed ContactFinder::place(const State& state, int part) const {
-  Placed placed{part,
-                model_->parts()[at(part)].part,
-                model_->values(state, part),
-                model_->position(state, part),
-                model_->orientation(state, part).toRotationMatrix(),
-                {},
-                {},
-                {}};
-  placed.p = surfaces_[at(part)]->points(placed.values);
-  placed.x = (placed.R * placed.p).colwise() + placed.c;
-  placed.box = Eigen::AlignedBox3d(placed.x.rowwise().minCoeff(), placed.x.rowwise().maxCoeff());
-  return placed;
-}
-
-void ContactFinder::find_on_plane(const Placed& a, std::size_t number, double t, double most,
-                                  std::vector<Contact>& found) const {
-  const ContactPlane& plane = model_->body().contact.planes[number];
-  if (!plane.acts_at(t)) return;
-  const Vec3<Taylor2<double>> moving = plane.point.at(t);
-  const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v),
-      carried(moving[0].d, moving[1].d, moving[2].d);
-  const Vec3<double> n = a.R.transpose() * plane.normal;
-  const double offset = plane.normal.dot(a.c - point);
-  const CollisionSurface::Field field{
-      [&](const Vec3<double>& p) { return p.dot(n) + offset; },
-      [&](const Eigen::Matrix3Xd& p) -> VecX<double> { return (p.transpose() * n).array() + offset; }};
-  const Rule& rule = on_planes_[at(a.number) * model_->body().contact.planes.size() + number];
-  for (const CollisionSurface::LowPoint& low :
-       surfaces_[at(a.number)]->low_points(a.values, a.p, field.descent(a.p), most, field)) {
+void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::vector<Contact>& found) const {
+  const Scratch::PlaneNow& now = scratch_->planes[number];
+  if (!now.acts) return;
+  const Placed& placed = scratch_->parts[at(a)];
+  const Vec3<double>& normal = model_->body().contact.planes[number].normal;
+  const double offset = normal.dot(placed.c - now.point);
+  if (offset - placed.reach > most) return;
+  const Vec3<double> n = placed.R.transpose() * normal;
+  const ContactRule& rule = on_planes_[at(a) * scratch_->planes.size() + number];
+  const CollisionSurface& surface = *surfaces_[at(a)];
+  const ParameterValues<double>& values = scratch_->values[at(a)];
+  auto add = [&](const CollisionSurface::LowPoint& low) {
     Contact contact;
-    contact.a = {a.number, low.material};
+    contact.a = {a, low.material};
     contact.plane = static_cast<int>(number);
-    contact.x = a.c + a.R * low.p;
-    contact.normal = plane.normal;
+    contact.x = placed.c + placed.R * low.p;
+    contact.normal = normal;
     contact.gap = low.height;
-    contact.carried = carried;
+    contact.carried = now.carried;
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
+  };
+  const CollisionSurface::OverPlane field(n, offset);
+  if (placed.axes) {
+    const Vec3<double> y = lowest_direction(*placed.axes, n);
+    if (field.height(placed.axes->cwiseProduct(y)) > most) return;
+    CollisionSurface::LowPoint low = surface.ellipsoid_point(values, *placed.axes, y);
+    low.height = field.height(low.p);
+    return add(low);
   }
+  const Eigen::Matrix3Xd& p = points_of(a);
+  const VecX<double> heights = (p.transpose() * n).array() + offset;
+  for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, most, field)) add(low);
 }
 
-void ContactFinder::find_on_obstacle(const Placed& a, std::size_t number, double t, double most,
+void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double most,
                                      std::vector<Contact>& found) const {
   if (!model_->body().contact.obstacles[number].acts_at(t)) return;
+  const Placed& placed = scratch_->parts[at(a)];
   const std::size_t first = found.size();
-  find_on_mesh({*a.part, *surfaces_[at(a.number)], a.values, a.c, a.R, a.p, a.box}, obstacles_[number], most,
-               found);
-  const Rule& rule = on_obstacles_[at(a.number) * obstacles_.size() + number];
+  find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
+                placed.axes, world_box(a), [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
+               obstacles_[number], most, scratch_->mesh_search, found);
+  const ContactRule& rule = on_obstacles_[at(a) * obstacles_.size() + number];
   for (std::size_t k = first; k < found.size(); ++k) {
-    found[k].a.part = a.number;
+    found[k].a.part = a;
     found[k].obstacle = static_cast<int>(number);
     found[k].friction = rule.friction;
     found[k].restitution = rule.restitution;
   }
 }
 
-void ContactFinder::find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
+void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
-  // To first order the distance to b is w - 1 over the length of its gradient.
-  auto height = [&](const Vec3<double>& in_b, Vec3<double>* gradient = nullptr) {
-    const Vec3<double> slope = b.part->inside_outside_gradient(in_b, b.values);
-    if (gradient != nullptr) *gradient = slope;
-    return b.part->inside_outside(in_b, b.values) / slope.norm();
-  };
-  auto into_b = [&](const Vec3<double>& p) -> Vec3<double> {
-    return b.R.transpose() * (a.c + a.R * p - b.c);
-  };
-  const double thickness = surfaces_[at(b.number)]->thickness();
-  const CollisionSurface::Field field{[&](const Vec3<double>& p) { return height(into_b(p)); },
-                                      [&](const Eigen::Matrix3Xd& p) {
-                                        VecX<double> level(p.cols());
-                                        for (Eigen::Index k = 0; k < p.cols(); ++k)
-                                          level[k] =
-                                              thickness * b.part->inside_outside(into_b(p.col(k)), b.values);
-                                        return level;
-                                      }};
-  const double reach = most + 0.1 * std::min(a.part->size(), b.part->size());
-  const Eigen::AlignedBox3d near(b.box.min().array() - reach, b.box.max().array() + reach);
-  VecX<double> heights = VecX<double>::Constant(a.x.cols(), a.part->size() + b.part->size());
-  bool any = false;
-  for (Eigen::Index i = 0; i < a.x.cols(); ++i)
-    if (near.contains(a.x.col(i))) {
-      heights[i] = height(into_b(a.p.col(i)));
-      any = true;
-    }
-  if (!any) return;
-  const std::vector<CollisionSurface::LowPoint> lows =
-      surfaces_[at(a.number)]->low_points(a.values, a.p, heights, most, field);
-  Vec3<double> middle = Vec3<double>::Zero();
-  for (const CollisionSurface::LowPoint& low : lows) middle += low.p / static_cast<double>(lows.size());
-  for (const CollisionSurface::LowPoint& low : lows) {
+  const Placed &on = scratch_->parts[at(a)], &over = scratch_->parts[at(b)];
+  const Part &part_a = *model_->parts()[at(a)].part, &part_b = *model_->parts()[at(b)].part;
+  const ParameterValues<double>&values = scratch_->values[at(a)], &values_b = scratch_->values[at(b)];
+  const CollisionSurface& surface = *surfaces_[at(a)];
+  const OverPart field(on, over, part_b, values_b, surfaces_[at(b)]->thickness());
+  auto add = [&](const CollisionSurface::LowPoint& low, double gap, const Vec3<double>& gradient) {
     Contact contact;
-    Vec3<double> gradient, inner;
-    const Vec3<double> in_b = into_b(low.p);
-    contact.gap = height(in_b, &gradient);
-    // At an edge of b its faces have one normal each: the one that holds for the middle of the contact does.
-    const double inner_gap = height(into_b(low.p + kInner * (middle - low.p)), &inner);
-    if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
-      gradient = inner;
-      contact.gap = std::max(contact.gap, inner_gap);
-    }
-    contact.normal = b.R * gradient.normalized();
-    contact.x = a.c + a.R * low.p;
-    if (!std::isfinite(contact.gap) || !contact.normal.allFinite() || !(contact.normal.norm() > 0.5))
-      continue;
-    contact.a = {a.number, low.material};
-    contact.b = {b.number, b.part->label(in_b, b.values)};
+    contact.gap = gap;
+    contact.normal = over.R * gradient.normalized();
+    contact.x = on.c + on.R * low.p;
+    if (!std::isfinite(gap) || !contact.normal.allFinite() || !(contact.normal.norm() > 0.5)) return;
+    contact.a = {a, low.material};
+    contact.b = {b, part_b.label(field.into_b(low.p), values_b)};
+    contact.carried = over.carries(contact.x) - on.carries(contact.x);
     contact.friction = rule.friction;
     contact.restitution = rule.restitution;
     found.push_back(contact);
+  };
+  if (on.axes && over.axes) {
+    const Vec3<double> y =
+        nearest_direction(over.axes->cwiseInverse().asDiagonal() * field.R() * on.axes->asDiagonal(),
+                          field.d().cwiseQuotient(*over.axes));
+    Vec3<double> gradient;
+    const double gap = field.height(field.into_b(on.axes->cwiseProduct(y)), gradient);
+    if (!(gap > most)) add(surface.ellipsoid_point(values, *on.axes, y), gap, gradient);
+    return;
+  }
+  const Eigen::Matrix3Xd& p = points_of(a);
+  const double size = part_a.size() + part_b.size(),
+               reach = most + 0.1 * std::min(part_a.size(), part_b.size());
+  const Eigen::AlignedBox3d box = body_box(b), around(box.min().array() - reach, box.max().array() + reach);
+  VecX<double> heights = VecX<double>::Constant(p.cols(), size);
+  bool any = false;
+  Vec3<double> gradient;
+  for (Eigen::Index i = 0; i < p.cols(); ++i) {
+    const Vec3<double> in_b = field.into_b(p.col(i));
+    if (!around.contains(in_b)) continue;
+    heights[i] = field.height(in_b, gradient);
+    any = true;
+  }
+  if (!any) return;
+  const std::vector<CollisionSurface::LowPoint> lows = surface.low_points(values, p, heights, most, field);
+  Vec3<double> middle = Vec3<double>::Zero();
+  for (const CollisionSurface::LowPoint& low : lows) middle += low.p / static_cast<double>(lows.size());
+  for (const CollisionSurface::LowPoint& low : lows) {
+    double gap = field.height(field.into_b(low.p), gradient);
+    if (lows.size() > 1) {
+      // At an edge of b its faces have one normal each: the one that holds for the middle of the contact
+      // does.
+      Vec3<double> inner;
+      const double inner_gap = field.height(field.into_b(low.p + kInner * (middle - low.p)), inner);
+      if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
+        gradient = inner;
+        gap = std::max(gap, inner_gap);
+      }
+    }
+    add(low, gap, gradient);
   }
 }
 
+/// Whether a plane across the line of their centres parts two bodies, by more than `most`.
+bool ContactFinder::are_apart(int a, int b, double most) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  const Vec3<double> d = other.c - one.c;
+  auto extent = [&](const Placed& placed) {  // along d, times its length
+    return placed.axes ? placed.axes->cwiseProduct(placed.R.transpose() * d).norm() : placed.reach * d.norm();
+  };
+  return d.squaredNorm() - extent(one) - extent(other) > most * d.norm();
+}
+
+/// Contacts of a pair, each point once though both surfaces are searched.
+void ContactFinder::find_between(int a, int b, const ContactRule& rule, double most,
+                                 std::vector<Contact>& found) const {
+  if (are_apart(a, b, most)) return;
+  std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
+  ours.clear();
+  theirs.clear();
+  find_on_part(a, b, rule, most, ours);
+  // Two ellipsoids touch at one point, and are no nearer than w of one of them and its gradient there tell.
+  const bool at_one_point = scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes;
+  if (at_one_point && ours.empty()) return;
+  find_on_part(b, a, rule, most, theirs);
+  const double same =
+      kSame * std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size());
+  for (Contact& contact : theirs) {
+    std::swap(contact.a, contact.b);
+    contact.normal = -contact.normal;
+    contact.carried = -contact.carried;
+    auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
+      return at_one_point ||
+             ((other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal);
+    });
+    if (twin == ours.end())
+      ours.push_back(contact);
+    else if (contact.gap < twin->gap)
+      *twin = contact;
+  }
+  found.insert(found.end(), ours.begin(), ours.end());
+}
+
 std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
-  const int n = static_cast<int>(model_->parts().size());
-  std::vector<Placed> placed;
-  for (int i = 0; i < n; ++i) placed.push_back(place(state, i));
+  Scratch& s = *scratch_;
+  place_planes(t);
   std::vector<Contact> found;
-  const std::size_t planes = model_->body().contact.planes.size();
-  for (int i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < planes; ++k)
-      if (on_planes_[at(i) * planes + k].touch) find_on_plane(placed[at(i)], k, t, most, found);
-  for (int i = 0; i < n; ++i)
+  for (const int i : smooth_) {
+    place(state, t, i);
+    for (std::size_t k = 0; k < s.planes.size(); ++k)
+      if (on_planes_[at(i) * s.planes.size() + k].touch) find_on_plane(i, k, most, found);
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
-      if (on_obstacles_[at(i) * obstacles_.size() + k].touch)
-        find_on_obstacle(placed[at(i)], k, t, most, found);
-  // Sweep and prune along x.
-  std::vector<int> order(at(n));
-  for (int i = 0; i < n; ++i) order[at(i)] = i;
-  auto start = [&](int i) { return placed[at(i)].box.min()[0]; };
-  std::sort(order.begin(), order.end(),
-            [&](int i, int j) { return std::pair(start(i), i) < std::pair(start(j), j); });
-  std::vector<std::pair<int, int>> pairs;
-  for (int k = 0; k < n; ++k)
-    for (int l = k + 1; l < n; ++l) {
-      const Placed &one = placed[at(order[at(k)])], &other = placed[at(order[at(l)])];
-      if (other.box.min()[0] > one.box.max()[0] + most) break;
-      const int i = std::min(one.number, other.number), j = std::max(one.number, other.number);
-      if (on_parts_[at(i) * at(n) + at(j)].touch && one.box.squaredExteriorDistance(other.box) <= most * most)
-        pairs.emplace_back(i, j);
-    }
-  std::sort(pairs.begin(), pairs.end());
-  for (const auto& [i, j] : pairs) {
-    const Placed &a = placed[at(i)], &b = placed[at(j)];
-    const Rule& rule = on_parts_[at(i) * at(n) + at(j)];
-    std::vector<Contact> ours, theirs;
-    find_on_part(a, b, rule, most, ours);
-    find_on_part(b, a, rule, most, theirs);
-    const double same = kSame * std::min(a.part->size(), b.part->size());
-    for (Contact& contact : theirs) {
-      std::swap(contact.a, contact.b);
-      contact.normal = -contact.normal;
-      auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
-        return (other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal;
-      });
-      if (twin == ours.end())
-        ours.push_back(contact);
-      else if (contact.gap < twin->gap)
-        *twin = contact;
-    }
-    found.insert(found.end(), ours.begin(), ours.end());
+      if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, most, found);
+  }
+  if (!any_pairs_) return found;
+  s.boxes.clear();
+  for (const int i : smooth_) s.boxes.push_back(world_box(i));
+  s.tree.build(s.boxes);
+  s.tree.near_pairs(most, s.pairs);
+  for (const auto& [one, other] : s.pairs) {
+    const int i = smooth_[at(one)], j = smooth_[at(other)];
+    const ContactRule rule = rules_.of_parts(i, j);
+    if (rule.touch) find_between(i, j, rule, most, found);
   }
   return found;
 }
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
   auto of = [&](const ContactSide& side) -> Vec3<double> {
+    if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
-    if (m.q0 < 0) return Vec3<double>::Zero();
+    if (side.at_nodes()) {
+      Vec3<double> u = Vec3<double>::Zero();
+      for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+        u += side.weight[static_cast<Eigen::Index>(k)] *
+             node_motion(*model_, state, side.part, side.node[k]).x_dot;
+      return u;
+    }
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());
-    std::vector<PointJet<double>> jets;
-    Counters counters;
-    m.part->points({side.material}, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
-    return v.head<3>() + R * (v.segment<3>(3).cross(jets[0].p) + jets[0].p1);
+    const Vec3<double> p = R.transpose() * (contact.x - state.q.segment<3>(m.q0));
+    Vec3<double> p_dot = v.segment<3>(3).cross(p);
+    if (m.n_s > 0) {
+      Counters counters;
+      scratch_->material[0] = side.material;
+      m.part->points(scratch_->material, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s),
+                     scratch_->jets, counters);
+      p_dot += scratch_->jets[0].p1;
+    }
+    return v.head<3>() + R * p_dot;
   };
-  return of(contact.a) - (contact.b.part < 0 ? contact.carried : of(contact.b));
+  return of(contact.a) - of(contact.b) - contact.carried;
 }
 
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
   Neighbourhood near;
   near.h = h;
-  const int n = static_cast<int>(model_->parts().size());
-  struct Swept {
-    Vec3<double> c, c_dot;
-    double speed, reach;  // of any point against the frame's origin, m/s; the bounding ball and the way, m
-  };
-  std::vector<Swept> all;
-  for (int i = 0; i < n; ++i) {
+  Scratch& s = *scratch_;
+  s.balls.resize(model_->parts().size());
+  const double free_fall = model_->body().gravity_at(t).norm() * h;
+  double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
+  for (const int i : smooth_) {
     const PartModel& m = model_->parts()[at(i)];
-    Swept swept{model_->position(state, i), Vec3<double>::Zero(), 0, 0};
-    // A parameter may be larger than at rest: the ball is about where the points are.
-    swept.reach = surfaces_[at(i)]->points(model_->values(state, i)).colwise().norm().maxCoeff();
-    if (m.q0 >= 0) {
-      const auto v = state.v.segment(m.v0, m.n_v());
-      swept.c_dot = v.head<3>();
-      swept.speed = swept.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
-      const double free_fall = model_->body().gravity.norm() * h;
-      swept.reach += h * (swept.c_dot.norm() + swept.speed + free_fall);
+    place(state, t, i);
+    Scratch::Ball& ball = s.balls[at(i)];
+    // A parameter may be larger than at rest: the ball is about where the surface is.
+    ball = {s.parts[at(i)].c, Vec3<double>::Zero(), 0, s.parts[at(i)].reach};
+    thinnest = std::min(thinnest, surfaces_[at(i)]->thickness());
+    if (m.motion != nullptr) {
+      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
+      ball.c_dot = (then.c - now.c) / h;
+      ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
+                   std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
+      ball.reach += h * (ball.c_dot.norm() + ball.speed);
+      fastest = std::max(fastest, ball.c_dot.norm() + ball.speed);
     }
-    all.push_back(swept);
+    if (m.q0 < 0) continue;
+    const auto v = state.v.segment(m.v0, m.n_v());
+    ball.c_dot = v.head<3>();
+    ball.speed = ball.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
+    const double speed = ball.c_dot.norm() + ball.speed;
+    ball.reach += h * (speed + free_fall);
+    fastest = std::max(fastest, speed);
   }
   const auto& planes = model_->body().contact.planes;
-  for (int i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-      if (!on_planes_[at(i) * planes.size() + k].touch || !(planes[k].acts_at(t) || planes[k].acts_at(t + h)))
-        continue;
-      for (const double when : {t, t + h})
-        if (planes[k].normal.dot(all[at(i)].c - planes[k].point.value(when)) < all[at(i)].reach)
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    if (!(planes[k].acts_at(t) || planes[k].acts_at(t + h))) continue;
+    for (const double when : {t, t + h}) {
+      const Vec3<double> point = planes[k].point.value(when);
+      for (const int i : smooth_)
+        if (on_planes_[at(i) * planes.size() + k].touch &&
+            planes[k].normal.dot(s.balls[at(i)].c - point) < s.balls[at(i)].reach)
           near.empty = false;
     }
+  }
   const auto& obstacles = model_->body().contact.obstacles;
-  for (int i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      const Swept& a = all[at(i)];
-      if (!on_obstacles_[at(i) * obstacles.size() + k].touch ||
-          !(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h)) ||
-          !obstacles_[k].comes_near(a.c, a.reach))
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (!(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h))) continue;
+    for (const int i : smooth_) {
+      const Scratch::Ball& ball = s.balls[at(i)];
+      const double way = h * (ball.c_dot.norm() + ball.speed),
+                   thin = kThinShare * surfaces_[at(i)]->thickness();
+      if (!near.empty && way <= thin) continue;  // it would change nothing
+      if (!on_obstacles_[at(i) * obstacles.size() + k].touch || !obstacles_[k].comes_near(ball.c, ball.reach))
         continue;
       near.empty = false;
-      const double way = h * (a.c_dot.norm() + a.speed), thin = kThinShare * surfaces_[at(i)]->thickness();
       if (way > thin) near.h = std::min(near.h, h * thin / way);
     }
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) {
-      if (!on_parts_[at(i) * at(n) + at(j)].touch) continue;
-      const Swept &a = all[at(i)], &b = all[at(j)];
-      if ((a.c - b.c).norm() > a.reach + b.reach) continue;
-      near.empty = false;
-      const double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed);
-      const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
-      if (way > thin) near.h = std::min(near.h, h * thin / way);
-    }
+  }
+  if (!any_pairs_) return near;
+  if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
+  s.boxes.clear();
+  for (const int i : smooth_) {
+    const Scratch::Ball& ball = s.balls[at(i)];
+    s.boxes.emplace_back(ball.c.array() - ball.reach, ball.c.array() + ball.reach);
+  }
+  s.tree.build(s.boxes);
+  s.tree.near_pairs(0, s.pairs);
+  for (const auto& [one, other] : s.pairs) {
+    const int i = smooth_[at(one)], j = smooth_[at(other)];
+    if (!rules_.of_parts(i, j).touch) continue;
+    const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
+    if ((a.c - b.c).norm() > a.reach + b.reach) continue;
+    near.empty = false;
+    const double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed);
+    const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
+    if (way > thin) near.h = std::min(near.h, h * thin / way);
+  }
   return near;
 }
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
-  const Placed a = place(state, of.a.part);
+  place(state, t, of.a.part);
   if (of.obstacle >= 0) {
-    most = std::min(most, kSeen * a.part->size());
-    find_on_obstacle(a, at(of.obstacle), t, most, found);
+    most = std::min(most, kSeen * model_->parts()[at(of.a.part)].part->size());
+    find_on_obstacle(of.a.part, at(of.obstacle), t, most, found);
   } else if (of.b.part < 0) {
-    find_on_plane(a, at(of.plane), t, most, found);
+    place_planes(t);
+    find_on_plane(of.a.part, at(of.plane), most, found);
   } else {
-    const Placed b = place(state, of.b.part);
-    find_on_part(a, b, {}, most, found);
-    find_on_part(b, a, {}, most, found);
+    place(state, t, of.b.part);
+    find_between(of.a.part, of.b.part, {}, most, found);
   }
   double least = most;
   for (const Contact& contact : found) least = std::min(least, contact.gap);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include <pliant/contact/ellipsoid_points.h>
+
 namespace pliant {
 
 namespace {
@@ -25,6 +27,9 @@ constexpr double kBetween = 1e-3;
 constexpr double kLevel = 3e-6;
 /// Step for the slopes to either side of a point of a ridge, in sizes.
 constexpr double kBeside = 1e-7;
+/// What is flat along a ridge is met this far inside of where it ceases to be, in sizes: there it is as low
+/// as all of it.
+constexpr double kInside = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than this, in sizes, with normals as near as this, are one.
 constexpr double kSame = 0.02, kSameNormal = 0.01;
@@ -36,12 +41,14 @@ std::size_t at(int i) {
 /// The search for one part on one mesh.
 class Search {
  public:
-  Search(const PlacedSurface& a, const ObstacleMesh& mesh, double most, std::vector<Contact>& found)
+  Search(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& near,
+         std::vector<Contact>& found)
       : a_(a),
         mesh_(mesh),
         most_(most),
         size_(a.part.size()),
         deepest_(-kDeepest * a.surface.thickness()),
+        near_(near),
         found_(found),
         first_(found.size()) {}
 
@@ -49,10 +56,11 @@ class Search {
     const double reach = std::max(most_, 0.0) + kSag * size_;
     box_ = {(a_.box.min().array() - reach).matrix(), (a_.box.max().array() + reach).matrix()};
     if (!box_.intersects(mesh_.box())) return;
-    mesh_.query(box_, near_);
-    if (near_.empty()) return;
-    std::vector<int> faces, edges, vertices;
-    for (const int t : near_) {
+    mesh_.query(box_, near_.triangles);
+    if (near_.triangles.empty()) return;
+    std::vector<int>&faces = near_.faces, &edges = near_.edges, &vertices = near_.vertices;
+    for (std::vector<int>* all : {&faces, &edges, &vertices}) all->clear();
+    for (const int t : near_.triangles) {
       faces.push_back(mesh_.face_of(t));
       for (const int e : mesh_.edges_of(t))
         if (mesh_.edges()[at(e)].sharp) edges.push_back(e);
@@ -73,30 +81,38 @@ class Search {
     const ObstacleMesh::Face& face = mesh_.faces()[at(number)];
     const Vec3<double> n = a_.R.transpose() * face.normal;
     const double offset = face.normal.dot(a_.c - face.point);
-    const CollisionSurface::Field field{
-        [&](const Vec3<double>& p) { return p.dot(n) + offset; },
-        [&](const Eigen::Matrix3Xd& p) -> VecX<double> { return (p.transpose() * n).array() + offset; }};
-    const VecX<double> heights = field.descent(a_.p);
+    const CollisionSurface::OverPlane field(n, offset);
+    if (a_.axes) {
+      const Vec3<double> y = lowest_direction(*a_.axes, n);
+      CollisionSurface::LowPoint low = a_.surface.ellipsoid_point(a_.values, *a_.axes, y);
+      low.height = field.height(low.p);
+      return add_if_held(number, low);
+    }
+    const Eigen::Matrix3Xd& p = a_.points();
+    const VecX<double> heights = (p.transpose() * n).array() + offset;
     const double lowest = heights.minCoeff();
     if (lowest > most_ + kSag * size_ || lowest < deepest_ - kSag * size_) return;
     Eigen::AlignedBox3d low_box, face_box;  // whether the low points may be on this face at all
     for (Eigen::Index i = 0; i < heights.size(); ++i)
-      if (heights[i] <= lowest + kSag * size_) low_box.extend(a_.c + a_.R * a_.p.col(i));
-    for (const int t : near_)
+      if (heights[i] <= lowest + kSag * size_) low_box.extend(a_.c + a_.R * p.col(i));
+    for (const int t : near_.triangles)
       if (mesh_.face_of(t) == number)
         for (int k = 0; k < 3; ++k) face_box.extend(mesh_.vertices().col(mesh_.triangles()(k, t)));
     if (low_box.exteriorDistance(face_box) > kSpacing * size_ + std::max(0.0, -lowest)) return;
-    for (const CollisionSurface::LowPoint& low :
-         a_.surface.low_points(a_.values, a_.p, heights, most_, field)) {
-      const Vec3<double> x = a_.c + a_.R * low.p;
-      if (low.height < deepest_ || !is_on(number, x) || is_nearer_to_others(number, x, low.height)) continue;
-      add(low.material, x, face.normal, low.height);
-    }
+    for (const CollisionSurface::LowPoint& low : a_.surface.low_points(a_.values, p, heights, most_, field))
+      add_if_held(number, low);
+  }
+
+  void add_if_held(int face, const CollisionSurface::LowPoint& low) {
+    if (!(low.height <= most_ && low.height >= deepest_)) return;
+    const Vec3<double> x = a_.c + a_.R * low.p;
+    if (!is_on(face, x) || is_nearer_to_others(face, x, low.height)) return;
+    add(low.material, x, mesh_.faces()[at(face)].normal, low.height);
   }
 
   /// Whether a point lies straight above or below a face.
   bool is_on(int face, const Vec3<double>& x) const {
-    for (const int t : near_) {
+    for (const int t : near_.triangles) {
       if (mesh_.face_of(t) != face) continue;
       bool inside = true;
       for (int k = 0; k < 3 && inside; ++k) {
@@ -112,15 +128,22 @@ class Search {
   /// Whether a point behind a face has come in through others.
   bool is_nearer_to_others(int face, const Vec3<double>& x, double height) const {
     if (height >= -kLevel * size_) return false;
-    return std::any_of(near_.begin(), near_.end(), [&](int t) {
+    return std::any_of(near_.triangles.begin(), near_.triangles.end(), [&](int t) {
       return mesh_.face_of(t) != face && mesh_.normal(t).dot(mesh_.faces()[at(face)].normal) > kOtherSide &&
              (mesh_.nearest(t, x) - x).norm() < -kNearer * height;
     });
   }
 
   Vec3<double> into_a(const Vec3<double>& x) const { return a_.R.transpose() * (x - a_.c); }
-  double level(const Vec3<double>& x) const { return a_.part.inside_outside(into_a(x), a_.values); }
+  double level(const Vec3<double>& x) const {
+    if (a_.axes) return into_a(x).cwiseQuotient(*a_.axes).norm() - 1;
+    return a_.part.inside_outside(into_a(x), a_.values);
+  }
   Vec3<double> slope(const Vec3<double>& x) const {
+    if (a_.axes) {
+      const Vec3<double> y = into_a(x).cwiseQuotient(*a_.axes);
+      return a_.R * y.normalized().cwiseQuotient(*a_.axes);
+    }
     return a_.R * a_.part.inside_outside_gradient(into_a(x), a_.values);
   }
 
@@ -164,6 +187,16 @@ class Search {
     }
     if (!(from < to)) return;
     auto x = [&](double s) -> Vec3<double> { return start + s * e; };
+    if (a_.axes) {
+      const Vec3<double> y = into_a(start).cwiseQuotient(*a_.axes),
+                         rate = (a_.R.transpose() * e).cwiseQuotient(*a_.axes);
+      const double s = -y.dot(rate) / rate.squaredNorm();
+      if (!(s >= from && s <= to)) return;
+      const Vec3<double> gradient = slope(x(s));
+      if (!is_between(edge, -gradient.normalized())) return;
+      if (const std::optional<Contact> contact = touch(x(s), gradient)) add(*contact);
+      return;
+    }
     const double step = (to - from) / kSamples;
     int best = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -206,7 +239,7 @@ class Search {
       }
       return in;
     };
-    const double first = end_of_flat(from), last = end_of_flat(to);
+    const double first = end_of_flat(from) + kInside * size_, last = end_of_flat(to) - kInside * size_;
     if (last - first < kSame * size_) return add(*deepest);
     for (const double s : {first, last})
       if (const std::optional<Contact> contact = touch(x(s), gradient)) add(*contact);
@@ -254,17 +287,17 @@ class Search {
   const PlacedSurface& a_;
   const ObstacleMesh& mesh_;
   const double most_, size_, deepest_;
+  MeshSearch& near_;
   std::vector<Contact>& found_;
   const std::size_t first_;
   Eigen::AlignedBox3d box_;
-  std::vector<int> near_;
 };
 
 }  // namespace
 
-void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most,
+void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& search,
                   std::vector<Contact>& found) {
-  Search(a, mesh, most, found).run();
+  Search(a, mesh, most, search, found).run();
 }
 
 }  // namespace pliant

@@ -40,15 +40,6 @@ VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<c
   return v;
 }
 
-void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
-                   Eigen::Ref<VecX<double>> x) {
-  x.head(6 + m.n_s) = share_of(m, v);
-  x.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
-  if (m.shared.empty()) return;
-  VecX<double> buffer;
-  x.tail(x.size() - 6 - m.n_s) = at_points(m.shared, m.local->at_nodes(v.data() + m.v0 + 6 + m.n_s, buffer));
-}
-
 void give_velocity(const PartModel& m, const PartWorkspace<double>& w,
                    const Eigen::Ref<const VecX<double>>& x, VecX<double>& v) {
   if (m.local != nullptr) {

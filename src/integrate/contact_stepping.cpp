@@ -1,10 +1,12 @@
 #include <pliant/integrate/contact_stepping.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
@@ -35,18 +37,73 @@ constexpr double kPartingSpeed = 1;
 constexpr int kMostPartings = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kRounding = 1e-8;
+/// Meshes may overlap by this, in sizes, without being parted.
+constexpr double kMeshOverlap = 1e-5;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
 
-bool same_pair(const Contact& one, const Contact& other) {
-  return one.a.part == other.a.part && one.b.part == other.b.part && one.plane == other.plane &&
-         one.obstacle == other.obstacle;
+bool of_meshes(const Contact& contact) {
+  return contact.a.at_nodes() || contact.b.at_nodes();
 }
 
-bool has_pair(const std::vector<Contact>& some, const Contact& contact) {
-  return std::any_of(some.begin(), some.end(), [&](const Contact& c) { return same_pair(c, contact); });
+/// Contacts by what touches what.
+class Pairs {
+ public:
+  /// The contacts must outlive it.
+  explicit Pairs(const std::vector<Contact>& contacts) {
+    for (const Contact& contact : contacts) all_.emplace_back(key(contact), &contact);
+    std::sort(all_.begin(), all_.end());
+  }
+  bool has(const Contact& contact) const {
+    const auto [first, last] = range(contact);
+    return first != last;
+  }
+  /// Whether some contact of the same pair is one that `is` says it is.
+  template <class F>
+  bool has(const Contact& contact, F&& is) const {
+    const auto [first, last] = range(contact);
+    return std::any_of(first, last, [&](const Entry& entry) { return is(*entry.second); });
+  }
+
+ private:
+  using Key = std::array<int, 4>;
+  using Entry = std::pair<Key, const Contact*>;
+  static Key key(const Contact& contact) {
+    return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
+  }
+  std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
+      const Contact& contact) const {
+    struct Before {
+      bool operator()(const Entry& entry, const Key& k) const { return entry.first < k; }
+      bool operator()(const Key& k, const Entry& entry) const { return k < entry.first; }
+    };
+    return std::equal_range(all_.begin(), all_.end(), key(contact), Before{});
+  }
+  std::vector<Entry> all_;
+};
+
+/// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
+template <class F>
+void for_each_part(const std::vector<Mover>& movers, F&& act) {
+  for (const Mover& mover : movers) {
+    if (mover.node >= 0) continue;
+    if (mover.island == nullptr) {
+      act(mover, mover.part, 0);
+      continue;
+    }
+    for (std::size_t i = 0; i < mover.island->parts.size(); ++i)
+      act(mover, mover.island->parts[i], mover.island->first[i]);
+  }
+  for (const Mover& mover : movers)
+    if (mover.node >= 0) act(mover, mover.part, 0);
+}
+
+/// Adds to the displacements, or rates, of a node.
+void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Eigen::Ref<VecX<double>> q_d) {
+  const Eigen::Index n = model.parts()[at(mover.part)].local->mesh().X.rows();
+  for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
 void set_step(State& state, double t, double h) {
@@ -57,9 +114,28 @@ void set_step(State& state, double t, double h) {
 
 }  // namespace
 
-ContactStepping::ContactStepping(const Dynamics& dynamics) : dynamics_(dynamics), finder_(dynamics.model()) {
+void ContactRecord::clear() {
+  contacts.clear();
+  impulses.clear();
+  sliding.clear();
+  joint_impulses.setZero();
+}
+
+ContactStepping::ContactStepping(const Dynamics& dynamics)
+    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model()) {
+  for (ContactRecord* record : {&record_, &record_before_})
+    record->joint_impulses.setZero(dynamics.model().n_rows());
   for (const PartModel& m : dynamics.model().parts())
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
+}
+
+void ContactStepping::begin_step() {
+  std::swap(record_, record_before_);
+  record_.clear();
+}
+
+void ContactStepping::undo_step() {
+  std::swap(record_, record_before_);
 }
 
 /// Surfaces of this pair that are nearer than this rest on each other, m.
@@ -89,13 +165,12 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   const double start = state.start, h = state.h, end = state.time() + h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
-  const double slow = kSlow * dynamics_.model().body().gravity.norm() * h;
+  const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
   const double reach = method.reach();
-  contacts_.clear();
-  impulses_.clear();
   int events = 0;
   for (double now = state.time(); now < end - near;) {
-    const ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
+    ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
+    if (!meshes_.empty()) meshes_.approach(state, now, end - now, around);
     if (!(around.h > (end - now) / kMostParts)) {
       std::ostringstream message;
       message << "parts move so fast past each other that a step of " << h << " s would be " << kMostParts
@@ -114,22 +189,24 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
     if (!state.q.allFinite() || !state.v.allFinite()) break;
     const double after = now + length;
     const std::vector<Contact> resting = resting_at(before, now, slow);
+    const Pairs rest(resting);
     // Those that meet at the end, and of those that rested on each other all that are near: rounding may have
     // parted them.
     std::vector<Contact> contacts = finder_.find(state, after, resting.empty() ? 0 : resting_gap_);
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
                                   [&](const Contact& c) {
-                                    return c.gap > 0 && (c.gap > resting_gap(c) || !has_pair(resting, c));
+                                    return c.gap > 0 && (c.gap > resting_gap(c) || !rest.has(c));
                                   }),
                    contacts.end());
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
       const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
-      for (const Contact& other : resting)
-        if (same_pair(contact, other) &&
-            (contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size))
-          contact.restitution = 0;
-      if (!has_pair(resting, contact) && !has_pair(impacts, contact)) impacts.push_back(contact);
+      if (rest.has(contact, [&](const Contact& other) {
+            return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
+          }))
+        contact.since = reach * length;
+      if (impacts.size() <= kMostPairs && !rest.has(contact) && !Pairs(impacts).has(contact))
+        impacts.push_back(contact);
     }
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
       const std::optional<double> tau = locate(method, before, now, length, impacts, state, work, counters);
@@ -139,27 +216,32 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
         now += *tau;
         // What rests has fallen freely until then as what is in flight has: it is held first.
         std::vector<Contact> lying = finder_.find(state, now, resting_gap_);
-        lying.erase(
-            std::remove_if(lying.begin(), lying.end(),
-                           [&](const Contact& c) { return c.gap > resting_gap(c) || !has_pair(resting, c); }),
-            lying.end());
-        for (Contact& contact : lying) contact.restitution = 0;
-        if (!lying.empty()) settle(reach, *tau, slow, state, now, std::move(lying), work, counters);
+        lying.erase(std::remove_if(lying.begin(), lying.end(),
+                                   [&](const Contact& c) { return c.gap > resting_gap(c) || !rest.has(c); }),
+                    lying.end());
+        for (Contact& contact : lying) contact.since = reach * *tau;
+        meshes_.find(state, now, lying);
+        time_impacts(before, state, reach, *tau, slow, lying);
+        settle(before, reach * *tau, *tau, state, now, std::move(lying), work, counters);
         std::vector<Contact> there = finder_.find(state, now, resting_gap_);
         there.erase(std::remove_if(there.begin(), there.end(),
                                    [&](const Contact& c) {
                                      return c.gap > resting_gap(c) ||
-                                            (c.gap > kResting * resting_gap(c) && !has_pair(resting, c) &&
-                                             !has_pair(impacts, c));
+                                            (c.gap > kResting * resting_gap(c) && !rest.has(c) &&
+                                             !Pairs(impacts).has(c));
                                    }),
                     there.end());
-        for (Contact& contact : there)
-          if (has_pair(resting, contact)) contact.restitution = 0;
-        settle(0, 0, slow, state, now, std::move(there), work, counters);
+        for (Contact& contact : there) {
+          const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
+          if (!rest.has(contact) && rebound > slow) contact.rebound = rebound;
+        }
+        settle(state, 0, 0, state, now, std::move(there), work, counters);
         continue;
       }
     }
-    if (!contacts.empty()) settle(reach, length, slow, state, after, std::move(contacts), work, counters);
+    meshes_.find(state, after, contacts);
+    time_impacts(before, state, reach, length, slow, contacts);
+    settle(before, reach * length, length, state, after, std::move(contacts), work, counters);
     now = after;
   }
   state.start = start;
@@ -227,50 +309,26 @@ std::optional<double> ContactStepping::locate(Integrator& method, const State& b
   return high;
 }
 
-void ContactStepping::evaluate(const State& state, double t, const std::vector<Contact>& contacts,
-                               Workspace<double>& work) const {
-  std::set<int> alone, islands;
-  for (const Contact& contact : contacts)
-    for (const int part : {contact.a.part, contact.b.part}) {
-      if (part < 0 || dynamics_.model().parts()[at(part)].q0 < 0) continue;
-      const int island = dynamics_.model().parts()[at(part)].island;
-      if (island < 0)
-        alone.insert(part);
-      else
-        islands.insert(island);
-    }
-  dynamics_.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
-  for (const int i : islands)
-    dynamics_.factor_joints(t, state.q, state.v, state.joints, dynamics_.model().islands()[at(i)], work);
-}
-
-void ContactStepping::move(const std::vector<Mover>& movers, const Workspace<double>& work, double scale,
-                           bool as_velocity, State& state) const {
-  auto each = [&](const Mover& mover, int part, int first) {
-    const PartModel& m = dynamics_.model().parts()[at(part)];
-    const PartWorkspace<double>& w = work.parts[at(part)];
-    const int n = m.n_x();
-    if (as_velocity)
-      give_velocity(m, w, mover.x.segment(first, n), state.v);
-    else
-      advance_with(m, w, mover.x.segment(first, n) - mover.before.segment(first, n), scale, state.q);
-  };
-  for (const Mover& mover : movers) {
-    if (mover.island == nullptr) {
-      each(mover, mover.part, 0);
-      continue;
-    }
-    for (std::size_t i = 0; i < mover.island->parts.size(); ++i)
-      each(mover, mover.island->parts[i], mover.island->first[i]);
+/// How long ago each contact of a step of h seconds began, were its sides to meet at the speed they have now,
+/// and the velocity it leaves them with. Those that have a `since` rest.
+void ContactStepping::time_impacts(const State& before, const State& state, double reach, double h,
+                                   double slow, std::vector<Contact>& contacts) const {
+  for (Contact& contact : contacts) {
+    if (contact.since > 0) continue;
+    const double u = finder_.velocity(state, contact).dot(contact.normal);
+    contact.since = u < 0 && contact.gap < 0 ? std::min(h, contact.gap / u) : reach * h;
+    const double u_start = finder_.velocity(before, contact).dot(contact.normal);
+    if (!(u < 0 && contact.gap < 0 && u_start < -slow)) continue;
+    // What pushes the sides together has done so since then too.
+    const double gained = (u - u_start) / h * contact.since, approach = gained - u;
+    if (contact.restitution * approach > slow)
+      contact.rebound = std::max(0.0, contact.restitution * approach + gained);
   }
 }
 
-/// Impulses at contacts at the end of a step of h seconds, which move what they push by reach h times the
-/// change of velocity; then what still overlaps is parted.
-void ContactStepping::settle(double reach, double h, double slowest_rebound, State& state, double t,
-                             std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
+/// Parts that move and are touched, with those that joints tie to them.
+std::vector<int> ContactStepping::parts_touched(const std::vector<Contact>& contacts) const {
   const Model& model = dynamics_.model();
-  evaluate(state, t, contacts, work);
   std::set<int> touched;
   for (const Contact& contact : contacts)
     for (const int part : {contact.a.part, contact.b.part}) {
@@ -281,48 +339,142 @@ void ContactStepping::settle(double reach, double h, double slowest_rebound, Sta
       else
         touched.insert(model.islands()[at(island)].parts.begin(), model.islands()[at(island)].parts.end());
     }
-  const std::vector<int> parts(touched.begin(), touched.end());
-  Workspace<double> scratch;
-  const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch);
-  const double booked = state.work.sum();  // limits and joints have works of their own
+  return std::vector<int>(touched.begin(), touched.end());
+}
 
-  double most = 0;
+/// What the contact problem needs: masses of the parts that it does not move node by node.
+void ContactStepping::evaluate(const State& state, double t, const std::vector<Contact>& contacts,
+                               Workspace<double>& work) const {
+  std::set<int> alone, islands;
   for (const Contact& contact : contacts)
-    most = std::max(most, kPartingSpeed * h * model.parts()[at(contact.a.part)].part->size() +
-                              h * std::max(0.0, -finder_.velocity(state, contact).dot(contact.normal)));
-  ContactProblem problem(model, state, work, contacts);
-  const ContactSolution solution = problem.solve(slowest_rebound);
-  counters.contact_sweeps += solution.sweeps;
-  counters.contact_residual = std::max(counters.contact_residual, solution.residual);
-  move(problem.movers(), work, 0, true, state);
-  if (reach * h > 0) {
-    move(problem.movers(), work, reach * h, false, state);
-    double left = most;
-    for (int i = 0; i < kMostPartings; ++i) {
-      if (!model.joints().empty()) settle_joints(dynamics_, t, state, work, counters);
-      last_ = finder_.find(state, t, resting_gap_);
-      last_q_ = state.q;
-      last_t_ = t;
-      std::vector<Contact> deep = last_;
-      deep.erase(std::remove_if(deep.begin(), deep.end(), [](const Contact& c) { return c.gap > 0; }),
-                 deep.end());
-      double deepest = 0;
-      for (const Contact& contact : deep) deepest = std::min(deepest, contact.gap);
-      if (!(deepest < -kRounding * resting_gap_) || left <= 0) break;
-      evaluate(state, t, deep, work);
-      ContactProblem parting(model, state, work, deep);
-      parting.part_bodies(left);
-      left -= std::min(left, -deepest);
-      move(parting.movers(), work, 1, false, state);
+    for (const ContactSide& side : {contact.a, contact.b}) {
+      if (side.part < 0 || side.at_nodes() || dynamics_.model().parts()[at(side.part)].q0 < 0) continue;
+      const int island = dynamics_.model().parts()[at(side.part)].island;
+      if (island < 0)
+        alone.insert(side.part);
+      else
+        islands.insert(island);
     }
+  dynamics_.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
+  for (const int i : islands)
+    dynamics_.factor_joints(t, state.q, state.v, state.joints, dynamics_.model().islands()[at(i)], work);
+}
+
+/// The velocities that impulses gave, and the ways they went since.
+void ContactStepping::move(const std::vector<Mover>& movers, const Workspace<double>& work,
+                           State& state) const {
+  for_each_part(movers, [&](const Mover& mover, int part, int first) {
+    const PartModel& m = dynamics_.model().parts()[at(part)];
+    if (mover.node < 0) {
+      give_velocity(m, work.parts[at(part)], mover.x.segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], mover.shift.segment(first, m.n_x()), 1, state.q);
+    }
+    const Eigen::Quaterniond to_body = dynamics_.model().orientation(state, part).conjugate();
+    const Vec3<double> shift = to_body * mover.shift, change = to_body * (mover.x - mover.before),
+                       omega = state.v.segment<3>(m.v0 + 3);
+    move_node(dynamics_.model(), mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    // Its velocity is omega x p + d_dot, and p has moved.
+    move_node(dynamics_.model(), mover, change - omega.cross(shift),
+              state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+  });
+}
+
+/// After velocities and places of what contacts push have changed: frames follow the nodes, joints hold.
+void ContactStepping::reconcile(const std::vector<int>& parts, State& state, double t,
+                                Workspace<double>& work, StepCounters& counters) const {
+  settle_frames(dynamics_, t, parts, state, work);
+  settle_joints(dynamics_, t, state, work, counters);
+}
+
+/// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
+/// then what still overlaps is parted.
+void ContactStepping::settle(const State& before, double since_of_limits, double h, State& state, double t,
+                             std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
+  if (contacts.empty()) return;
+  // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
+  // string has stopped something within it too, it is what the energy changes by.
+  const bool broken = state.at_limit != before.at_limit || state.joints != before.joints;
+  const std::vector<int> parts = parts_touched(contacts);
+  Workspace<double> scratch;
+  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
+  const double booked = state.work.sum();
+  evaluate(state, t, contacts, work);
+  double most = 0;  // that they are parted by
+  for (const Contact& contact : contacts)
+    most = std::max(most, kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size() +
+                              h * std::max(0.0, -finder_.velocity(state, contact).dot(contact.normal)));
+  ContactProblem problem(dynamics_.model(), state, work, contacts);
+  const std::vector<Vec3<double>> u_start = problem.velocities(before);
+  const ContactSolution solution = problem.solve(since_of_limits);
+  counters.contact_sweeps += solution.sweeps;
+  counters.contact_fallbacks += solution.fallbacks;
+  counters.contact_residual = std::max(counters.contact_residual, solution.residual);
+  bool smooth = false, deep = false;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Contact& c = contacts[k];
+    const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
+    const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
+    state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
+    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
+    if (!of_meshes(c)) {
+      smooth = true;
+      continue;
+    }
+    const double moved = c.since * (solution.velocity[k] - finder_.velocity(state, c)).dot(c.normal);
+    deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
+  move(problem.movers(), work, state);
+  if (h > 0 || deep) reconcile(parts, state, t, work, counters);
+  if (h > 0 && (smooth || deep)) part_overlaps(most, deep, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
-  contacts_.insert(contacts_.end(), contacts.begin(), contacts.end());
-  impulses_.insert(impulses_.end(), solution.impulse.begin(), solution.impulse.end());
-  const double change =
-      dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
-  state.work[static_cast<int>(Work::friction)] += solution.friction_work;
-  state.work[static_cast<int>(Work::contact)] += change - solution.friction_work;
+  if (broken)
+    state.work[static_cast<int>(Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;
+    record_.contacts.push_back(contacts[k]);
+    record_.impulses.push_back(solution.impulse[k]);
+    record_.sliding.push_back((u - u.dot(n) * n).norm());
+  }
+  problem.add_joint_impulses(record_.joint_impulses);
+}
+
+/// Moves bodies that overlap apart, by at most so many m.
+void ContactStepping::part_overlaps(double most, bool meshes, State& state, double t, Workspace<double>& work,
+                                    StepCounters& counters) {
+  const Model& model = dynamics_.model();
+  double left = most;
+  for (int i = 0; i < kMostPartings; ++i) {
+    last_ = finder_.find(state, t, resting_gap_);
+    last_q_ = state.q;
+    last_t_ = t;
+    std::vector<Contact> deep;
+    double deepest = 0;  // beyond what is left as it is
+    auto take = [&](const Contact& contact, double allowed) {
+      if (contact.gap > 0) return;
+      deep.push_back(contact);
+      deepest = std::max(deepest, -contact.gap - allowed);
+    };
+    for (const Contact& contact : last_) take(contact, kRounding * resting_gap_);
+    if (meshes) {
+      std::vector<Contact> of_meshes;
+      meshes_.find(state, t, of_meshes);
+      for (const Contact& contact : of_meshes)
+        take(contact, kMeshOverlap * model.parts()[at(contact.a.part)].part->size());
+    }
+    if (!(deepest > 0) || left <= 0) return;
+    const std::vector<int> parts = parts_touched(deep);
+    Workspace<double> scratch;
+    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
+    evaluate(state, t, deep, work);
+    ContactProblem parting(model, state, work, deep);
+    parting.part_bodies(left);
+    left -= std::min(left, deepest);
+    move(parting.movers(), work, state);
+    reconcile(parts, state, t, work, counters);
+    state.work[static_cast<int>(Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+  }
 }
 
 }  // namespace pliant

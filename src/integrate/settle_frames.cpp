@@ -21,60 +21,66 @@ constexpr int kMostIterations = 8;
 /// Of K with H0 scaled to a unit diagonal (design 1.3).
 constexpr double kWorstCondition = 1e8;
 
+void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& state, Workspace<double>& work) {
+  const PartModel& m = dynamics.model().parts()[i];
+  if (m.local == nullptr) return;
+  auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
+  if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) return;
+  const int part = static_cast<int>(i);
+  dynamics.evaluate_frame(state.q, state.v, part, work);
+  PartWorkspace<double>& w = work.parts[i];
+  const double condition = w.local->condition();
+  if (!(condition <= kWorstCondition)) {
+    std::ostringstream message;
+    message << "the motion of the nodes of part '" << m.part->name()
+            << "' no longer tells its frame and global parameters apart (condition " << condition
+            << "); freeze some of the parameters";
+    throw NumericalFailure(message.str(), t);
+  }
+  if (m.local->nodal() == nullptr) return;
+  const NodalDeformation& local = *m.local->nodal();
+  NodalWorkspace& now = NodalDeformation::of(*w.local);
+  const Eigen::Index n = local.n_nodes();
+  const double size = m.part->size();
+  Nodes &p = now.p_kept, &u = now.u_kept;
+  u.resize(n, 3);
+  local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
+  for (int iteration = 0;; ++iteration) {
+    const VecMax<double> delta = now.solve_transposed(now.unmet);
+    if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
+    if (iteration == kMostIterations) {
+      std::ostringstream message;
+      message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
+              << m.part->name() << "' are so far from the shape of its parameters that its frame does not "
+              << "follow them";
+      throw NumericalFailure(message.str(), t);
+    }
+    if (iteration == 0) p = nodes(now.x, n);
+    advance_part(m, state.q, world_velocity(w, delta), 1);
+    const Vec3<double> turning = delta.segment<3>(3);
+    const double angle = turning.norm();
+    const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
+    local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
+    // Where the nodes would be with the displacements of before tells the reference shape.
+    if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
+    Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
+    dynamics.evaluate_frame(state.q, state.v, part, work);
+  }
+  const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
+  share_of(m, state.v) = world_velocity(w, v_r);
+  local.add_frame_velocities(v_r, -1, now, u.data(), state.v.data() + m.v0 + 6 + m.n_s);
+}
+
 }  // namespace
 
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
-  const Model& model = dynamics.model();
   if (!all_finite(state.q) || !all_finite(state.v)) return;
-  for (std::size_t i = 0; i < model.parts().size(); ++i) {
-    const PartModel& m = model.parts()[i];
-    if (m.local == nullptr) continue;
-    auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
-    if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) continue;
-    const int part = static_cast<int>(i);
-    dynamics.evaluate_frame(state.q, state.v, part, work);
-    PartWorkspace<double>& w = work.parts[i];
-    const double condition = w.local->condition();
-    if (!(condition <= kWorstCondition)) {
-      std::ostringstream message;
-      message << "the motion of the nodes of part '" << m.part->name()
-              << "' no longer tells its frame and global parameters apart (condition " << condition
-              << "); freeze some of the parameters";
-      throw NumericalFailure(message.str(), t);
-    }
-    if (m.local->nodal() == nullptr) continue;
-    const NodalDeformation& local = *m.local->nodal();
-    NodalWorkspace& now = NodalDeformation::of(*w.local);
-    const Eigen::Index n = local.n_nodes();
-    const double size = m.part->size();
-    Nodes &p = now.p_kept, &u = now.u_kept;
-    u.resize(n, 3);
-    local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
-    for (int iteration = 0;; ++iteration) {
-      const VecMax<double> delta = now.solve_transposed(now.unmet);
-      if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
-      if (iteration == kMostIterations) {
-        std::ostringstream message;
-        message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
-                << m.part->name() << "' are so far from the shape of its parameters that its frame does not "
-                << "follow them";
-        throw NumericalFailure(message.str(), t);
-      }
-      if (iteration == 0) p = nodes(now.x, n);
-      advance_part(m, state.q, world_velocity(w, delta), 1);
-      const Vec3<double> turning = delta.segment<3>(3);
-      const double angle = turning.norm();
-      const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
-      local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
-      // Where the nodes would be with the displacements of before tells the reference shape.
-      if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
-      Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
-      dynamics.evaluate_frame(state.q, state.v, part, work);
-    }
-    const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
-    share_of(m, state.v) = world_velocity(w, v_r);
-    local.add_frame_velocities(v_r, -1, now, u.data(), state.v.data() + m.v0 + 6 + m.n_s);
-  }
+  for (std::size_t i = 0; i < dynamics.model().parts().size(); ++i) settle_frame(dynamics, t, i, state, work);
+}
+
+void settle_frames(const Dynamics& dynamics, double t, const std::vector<int>& parts, State& state,
+                   Workspace<double>& work) {
+  for (const int part : parts) settle_frame(dynamics, t, static_cast<std::size_t>(part), state, work);
 }
 
 }  // namespace pliant

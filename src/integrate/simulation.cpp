@@ -79,30 +79,36 @@ void Simulation::step(double h) {
     state_.h = h;
   }
   last_good_ = state_;
+  if (contact_) contact_->begin_step();
   try {
     advance(h);
   } catch (const UnsatisfiableModel& failure) {
     const bool shorter = shorter_steps_pass(h);
-    state_ = last_good_;
+    give_up_step();
     if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
     std::ostringstream message;
     message << "a step of " << h << " s is too long for the motion: " << failure.what()
             << ", but not after steps of " << h / kShorter << " s";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
-    state_ = last_good_;
+    give_up_step();
     throw NumericalFailure(burst(model_, state_) + failure.what(), state_.time());
   } catch (const NumericalFailure& failure) {
-    state_ = last_good_;
+    give_up_step();
     throw NumericalFailure(burst(model_, state_) + failure.what(), failure.time);
   } catch (...) {
-    state_ = last_good_;
+    give_up_step();
     throw;
   }
   ++state_.step;
   ++step_counters_.steps;
   check(last_good_);
   note_held();
+}
+
+void Simulation::give_up_step() {
+  state_ = last_good_;
+  if (contact_) contact_->undo_step();
 }
 
 /// Whether joints that did not close after a step do so after shorter ones.
@@ -195,7 +201,7 @@ void Simulation::check(const State& before) {
     message << "; the motion has grown beyond all bounds, which a smaller step than " << before.h
             << " s may cure";
   const double stable = [&] {
-    state_ = before;
+    give_up_step();
     return largest_stable_step(*this);
   }();
   message.precision(3);
@@ -230,6 +236,7 @@ void Simulation::set_state(State state) {
       state.joints.size() != model_.joints().size())
     throw std::invalid_argument("this state belongs to another model");
   state_ = std::move(state);
+  if (contact_) contact_->begin_step();  // nothing has touched yet
 }
 
 Ledger Simulation::ledger() {

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pliant/io/contact_recording.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/state_row.h>
@@ -43,7 +44,7 @@ Json part_columns(const Model& model, bool velocities) {
 }  // namespace
 
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
-                  const std::vector<Column>& trajectory) {
+                  const std::vector<Column>& trajectory, bool contacts) {
   Json layout;
   layout["format"] = "pliant recording";
   layout["version"] = 1;
@@ -61,6 +62,14 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   tables[kVelocitiesFile] = part_columns(model, true);
   tables[kModesFile] = json_of(mode_columns_of(model));
   tables[kTrajectoryFile] = json_of(trajectory);
+  if (contacts) {
+    for (const char* file : {kContactsFile, kContactsTable}) tables[file] = json_of(contact_columns());
+    for (const char* file : {kJointImpulsesFile, kJointImpulsesTable})
+      tables[file] = json_of(joint_impulse_columns());
+    layout["contact_rows"] =
+        "any number of rows a state, told apart by their times, of the step that ends in it; a step that "
+        "impacts break into parts tells a contact for each of them";
+  }
   const std::string text = layout.dump(1) + "\n";
   write_whole_file(folder / kLayoutFile, text.data(), text.size(), Durable::yes);
 }

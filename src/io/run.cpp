@@ -114,10 +114,12 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const std::string redundant = redundancy_note(*simulation_);
   if (!redundant.empty()) note(redundant);
   write_layout(folder_->path(), simulation_->model(), schedule_,
-               TrajectoryTable(scene, *simulation_).columns());
+               TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
   for (const char* file :
        {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
     if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
+  if (scene.contacts)
+    for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
   save(true);
 }
 
@@ -147,8 +149,10 @@ void Run::begin_anew() {
     record_.add_file(file);
   }
   writer_ = std::make_unique<RecordingWriter>(RecordingWriter::create(folder_->path(), simulation_->model()));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(folder_->path()));
   record_state();
-  writer_->flush();
+  flush();
 }
 
 void Run::begin_again() {
@@ -189,6 +193,9 @@ void Run::begin_again() {
   }
   writer_ =
       std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(
+        ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
   if (keep == 0 && first_step_ == 0) record_state();
   counted_steps_ = record_.step_counters;
   counted_work_ = record_.counters;
@@ -205,6 +212,7 @@ void Run::record_state() {
   if (simulation_->state().step == recorded_step_) return;
   recorded_step_ = simulation_->state().step;
   writer_->append(simulation_->state());
+  if (contacts_) contacts_->append(*simulation_);
   const Ledger ledger = simulation_->ledger();
   record_.max_gap = std::max(record_.max_gap, widest_closed_gap(*simulation_));
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
@@ -212,8 +220,22 @@ void Run::record_state() {
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
 }
 
-void Run::save(bool to_disk) {
+/// What touched comes first: every recorded state has it then, whenever the process is killed.
+void Run::flush(bool to_disk) {
+  if (contacts_) contacts_->flush(to_disk);
   writer_->flush(to_disk);
+}
+
+void Run::write_tables() {
+  write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording());
+  record_.add_file(kTrajectoryFile);
+  if (!contacts_) return;
+  write_contact_tables(folder_->path(), simulation_->model());
+  for (const char* file : {kContactsTable, kJointImpulsesTable}) record_.add_file(file);
+}
+
+void Run::save(bool to_disk) {
+  flush(to_disk);
   record_.time = simulation_->time();
   record_.steps_done = simulation_->state().step;
   record_.states = writer_->rows();
@@ -228,6 +250,7 @@ void Run::write_record() {
   record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
   record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
   record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
+  record_.step_counters.contact_fallbacks = counted_steps_.contact_fallbacks + session.contact_fallbacks;
   record_.step_counters.contact_residual =
       std::max(counted_steps_.contact_residual, session.contact_residual);
   record_.counters = counted_work_;
@@ -255,8 +278,9 @@ void Run::step_to_end() {
     if (!schedule_.records(step)) continue;
     record_state();
     const Clock::time_point now = Clock::now();
-    if (now - flushed < kFlushEvery && writer_->pending_bytes() < kFlushBytes) continue;
-    writer_->flush();
+    const std::size_t pending = writer_->pending_bytes() + (contacts_ ? contacts_->pending_bytes() : 0);
+    if (now - flushed < kFlushEvery && pending < kFlushBytes) continue;
+    flush();
     flushed = now;
     if (now - saved_ > 8 * kFlushEvery) save();
   }
@@ -274,14 +298,12 @@ bool Run::simulate() {
       record_state();
       record_.add_seconds("simulate", seconds_since(start));
       save(true);
-      write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording());
-      record_.add_file(kTrajectoryFile);
+      write_tables();
       throw;
     }
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
-    write("trajectory", {kTrajectoryFile},
-          [&] { write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording()); });
+    write("trajectory", {}, [&] { write_tables(); });
   } catch (const std::exception& failure) {
     fail(failure.what());
     throw;

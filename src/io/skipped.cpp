@@ -3,10 +3,10 @@
 namespace pliant {
 
 std::vector<std::string> skipped_work(const Model& model) {
-  int fixed = 0, rigid = 0, frozen = 0, moving = 0, local = 0;
+  int fixed = 0, prescribed = 0, rigid = 0, frozen = 0, moving = 0, local = 0;
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) {
-      ++fixed;
+      ++(part.motion != nullptr ? prescribed : fixed);
       continue;
     }
     ++moving;
@@ -18,6 +18,8 @@ std::vector<std::string> skipped_work(const Model& model) {
   }
   std::vector<std::string> skipped;
   if (fixed > 0) skipped.push_back("coordinates of parts that do not move: " + std::to_string(fixed));
+  if (prescribed > 0)
+    skipped.push_back("coordinates of parts whose motion is prescribed: " + std::to_string(prescribed));
   if (rigid > 0)
     skipped.push_back("J and Jdot qs_dot of rigid parts, whose inertia is constant: " +
                       std::to_string(rigid));

@@ -1,5 +1,6 @@
 #include <pliant/io/trajectory.h>
 
+#include <pliant/io/csv_cell.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/state_row.h>
 #include <pliant/io/whole_file.h>
@@ -24,17 +25,6 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
 // Joints that hold more than one point of a side hold its turning too.
 bool has_torque(const JointModel& joint) {
   return joint.joint->n_first() > 1;
-}
-
-// A cell of a CSV file: in quotes where it has to be.
-std::string cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + '"';
 }
 
 }  // namespace
@@ -127,7 +117,7 @@ void write_trajectory(const std::filesystem::path& path, const Scene& scene, con
   TrajectoryTable table(scene, simulation);
   WholeFile file(path);
   std::string text;
-  for (const Column& column : table.columns()) text += (text.empty() ? "" : ",") + cell(column.name);
+  for (const Column& column : table.columns()) text += (text.empty() ? "" : ",") + csv_cell(column.name);
   text += '\n';
   std::vector<double> numbers;
   for (std::int64_t i = 0; i < recording.rows(); ++i) {

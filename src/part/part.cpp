@@ -52,6 +52,7 @@ int Part::require(const std::string& parameter) const {
 
 Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
   change();
+  if (motion_) refuse("its motion is prescribed, which places it");
   if (!c.allFinite()) refuse("its position is not finite");
   if (!(R.norm() > 0) || !std::isfinite(R.norm()))
     refuse("its orientation is not a rotation (quaternion of length 0)");
@@ -250,6 +251,24 @@ Part& Part::elasticity(ContinuumSettings settings) {
 
 Part& Part::fix() {
   change();
+  if (motion_) refuse("its motion is prescribed; it cannot be fixed too");
+  fixed_ = true;
+  return *this;
+}
+
+Part& Part::prescribe(PrescribedMotion motion) {
+  change();
+  if (fixed_ && !motion_) refuse("it is fixed; its motion cannot be prescribed too");
+  if (!motion.axis.allFinite() || motion.axis.isZero(0)) refuse("the axis of its motion has no direction");
+  if (!(motion.orientation.norm() > 0) || !std::isfinite(motion.orientation.norm()))
+    refuse("its orientation is not a rotation (quaternion of length 0)");
+  motion.axis.stableNormalize();
+  motion.orientation.normalize();
+  const MovingFrame start = motion.at(0);
+  if (!start.c.allFinite() || !start.R.allFinite()) refuse("its motion is not finite at time 0");
+  c0_ = start.c;
+  R0_ = motion.orientation_at(0);
+  motion_ = std::move(motion);
   fixed_ = true;
   return *this;
 }
@@ -300,11 +319,12 @@ void Part::prepare() {
       refuse("the initial value " + text(p.initial) + " of " + p.name + " is outside its limits " +
              text(p.limits));
   }
-  if (fixed_ && n > 0) refuse("a fixed part has no dynamic parameters; freeze " + parameters_.moving(0).name);
+  const std::string unmoved = motion_ ? "a part of prescribed motion" : "a fixed part";
+  if (fixed_ && n > 0) refuse(unmoved + " has no dynamic parameters; freeze " + parameters_.moving(0).name);
   if (given_inertia_ && n > 0) refuse("an inertia can be given to a rigid part only; freeze its parameters");
   if (given_inertia_ && local_settings_)
     refuse("a part that deforms locally takes its inertia from its density");
-  if (fixed_ && local_settings_) refuse("a fixed part does not deform locally");
+  if (fixed_ && local_settings_) refuse(unmoved + " does not deform locally");
   check_elasticity();
   K_s_.resize(n, n);
   for (int i = 0; i < n; ++i)

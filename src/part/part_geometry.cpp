@@ -116,6 +116,7 @@ double Part::inside_outside(const Vec3<double>& p, const ParameterValues<double>
 Vec3<double> Part::inside_outside_gradient(const Vec3<double>& p,
                                            const ParameterValues<double>& values) const {
   Vec3<double> e = preimage(p, values);
+  if (parameters_.links().empty()) return shape_->gauge_gradient(e, values.b.data());
   Mat3<double> F = chain_gradient(Eigen::Matrix3Xd(e), values)[0];
   if (is_singular(F)) {
     e = below_tip(e);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include <pliant/part/local_deformation.h>
 #include <pliant/scene/time_value.h>
 
 #include "direction_reader.h"
@@ -22,10 +24,10 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
        optional("off", number(above(0), "s"), "When it goes; never when not given.")}};
   const Record pair{
       "pair",
-      "How two parts, or a part and a plane or an obstacle, touch.",
-      {required("between", array(name(), 2, 2), "Their names.", "[\"ball\", \"floor\"]"),
-       optional("touch", boolean(), "Whether they touch; parts that a joint ties do not but for this.",
-                "true"),
+      "How two parts, or a part and a plane or an obstacle, touch; a group stands for all of its members.",
+      {required("between", array(name(), 2, 2), "Their names, or those of groups.", "[\"ball\", \"floor\"]"),
+       optional("touch", boolean(),
+                "Whether they touch; parts that a joint ties do so only where a pair names both.", "true"),
        optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
        optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
   return {"contact",
@@ -37,7 +39,12 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
            optional("obstacles", array(record(obstacle_record(orientation, color))),
                     "Meshes and plates that do not move.", "[]"),
-           optional("pairs", array(record(pair)), "Pairs that are out of the ordinary.", "[]")}};
+           optional("groups", map(array(name(), 1)),
+                    "Names of parts, planes and obstacles by the name of their group.", "{}"),
+           optional("pairs", array(record(pair)),
+                    "Pairs that are out of the ordinary. Where several fit, the one with the fewest groups "
+                    "counts, and of these the last.",
+                    "[]")}};
 }
 
 namespace {
@@ -61,13 +68,66 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
   if (r.given("off")) plane.off = r.number("off");
 }
 
+/// Whether all names of a list are among those known; faults tell which are not.
+bool are_known(const JsonValue& list, const char* kind, const std::vector<std::string>& known,
+               SceneFaults& faults) {
+  bool all = true;
+  for (const JsonValue& name : list.array())
+    if (std::find(known.begin(), known.end(), name.string()) == known.end()) {
+      faults.unknown(name, kind, known);
+      all = false;
+    }
+  return all;
+}
+
+/// Adds the groups, and their names to those of things.
+void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFaults& faults,
+                 ContactSettings& settings) {
+  if (!contact.given("groups")) return;
+  const std::vector<std::string> things = names;
+  const JsonValue& groups = contact.at("groups");
+  for (const JsonValue::Member& group : groups.members()) {
+    if (schema::is_ignored_key(group.key)) continue;
+    names.push_back(group.key);
+    if (contact.is_faulty(group.value)) continue;
+    if (std::find(things.begin(), things.end(), group.key) != things.end())
+      faults.key(groups, group.key, "a part, plane or obstacle has this name; expected one of its own");
+    if (!are_known(group.value, "part, plane or obstacle", things, faults)) continue;
+    settings.groups.push_back({group.key, {}});
+    for (const JsonValue& member : group.value.array())
+      settings.groups.back().members.push_back(member.string());
+  }
+}
+
+void read_pair(const Reader& r, const std::vector<std::string>& names, std::size_t n_things,
+               SceneFaults& faults, ContactSettings& settings) {
+  if (!r.complete() || !r.given("between")) return;
+  const JsonValue& between = r.at("between");
+  if (!are_known(between, "part, plane, obstacle or group", names, faults)) return;
+  ContactPair pair;
+  pair.a = between.array()[0].string();
+  pair.b = between.array()[1].string();
+  const auto things_end = names.begin() + static_cast<std::ptrdiff_t>(n_things);
+  if (pair.a == pair.b && std::find(names.begin(), things_end, pair.a) != things_end)
+    return faults.value(between.array()[1],
+                        "it is named twice; expected two things, or a group of them twice");
+  pair.touch = r.boolean("touch");
+  if (r.given("friction")) pair.friction = r.number("friction");
+  if (r.given("restitution")) pair.restitution = r.number("restitution");
+  settings.pairs.push_back(std::move(pair));
+}
+
 }  // namespace
 
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
                   const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene) {
   for (const auto& [name, part] : parts)
-    if (part.part != nullptr && part.prepared && part.part->local() != nullptr)
-      faults.place(contact.json(), "part \"" + name + "\" deforms locally; contact is of parts that do not");
+    if (part.part != nullptr && part.prepared && part.part->local() != nullptr &&
+        part.part->local()->nodal() == nullptr)
+      faults.place(contact.json(),
+                   "part \"" + name +
+                       "\" deforms by modes of its whole body; contact is of parts that deform "
+                       "at the nodes of a mesh, and of those that do not deform locally");
   MultiBody& body = scene.body;
   ContactSettings& settings = body.contact;
   settings.active = true;
@@ -82,20 +142,9 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
     read_obstacle(r, names, folder, faults, scene);
     if (r.given("name")) names.push_back(r.text("name"));
   }
-  for (const Reader& r : contact.objects("pairs")) {
-    if (!r.complete() || !r.given("between")) continue;
-    const JsonValue::Array& between = r.at("between").array();
-    bool known = true;
-    for (const JsonValue& name : between)
-      if (std::find(names.begin(), names.end(), name.string()) == names.end()) {
-        faults.unknown(name, "part, plane or obstacle", names);
-        known = false;
-      }
-    if (!known) continue;
-    settings.pairs.push_back({between[0].string(), between[1].string(), r.boolean("touch"),
-                              r.given("friction") ? r.number("friction") : settings.friction,
-                              r.given("restitution") ? r.number("restitution") : settings.restitution});
-  }
+  const std::size_t n_things = names.size();
+  read_groups(contact, names, faults, settings);
+  for (const Reader& r : contact.objects("pairs")) read_pair(r, names, n_things, faults, settings);
 }
 
 }  // namespace pliant

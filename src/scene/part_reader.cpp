@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -13,6 +15,7 @@
 #include "json_write.h"
 #include "local_reader.h"
 #include "parameter_reader.h"
+#include "time_reader.h"
 
 namespace pliant {
 
@@ -64,6 +67,7 @@ std::unique_ptr<Part> PartReader::read() {
   part_->place(r_.vector3("position"), read_orientation(r_.object("orientation"), faults_));
   part_->move(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
+  if (r_.given("motion")) read_motion(r_.object("motion"));
   if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), faults_, *part_);
   read_elasticity();
   check_rigid();
@@ -183,6 +187,34 @@ void PartReader::read_inertia(const Reader& r) {
   part_->inertia(r.number("mass"), about_origin, c);
 }
 
+const JsonValue* PartReader::unmoved() const {
+  if (r_.boolean("fixed")) return &r_.at("fixed");
+  return r_.given("motion") ? &r_.at("motion") : nullptr;
+}
+
+void PartReader::read_motion(const Reader& r) {
+  if (r.given("position") && r_.given("position"))
+    faults_.place(r_.at("position"), "\"motion\" has a position too; expected only one of the two");
+  if (!r.given("position") && !r.given("turn") && r.complete())
+    return faults_.place(r.json(), "it does not say how; expected \"position\", \"turn\" or both");
+  const TimeReader times(end_, faults_);
+  PrescribedMotion motion;
+  motion.orientation = part_->R0();
+  std::optional<TimeVector> position = TimeVector(part_->c0());
+  if (r.given("position") || r.faulty("position"))
+    position = times.vector(r, "position", Needs::value_and_rate);
+  std::optional<TimeFunction> angle = TimeFunction(0);
+  if (r.given("turn") || r.faulty("turn")) {
+    const Reader turn = r.object("turn");
+    if (turn.given("axis")) motion.axis = read_direction(turn.at("axis"), faults_);
+    angle = turn.given("angle") ? times.function(turn.at("angle"), Needs::value_and_rate) : std::nullopt;
+  }
+  if (!position || !angle) return;
+  motion.position = *std::move(position);
+  motion.angle = *std::move(angle);
+  part_->prescribe(std::move(motion));
+}
+
 /// What only parts without dynamic parameters can be.
 void PartReader::check_rigid() {
   const Parameters& all = part_->parameters();
@@ -190,19 +222,25 @@ void PartReader::check_rigid() {
     const std::string because = all.moving(0).name + " is dynamic; expected ";
     if (r_.boolean("fixed"))
       faults_.value(r_.at("fixed"), because + "only frozen parameters in a part that does not move");
+    else if (r_.given("motion"))
+      faults_.place(r_.at("motion"), because + "only frozen parameters in a part that moves as prescribed");
     if (r_.given("inertia"))
       faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
   }
   if (r_.given("local")) {
-    if (r_.boolean("fixed"))
-      faults_.place(r_.at("local"), "a fixed part does not deform; expected no \"local\"");
+    if (unmoved() != nullptr)
+      faults_.place(r_.at("local"),
+                    std::string(r_.given("motion") ? "a part that moves as prescribed" : "a fixed part") +
+                        " does not deform; expected no \"local\"");
     if (r_.given("inertia"))
       faults_.place(r_.at("inertia"),
                     "a part that deforms locally takes its inertia from its density or mass");
   }
-  if (!r_.boolean("fixed")) return;
+  if (unmoved() == nullptr) return;
   for (const char* key : {"velocity", "angular_velocity"})
-    if (!r_.vector3(key).isZero(0)) faults_.warn(r_.at(key), "it has no effect, because the part is fixed");
+    if (!r_.vector3(key).isZero(0))
+      faults_.warn(r_.at(key), r_.given("motion") ? "it has no effect beside \"motion\""
+                                                  : "it has no effect, because the part is fixed");
 }
 
 /// What shows only when all parameters come together: too many that are dynamic, a shape that folds.

@@ -35,6 +35,9 @@ class PartReader {
   /// Numbers across the diagonal of [[...], ...] that differ are reported.
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
+  /// What prescribes its motion, "fixed" or "motion"; null when it is free.
+  const JsonValue* unmoved() const;
+  void read_motion(const Reader& r);
   void check_rigid();
   void refused(const std::invalid_argument& e);
   void refused_locally(const LocalFault& e);

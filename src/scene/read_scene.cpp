@@ -56,8 +56,8 @@ class SceneReader {
     scene_->name =
         root_.given("name") ? root_.text("name") : std::filesystem::path(document_.name()).stem().string();
     scene_->description = root_.text("description");
-    scene_->body.gravity = root_.vector3("gravity");
     read_time();
+    read_gravity();
     read_view();
     for (const auto& [name, material] : root_.entries("materials")) materials_.emplace(name, material);
     for (const Reader& r : root_.objects("parts")) read_part(r);
@@ -91,9 +91,22 @@ class SceneReader {
       faults_.value(output.given("frame_rate") ? output.at("frame_rate") : time.at("end"),
                     "it makes " + brief(scene_->end * scene_->frame_rate) + " frames to the end at " +
                         brief(scene_->end) + " s; expected at most 1e12");
+    scene_->contacts = output.boolean("contacts");
+    if (scene_->contacts && !root_.given("contact"))
+      faults_.warn(output.at("contacts"), "it has no effect, because nothing touches without \"contact\"");
     const std::vector<double> size = output.numbers("size");
     scene_->width = static_cast<int>(size[0]);
     scene_->height = static_cast<int>(size[1]);
+  }
+
+  void read_gravity() {
+    if (!root_.given("gravity")) return;
+    const std::optional<TimeVector> gravity = times().vector(root_, "gravity", Needs::value_and_rate);
+    if (!gravity) return;
+    if (gravity->is_constant())
+      scene_->body.gravity = gravity->value(0);
+    else
+      scene_->body.changing_gravity = *gravity;
   }
 
   void read_view() {

@@ -104,6 +104,16 @@ Record part_record() {
                                  "Inertia tensor about the origin of the body frame, body axes.",
                                  "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
                         optional("centre", vector3("m"), "Centre of mass in the body frame.", "[0, 0, 0]")}};
+  const Record turn{
+      "turn",
+      "A turn in time, after the part's orientation.",
+      {optional("axis", vector3("1"), "Axis through the origin of the body frame, world.", "[0, 0, 1]"),
+       required("angle", time_function("rad"), "Right-handed.", "\"3 * t\"")}};
+  const Record motion{"motion",
+                      "How a part is moved, whatever pushes it.",
+                      {optional("position", time_vector("m"),
+                                "Of the origin of the body frame; where the part is placed when not given."),
+                       optional("turn", record(turn), "How it turns; not at all when not given.")}};
   Record part = damping_fields(
       "part", "A deformable solid primitive.",
       {required("name", name(), "Name, unique in the scene.", "\"ball\""),
@@ -128,11 +138,12 @@ Record part_record() {
        optional("velocity", vector3("m/s"), "Of the origin at time 0, world.", "[0, 0, 0]"),
        optional("angular_velocity", vector3("rad/s"), "At time 0, body frame.", "[0, 0, 0]"),
        optional("fixed", boolean(), "The part does not move.", "false"),
+       optional("motion", record(motion), "The part moves as prescribed, and has no degrees of freedom."),
        optional("color", color(), "Colour in pictures; from a palette when not given."),
        optional("resolution", integer(between(1, 128)),
                 "Edges along a quarter circle of its surface mesh (48 n^2 triangles).", "8"),
        optional("visible", boolean(), "Whether pictures and meshes show it.", "true")});
-  part.exclusive = {{{"density", "mass", "inertia"}}};
+  part.exclusive = {{{"density", "mass", "inertia"}}, {{"fixed", "motion"}}};
   return part;
 }
 
@@ -186,7 +197,12 @@ Record make_scene_record() {
       "What is recorded and drawn.",
       {optional("frame_rate", number(above(0), "1/s"), "Recorded states and frames per second.", "25"),
        optional("size", array(integer(between(16, 8192)), 2, 2), "Width and height of frames, pixels.",
-                "[640, 480]")}};
+                "[640, 480]"),
+       optional(
+           "contacts", boolean(),
+           "Whether contacts.csv and joint_impulses.csv tell of the last step before each recorded state "
+           "what touched, with which impulse, and what joints took up of it.",
+           "false")}};
   const Record camera{
       "camera",
       "From where frames are seen; found from the motion when not given.",
@@ -207,7 +223,8 @@ Record make_scene_record() {
           "ignored.",
           {optional("name", name(), "Name of the scene; that of the file when not given."),
            optional("description", text(), "What the scene shows.", "\"\""),
-           optional("gravity", vector3("m/s^2"), "Acceleration of gravity.", "[0, 0, -9.81]"),
+           optional("gravity", time_vector("m/s^2"), "Acceleration of gravity; it may change in time.",
+                    "[0, 0, -9.81]"),
            optional("time", record(time), "How long, and how to step.", "{}"),
            optional("materials", map(record(material)), "Materials by name.", "{}"),
            required("parts", array(record(part_record())), "The bodies.",

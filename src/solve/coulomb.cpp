@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 namespace pliant {
@@ -12,25 +11,34 @@ namespace {
 constexpr int kMostIterations = 200;
 }
 
-Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
+CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
+    : mu_(mu), W_n_(W(0, 0)), coupling_(W.block<2, 1>(1, 0)) {
+  if (!(mu > 0)) return;
+  A_ = W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_;
+  factor_.compute(W);
+}
+
+Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
   if (!(b[0] < 0)) return Vec3<double>::Zero();
-  const double p_alone = -b[0] / W(0, 0);  // without friction
-  if (!(mu > 0)) return {p_alone, 0, 0};
-  const Vec3<double> stick = -W.ldlt().solve(b);
-  if (stick[0] > 0 && stick.tail<2>().norm() <= mu * stick[0]) return stick;
+  const double p_alone = -b[0] / W_n_;  // without friction
+  if (!(mu_ > 0)) return {p_alone, 0, 0};
+  const Vec3<double> stick = -factor_.solve(b);
+  if (stick[0] > 0 && stick.tail<2>().norm() <= mu_ * stick[0]) return stick;
+  return slide(b, p_alone);
+}
+
+Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
   // It slides at u_t = -s p_t, s > 0, with u_n = 0: (A + s) p_t = -c, A the Schur complement of the normal.
-  const Eigen::Vector2d coupling = W.block<2, 1>(1, 0);
-  const Eigen::Matrix2d A = W.block<2, 2>(1, 1) - coupling * coupling.transpose() / W(0, 0);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(A);
-  const Eigen::Vector2d along = modes.eigenvectors().transpose() * (b.tail<2>() + coupling * p_alone);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(A_);
+  const Eigen::Vector2d along = modes.eigenvectors().transpose() * (b.tail<2>() + coupling_ * p_alone);
   const auto push = [&](double s) {
     const Eigen::Vector2d t =
         modes.eigenvectors() * (-along.array() / (modes.eigenvalues().array() + s)).matrix();
-    return Vec3<double>(p_alone - coupling.dot(t) / W(0, 0), t[0], t[1]);
+    return Vec3<double>(p_alone - coupling_.dot(t) / W_n_, t[0], t[1]);
   };
   const auto beyond = [&](double s) {
     const Vec3<double> p = push(s);
-    return p.tail<2>().norm() - mu * p[0];
+    return p.tail<2>().norm() - mu_ * p[0];
   };
   // |p_t| falls with s to 0, and p_n goes to p_alone > 0: there is a root.
   double low = 0, high = modes.eigenvalues()[1];
@@ -42,7 +50,7 @@ Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double 
   // The Illinois form of the false position, on 1 / |p_t| against 1 / (mu p_n), which is nearly straight.
   const auto level = [&](double s) {
     const Vec3<double> p = push(s);
-    return p[0] > 0 ? mu * p[0] / p.tail<2>().norm() - 1 : -1.0;
+    return p[0] > 0 ? mu_ * p[0] / p.tail<2>().norm() - 1 : -1.0;
   };
   double f_low = level(low), f_high = level(high);
   int side = 0;

@@ -105,7 +105,9 @@ TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
     CHECK(simulation.ledger().work[static_cast<int>(Work::limits)] < 0);
     balance.push_back(std::abs(simulation.ledger().balance));
   }
-  CHECK(balance.back() < 1e-6);
+  CAPTURE(balance[0], balance[1], balance[2]);
+  CHECK(test::observed_order(balance) > 1.8);
+  CHECK(balance.back() < 2e-4);  // of 8 J that the floor takes up
 }
 
 TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") {
@@ -226,27 +228,34 @@ TEST_CASE("parts that collide keep their momenta, and lose the energy that e say
   }
   // Any shapes, with friction: what one gains the other loses.
   for (int trial = 0; trial < 3; ++trial) {
-    MultiBody body;
-    body.gravity.setZero();
-    body.contact.active = true;
-    box(body, "a", {0.1, 0.15, 0.2}, {0, 0, 0}).move({2, 0.1, 0}, draws.vector(3));
-    Part& b = body.add(make_part("b", "ellipsoid", {}, 500));
-    b.rest({{"a1", 0.2}, {"a2", 0.1}, {"a3", 0.15}}).place({0.6, 0.05, 0.03});
-    b.stiffness({{"a1", 3000}}).move({-1, 0, 0}, draws.vector(3));
-    Simulation simulation(body, "rk4");
-    const Ledger before = simulation.ledger();
-    bool met = false;
-    for (int i = 0; i < 150; ++i) {
-      simulation.step(2e-3);
-      met = met || !simulation.contact()->contacts().empty();
+    const Vec3<double> spin_a = draws.vector(3), spin_b = draws.vector(3);
+    std::vector<double> balance;
+    for (const int steps : {75, 150, 300}) {
+      MultiBody body;
+      body.gravity.setZero();
+      body.contact.active = true;
+      box(body, "a", {0.1, 0.15, 0.2}, {0, 0, 0}).move({2, 0.1, 0}, spin_a);
+      Part& b = body.add(make_part("b", "ellipsoid", {}, 500));
+      b.rest({{"a1", 0.2}, {"a2", 0.1}, {"a3", 0.15}}).place({0.6, 0.05, 0.03});
+      b.stiffness({{"a1", 3000}}).move({-1, 0, 0}, spin_b);
+      Simulation simulation(body, "rk4");
+      const Ledger before = simulation.ledger();
+      bool met = false;
+      for (int i = 0; i < steps; ++i) {
+        simulation.step(0.3 / steps);
+        met = met || !simulation.contact()->contacts().empty();
+      }
+      REQUIRE(met);
+      const Ledger after = simulation.ledger();
+      CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
+      CHECK(after.energy() < before.energy());
+      balance.push_back(std::abs(after.balance) / before.kinetic);
+      const Model& model = simulation.model();
+      CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
     }
-    REQUIRE(met);
-    const Ledger after = simulation.ledger();
-    CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
-    CHECK(after.energy() < before.energy());
-    CHECK(std::abs(after.balance) < 1e-4);
-    const Model& model = simulation.model();
-    CHECK(ContactFinder(model).find(simulation.state(), simulation.time(), -1e-4).empty());
+    CAPTURE(trial, balance[0], balance[1], balance[2]);
+    CHECK(balance.back() < 2e-3);
+    CHECK(balance.back() < 0.5 * balance.front());
   }
 }
 
@@ -363,4 +372,115 @@ TEST_CASE("contact that cannot be is refused by name", "[contact]") {
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("celing"));
   body.contact.pairs.back() = {"ball", "floor", true, -1, 0};
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("friction"));
+  body.contact.pairs.back() = {"ball", "ball"};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("itself"));
+  body.contact.pairs.clear();
+  body.contact.groups = {{"round", {"ball", "egg"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("egg"));
+  body.contact.groups = {{"floor", {"ball"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("'floor'"));
+  body.contact.groups = {{"round", {"ball"}}, {"all", {"round", "floor"}}};
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("members are parts and planes"));
+}
+
+TEST_CASE("of pairs and groups the most particular counts, and of those the last", "[contact]") {
+  MultiBody body;
+  body.contact.friction = 0.1;
+  body.contact.restitution = 0.2;
+  for (const char* name : {"a", "b", "c", "d"}) ball(body, name, 0.1, {0, 0, 1});
+  floor(body);
+  body.contact.groups = {{"pair", {"a", "b"}}, {"most", {"a", "b", "c"}}, {"world", {"floor"}}};
+  body.contact.pairs = {{"a", "b", true, 0.9, {}},     {"most", "most", false, {}, {}},
+                        {"c", "pair", true, {}, 0.7},  {"pair", "pair", true, 0.3, {}},
+                        {"pair", "world", true, 0, 1}, {"floor", "b", true, 0.6, {}},
+                        {"b", "floor", false, {}, {}}};
+  body.ball("tie", point(*body.find("c"), 0, 0), point(*body.find("d"), 0, 0));
+  body.ball("bond", point(*body.find("b"), 0, 0), point(*body.find("c"), 0, 0));
+  const Model model(body);
+  const ContactRules rules(model);
+  auto is = [](const ContactRule& rule, bool touch, double friction, double restitution) {
+    CHECK(rule.touch == touch);
+    CHECK(rule.friction == friction);
+    CHECK(rule.restitution == restitution);
+  };
+  is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts over pairs of groups
+  is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group over two groups
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint ties them, and no pair names both
+  is(rules.of_parts(2, 3), false, 0.1, 0.2);
+  is(rules.of_parts(0, 3), true, 0.1, 0.2);
+  is(rules.on_plane(0, 0), true, 0, 1);
+  is(rules.on_plane(1, 0), false, 0.1, 0.2);  // the last of two
+  is(rules.on_plane(3, 0), true, 0.1, 0.2);
+}
+
+TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
+  MultiBody body;
+  body.contact.friction = 0.4;
+  ball(body, "ball", 0.1, {0, 0, 0.1}).move({1, 0, 0}, {0, 0, 0});
+  floor(body);
+  body.contact.pairs = {{"ball", "floor"}};
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 1, 500);
+  CHECK(simulation.state().v[0] == Approx(5.0 / 7));
+}
+
+TEST_CASE("contacts are those of a whole step, however many parts it has", "[contact]") {
+  MultiBody body;
+  Part& lies = box(body, "box", {0.1, 0.1, 0.1}, {0, 0, 0.1});
+  ball(body, "falls", 0.05, {1, 0, 0.05 + 0.5 * kG * 0.0101 * 0.0101});
+  Part& hangs = ball(body, "hangs", 0.05, {2, 0, 1});
+  body.ball("hook", point(hangs, kPi / 2, 0), world(2, 0, 1.05)).during(0.0137, 1);
+  floor(body);
+  Simulation simulation(body, "rk4");
+  simulation.step(0.02);  // the ball lands in it, and the joint switches
+  CHECK(simulation.step_counters().impacts == 1);
+  Vec3<double> sum = Vec3<double>::Zero();
+  for (std::size_t k = 0; k < simulation.contact()->contacts().size(); ++k)
+    if (simulation.contact()->contacts()[k].a.part == 0) sum += simulation.contact()->impulses()[k];
+  CHECK(sum[2] == Approx(lies.total_mass() * kG * 0.02).epsilon(1e-9));
+  CHECK_THROWS(simulation.step(-1));
+  CHECK(!simulation.contact()->contacts().empty());
+  simulation.set_state(simulation.state());
+  CHECK(simulation.contact()->contacts().empty());
+}
+
+TEST_CASE("what a joint takes up of an impact is the momentum that its part gains", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  Part& left = ball(body, "left", 0.1, {0, 0, 0.2}).move({0, 0, -2}, {0, 0, 0});
+  Part& right = ball(body, "right", 0.05, {0.15, 0, 0.2}).move({0, 0, -2}, {0, 0, 0});
+  body.weld("rod", point(right, 0, kPi), point(left, 0, 0));
+  floor(body);
+  Simulation simulation(body, "rk4");
+  const ContactRecord& record = simulation.contact()->record();
+  for (int i = 0; i < 100 && record.contacts.empty(); ++i) {
+    CHECK(record.joint_impulses.isZero(0));
+    simulation.step(1e-3);
+  }
+  REQUIRE(record.contacts.size() == 1);
+  Workspace<double> work;
+  const State& state = simulation.state();
+  const Dynamics& dynamics = simulation.dynamics();
+  dynamics.evaluate_joints(state.time(), state.q, state.v, state.joints, simulation.model().islands()[0],
+                           work);
+  const Vec3<double> impulse = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
+  const Vec3<double> gained = right.total_mass() * (state.v.segment<3>(6) - Vec3<double>(0, 0, -2));
+  // For the rest of the step the joint turns what flies on.
+  CHECK((impulse - gained).norm() < 0.02 * gained.norm());
+  CHECK(impulse[2] > right.total_mass());
+  CHECK(record.impulses[0][2] ==
+        Approx(simulation.ledger().momentum[2] + 2 * (left.total_mass() + right.total_mass())));
+}
+
+TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  box(body, "table", {1, 1, 0.05}, {0, 0, -0.05}).fix();
+  ball(body, "ball", 0.1, {-0.5, 0, 0.1}).move({0.5, 0, 0}, {0, 5, 0});
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 250; ++i) {
+    simulation.step(4e-3);
+    REQUIRE(std::abs(simulation.state().q[2] - 0.1) < 1e-9);
+  }
+  CHECK(simulation.state().q[0] == Approx(0).margin(1e-4));
 }

@@ -260,6 +260,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "local_law_of_the_other_kind",
                                         "local_laws_that_clash",
                                         "material_called_by_an_extension",
+                                        "motion_beyond",
                                         "negative_size",
                                         "nested_too_deep",
                                         "no_materials",

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,11 +35,19 @@ struct ContactObstacle {
   bool acts_at(double t) const { return on <= t && t < off; }
 };
 
-/// How two things touch that are named: parts, planes or obstacles.
+/// Parts, planes and obstacles that pairs can name together.
+struct ContactGroup {
+  std::string name;
+  std::vector<std::string> members;
+};
+
+/// How two things touch that are named: parts, planes, obstacles or groups; a group with itself says it of
+/// its members. Of several pairs that two things are in, that with the fewest groups counts, and of these the
+/// last.
 struct ContactPair {
   std::string a, b;
-  bool touch = true;  ///< false: they pass through each other
-  double friction = 0, restitution = 0;
+  bool touch = true;                                ///< false: they pass through each other
+  std::optional<double> friction{}, restitution{};  ///< those of the settings where not given
 };
 
 struct ContactSettings {
@@ -46,8 +55,9 @@ struct ContactSettings {
   bool between_parts = true;  ///< whether parts touch parts, or planes and obstacles alone
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
-  /// Parts that a joint ties together touch only where a pair says so.
+  /// Parts that a joint ties together touch only where a pair names both.
   std::vector<ContactPair> pairs;
+  std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
 };

@@ -117,7 +117,11 @@ class Dynamics {
                      const std::vector<JointMode>& modes, const Island& island, Workspace<double>& work,
                      RankRule rank = RankRule::decide) const;
   /// What a joint does to its first side; work as accelerations(t, ...) left it.
-  Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const;
+  Wrench joint_wrench(double t, int joint, const Workspace<double>& work) const {
+    return joint_wrench(t, joint, work, work.joints.lambda);
+  }
+  /// The same of other forces, or impulses, of the rows of all joints; work as evaluate_joints left it.
+  Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
   /// Directional derivative of the accelerations at a state, the pressed limits staying as they are.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
   /// The same without an evaluation of its own. work: as the evaluation at (t, q, v) left it; dual_work: any,

@@ -10,6 +10,10 @@
 
 namespace pliant {
 
+/// The velocities x of a part as its group has them, of v.
+void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
+                   Eigen::Ref<VecX<double>> x);
+
 /// Max: most velocities; Eigen::Dynamic for an island.
 template <class S, int Max>
 class Group {

@@ -16,9 +16,10 @@ namespace pliant {
 /// A part's place in the flat vectors, its attachment points, its constants.
 struct PartModel {
   const Part* part;
-  int q0, v0;  ///< first entries in q and v; -1 for a fixed part
+  int q0, v0;  ///< first entries in q and v; -1 for a part that is fixed or moves as prescribed
   int n_s;
-  const LocalDeformation* local;              ///< nullptr of a part that has none
+  const PrescribedMotion* motion;             ///< nullptr of a part that has none
+  const LocalDeformation* local;              ///< likewise
   int limit0;                                 ///< first entry in State::at_limit
   double drag;                                ///< nu, 1/s
   std::vector<Material<double>> ports;        ///< material points that forces act on
@@ -75,7 +76,7 @@ struct JointModel {
   int island, node;  ///< its node in the system of its island
   int island_row;    ///< first of its rows there
   double length;     ///< size of the smaller of its parts, m
-  bool driven;       ///< whether a point of it in the world moves
+  bool driven;       ///< whether a point of it moves as prescribed
 };
 
 /// What two sides of joints that share a part add to W_c = C_q M^-1 C_q^T: the block of (row side, column
@@ -91,7 +92,7 @@ struct Coupling {
 /// Parts that joints tie together, and the system of their joints.
 struct Island {
   std::vector<int> parts;
-  std::vector<int> anchors;  ///< fixed parts that its joints hold on to
+  std::vector<int> anchors;  ///< parts without coordinates that its joints hold on to
   std::vector<int> joints;   ///< those that are equations
   std::vector<int> strings;  ///< those that are one-sided
   std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
@@ -129,8 +130,13 @@ class Model {
   void note_limits(State& state) const;
   /// All parameters of a part in a state.
   ParameterValues<double> values(const State& state, int part) const;
-  Vec3<double> position(const State& state, int part) const;
-  Eigen::Quaterniond orientation(const State& state, int part) const;
+  Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
+  Eigen::Quaterniond orientation(const State& state, int part) const {
+    return orientation(state, part, state.time());
+  }
+  /// The same with the coordinates of the state taken at time t (s).
+  Vec3<double> position(const State& state, int part, double t) const;
+  Eigen::Quaterniond orientation(const State& state, int part, double t) const;
   /// A point of a part in the world. Asked for again and again it is found faster by its weights among the
   /// nodes, or as a PlacedPoint.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -55,7 +56,8 @@ struct Torque {
 
 class MultiBody {
  public:
-  Vec3<double> gravity{0, 0, -9.81};  ///< m/s^2
+  Vec3<double> gravity{0, 0, -9.81};           ///< m/s^2
+  std::optional<TimeVector> changing_gravity;  ///< instead of it
   Stabilization stabilization;
   JointSolver joint_solver;
   ContactSettings contact;
@@ -77,6 +79,8 @@ class MultiBody {
   PointForce& force(std::string name, Point at,
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
   Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
+
+  Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
 
   /// A joint of a formula (body/joints/*.h) over the points of its first side, then those of its second.
   /// Throws std::invalid_argument when the points of a side are not on one part.

@@ -1,22 +1,26 @@
-// Which surfaces meet: broad phase by boxes, then the low points of each part over planes, obstacles and
-// other parts.
+// Which surfaces meet: a tree of boxes tells which parts are near each other, then the low points of each
+// part over planes, obstacles and other parts.
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/model.h>
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
+#include <pliant/contact/contact_rules.h>
 #include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
 
+/// Not for several threads at once: it keeps what it works with from call to call.
 class ContactFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for a pair that names nothing of the body, for
-  /// obstacles that are no meshes (ObstacleMesh), and for parts that deform locally.
+  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
+  /// ContactRules and ObstacleMesh.
   explicit ContactFinder(const Model& model);
+  ~ContactFinder();
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -32,27 +36,32 @@ class ContactFinder {
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
-  struct Rule {
-    bool touch = true;
-    double friction = 0, restitution = 0;
-  };
   struct Placed;
-  Rule rule_of(const std::string& a, const std::string& b) const;
-  Placed place(const State& state, int part) const;
-  void find_on_plane(const Placed& a, std::size_t plane, double t, double most,
-                     std::vector<Contact>& found) const;
-  void find_on_obstacle(const Placed& a, std::size_t obstacle, double t, double most,
+  struct Scratch;
+  class OverPart;
+  void place(const State& state, double t, int part) const;
+  bool is_still(int part) const;
+  const Eigen::Matrix3Xd& points_of(int part) const;
+  Eigen::AlignedBox3d body_box(int part) const;
+  Eigen::AlignedBox3d world_box(int part) const;
+  void place_planes(double t) const;
+  void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
+  void find_on_obstacle(int a, std::size_t obstacle, double t, double most,
                         std::vector<Contact>& found) const;
+  bool are_apart(int a, int b, double most) const;
+  void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
-  void find_on_part(const Placed& a, const Placed& b, const Rule& rule, double most,
-                    std::vector<Contact>& found) const;
+  void find_on_part(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part that is this class's
+  ContactRules rules_;
+  std::vector<ContactRule> on_planes_;  // part after part, plane after plane
   std::vector<ObstacleMesh> obstacles_;
-  std::vector<Rule> on_planes_;     // part after part, plane after plane
-  std::vector<Rule> on_obstacles_;  // likewise
-  std::vector<Rule> on_parts_;      // of parts i < j, n_parts x n_parts
+  std::vector<ContactRule> on_obstacles_;  // likewise
+  bool any_pairs_;                         // whether parts may touch parts
+  std::vector<int> smooth_;                // numbers of these parts
+  std::unique_ptr<Scratch> scratch_;
 };
 
 }  // namespace pliant

@@ -4,6 +4,8 @@
 // smoothly.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include <pliant/contact/collision_surface.h>
@@ -17,14 +19,23 @@ struct PlacedSurface {
   const Part& part;
   const CollisionSurface& surface;
   const ParameterValues<double>& values;
-  const Vec3<double>& c;           ///< of its frame, world
-  const Mat3<double>& R;           ///< body to world
-  const Eigen::Matrix3Xd& p;       ///< points of the surface, body frame
-  const Eigen::AlignedBox3d& box;  ///< around these, world
+  const Vec3<double>& c;                    ///< of its frame, world
+  const Mat3<double>& R;                    ///< body to world
+  const std::optional<Vec3<double>>& axes;  ///< semi-axes of an ellipsoid
+  Eigen::AlignedBox3d box;                  ///< around it, world
+  /// Points of the surface, body frame; ellipsoids do without.
+  std::function<const Eigen::Matrix3Xd&()> points;
+};
+
+/// What a search works with, kept from call to call: triangles near a part, and the faces, sharp edges and
+/// corners of these.
+struct MeshSearch {
+  std::vector<int> triangles, faces, edges, vertices;
 };
 
 /// Adds the contacts whose gap is at most `most` (m): material of side a, x, normal and gap; the rest is the
 /// caller's.
-void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most, std::vector<Contact>& found);
+void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& search,
+                  std::vector<Contact>& found);
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // Moving a state along velocities: positions add, rotations turn by the exponential map.
 #pragma once
 
-#include <pliant/body/dynamics.h>
+#include <pliant/body/group.h>
 
 namespace pliant {
 
@@ -26,10 +26,8 @@ inline auto share_of(const PartModel& m, const VecX<double>& v) {
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v);
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
-/// The velocities of a part as its group has them (body/group.h), of v; and those of v that belong to them:
-/// nodes take what the change of the points at which joints hold them tells.
-void take_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
-                   Eigen::Ref<VecX<double>> x);
+/// Of v what belongs to the velocities x of a part as its group has them (body/group.h): nodes take what the
+/// change of the points at which joints hold them tells.
 void give_velocity(const PartModel& m, const PartWorkspace<double>& w,
                    const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// q <- q (+) h x of a part, x as its group has it.

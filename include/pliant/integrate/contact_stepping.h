@@ -9,22 +9,38 @@
 
 #include <pliant/contact/contact_problem.h>
 #include <pliant/contact/find_contacts.h>
+#include <pliant/contact/mesh_finder.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
+
+/// What impulses did in a step: an entry for each time that they acted at a contact. Impacts within a step,
+/// and parts that move far in it, have it made in several parts.
+struct ContactRecord {
+  std::vector<Contact> contacts;
+  std::vector<Vec3<double>> impulses;  ///< on their sides a, N s, world
+  std::vector<double> sliding;         ///< speeds along them afterwards, m/s
+  VecX<double> joint_impulses;  ///< that equations of joints took up of them: on the parts act C_q^T of it
+
+  void clear();
+};
 
 class ContactStepping {
  public:
   /// dynamics: must outlive it. Throws std::invalid_argument, see ContactFinder.
   explicit ContactStepping(const Dynamics& dynamics);
 
+  /// A new step begins, which may come in parts; the one that began last counts for nothing.
+  void begin_step();
+  void undo_step();
   /// Advances q, v and work by state.h; the caller counts the step.
   void step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters);
 
   const ContactFinder& finder() const { return finder_; }
-  /// Contacts of the last step, and the impulses on their sides a, N s; empty where nothing touched.
-  const std::vector<Contact>& contacts() const { return contacts_; }
-  const std::vector<Vec3<double>>& impulses() const { return impulses_; }
+  /// Of the last whole step; empty where nothing touched.
+  const ContactRecord& record() const { return record_; }
+  const std::vector<Contact>& contacts() const { return record_.contacts; }
+  const std::vector<Vec3<double>>& impulses() const { return record_.impulses; }
 
  private:
   double resting_gap(const Contact& contact) const;
@@ -32,22 +48,28 @@ class ContactStepping {
   std::optional<double> locate(Integrator& method, const State& before, double t, double h,
                                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
                                StepCounters& counters) const;
-  void settle(double reach, double h, double slowest_rebound, State& state, double t,
+  void time_impacts(const State& before, const State& state, double reach, double h, double slow,
+                    std::vector<Contact>& contacts) const;
+  void settle(const State& before, double since_of_limits, double h, State& state, double t,
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+  void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
+                 StepCounters& counters) const;
+  void part_overlaps(double most, bool meshes, State& state, double t, Workspace<double>& work,
+                     StepCounters& counters);
+  std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;
-  void move(const std::vector<Mover>& movers, const Workspace<double>& work, double scale, bool as_velocity,
-            State& state) const;
+  void move(const std::vector<Mover>& movers, const Workspace<double>& work, State& state) const;
 
   const Dynamics& dynamics_;
   ContactFinder finder_;
+  MeshFinder meshes_;
   double resting_gap_ = 0;  ///< of the largest part, m
   // What lies near each other in a state that was looked at last.
   VecX<double> last_q_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<Contact> contacts_;
-  std::vector<Vec3<double>> impulses_;
+  ContactRecord record_, record_before_;
 };
 
 }  // namespace pliant

@@ -29,6 +29,9 @@ void settle_on_limits(const Model& model, State& state);
 /// Parts that deform locally meet their reference conditions again, at time t (s); no node moves by it.
 /// Throws NumericalFailure where the conditions no longer tell the coordinates apart.
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
+/// The same of some parts.
+void settle_frames(const Dynamics& dynamics, double t, const std::vector<int>& parts, State& state,
+                   Workspace<double>& work);
 
 /// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
 /// projected back in the mass metric, and stopped by impulses.

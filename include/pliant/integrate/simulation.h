@@ -55,6 +55,7 @@ class Simulation {
   void take_step();
   bool shorter_steps_pass(double h);
   void switch_joints(double t, double near);
+  void give_up_step();
   void check(const State& before);
   void note_held();
 

@@ -21,10 +21,10 @@ class RecordingMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes the names and units of all columns, those of trajectory.csv (its TrajectoryTable's) too, and when
-/// frames are taken. Throws std::system_error.
+/// Writes the names and units of all columns, those of trajectory.csv (its TrajectoryTable's) too, those of
+/// contacts.csv where there is one, and when frames are taken. Throws std::system_error.
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
-                  const std::vector<Column>& trajectory);
+                  const std::vector<Column>& trajectory, bool contacts = false);
 
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {

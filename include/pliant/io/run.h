@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/io/contact_recording.h>
 #include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
 #include <pliant/io/run_folder.h>
@@ -65,7 +66,10 @@ class Run {
   void begin_again();
   void record_state();
   void step_to_end();
+  void flush(bool to_disk = false);
   void save(bool to_disk = false);
+  /// What people read: trajectory.csv, and what touched where the scene asks for it.
+  void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
   void note(const std::string& text);
@@ -77,6 +81,7 @@ class Run {
   FrameSchedule schedule_;
   std::unique_ptr<RunFolder> folder_;
   std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
   std::int64_t first_step_ = 0;      // where this session began
   std::int64_t recorded_step_ = -1;  // of the last recorded state

@@ -15,6 +15,11 @@ inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
 inline constexpr const char* kModesFile = "modes.npy";  ///< what else a state holds
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
+// Of a run that tells what touches, recorded and for people:
+inline constexpr const char* kContactsFile = "contacts.npy";
+inline constexpr const char* kContactsTable = "contacts.csv";
+inline constexpr const char* kJointImpulsesFile = "joint_impulses.npy";
+inline constexpr const char* kJointImpulsesTable = "joint_impulses.csv";
 inline constexpr const char* kLockFile = "pliant.lock";  ///< there while a run uses the folder
 inline constexpr const char* kMeshFolder = "meshes";
 inline constexpr const char* kFrameFolder = "frames";

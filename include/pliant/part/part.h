@@ -16,6 +16,7 @@
 #include <pliant/part/local_deformation.h>
 #include <pliant/part/mass_points.h>
 #include <pliant/part/parameters.h>
+#include <pliant/part/prescribed_motion.h>
 #include <pliant/part/triangle_mesh.h>
 
 namespace pliant {
@@ -81,11 +82,16 @@ class Part {
   Part& deform_locally(LocalSettings settings);
   /// The part does not move and has no coordinates.
   Part& fix();
+  /// Nor has one that moves as prescribed, which places it.
+  Part& prescribe(PrescribedMotion motion);
 
   const std::string& name() const { return name_; }
   const Parameters& parameters() const { return parameters_; }
   const ShapeFace& shape() const { return *shape_; }
+  /// Whether it has no coordinates: it does not move, or as prescribed.
   bool fixed() const { return fixed_; }
+  /// nullptr of a part whose motion is not prescribed.
+  const PrescribedMotion* motion() const { return motion_ ? &*motion_ : nullptr; }
   bool shell() const { return shell_; }
   double density() const { return density_; }
   double alpha() const { return alpha_; }
@@ -205,6 +211,7 @@ class Part {
   double density_;
   std::optional<double> total_mass_;
   std::optional<Inertia<double>> given_inertia_;
+  std::optional<PrescribedMotion> motion_;
   std::optional<LocalSettings> local_settings_;
   std::optional<ContinuumSettings> continuum_settings_;
   MatX<double> stiffness_;  // over all parameters

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -30,6 +31,8 @@ class ShapeFace {
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
+  /// Of a shape that is a stretched ball (shape.h).
+  virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
   /// e and its derivatives along three material directions carried by the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
@@ -76,6 +79,7 @@ struct RestMapOf<Shape, std::void_t<typename Shape::RestMap>> {
   inline constexpr bool has_##member<Shape, std::void_t<decltype(&Shape::member)>> = true;
 PLIANT_HAS_MEMBER(label)
 PLIANT_HAS_MEMBER(mesh_label)
+PLIANT_HAS_MEMBER(semi_axes)
 PLIANT_HAS_MEMBER(profile)
 PLIANT_HAS_MEMBER(ring)
 PLIANT_HAS_MEMBER(ring_exponent)
@@ -133,6 +137,12 @@ class ShapeFaceOf final : public ShapeFace {
       return Shape::mesh_label(g, vec(a));
     else
       return material_towards(g);
+  }
+  std::optional<Vec3<double>> semi_axes(ShapeParameters a) const override {
+    if constexpr (detail::has_semi_axes<Shape>)
+      return Shape::semi_axes(vec(a));
+    else
+      return std::nullopt;
   }
   Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
     return Shape::template e<Dual<3>>(m, lift<Dual<3>>(a));

@@ -66,6 +66,7 @@ struct Scene {
   double step = 1e-3;  ///< s
   std::string integrator = "semi_implicit_euler";
   double frame_rate = 25;         ///< recorded states and pictures per second
+  bool contacts = false;          ///< whether a run tells what touches
   int width = 640, height = 480;  ///< of pictures
   CameraSetting camera;
   LightSetting light;

@@ -32,6 +32,7 @@ struct Ellipsoid {
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
     return material_towards(g);
   }
+  static Vec3<double> semi_axes(const Vec<double, 3>& a) { return a; }
   static std::vector<Panel> profile(const Vec<double, 3>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 3>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 3>& a);

@@ -10,6 +10,9 @@
 //   mesh_label(g, a)  the surface point in the direction g of the mesh pattern
 //   profile(a, moving), ring(a, moving)  panels along u and v between which e is smooth, for quadrature;
 //                     moving: its exponents are dynamic
+//   semi_axes(a)      of a shape that is a stretched ball: its point in the direction y of the mesh pattern,
+//   of
+//                     length 1, is y times these, entry by entry
 //   bounded_exponents true: a changing exponent strains the material by bounded amounts
 //   section(zeta, gap, a), section_panels(a)  area and mean squares of the section at zeta, gap = 1 - |zeta|,
 //                     of the solid, and panels along zeta between which it is smooth

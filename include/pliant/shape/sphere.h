@@ -30,6 +30,7 @@ struct Sphere {
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 1>&) {
     return material_towards(g);
   }
+  static Vec3<double> semi_axes(const Vec<double, 1>& a) { return Vec3<double>::Constant(a[0]); }
   static std::vector<Panel> profile(const Vec<double, 1>& a, bool) {
     return Ellipsoid::profile(Vec3<double>::Constant(a[0]), false);
   }

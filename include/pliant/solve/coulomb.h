@@ -2,12 +2,32 @@
 //   0 <= p_n  _|_  u_n >= 0,   |p_t| <= mu p_n,   and p_t against u_t with |p_t| = mu p_n where it slides.
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include <pliant/math/types.h>
 
 namespace pliant {
 
-/// W: of full rank, symmetric positive definite; rows: normal, then the two tangents. Exact but for rounding:
-/// it lifts off, sticks, or slides, the rate of sliding found as the root of one equation.
-Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu);
+/// The law of one contact, for many b. Exact but for rounding: it lifts off, sticks, or slides, the rate of
+/// sliding found as the root of one equation.
+class CoulombLaw {
+ public:
+  CoulombLaw() = default;
+  /// W: of full rank, symmetric positive definite; rows: normal, then the two tangents.
+  CoulombLaw(const Mat3<double>& W, double mu);
+  Vec3<double> push(const Vec3<double>& b) const;
+
+ private:
+  Vec3<double> slide(const Vec3<double>& b, double p_alone) const;
+
+  double mu_ = 0, W_n_ = 1;
+  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
+  Eigen::Matrix2d A_ = Eigen::Matrix2d::Identity();     ///< Schur complement of the normal
+  Eigen::LDLT<Mat3<double>> factor_;
+};
+
+inline Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
+  return CoulombLaw(W, mu).push(b);
+}
 
 }  // namespace pliant

@@ -1,0 +1,178 @@
+// What contact costs: time per body and step of ellipsoids dropped on a plane, from the first impacts until
+// they lie still, the exponent of its growth with their number, and the share of each stage.
+//
+//   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
+//   standard output; no more than MOST bodies (10000)
+//
+// Stages, of a step at the end: motion (the method's own step), near (what may meet), find (contacts), solve
+// (impulses). They are timed one by one, in loops of their own, so that their caches are warm.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <pliant/pliant.h>
+
+#include "table_file.h"
+#include "timing.h"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kStep = 2e-3, kDuration = 1;
+
+struct System {
+  const char* name;
+  bool soft;   ///< three parameters each
+  int layers;  ///< dropped on top of each other; 1: side by side
+  int most;    ///< bodies
+};
+
+/// Times in microseconds per body and step.
+struct Cost {
+  std::string system;
+  int bodies, contacts;
+  double step, still_step;  ///< over the whole fall and its impacts; of the end
+  double motion, near, find, solve;
+  double deepest;  ///< penetration over all of it, in sizes of a body
+  double residual;
+  long fallbacks;
+};
+
+/// A number in [0, 1) from a count: the fractional parts of multiples of the golden ratio.
+double spread(int i, double ratio) {
+  return std::fmod((i + 1) * ratio, 1.0);
+}
+
+void build(MultiBody& body, const System& system, int n) {
+  const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n) / system.layers)));
+  for (int i = 0; i < n; ++i) {
+    const double a = spread(i, 0.6180339887498949), b = spread(i, 0.7548776662466927),
+                 c = spread(i, 0.5698402909980532);
+    Part& part = body.add(make_part("body" + std::to_string(i), "ellipsoid", {}, 1000));
+    part.rest({{"a1", 0.06 + 0.04 * a}, {"a2", 0.06 + 0.04 * b}, {"a3", 0.06 + 0.04 * c}});
+    const int layer = i / (across * across), place = i % (across * across);
+    const Vec3<double> axis = Vec3<double>(a - 0.5, b - 0.5, c - 0.4).normalized();
+    part.place({0.25 * (place % across) + 0.02 * a, 0.25 * (place / across) + 0.02 * b,
+                0.15 + 0.1 * c + 0.35 * layer},
+               Eigen::Quaterniond(Eigen::AngleAxisd(6 * a, axis)));
+    if (system.soft) part.stiffness({{"a1", 3e4}, {"a2", 3e4}, {"a3", 3e4}}).damping(0, 2e-3);
+  }
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+
+Cost measure(const System& system, int n) {
+  MultiBody body, apart;
+  build(body, system, n);
+  build(apart, system, n);
+  apart.contact.active = false;
+  Simulation simulation(body, "rk4"), loose(apart, "rk4");
+  Cost cost{};
+  cost.system = system.name;
+  cost.bodies = n;
+  const int steps = static_cast<int>(std::lround(kDuration / kStep)), still = steps / 10;
+  const ContactFinder& finder = simulation.contact()->finder();
+  auto per_body = [&](double seconds, int count) { return seconds * 1e6 / n / count; };
+  double seconds = 0;
+  for (int i = 0; i < steps; ++i) {
+    const auto start = bench::ProcessorClock::now();
+    simulation.step(kStep);
+    const double taken = std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
+    seconds += taken;
+    if (i >= steps - still) cost.still_step += per_body(taken, still);
+    if (i % 10 != 0) continue;
+    for (const Contact& contact : finder.find(simulation.state(), simulation.time(), 0))
+      cost.deepest = std::max(cost.deepest, -contact.gap / 0.1);
+  }
+  cost.step = per_body(seconds, steps);
+  cost.residual = simulation.step_counters().contact_residual;
+  cost.fallbacks = simulation.step_counters().contact_fallbacks;
+  const State state = simulation.state();
+  const double t = state.time();
+  auto stage = [&](auto&& act) {
+    return per_body(bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5), 1);
+  };
+  loose.set_state(state);
+  cost.motion = stage([&] {
+    loose.set_state(state);
+    loose.step(kStep);
+  });
+  cost.near = stage([&] { finder.neighbourhood(state, t, kStep); });
+  const std::vector<Contact> contacts = finder.find(state, t, 1e-6);
+  cost.contacts = static_cast<int>(contacts.size());
+  cost.find = stage([&] { finder.find(state, t, 1e-6); });
+  Workspace<double> work;
+  simulation.dynamics().accelerations(t, state.q, state.v, state, work);
+  std::vector<int> all;
+  for (int i = 0; i < n; ++i) all.push_back(i);
+  State falling = state;
+  for (const PartModel& m : simulation.model().parts()) falling.v.segment<3>(m.v0) += kStep * body.gravity;
+  simulation.dynamics().evaluate_masses(falling.q, falling.v, all, work);
+  cost.solve = stage([&] {
+    ContactProblem problem(simulation.model(), falling, work, contacts);
+    problem.solve(1);
+  });
+  return cost;
+}
+
+/// Slope of log(time of all bodies) over log(bodies), least squares.
+double exponent(const std::vector<Cost>& costs, double Cost::*time) {
+  double x = 0, y = 0, xx = 0, xy = 0;
+  const auto n = static_cast<double>(costs.size());
+  for (const Cost& cost : costs) {
+    const double a = std::log(cost.bodies), b = std::log(cost.*time * cost.bodies);
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
+  const int most = argc > 2 ? std::atoi(argv[2]) : 10000;
+  auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
+  char calibration[128];
+  std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
+                bench::multiply_add_peak(), bench::triad_bandwidth());
+  std::printf("%s", calibration);
+  bench::TableFile costs_file(in_folder("contact_bench.csv"),
+                              std::string(calibration) +
+                                  "system,bodies,contacts,step_us_per_body,still_step_us_per_body,motion_us,"
+                                  "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
+  bench::TableFile exponents_file(in_folder("contact_exponents.csv"),
+                                  std::string(calibration) + "system,step,still_step\n");
+  const std::vector<System> systems{
+      {"rigid", false, 1, 10000}, {"3 parameters", true, 1, 10000}, {"rigid, heap", false, 5, 1000}};
+  std::printf("microseconds per body and step\n%-14s %6s %8s | %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
+              "system", "bodies", "contacts", "step", "still", "motion", "near", "find", "solve", "deepest",
+              "residual", "fallbacks");
+  for (const System& system : systems) {
+    std::vector<Cost> costs;
+    for (int n = 10; n <= std::min(most, system.most); n *= 10) {
+      const Cost c = measure(system, n);
+      costs.push_back(c);
+      std::printf("%-14s %6d %8d | %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
+                  c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.motion, c.near, c.find,
+                  c.solve, c.deepest, c.residual, c.fallbacks);
+      std::fflush(stdout);
+      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n", c.system.c_str(), c.bodies,
+                     c.contacts, c.step, c.still_step, c.motion, c.near, c.find, c.solve, c.deepest,
+                     c.residual, c.fallbacks);
+    }
+    if (costs.size() < 2) continue;
+    const double moving = exponent(costs, &Cost::step), still = exponent(costs, &Cost::still_step);
+    std::printf("%-14s grows as bodies to the power %.3f (step) %.3f (still)\n", system.name, moving, still);
+    exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, still);
+  }
+  return 0;
+} catch (const std::exception& fault) {
+  std::fprintf(stderr, "%s\n", fault.what());
+  return 1;
+}

@@ -1,0 +1,49 @@
+// Contacts of parts that deform locally: their nodes on planes, their surfaces as meshes against those of
+// other parts.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <pliant/contact/contact.h>
+#include <pliant/contact/contact_mesh.h>
+#include <pliant/contact/contact_rules.h>
+#include <pliant/contact/find_contacts.h>
+#include <pliant/contact/mesh_touches.h>
+
+namespace pliant {
+
+class MeshFinder {
+ public:
+  /// The model must outlive it. Throws std::invalid_argument for parts that deform by modes.
+  explicit MeshFinder(const Model& model);
+
+  bool empty() const { return planes_.empty() && pairs_.empty(); }
+  /// Where surfaces have gone through each other at a state and a time, s. Appends.
+  void find(const State& state, double t, std::vector<Contact>& found) const;
+  /// What a step from a state comes near to, on top of what is in `near` already.
+  void approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const;
+
+ private:
+  struct OnPlane {
+    int part;
+    std::size_t plane;
+    ContactRule rule;
+  };
+  struct Pair {
+    int a, b;
+    ContactRule rule;
+  };
+  ContactSide side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
+                   const Vec3<double>& x) const;
+  PlacedMesh place(const State& state, double t, int part) const;
+  Vec3<double> carries(int part, double t, const Vec3<double>& x) const;
+
+  const Model* model_;
+  std::map<int, ContactMesh> meshes_;  // of each part that needs one
+  std::vector<OnPlane> planes_;
+  std::vector<Pair> pairs_;  // one of the two deforms locally
+};
+
+}  // namespace pliant

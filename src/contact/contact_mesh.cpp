@@ -1,0 +1,57 @@
+#include <pliant/contact/contact_mesh.h>
+
+#include <map>
+#include <utility>
+
+#include <pliant/part/surface.h>
+
+namespace pliant {
+
+namespace {
+/// Edges along a quarter of a great circle, of the mesh over a part that has none of its own.
+constexpr int kResolution = 8;
+}  // namespace
+
+std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
+  std::vector<ContactMesh::Edge> edges;
+  std::map<std::pair<int, int>, std::size_t> known;  // by vertices, the smaller first
+  for (int t = 0; t < triangles.cols(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int from = triangles(k, t), to = triangles((k + 1) % 3, t);
+      const auto [place, added] = known.insert({std::minmax(from, to), edges.size()});
+      if (added)
+        edges.push_back({from, to, t, -1});
+      else
+        edges[place->second].right = t;
+    }
+  return edges;
+}
+
+ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
+  Eigen::Matrix3Xd p;
+  if (m.local != nullptr) {
+    const LocalMesh& mesh = m.local->mesh();
+    const SurfaceNodes surface = surface_nodes(mesh);
+    nodes_ = surface.node;
+    triangles_ = surface.triangles;
+    p = surface.of(mesh.X);
+  } else {
+    const Surface surface(*m.part, kResolution);
+    material_ = surface.material();
+    triangles_ = surface.triangles();
+    p = m.part->s(material_, m.part->parameters().rest());
+  }
+  edges_ = mesh_edges(triangles_);
+  thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
+}
+
+Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, int number) const {
+  if (part_->local == nullptr) return part_->part->s(material_, model.values(state, number));
+  const Nodes all = model.node_positions(state, number);
+  Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(nodes_.size()));
+  for (Eigen::Index k = 0; k < p.cols(); ++k)
+    p.col(k) = all.row(nodes_[static_cast<std::size_t>(k)]).transpose();
+  return p;
+}
+
+}  // namespace pliant

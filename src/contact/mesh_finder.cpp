@@ -1,0 +1,182 @@
+#include <pliant/contact/mesh_finder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+#include <pliant/body/multibody.h>
+#include <pliant/contact/mesh_touches.h>
+
+namespace pliant {
+
+namespace {
+
+/// Share of the thinner of two parts that they may move against each other in a step.
+constexpr double kThinShare = 0.4;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+MeshFinder::MeshFinder(const Model& model) : model_(&model) {
+  const ContactRules rules(model);
+  const int n = static_cast<int>(model.parts().size());
+  auto soft = [&](int i) { return model.parts()[at(i)].local != nullptr; };
+  auto need = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
+  for (int i = 0; i < n; ++i) {
+    if (!soft(i)) continue;
+    if (model.parts()[at(i)].local->nodal() == nullptr)
+      throw std::invalid_argument(
+          "part '" + model.parts()[at(i)].part->name() +
+          "' deforms by modes of its whole body, and contact is of parts that deform at "
+          "the nodes of a mesh");
+    for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
+      const ContactRule rule = rules.on_plane(i, static_cast<int>(k));
+      if (!rule.touch) continue;
+      need(i);
+      planes_.push_back({i, k, rule});
+    }
+  }
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 1; j < n; ++j) {
+      if (!soft(i) && !soft(j)) continue;
+      const ContactRule rule = rules.of_parts(i, j);
+      if (!rule.touch) continue;
+      need(i);
+      need(j);
+      pairs_.push_back({i, j, rule});
+    }
+}
+
+PlacedMesh MeshFinder::place(const State& state, double t, int part) const {
+  const ContactMesh& mesh = meshes_.at(part);
+  const Mat3<double> R = model_->orientation(state, part, t).toRotationMatrix();
+  return PlacedMesh(mesh,
+                    (R * mesh.positions(*model_, state, part)).colwise() + model_->position(state, part, t));
+}
+
+/// Velocity that a prescribed motion gives a point of a part, m/s.
+Vec3<double> MeshFinder::carries(int part, double t, const Vec3<double>& x) const {
+  const PrescribedMotion* motion = model_->parts()[at(part)].motion;
+  if (motion == nullptr) return Vec3<double>::Zero();
+  const MovingFrame frame = motion->at(t);
+  return frame.velocity(x - frame.c);
+}
+
+ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
+                             const Vec3<double>& x) const {
+  ContactSide side;
+  side.part = part;
+  const PartModel& m = model_->parts()[at(part)];
+  if (m.local != nullptr) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (point.vertex[k] >= 0) side.node[k] = placed.mesh->node(point.vertex[k]);
+    side.weight = point.weight;
+  } else if (m.q0 >= 0) {
+    side.material =
+        m.part->label(model_->orientation(state, part).conjugate() * (x - model_->position(state, part)),
+                      model_->values(state, part));
+  }
+  return side;
+}
+
+void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
+  std::map<int, PlacedMesh> placed;
+  for (const auto& entry : meshes_) placed.emplace(entry.first, place(state, t, entry.first));
+  for (const OnPlane& on : planes_) {
+    const ContactPlane& plane = model_->body().contact.planes[on.plane];
+    if (!plane.acts_at(t)) continue;
+    const PlacedMesh& m = placed.at(on.part);
+    const Vec3<Taylor2<double>> moving = plane.point.at(t);
+    const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v);
+    const VecX<double> height = (m.x.colwise() - point).transpose() * plane.normal;
+    for (int k = 0; k < height.size(); ++k) {
+      if (!(height[k] < 0)) continue;
+      Contact contact;
+      contact.a = side(m, on.part, state, {{k, -1, -1}, Vec3<double>::UnitX()}, m.x.col(k));
+      contact.plane = static_cast<int>(on.plane);
+      contact.x = m.x.col(k);
+      contact.normal = plane.normal;
+      contact.gap = height[k];
+      contact.carried = {moving[0].d, moving[1].d, moving[2].d};
+      contact.friction = on.rule.friction;
+      contact.restitution = on.rule.restitution;
+      found.push_back(contact);
+    }
+  }
+  std::vector<MeshTouch> touches;
+  for (const Pair& pair : pairs_) {
+    touches.clear();
+    const PlacedMesh &a = placed.at(pair.a), &b = placed.at(pair.b);
+    find_touches(a, b, touches);
+    for (const MeshTouch& touch : touches) {
+      Contact contact;
+      contact.a = side(a, pair.a, state, touch.a, touch.x);
+      contact.b = side(b, pair.b, state, touch.b, touch.x - touch.gap * touch.normal);
+      contact.x = touch.x;
+      contact.normal = touch.normal;
+      contact.gap = touch.gap;
+      contact.carried = carries(pair.b, t, touch.x) - carries(pair.a, t, touch.x);
+      contact.friction = pair.rule.friction;
+      contact.restitution = pair.rule.restitution;
+      found.push_back(contact);
+    }
+  }
+}
+
+void MeshFinder::approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const {
+  struct Swept {
+    Vec3<double> c;
+    double speed, reach;  // of any point in the world, m/s; about c, with the way of a step, m
+  };
+  std::map<int, Swept> all;
+  for (const auto& [part, mesh] : meshes_) {
+    const PartModel& m = model_->parts()[at(part)];
+    Swept swept{model_->position(state, part, t), 0,
+                mesh.positions(*model_, state, part).colwise().norm().maxCoeff()};
+    if (m.q0 >= 0) {
+      const auto v = state.v.segment(m.v0, m.n_v());
+      swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm();
+      if (m.n_s > 0) {  // of the points at rest
+        std::vector<PointJet<double>> jets;
+        Counters counters;
+        m.part->points(m.local != nullptr ? m.local->mesh().nodes : mesh.material(),
+                       state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
+        double fastest = 0;
+        for (const PointJet<double>& jet : jets) fastest = std::max(fastest, jet.p1.norm());
+        swept.speed += fastest;
+      }
+      if (m.local != nullptr)
+        swept.speed += m.local->displacements(v.data() + 6 + m.n_s).rowwise().norm().maxCoeff();
+      swept.reach += h * (swept.speed + model_->body().gravity_at(t).norm() * h);
+    } else if (m.motion != nullptr) {
+      for (const double when : {t, t + h}) {
+        const MovingFrame frame = m.motion->at(when);
+        swept.speed = std::max(swept.speed, frame.c_dot.norm() + swept.reach * frame.omega.norm());
+      }
+      swept.reach += h * swept.speed;
+    }
+    all.emplace(part, swept);
+  }
+  for (const OnPlane& on : planes_) {
+    const ContactPlane& plane = model_->body().contact.planes[on.plane];
+    if (!plane.acts_at(t) && !plane.acts_at(t + h)) continue;
+    const Swept& a = all.at(on.part);
+    for (const double when : {t, t + h})
+      if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.empty = false;
+  }
+  for (const Pair& pair : pairs_) {
+    const Swept &a = all.at(pair.a), &b = all.at(pair.b);
+    if ((a.c - b.c).norm() > a.reach + b.reach) continue;
+    near.empty = false;
+    const double way = h * (a.speed + b.speed);
+    const double thin = kThinShare * std::min(meshes_.at(pair.a).thickness(), meshes_.at(pair.b).thickness());
+    if (way > thin) near.h = std::min(near.h, h * thin / way);
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,187 @@
+#include <pliant/io/contact_recording.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <pliant/io/csv_cell.h>
+#include <pliant/io/number_text.h>
+#include <pliant/io/recording.h>
+#include <pliant/io/run_files.h>
+#include <pliant/io/whole_file.h>
+
+namespace pliant {
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+void add_axes(std::vector<Column>& columns, const std::string& stem, const char* unit, const char* meaning) {
+  for (const char* axis : {".x", ".y", ".z"}) columns.push_back({stem + axis, unit, meaning});
+}
+
+void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
+  numbers.insert(numbers.end(), {x[0], x[1], x[2]});
+}
+
+std::int64_t rows_until(const std::filesystem::path& path, double t) {
+  const NpyReader table(path);
+  std::vector<double> row(at(table.columns()));
+  std::int64_t rows = 0;
+  for (; rows < table.rows(); ++rows) {
+    table.read(rows, row.data());
+    if (row[0] > t) break;
+  }
+  return rows;
+}
+
+/// A table of which `names` columns after the time are numbers of names.
+void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
+                 const std::vector<Column>& columns, const std::vector<std::string>& names_of,
+                 std::size_t names) {
+  const NpyReader table(from);
+  if (table.columns() != static_cast<int>(columns.size()))
+    throw RecordingMismatch(from.string() + " has " + std::to_string(table.columns()) +
+                            " columns, expected " + std::to_string(columns.size()));
+  WholeFile file(to);
+  std::string text;
+  for (const Column& column : columns) text += (text.empty() ? "" : ",") + column.name;
+  text += '\n';
+  std::vector<double> row(columns.size());
+  for (std::int64_t i = 0; i < table.rows(); ++i) {
+    table.read(i, row.data());
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      if (k > 0) text += ',';
+      if (k < 1 || k > names) {
+        append_number(text, row[k]);
+        continue;
+      }
+      if (!(row[k] >= 0 && row[k] < static_cast<double>(names_of.size())))
+        throw RecordingMismatch(from.string() + " is damaged: row " + std::to_string(i) + " names nothing");
+      text += csv_cell(names_of[static_cast<std::size_t>(row[k])]);
+    }
+    text += '\n';
+    if (text.size() > 1 << 20) {
+      file.write(text);
+      text.clear();
+    }
+  }
+  file.write(text);
+  file.become_target();
+}
+
+}  // namespace
+
+std::vector<Column> contact_columns() {
+  std::vector<Column> columns{
+      {"t", "s", "time of the recorded state, which ends the step"},
+      {"a", "1", "part; in the .npy table its number, from 0"},
+      {"b", "1", "part, plane or obstacle; planes are numbered after the parts, obstacles after these"}};
+  add_axes(columns, "point", "m", "where they touch, world");
+  add_axes(columns, "normal", "1", "from b to a, of length 1, world");
+  columns.push_back({"gap", "m", "before overlaps are parted; negative: so deep"});
+  add_axes(columns, "impulse", "N s", "on a, in the step, world");
+  add_axes(columns, "force", "N", "on a, the mean over the step, world");
+  columns.push_back({"sliding", "m/s", "speed of a along b after the impulse"});
+  return columns;
+}
+
+std::vector<Column> joint_impulse_columns() {
+  std::vector<Column> columns{{"t", "s", "time of the recorded state, which ends the step"},
+                              {"joint", "1", "in the .npy table its number, from 0"}};
+  add_axes(columns, "impulse", "N s", "on its first side, of the step's contacts, world");
+  add_axes(columns, "angular_impulse", "N m s", "on its first side about the joint, world");
+  return columns;
+}
+
+ContactRecordingWriter::ContactRecordingWriter(NpyWriter contacts, NpyWriter impulses)
+    : contacts_(std::move(contacts)), impulses_(std::move(impulses)) {}
+
+ContactRecordingWriter ContactRecordingWriter::create(const std::filesystem::path& folder) {
+  return {NpyWriter::create(folder / kContactsFile, static_cast<int>(contact_columns().size())),
+          NpyWriter::create(folder / kJointImpulsesFile, static_cast<int>(joint_impulse_columns().size()))};
+}
+
+ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::path& folder, double t) {
+  auto go_on = [&](const char* name, const std::vector<Column>& columns) {
+    try {
+      return NpyWriter::resume(folder / name, static_cast<int>(columns.size()), rows_until(folder / name, t));
+    } catch (const std::system_error&) {
+      throw;
+    } catch (const std::runtime_error& fault) {
+      throw RecordingMismatch(fault.what());
+    }
+  };
+  return {go_on(kContactsFile, contact_columns()), go_on(kJointImpulsesFile, joint_impulse_columns())};
+}
+
+namespace {
+
+/// Of what a part touches, among the parts, planes and obstacles.
+int number_of_b(const Model& model, const Contact& contact) {
+  const std::size_t parts = model.parts().size(), planes = model.body().contact.planes.size();
+  if (contact.b.part >= 0) return contact.b.part;
+  if (contact.plane >= 0) return static_cast<int>(parts) + contact.plane;
+  return static_cast<int>(parts + planes) + contact.obstacle;
+}
+
+}  // namespace
+
+void ContactRecordingWriter::append(const Simulation& simulation) {
+  if (simulation.contact() == nullptr) return;
+  const ContactRecord& record = simulation.contact()->record();
+  const State& state = simulation.state();
+  std::vector<double> row;
+  for (std::size_t k = 0; k < record.contacts.size(); ++k) {
+    const Contact& contact = record.contacts[k];
+    const int b = number_of_b(simulation.model(), contact);
+    row = {state.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
+    add_vector(row, contact.x);
+    add_vector(row, contact.normal);
+    row.push_back(contact.gap);
+    add_vector(row, record.impulses[k]);
+    add_vector(row, record.impulses[k] / state.h);
+    row.push_back(record.sliding[k]);
+    contacts_.append(row.data());
+  }
+  append_joints(simulation, record);
+}
+
+void ContactRecordingWriter::append_joints(const Simulation& simulation, const ContactRecord& record) {
+  const Model& model = simulation.model();
+  const State& state = simulation.state();
+  std::vector<double> row;
+  for (const Island& island : model.islands()) {
+    auto takes_up = [&](int j) {
+      const JointModel& joint = model.joints()[at(j)];
+      return !record.joint_impulses.segment(joint.row, joint.rows).isZero(0);
+    };
+    if (std::none_of(island.joints.begin(), island.joints.end(), takes_up)) continue;
+    simulation.dynamics().evaluate_joints(state.time(), state.q, state.v, state.joints, island, work_);
+    for (const int j : island.joints) {
+      if (!takes_up(j)) continue;
+      const Wrench wrench = simulation.dynamics().joint_wrench(state.time(), j, work_, record.joint_impulses);
+      row = {state.time(), static_cast<double>(j)};
+      add_vector(row, wrench.force);
+      add_vector(row, wrench.torque);
+      impulses_.append(row.data());
+    }
+  }
+}
+
+void ContactRecordingWriter::flush(bool to_disk) {
+  for (NpyWriter* table : {&contacts_, &impulses_}) to_disk ? table->flush_to_disk() : table->flush();
+}
+
+void write_contact_tables(const std::filesystem::path& folder, const Model& model) {
+  std::vector<std::string> things, joints;
+  for (const PartModel& m : model.parts()) things.push_back(m.part->name());
+  for (const ContactPlane& plane : model.body().contact.planes) things.push_back(plane.name);
+  for (const ContactObstacle& obstacle : model.body().contact.obstacles) things.push_back(obstacle.name);
+  for (const JointModel& joint : model.joints()) joints.push_back(joint.joint->name());
+  write_table(folder / kContactsFile, folder / kContactsTable, contact_columns(), things, 2);
+  write_table(folder / kJointImpulsesFile, folder / kJointImpulsesTable, joint_impulse_columns(), joints, 1);
+}
+
+}  // namespace pliant

@@ -1,0 +1,149 @@
+// Impulses of many contacts at once: Coulomb's law at each of them, by the velocities that come out.
+#include "catch.h"
+
+#include <cmath>
+
+#include <pliant/contact/contact_problem.h>
+#include <pliant/contact/find_contacts.h>
+#include <pliant/part/registry.h>
+
+#include "draws.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+/// Balls that touch their neighbours in a cubic lattice.
+void lattice(MultiBody& body, int across, int high, const Vec3<double>& corner = Vec3<double>::Zero()) {
+  const std::size_t others = body.parts().size();
+  for (int k = 0; k < high; ++k)
+    for (int j = 0; j < across; ++j)
+      for (int i = 0; i < across; ++i)
+        body.add(make_part("ball" + std::to_string(others +
+                                                   static_cast<std::size_t>((k * across + j) * across + i)),
+                           "sphere", {}, 1000))
+            .rest({{"r", 0.5}})
+            .place(corner + Vec3<double>(i, j, k + 0.5));
+}
+
+struct Solved {
+  std::vector<Contact> contacts;
+  ContactSolution solution;
+};
+
+/// The impulses that stop velocities drawn at random.
+Solved solve(MultiBody& body, double speed, std::vector<Vec3<double>> begin = {}) {
+  const Model model(body);
+  const Dynamics dynamics(model);
+  State state = model.initial_state();
+  Draws draws(21);
+  for (const PartModel& m : model.parts())
+    if (m.q0 >= 0) {
+      state.v.segment<3>(m.v0) = draws.vector(speed) - Vec3<double>(0, 0, speed);
+      state.v.segment<3>(m.v0 + 3) = draws.vector(speed);
+    }
+  Workspace<double> work;
+  dynamics.accelerations(0, state.q, state.v, state, work);
+  std::vector<int> all;
+  for (std::size_t i = 0; i < model.parts().size(); ++i) all.push_back(static_cast<int>(i));
+  dynamics.evaluate_masses(state.q, state.v, all, work);
+  Solved solved;
+  solved.contacts = ContactFinder(model).find(state, 0, 1e-9);
+  ContactProblem problem(model, state, work, solved.contacts);
+  problem.begin_with(std::move(begin));
+  solved.solution = problem.solve(0);
+  return solved;
+}
+
+/// What is missed at the worst contact: of the conditions on velocities, in m/s.
+double worst_velocity(const Solved& solved) {
+  double worst = 0;
+  for (std::size_t k = 0; k < solved.contacts.size(); ++k) {
+    const Contact& contact = solved.contacts[k];
+    const Vec3<double>&p = solved.solution.impulse[k], &u = solved.solution.velocity[k];
+    const double p_n = p.dot(contact.normal), u_n = u.dot(contact.normal);
+    const Vec3<double> p_t = p - p_n * contact.normal, u_t = u - u_n * contact.normal;
+    REQUIRE(p_n >= -1e-9);
+    REQUIRE(p_t.norm() <= contact.friction * p_n * (1 + 1e-9) + 1e-6);
+    worst = std::max(worst, -u_n);
+    if (p_n > 1e-6) worst = std::max(worst, u_n);
+    if (p_t.norm() < (1 - 1e-6) * contact.friction * p_n - 1e-6) worst = std::max(worst, u_t.norm());
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("impulses of heaps meet Coulomb's law at every contact", "[contact]") {
+  for (const double friction : {0.0, 0.3, 1.0})
+    for (const int across : {1, 2, 3}) {
+      MultiBody body;
+      body.contact.friction = friction;
+      lattice(body, across, 3);
+      body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+      const Solved solved = solve(body, 1);
+      REQUIRE(solved.contacts.size() ==
+              static_cast<std::size_t>(3 * across * across + 6 * across * (across - 1)));
+      CHECK(solved.solution.residual < 1e-11);
+      CHECK(solved.solution.fallbacks == 0);
+      CHECK(worst_velocity(solved) < 1e-9);
+    }
+}
+
+TEST_CASE("N55: five thousand contacts in eighty heaps", "[contact]") {
+  MultiBody body;
+  for (int heap = 0; heap < 80; ++heap) lattice(body, 3, 3, {10.0 * (heap % 9), 10.0 * (heap / 9), 0});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  const Solved solved = solve(body, 1);
+  CHECK(solved.contacts.size() == 80 * 63);
+  CHECK(solved.solution.residual < 1e-10);
+  CHECK(solved.solution.fallbacks == 0);
+  CHECK(worst_velocity(solved) < 1e-8);
+}
+
+TEST_CASE("what is left of a large heap is small, and not hidden", "[contact]") {
+  MultiBody body;
+  lattice(body, 8, 5);
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  const Solved solved = solve(body, 1);
+  CHECK(solved.contacts.size() > 800);
+  CHECK(solved.solution.residual < 1e-2);
+  CHECK(worst_velocity(solved) < 3 * solved.solution.residual + 1e-9);
+}
+
+TEST_CASE("a search that begins at the solution ends there at once", "[contact]") {
+  MultiBody body;
+  lattice(body, 2, 3);
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  const Solved first = solve(body, 1), again = solve(body, 1, first.solution.impulse);
+  CHECK(first.solution.sweeps > 10);
+  CHECK(again.solution.sweeps <= 4);
+  CHECK(again.solution.residual < 1e-11);
+  for (std::size_t k = 0; k < first.contacts.size(); ++k)
+    CHECK((again.solution.velocity[k] - first.solution.velocity[k]).norm() < 1e-10);
+}
+
+TEST_CASE("what cannot be stopped is said, and stays bounded", "[contact]") {
+  // Two planes that close on a ball from either side.
+  MultiBody body;
+  body.contact.friction = 0.5;
+  body.add(make_part("ball", "sphere", {}, 1000)).rest({{"r", 0.5}}).place({0, 0, 0});
+  body.plane("below", TimeVector(0, 0, -0.5), {0, 0, 1});
+  body.plane("above", TimeVector(0, 0, 0.5), {0, 0, -1});
+  const Model model(body);
+  State state = model.initial_state();
+  const Dynamics dynamics(model);
+  Workspace<double> work;
+  dynamics.evaluate_masses(state.q, state.v, {0}, work);
+  std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
+  REQUIRE(contacts.size() == 2);
+  for (Contact& contact : contacts) contact.carried = 0.1 * contact.normal;
+  ContactProblem problem(model, state, work, contacts);
+  const ContactSolution solution = problem.solve(0);
+  CHECK(solution.fallbacks == 1);
+  CHECK(solution.residual >= 0.0999);  // the best there is: half way
+  CHECK(solution.residual < 0.21);
+  for (const Vec3<double>& p : solution.impulse) CHECK(p.norm() < 1e9);
+  CHECK(problem.movers()[0].x.norm() < 0.2);
+}

@@ -1,0 +1,131 @@
+// contacts.csv and joint_impulses.csv: what touched, with which force, and what joints took up of it; broken
+// runs tell the same.
+#include <pliant/io/run.h>
+
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "new_folder.h"
+
+#include <pliant/io/run_files.h>
+#include <pliant/part/registry.h>
+
+using namespace pliant;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A box that lies still, and two balls on a rod that fall onto it and the floor.
+std::unique_ptr<Scene> falling_scene() {
+  auto scene = std::make_unique<Scene>();
+  scene->end = 0.4;
+  scene->step = 2e-3;
+  scene->frame_rate = 50;
+  scene->integrator = "rk4";
+  scene->contacts = true;
+  MultiBody& body = scene->body;
+  body.add(make_part("box", "box", {}, 1000))
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
+      .place({0, 0, 0.1});
+  Part& left = body.add(make_part("ball, left", "sphere", {}, 1000)).rest({{"r", 0.1}}).place({1, 0, 0.3});
+  Part& right = body.add(make_part("right", "sphere", {}, 1000)).rest({{"r", 0.05}}).place({1.15, 0, 0.3});
+  body.weld("rod", point(left, 0, 0), point(right, 0, kPi));
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  scene->appearance.resize(3);
+  scene->hash = 5;
+  return scene;
+}
+
+bool run(Scene& scene, const fs::path& folder, Existing existing = Existing::refuse, long stop_after = -1) {
+  Progress silent;
+  RunOptions options;
+  options.folder = folder;
+  options.existing = existing;
+  options.threads = 1;
+  long steps = 0;
+  if (stop_after >= 0) options.stop = [&] { return steps++ >= stop_after; };
+  Run session(scene, options, silent);
+  const bool complete = session.simulate();
+  session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped);
+  return complete;
+}
+
+std::vector<std::vector<std::string>> table_of(const fs::path& file) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(bytes_of(file));
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells(1);
+    bool quoted = false;
+    for (const char c : line) {
+      if (c == '"')
+        quoted = !quoted;
+      else if (c == ',' && !quoted)
+        cells.emplace_back();
+      else
+        cells.back() += c;
+    }
+    rows.push_back(cells);
+  }
+  return rows;
+}
+
+constexpr const char* kTables[] = {kContactsFile, kContactsTable, kJointImpulsesFile, kJointImpulsesTable};
+
+}  // namespace
+
+TEST_CASE("contacts are told with names, places and forces", "[contact]") {
+  const NewFolder folder;
+  auto scene = falling_scene();
+  REQUIRE(run(*scene, folder / "out"));
+  const auto contacts = table_of(folder / "out" / kContactsTable);
+  REQUIRE(contacts.size() > 20);
+  const auto& header = contacts.front();
+  REQUIRE(header.size() == contact_columns().size());
+  CHECK(header[1] == "a");
+  double weight = 0, lowest = 1, t_last = 0;
+  bool ball = false;
+  for (std::size_t i = 1; i < contacts.size(); ++i) {
+    const auto& row = contacts[i];
+    REQUIRE(row.size() == header.size());
+    CHECK(row[2] == "floor");
+    ball = ball || row[1] == "ball, left";
+    const double t = std::stod(row[0]);
+    CHECK(t >= t_last);
+    t_last = t;
+    CHECK(std::stod(row[8]) == 1);
+    if (row[1] != "box") continue;
+    lowest = std::min(lowest, std::abs(std::stod(row[3])));
+    CHECK(std::stod(row[16]) < 1e-9);
+    if (t > 0.399) weight += std::stod(row[15]);
+  }
+  CHECK(ball);
+  CHECK(lowest == Approx(0.2));  // it stands on its corners
+  CHECK(weight == Approx(9.81 * scene->body.parts()[0]->total_mass()));
+  CHECK(t_last == Approx(0.4));
+  const auto impulses = table_of(folder / "out" / kJointImpulsesTable);
+  REQUIRE(impulses.size() > 1);
+  CHECK(impulses[1][1] == "rod");
+  CHECK(impulses[1].size() == joint_impulse_columns().size());
+
+  const auto layout = nlohmann::json::parse(bytes_of(folder / "out" / kLayoutFile));
+  for (const char* table : kTables) CHECK(layout.at("tables").contains(table));
+  const auto record = nlohmann::json::parse(bytes_of(folder / "out" / kRunFile));
+  for (const char* table : kTables) CHECK(record.dump().find(table) != std::string::npos);
+  REQUIRE(run(*falling_scene(), folder / "out", Existing::force));  // all of it is a run's
+  scene->contacts = false;
+  REQUIRE(run(*scene, folder / "without"));
+  for (const char* table : kTables) CHECK_FALSE(fs::exists(folder / "without" / table));
+}
+
+TEST_CASE("a run that was broken tells the same contacts", "[contact]") {
+  const NewFolder folder;
+  REQUIRE(run(*falling_scene(), folder / "unbroken"));
+  for (const long stop : {0L, 7L, 100L, 133L}) {
+    const fs::path out = folder / std::to_string(stop);
+    CHECK_FALSE(run(*falling_scene(), out, Existing::refuse, stop));
+    REQUIRE(run(*falling_scene(), out, Existing::resume));
+    for (const char* table : kTables) CHECK(bytes_of(out / table) == bytes_of(folder / "unbroken" / table));
+  }
+}

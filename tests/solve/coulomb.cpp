@@ -1,0 +1,56 @@
+// Coulomb's law at one contact: its conditions, over random responses, slow and fast, sticking and sliding.
+#include "catch.h"
+
+#include <cmath>
+
+#include <pliant/solve/coulomb.h>
+
+#include "draws.h"
+
+using namespace pliant;
+using test::Draws;
+
+TEST_CASE("the impulse of a contact meets Coulomb's law", "[coulomb]") {
+  Draws draws(3);
+  int lifted = 0, stuck = 0, slid = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    Mat3<double> J;
+    for (double& entry : J.reshaped()) entry = draws.uniform(-1, 1);
+    const double heavy = std::pow(10, draws.uniform(-3, 3));
+    Mat3<double> W = heavy * (J * J.transpose() + 1e-3 * Mat3<double>::Identity());
+    const Vec3<double> b = draws.vector(1);
+    const double mu = trial % 5 == 0 ? 0 : draws.uniform(0, 1.5);
+    const Vec3<double> p = solve_coulomb(W, b, mu), u = W * p + b;
+    const Eigen::Vector2d pull = p.tail<2>(), slip = u.tail<2>();
+    // Rounding of u, and of where the impulse is on its cone.
+    const double tiny = 1e-13 * (b.norm() + W.norm() * p.norm()), small = 1e-12 * p.norm();
+    REQUIRE(p[0] >= 0);
+    REQUIRE(u[0] >= -tiny);
+    REQUIRE(std::abs(p[0] * u[0]) <= tiny * p.norm());
+    REQUIRE(pull.norm() <= mu * p[0] + small);
+    if (p[0] == 0) {
+      ++lifted;
+    } else if (slip.norm() > 1e-9) {
+      ++slid;
+      REQUIRE(pull.norm() == Approx(mu * p[0]).margin(small));
+      REQUIRE(pull.dot(slip) <= -(1 - 1e-9) * pull.norm() * slip.norm() + tiny * p.norm());
+    } else {
+      ++stuck;
+      REQUIRE(slip.norm() <= tiny);
+    }
+  }
+  CHECK(lifted > 5000);
+  CHECK(stuck > 1000);
+  CHECK(slid > 1000);
+}
+
+TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and slides beyond", "[coulomb]") {
+  const Mat3<double> W = Mat3<double>::Identity() / 2;  // of a point of 2 kg
+  for (const double along : {0.3, 0.7}) {
+    const Vec3<double> p = solve_coulomb(W, {-1, along, 0}, 0.5);
+    CHECK(p[0] == Approx(2).epsilon(1e-15));
+    CHECK(p[1] == Approx(-2 * std::min(along, 0.5)).epsilon(1e-14));
+    CHECK(p[2] == 0);
+  }
+  CHECK(solve_coulomb(W, {1, 3, 0}, 0.5) == Vec3<double>::Zero());
+}
