@@ -161,15 +161,6 @@ class Search {
     return contact;
   }
 
-  /// Whether a normal at an edge points away from the faces that meet there.
-  bool is_between(const ObstacleMesh::Edge& edge, const Vec3<double>& normal) const {
-    const Vec3<double> e =
-        (mesh_.vertices().col(edge.vertex[1]) - mesh_.vertices().col(edge.vertex[0])).normalized();
-    if (normal.dot(e.cross(mesh_.normal(edge.triangle[0]))) < -kBetween) return false;
-    if (edge.triangle[1] < 0) return normal.dot(mesh_.normal(edge.triangle[0])) >= -kBetween;
-    return normal.dot(mesh_.normal(edge.triangle[1]).cross(e)) >= -kBetween;
-  }
-
   void on_edge(const ObstacleMesh::Edge& edge) {
     const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]),
                        way = mesh_.vertices().col(edge.vertex[1]) - start;
@@ -193,7 +184,7 @@ class Search {
       const double s = -y.dot(rate) / rate.squaredNorm();
       if (!(s >= from && s <= to)) return;
       const Vec3<double> gradient = slope(x(s));
-      if (!is_between(edge, -gradient.normalized())) return;
+      if (!mesh_.leads_out(edge, -gradient.normalized(), kBetween)) return;
       if (const std::optional<Contact> contact = touch(x(s), gradient)) add(*contact);
       return;
     }
@@ -225,7 +216,7 @@ class Search {
     Vec3<double> gradient = slope(x(lowest));
     if (down < 0 && up > 0) gradient = (up * before - down * after) / (up - down);
     if (std::abs(gradient.dot(e)) > kBetween * gradient.norm()) return;  // it goes on down beyond the end
-    if (!is_between(edge, -gradient.normalized())) return;
+    if (!mesh_.leads_out(edge, -gradient.normalized(), kBetween)) return;
     const std::optional<Contact> deepest = touch(x(lowest), gradient);
     if (!deepest) return;
     // Where the part is flat along the edge both ends of that carry it.
@@ -250,14 +241,7 @@ class Search {
     if (!box_.contains(x) || !(level(x) * a_.surface.thickness() <= 2 * std::max(most_, 0.0))) return;
     const std::optional<Contact> contact = touch(x, slope(x));
     if (!contact) return;
-    for (const int number : mesh_.corner(v)) {
-      const ObstacleMesh::Edge& edge = mesh_.edges()[at(number)];
-      const Vec3<double> along =
-          mesh_.vertices().col(edge.vertex[0] == v ? edge.vertex[1] : edge.vertex[0]) - x;
-      if (contact->normal.dot(along) > kBetween * along.norm()) return;
-      if (edge.triangle[1] < 0 && contact->normal.dot(mesh_.normal(edge.triangle[0])) < -kBetween) return;
-    }
-    add(*contact);
+    if (mesh_.leads_out(v, contact->normal, kBetween)) add(*contact);
   }
 
   void add(Contact contact) {

@@ -168,7 +168,7 @@ void ObstacleMesh::mark_sharp() {
   for (Edge& edge : edges_) {
     if (edge.triangle[1] < 0) continue;
     const Vec3<double> n = normal(edge.triangle[0]), m = normal(edge.triangle[1]);
-    const double sine = n.cross(m).dot((x_.col(edge.vertex[1]) - x_.col(edge.vertex[0])).normalized());
+    const double sine = n.cross(m).dot(along(edge));
     // Two sides of a plate lie on each other: that is a ridge too.
     edge.sharp = face_of_[at(edge.triangle[0])] != face_of_[at(edge.triangle[1])] &&
                  (sine > 0 || (n.dot(m) < 0 && sine > -kSameNormal));
@@ -178,6 +178,22 @@ void ObstacleMesh::mark_sharp() {
   for (std::vector<int>& corner : corners_)
     if (std::none_of(corner.begin(), corner.end(), [&](int e) { return edges_[at(e)].sharp; }))
       corner.clear();
+}
+
+bool ObstacleMesh::leads_out(const Edge& edge, const Vec3<double>& direction, double sine) const {
+  const Vec3<double> e = along(edge);
+  if (direction.dot(e.cross(normal(edge.triangle[0]))) < -sine) return false;
+  if (edge.triangle[1] < 0) return direction.dot(normal(edge.triangle[0])) >= -sine;
+  return direction.dot(normal(edge.triangle[1]).cross(e)) >= -sine;
+}
+
+bool ObstacleMesh::leads_out(int vertex, const Vec3<double>& direction, double sine) const {
+  const std::vector<int>& meet = corner(vertex);
+  return std::all_of(meet.begin(), meet.end(), [&](int number) {
+    const Edge& edge = edges_[at(number)];
+    const double way = edge.vertex[0] == vertex ? direction.dot(along(edge)) : -direction.dot(along(edge));
+    return way <= sine && (edge.triangle[1] >= 0 || direction.dot(normal(edge.triangle[0])) >= -sine);
+  });
 }
 
 void ObstacleMesh::query(const Eigen::AlignedBox3d& box, std::vector<int>& found) const {

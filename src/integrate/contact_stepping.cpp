@@ -122,7 +122,7 @@ void ContactRecord::clear() {
 }
 
 ContactStepping::ContactStepping(const Dynamics& dynamics)
-    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model()) {
+    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model(), finder_.obstacles()) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
   for (const PartModel& m : dynamics.model().parts())

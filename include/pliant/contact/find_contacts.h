@@ -22,6 +22,9 @@ class ContactFinder {
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
 
+  /// Meshes of the obstacles, in their order; they stay where they are as long as this does.
+  const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
+
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
   /// Velocity of side a against side b at a contact, m/s, world.

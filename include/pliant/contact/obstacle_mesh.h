@@ -36,10 +36,18 @@ class ObstacleMesh {
   /// Of the corners 0 to 1, 1 to 2 and 2 to 0 of a triangle.
   const std::array<int, 3>& edges_of(int triangle) const { return edges_of_[at(triangle)]; }
   Vec3<double> normal(int triangle) const { return normals_.col(triangle); }
+  /// Along an edge, of length 1.
+  Vec3<double> along(const Edge& edge) const {
+    return (x_.col(edge.vertex[1]) - x_.col(edge.vertex[0])).normalized();
+  }
   const std::vector<Face>& faces() const { return faces_; }
   int face_of(int triangle) const { return face_of_[at(triangle)]; }
   /// Numbers of the edges that end in a vertex; empty where none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
+  /// Whether a direction, of length 1, at an edge or a corner points away from the faces that meet there, but
+  /// for this sine.
+  bool leads_out(const Edge& edge, const Vec3<double>& direction, double sine) const;
+  bool leads_out(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether it has no border.
   bool closed() const { return closed_; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
