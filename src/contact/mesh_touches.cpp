@@ -44,10 +44,28 @@ Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, cons
   });
 }
 
-/// The part of a mesh that may be in another one.
+/// The part of a mesh that may be in another one, with what is needed of it again and again.
 struct Candidates {
-  std::vector<int> vertices, edges, triangles;
+  struct Face {
+    Eigen::Vector3i corner;
+    Vec3<double> p0, p1, p2, normal, centre;
+    double radius;  ///< of a ball about the centre that it is in
+  };
+  struct Edge {
+    int from, to;
+    Vec3<double> p, along;
+    Vec3<double> n1, n2, n21;  ///< normals of its triangles, and n2 x n1
+  };
+  std::vector<int> vertices;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
 };
+
+Vec3<double> normal_of(const PlacedMesh& m, int triangle) {
+  const auto corner = m.mesh->triangles().col(triangle);
+  const Vec3<double> p0 = m.x.col(corner[0]), p1 = m.x.col(corner[1]), p2 = m.x.col(corner[2]);
+  return (p1 - p0).cross(p2 - p0).normalized();
+}
 
 /// Of a mesh those that are in a box and, by `height` over its vertices, not below `least`.
 Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const VecX<double>& height,
@@ -55,16 +73,15 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
   Candidates chosen;
   for (int k = 0; k < m.x.cols(); ++k)
     if (height[k] >= least && box.contains(m.x.col(k))) chosen.vertices.push_back(k);
-  const std::vector<ContactMesh::Edge>& edges = m.mesh->edges();
-  for (int k = 0; k < static_cast<int>(edges.size()); ++k) {
-    const ContactMesh::Edge& e = edges[static_cast<std::size_t>(k)];
+  for (const ContactMesh::Edge& e : m.mesh->edges()) {
     if (std::max(height[e.from], height[e.to]) < least || e.right < 0) continue;
     const Vec3<double> from = m.x.col(e.from), to = m.x.col(e.to);
     if ((from.cwiseMax(to).array() < box.min().array()).any() ||
         (from.cwiseMin(to).array() > box.max().array()).any())
       continue;
-    const Vec3<double> across = m.normal.col(e.left).cross(m.normal.col(e.right));
-    if (across.dot(to - from) > kFlat * (to - from).norm()) chosen.edges.push_back(k);
+    const Vec3<double> n1 = normal_of(m, e.left), n2 = normal_of(m, e.right), n21 = n2.cross(n1);
+    if (-n21.dot(to - from) > kFlat * (to - from).norm())
+      chosen.edges.push_back({e.from, e.to, from, to - from, n1, n2, n21});
   }
   const Eigen::Matrix3Xi& triangles = m.mesh->triangles();
   for (int t = 0; t < triangles.cols(); ++t) {
@@ -74,46 +91,66 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
     if ((p0.cwiseMax(p1).cwiseMax(p2).array() < box.min().array()).any() ||
         (p0.cwiseMin(p1).cwiseMin(p2).array() > box.max().array()).any())
       continue;
-    chosen.triangles.push_back(t);
+    const Vec3<double> centre = (p0 + p1 + p2) / 3;
+    const double radius = std::sqrt(
+        std::max({(p0 - centre).squaredNorm(), (p1 - centre).squaredNorm(), (p2 - centre).squaredNorm()}));
+    chosen.faces.push_back({corner, p0, p1, p2, normal_of(m, t), centre, radius});
   }
   return chosen;
 }
 
-/// Vertices of one mesh that are inside the other. one_is_a: which is which in what is found.
-void vertices_inside(const PlacedMesh& one, const std::vector<int>& vertices, const PlacedMesh& other,
-                     const std::vector<int>& triangles, bool one_is_a, std::vector<MeshTouch>& found) {
+/// Leaves those that are not below `least`.
+void keep_above(Candidates& chosen, const VecX<double>& height, double least) {
+  auto keep = [](auto& all, auto&& top) {
+    all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return !top(one); }), all.end());
+  };
+  keep(chosen.vertices, [&](int k) { return height[k] >= least; });
+  keep(chosen.edges,
+       [&](const Candidates::Edge& e) { return std::max(height[e.from], height[e.to]) >= least; });
+  keep(chosen.faces, [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= least; });
+}
+
+/// Vertices of one mesh that are behind faces of the other. one_is_a: which is which in what is found.
+void vertices_inside(const PlacedMesh& one, const std::vector<int>& vertices,
+                     const std::vector<Candidates::Face>& faces, bool one_is_a,
+                     std::vector<MeshTouch>& found) {
   for (const int k : vertices) {
     const Vec3<double> x = one.x.col(k);
-    double nearest = std::numeric_limits<double>::infinity(), gap = 0;
-    int which = -1;
+    double nearest = std::numeric_limits<double>::infinity(), reach = nearest, gap = 0;
+    const Candidates::Face* which = nullptr;
     Vec3<double> weight;
-    for (const int t : triangles) {
-      const auto corner = other.mesh->triangles().col(t);
-      const Vec3<double> p0 = other.x.col(corner[0]);
-      const double height = other.normal.col(t).dot(x - p0);
-      if (height * height > nearest * (1 + kTie)) continue;
-      const Vec3<double> p1 = other.x.col(corner[1]), p2 = other.x.col(corner[2]);
-      const Vec3<double> w = nearest_weights(x, p0, p1, p2);
-      const double distance = (w[0] * p0 + w[1] * p1 + w[2] * p2 - x).squaredNorm();
+    auto consider = [&](const Candidates::Face& face) {
+      const double height = face.normal.dot(x - face.p0);
+      const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
+      const double distance = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
       // Where several are as near, the one that x stands highest over or below tells inside from outside.
       const bool nearer = distance < nearest * (1 - kTie);
-      if (!nearer && !(distance < nearest * (1 + kTie) && std::abs(height) > std::abs(gap))) continue;
+      if (!nearer && !(distance < nearest * (1 + kTie) && std::abs(height) > std::abs(gap))) return;
       nearest = distance;
+      reach = std::sqrt(nearest) * (1 + kTie);
       gap = height;
-      which = t;
+      which = &face;
       weight = w;
+    };
+    // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
+    const auto first = std::min_element(faces.begin(), faces.end(), [&](const auto& left, const auto& right) {
+      return (left.centre - x).squaredNorm() < (right.centre - x).squaredNorm();
+    });
+    if (first != faces.end()) consider(*first);
+    for (const Candidates::Face& face : faces) {
+      const double least = reach + face.radius;
+      if ((x - face.centre).squaredNorm() <= least * least) consider(face);
     }
-    if (which < 0 || !(gap < 0) || !(nearest <= gap * gap * (1 + kStraight))) continue;
+    if (which == nullptr || !(gap < 0) || !(nearest <= gap * gap * (1 + kStraight))) continue;
     MeshTouch touch;
     MeshPoint point, face;
     point.vertex[0] = k;
-    const auto corner = other.mesh->triangles().col(which);
-    face.vertex = {corner[0], corner[1], corner[2]};
+    face.vertex = {which->corner[0], which->corner[1], which->corner[2]};
     face.weight = weight;
     touch.a = one_is_a ? point : face;
     touch.b = one_is_a ? face : point;
     touch.x = x;
-    touch.normal = one_is_a ? other.normal.col(which) : Vec3<double>(-other.normal.col(which));
+    touch.normal = one_is_a ? which->normal : Vec3<double>(-which->normal);
     touch.gap = gap;
     found.push_back(touch);
   }
@@ -121,70 +158,67 @@ void vertices_inside(const PlacedMesh& one, const std::vector<int>& vertices, co
 
 /// Edges of a and b that have gone across each other: of convex surfaces those whose normals, those of b
 /// turned round, cross on the sphere, so that their distance is one of the bodies.
-void edges_across(const PlacedMesh& a, const std::vector<int>& edges_a, const PlacedMesh& b,
-                  const std::vector<int>& edges_b, std::vector<MeshTouch>& found) {
-  for (const int i : edges_a) {
-    const ContactMesh::Edge& e = a.mesh->edges()[static_cast<std::size_t>(i)];
-    const Vec3<double> n1 = a.normal.col(e.left), n2 = a.normal.col(e.right), n21 = n2.cross(n1);
-    const Vec3<double> p = a.x.col(e.from), along = a.x.col(e.to) - p;
-    for (const int j : edges_b) {
-      const ContactMesh::Edge& f = b.mesh->edges()[static_cast<std::size_t>(j)];
-      const Vec3<double> m1 = -b.normal.col(f.left), m2 = -b.normal.col(f.right);
-      const double above_1 = m1.dot(n21), above_2 = m2.dot(n21);
+void edges_across(const std::vector<Candidates::Edge>& of_a, const std::vector<Candidates::Edge>& of_b,
+                  std::vector<MeshTouch>& found) {
+  for (const Candidates::Edge& e : of_a)
+    for (const Candidates::Edge& f : of_b) {
+      const double above_1 = -f.n1.dot(e.n21), above_2 = -f.n2.dot(e.n21);
       if (!(above_1 * above_2 < 0)) continue;
-      const Vec3<double> m21 = m2.cross(m1);
-      const double beside_1 = n1.dot(m21), beside_2 = n2.dot(m21);
+      const double beside_1 = e.n1.dot(f.n21), beside_2 = e.n2.dot(f.n21);
       if (!(beside_1 * beside_2 < 0 && above_1 * beside_2 > 0)) continue;
-      const Vec3<double> r = b.x.col(f.from), way = b.x.col(f.to) - r;
-      Vec3<double> normal = along.cross(way);
-      const double across = normal.norm(), length = std::min(along.norm(), way.norm());
-      if (!(across > kParallel * along.norm() * way.norm())) continue;
-      normal /= normal.dot(m1 + m2) < 0 ? across : -across;
-      const Vec3<double> d = p - r;
+      Vec3<double> normal = e.along.cross(f.along);
+      const double across = normal.norm(), length_a = e.along.norm(), length_b = f.along.norm();
+      if (!(across > kParallel * length_a * length_b)) continue;
+      normal /= normal.dot(f.n1 + f.n2) > 0 ? across : -across;
+      const Vec3<double> d = e.p - f.p;
       const double gap = normal.dot(d);
-      if (!(gap < 0 && gap > -kEdgeDepth * length)) continue;
+      if (!(gap < 0 && gap > -kEdgeDepth * std::min(length_a, length_b))) continue;
       // The feet of the common perpendicular.
-      const double aa = along.dot(along), ab = along.dot(way), bb = way.dot(way), det = aa * bb - ab * ab;
-      const double s = (ab * way.dot(d) - bb * along.dot(d)) / det,
-                   u = (aa * way.dot(d) - ab * along.dot(d)) / det;
+      const double aa = length_a * length_a, ab = e.along.dot(f.along), bb = length_b * length_b,
+                   det = aa * bb - ab * ab, ad = e.along.dot(d), bd = f.along.dot(d);
+      const double s = (ab * bd - bb * ad) / det, u = (aa * bd - ab * ad) / det;
       if (!(s >= 0 && s <= 1 && u >= 0 && u <= 1)) continue;
       MeshTouch touch;
       touch.a.vertex = {e.from, e.to, -1};
       touch.a.weight = {1 - s, s, 0};
       touch.b.vertex = {f.from, f.to, -1};
       touch.b.weight = {1 - u, u, 0};
-      touch.x = p + s * along;
+      touch.x = e.p + s * e.along;
       touch.normal = normal;
       touch.gap = gap;
       found.push_back(touch);
     }
-  }
 }
 
 }  // namespace
 
 PlacedMesh::PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at)
-    : mesh(&of), x(std::move(at)), normal(3, of.triangles().cols()) {
-  box = Eigen::AlignedBox3d(x.rowwise().minCoeff(), x.rowwise().maxCoeff());
-  for (Eigen::Index t = 0; t < normal.cols(); ++t) {
-    const auto corner = of.triangles().col(t);
-    const Vec3<double> p0 = x.col(corner[0]), p1 = x.col(corner[1]), p2 = x.col(corner[2]);
-    normal.col(t) = (p1 - p0).cross(p2 - p0).normalized();
-  }
-}
+    : mesh(&of), x(std::move(at)), box(x.rowwise().minCoeff(), x.rowwise().maxCoeff()) {}
 
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found) {
   if (!a.box.intersects(b.box)) return;
   // Nothing of a that is behind all of b touches it, whatever the direction; the same the other way round.
-  const Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
-  const VecX<double> along_a = a.x.transpose() * towards, along_b = b.x.transpose() * towards;
-  const double end_of_a = along_a.maxCoeff(), start_of_b = along_b.minCoeff();
+  Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
+  VecX<double> along_a = a.x.transpose() * towards, along_b = -(b.x.transpose() * towards);
+  double end_of_a = along_a.maxCoeff(), start_of_b = -along_b.maxCoeff();
   if (end_of_a < start_of_b) return;
-  const Candidates of_a = candidates(a, b.box, along_a, start_of_b);
-  const Candidates of_b = candidates(b, a.box, -along_b, -end_of_a);
-  vertices_inside(a, of_a.vertices, b, of_b.triangles, true, found);
-  vertices_inside(b, of_b.vertices, a, of_a.triangles, false, found);
-  edges_across(a, of_a.edges, b, of_b.edges, found);
+  Candidates of_a = candidates(a, b.box, along_a, start_of_b),
+             of_b = candidates(b, a.box, along_b, -end_of_a);
+  // Those that are left tell a direction that parts the bodies better.
+  towards.setZero();
+  for (const Candidates::Face& face : of_a.faces) towards += face.normal;
+  for (const Candidates::Face& face : of_b.faces) towards -= face.normal;
+  towards.normalize();
+  along_a = a.x.transpose() * towards;
+  along_b = -(b.x.transpose() * towards);
+  end_of_a = along_a.maxCoeff();
+  start_of_b = -along_b.maxCoeff();
+  if (end_of_a < start_of_b) return;
+  keep_above(of_a, along_a, start_of_b);
+  keep_above(of_b, along_b, -end_of_a);
+  vertices_inside(a, of_a.vertices, of_b.faces, true, found);
+  vertices_inside(b, of_b.vertices, of_a.faces, false, found);
+  edges_across(of_a.edges, of_b.edges, found);
 }
 
 }  // namespace pliant
