@@ -20,12 +20,12 @@ namespace {
 /// many units of rounding of the velocities themselves.
 constexpr double kExact = 1e-13, kUlps = 8;
 /// The same where nodes are pushed, many at a time and lightly coupled.
-constexpr double kExactOfNodes = 1e-8;
+constexpr double kExactOfNodes = 1e-7;
 constexpr int kMostNewton = 20;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 100;
+constexpr std::size_t kMostDense = 100, kMostDenseOfNodes = 30;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
@@ -155,7 +155,7 @@ void ContactProblem::add_side(Block& block, const ContactSide& side, const Vec3<
   const PartWorkspace<double>& w = work_.parts[at(side.part)];
   const std::size_t mover = mover_of(side.part);
   const Mat3<double> D = sign * block.axes.transpose() * w.R;
-  Side s{mover, first_in(movers_[mover], side.part), MatX<double>(3, m.n_x())};
+  Side s{mover, first_in(movers_[mover], side.part), Eigen::Matrix3Xd(3, m.n_x())};
   s.J.leftCols<3>() = D;
   s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (x - w.c));
   if (m.n_s > 0) {
@@ -180,7 +180,7 @@ void ContactProblem::add_limits(const State& state) {
         if (m.local != nullptr || mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
         Block block;
         block.rows = 1;
-        Side side{i, first_in(mover, part), MatX<double>::Zero(3, m.n_x())};
+        Side side{i, first_in(mover, part), Eigen::Matrix3Xd::Zero(3, m.n_x())};
         side.J(0, 6 + k) = -mode;
         block.sides.push_back(std::move(side));
         blocks_.push_back(std::move(block));
@@ -251,7 +251,10 @@ void ContactProblem::complete(Block& block) {
 Vec3<double> ContactProblem::velocity(const Block& block) const {
   Vec3<double> u = block.constant;
   for (const Side& side : block.sides)
-    u.noalias() += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
+    if (movers_[side.mover].node >= 0)
+      u.noalias() += side.J.leftCols<3>() * movers_[side.mover].x.head<3>();
+    else
+      u.noalias() += side.J * movers_[side.mover].x.segment(side.first, side.J.cols());
   if (softness_ > 0) u += softness_ * block.W.diagonal().cwiseProduct(block.p);
   return u;
 }
@@ -266,7 +269,10 @@ Vec3<double> ContactProblem::met(const Block& block, const Vec3<double>& u) cons
 
 void ContactProblem::push(const Block& block, const Vec3<double>& impulse) {
   for (const Response& response : block.responses)
-    movers_[response.mover].x.noalias() += response.Y * impulse.head(block.rows);
+    if (movers_[response.mover].node >= 0)
+      movers_[response.mover].x.head<3>().noalias() += response.Y.topLeftCorner<3, 3>() * impulse;
+    else
+      movers_[response.mover].x.noalias() += response.Y * impulse.head(block.rows);
 }
 
 std::vector<ContactProblem::Cluster> ContactProblem::clusters() {
@@ -329,9 +335,9 @@ void ContactProblem::set_scale(Cluster& cluster) const {
           terms, side.J.lpNorm<Eigen::Infinity>() *
                      movers_[side.mover].x.segment(side.first, side.J.cols()).lpNorm<Eigen::Infinity>());
   }
-  const bool nodes = std::any_of(cluster.movers.begin(), cluster.movers.end(),
-                                 [&](std::size_t i) { return movers_[i].node >= 0; });
-  cluster.exact = std::max((nodes ? kExactOfNodes : kExact) * scale,
+  cluster.nodes = std::any_of(cluster.movers.begin(), cluster.movers.end(),
+                              [&](std::size_t i) { return movers_[i].node >= 0; });
+  cluster.exact = std::max((cluster.nodes ? kExactOfNodes : kExact) * scale,
                            kUlps * std::numeric_limits<double>::epsilon() * terms);
   cluster.allowed =
       std::max(cluster.exact, (cluster.blocks.size() > kMostDense ? kLeftOfMany : kLeft) * scale);
@@ -528,7 +534,7 @@ bool ContactProblem::relax(const Cluster& cluster, int most, int history, int& s
 /// Returns whether it found the solution.
 bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
-  const bool dense = cluster.blocks.size() <= kMostDense;
+  const bool dense = cluster.blocks.size() <= (cluster.nodes ? kMostDenseOfNodes : kMostDense);
   for (const auto& [most, history] : kRounds) {
     if (!dense && history == 0) continue;  // it would take too long
     if (relax(cluster, most, history, sweeps)) return true;
@@ -623,23 +629,29 @@ void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
 
 void ContactProblem::part_bodies(double most) {
   begin_.clear();
+  for (std::size_t k = 0; k < blocks_.size(); ++k) {
+    Block& block = blocks_[k];
+    block.mu = 0;
+    block.p.setZero();
+    block.constant.setZero();
+    if (k >= contacts_.size()) continue;
+    double gap = contacts_[k].gap;
+    for (const Side& side : block.sides)
+      if (const VecX<double>& shift = movers_[side.mover].shift; shift.size() > 0)
+        gap += side.J.row(0).dot(shift.segment(side.first, side.J.cols()));
+    block.constant[0] = std::max(gap, -most);
+  }
   std::vector<VecX<double>> rates;
   for (Mover& mover : movers_) {
-    rates.push_back(mover.before);
-    mover.before.setZero();
+    rates.push_back(mover.x);
     mover.x.setZero();
-  }
-  for (std::size_t k = 0; k < blocks_.size(); ++k) {
-    blocks_[k].mu = 0;
-    blocks_[k].p.setZero();
-    blocks_[k].constant.setZero();
-    if (k < contacts_.size()) blocks_[k].constant[0] = std::max(contacts_[k].gap, -most);
   }
   ContactSolution solution;
   iterate(solution);
   for (std::size_t k = 0; k < movers_.size(); ++k) {
-    movers_[k].shift = movers_[k].x;
-    movers_[k].before = movers_[k].x = rates[k];
+    Mover& mover = movers_[k];
+    mover.shift = mover.shift.size() > 0 ? VecX<double>(mover.shift + mover.x) : mover.x;
+    mover.x = rates[k];
   }
 }
 

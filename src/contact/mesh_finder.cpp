@@ -15,8 +15,9 @@ namespace {
 
 /// Share of the thinner of two parts that they may move against each other in a step.
 constexpr double kThinShare = 0.4;
-/// An obstacle holds what is no deeper behind it than this share of the part's thickness.
-constexpr double kDeepest = 0.5;
+/// An obstacle holds what is no deeper behind it than this share of the part's thickness: beyond may be the
+/// far side of the part, over a plate that it lies on. In a step it moves by less.
+constexpr double kDeepest = 0.25, kStepShare = 0.2;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -200,7 +201,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     const Swept& a = all.at(on.part);
     if (!on.mesh->comes_near(a.c, a.reach)) continue;
     near.empty = false;
-    const double way = h * a.speed, thin = kThinShare * meshes_.at(on.part).thickness();
+    const double way = h * a.speed, thin = kStepShare * meshes_.at(on.part).thickness();
     if (way > thin) near.h = std::min(near.h, h * thin / way);
   }
   for (const Pair& pair : pairs_) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -51,17 +50,37 @@ Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, cons
   });
 }
 
-/// An edge that sticks out, and the normals to its left and right.
-struct Ridge {
-  int from, to;
-  Vec3<double> left, right;
+/// The part of a mesh that may be in another one, with what is needed of it again and again.
+struct Candidates {
+  struct Face {
+    Eigen::Vector3i corner;
+    Vec3<double> p0, p1, p2, normal, centre;
+    double radius;  ///< of a ball about the centre that it is in
+  };
+  struct Edge {
+    int from, to;
+    Vec3<double> p, along;
+    Vec3<double> n1, n2, n21;  ///< normals of its triangles, and n2 x n1
+  };
+  std::vector<int> vertices;
+  std::vector<Face> faces;
+  std::vector<Edge> edges;
 };
 
-/// The part of a mesh that may be in another one.
-struct Candidates {
-  std::vector<int> vertices, triangles;
-  std::vector<Ridge> ridges;
-};
+Vec3<double> normal_of(const PlacedMesh& m, int triangle) {
+  const auto corner = m.mesh->triangles().col(triangle);
+  const Vec3<double> p0 = m.x.col(corner[0]), p1 = m.x.col(corner[1]), p2 = m.x.col(corner[2]);
+  return (p1 - p0).cross(p2 - p0).normalized();
+}
+
+Candidates::Face face_of(const Eigen::Vector3i& corner, const Eigen::Matrix3Xd& x,
+                         const Vec3<double>& normal) {
+  const Vec3<double> p0 = x.col(corner[0]), p1 = x.col(corner[1]), p2 = x.col(corner[2]),
+                     centre = (p0 + p1 + p2) / 3;
+  const double radius = std::sqrt(
+      std::max({(p0 - centre).squaredNorm(), (p1 - centre).squaredNorm(), (p2 - centre).squaredNorm()}));
+  return {corner, p0, p1, p2, normal, centre, radius};
+}
 
 /// Of a mesh those that are in a box and, by `height` over its vertices, not below `least`.
 Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const VecX<double>& height,
@@ -75,9 +94,9 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
     if ((from.cwiseMax(to).array() < box.min().array()).any() ||
         (from.cwiseMin(to).array() > box.max().array()).any())
       continue;
-    const Vec3<double> left = m.normal.col(e.left), right = m.normal.col(e.right);
-    if (left.cross(right).dot(to - from) > kFlat * (to - from).norm())
-      chosen.ridges.push_back({e.from, e.to, left, right});
+    const Vec3<double> n1 = normal_of(m, e.left), n2 = normal_of(m, e.right), n21 = n2.cross(n1);
+    if (-n21.dot(to - from) > kFlat * (to - from).norm())
+      chosen.edges.push_back({e.from, e.to, from, to - from, n1, n2, n21});
   }
   const Eigen::Matrix3Xi& triangles = m.mesh->triangles();
   for (int t = 0; t < triangles.cols(); ++t) {
@@ -87,47 +106,93 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
     if ((p0.cwiseMax(p1).cwiseMax(p2).array() < box.min().array()).any() ||
         (p0.cwiseMin(p1).cwiseMin(p2).array() > box.max().array()).any())
       continue;
-    chosen.triangles.push_back(t);
+    chosen.faces.push_back(face_of(corner, m.x, normal_of(m, t)));
   }
   return chosen;
 }
 
-/// Vertices of one mesh, at these places, that are inside the other. one_is_a: which is which in what is
-/// found.
-void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices, const PlacedMesh& other,
-                     const std::vector<int>& triangles, bool one_is_a, std::vector<MeshTouch>& found) {
+/// Leaves those that are not below `least`.
+void keep_above(Candidates& chosen, const VecX<double>& height, double least) {
+  auto keep = [](auto& all, auto&& top) {
+    all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return !top(one); }), all.end());
+  };
+  keep(chosen.vertices, [&](int k) { return height[k] >= least; });
+  keep(chosen.edges,
+       [&](const Candidates::Edge& e) { return std::max(height[e.from], height[e.to]) >= least; });
+  keep(chosen.faces, [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= least; });
+}
+
+/// The face that a point is nearest to.
+struct NearestFace {
+  const Candidates::Face* face = nullptr;
+  Vec3<double> weight = Vec3<double>::Zero();               ///< of its corners in the point of it
+  double square = std::numeric_limits<double>::infinity();  ///< of the distance, m^2
+  double gap = 0;                                           ///< height over its plane, m
+
+  /// The point of it.
+  Vec3<double> foot() const { return weight[0] * face->p0 + weight[1] * face->p1 + weight[2] * face->p2; }
+  bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraight); }
+};
+
+/// Of those that count.
+template <class F>
+NearestFace nearest_face(const Vec3<double>& x, const std::vector<Candidates::Face>& faces, F&& counts) {
+  NearestFace best;
+  double reach = std::numeric_limits<double>::infinity();
+  auto consider = [&](const Candidates::Face& face) {
+    const double height = face.normal.dot(x - face.p0);
+    const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
+    const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
+    // Where several are as near, the one that x stands highest over or below tells inside from outside.
+    const bool nearer = square < best.square * (1 - kTie);
+    if (!nearer && !(square < best.square * (1 + kTie) && std::abs(height) > std::abs(best.gap))) return;
+    best = {&face, w, square, height};
+    reach = std::sqrt(square) * (1 + kTie);
+  };
+  // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
+  const Candidates::Face* first = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidates::Face& face : faces) {
+    const double square = (face.centre - x).squaredNorm();
+    if (!(square < least) || !counts(face)) continue;
+    least = square;
+    first = &face;
+  }
+  if (first == nullptr) return best;
+  consider(*first);
+  for (const Candidates::Face& face : faces) {
+    const double most = reach + face.radius;
+    if ((x - face.centre).squaredNorm() <= most * most && counts(face)) consider(face);
+  }
+  return best;
+}
+
+/// Vertices of one mesh that are behind faces of the other. all: these are all of its faces, so
+/// that what is behind one is inside even where another one meets it in a dent. one_is_a: which is which in
+/// what is found.
+void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
+                     const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
+                     std::vector<MeshTouch>& found) {
   for (const int k : vertices) {
     const Vec3<double> x = one.col(k);
-    double nearest = std::numeric_limits<double>::infinity(), gap = 0;
-    int which = -1;
-    Vec3<double> weight;
-    for (const int t : triangles) {
-      const auto corner = other.mesh->triangles().col(t);
-      const Vec3<double> p0 = other.x.col(corner[0]);
-      const double height = other.normal.col(t).dot(x - p0);
-      if (height * height > nearest * (1 + kTie)) continue;
-      const Vec3<double> p1 = other.x.col(corner[1]), p2 = other.x.col(corner[2]);
-      const Vec3<double> w = nearest_weights(x, p0, p1, p2);
-      const double distance = (w[0] * p0 + w[1] * p1 + w[2] * p2 - x).squaredNorm();
-      // Where several are as near, the one that x stands highest over or below tells inside from outside.
-      const bool nearer = distance < nearest * (1 - kTie);
-      if (!nearer && !(distance < nearest * (1 + kTie) && std::abs(height) > std::abs(gap))) continue;
-      nearest = distance;
-      gap = height;
-      which = t;
-      weight = w;
+    const NearestFace nearest = nearest_face(x, faces, [](const Candidates::Face&) { return true; });
+    if (!(nearest.gap < 0) || !(all || nearest.is_straight_behind())) continue;
+    const Candidates::Face& which = *nearest.face;
+    Vec3<double> normal = which.normal;
+    double gap = nearest.gap;
+    if (!nearest.is_straight_behind()) {
+      gap = -std::sqrt(nearest.square);
+      normal = (x - nearest.foot()) / gap;
     }
-    if (which < 0 || !(gap < 0) || !(nearest <= gap * gap * (1 + kStraight))) continue;
     MeshTouch touch;
     MeshPoint point, face;
     point.vertex[0] = k;
-    const auto corner = other.mesh->triangles().col(which);
-    face.vertex = {corner[0], corner[1], corner[2]};
-    face.weight = weight;
+    face.vertex = {which.corner[0], which.corner[1], which.corner[2]};
+    face.weight = nearest.weight;
     touch.a = one_is_a ? point : face;
     touch.b = one_is_a ? face : point;
     touch.x = x;
-    touch.normal = one_is_a ? other.normal.col(which) : Vec3<double>(-other.normal.col(which));
+    touch.normal = one_is_a ? normal : Vec3<double>(-normal);
     touch.gap = gap;
     found.push_back(touch);
   }
@@ -135,46 +200,40 @@ void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertic
 
 /// Edges of a and b that have gone across each other: of convex surfaces those whose normals, those of b
 /// turned round, cross on the sphere, so that their distance is one of the bodies.
-void edges_across(const Eigen::Matrix3Xd& a, const std::vector<Ridge>& ridges_a, const Eigen::Matrix3Xd& b,
-                  const std::vector<Ridge>& ridges_b, std::vector<MeshTouch>& found) {
-  for (const Ridge& e : ridges_a) {
-    const Vec3<double>&n1 = e.left, &n2 = e.right;
-    const Vec3<double> n21 = n2.cross(n1), p = a.col(e.from), along = a.col(e.to) - p;
-    for (const Ridge& f : ridges_b) {
-      const Vec3<double> m1 = -f.left, m2 = -f.right;
-      const double above_1 = m1.dot(n21), above_2 = m2.dot(n21);
+void edges_across(const std::vector<Candidates::Edge>& of_a, const std::vector<Candidates::Edge>& of_b,
+                  std::vector<MeshTouch>& found) {
+  for (const Candidates::Edge& e : of_a)
+    for (const Candidates::Edge& f : of_b) {
+      const double above_1 = -f.n1.dot(e.n21), above_2 = -f.n2.dot(e.n21);
       if (!(above_1 * above_2 < 0)) continue;
-      const Vec3<double> m21 = m2.cross(m1);
-      const double beside_1 = n1.dot(m21), beside_2 = n2.dot(m21);
+      const double beside_1 = e.n1.dot(f.n21), beside_2 = e.n2.dot(f.n21);
       if (!(beside_1 * beside_2 < 0 && above_1 * beside_2 > 0)) continue;
-      const Vec3<double> r = b.col(f.from), way = b.col(f.to) - r;
-      Vec3<double> normal = along.cross(way);
-      const double across = normal.norm(), length = std::min(along.norm(), way.norm());
-      if (!(across > kParallel * along.norm() * way.norm())) continue;
-      normal /= normal.dot(m1 + m2) < 0 ? across : -across;
-      const Vec3<double> d = p - r;
+      Vec3<double> normal = e.along.cross(f.along);
+      const double across = normal.norm(), length_a = e.along.norm(), length_b = f.along.norm();
+      if (!(across > kParallel * length_a * length_b)) continue;
+      normal /= normal.dot(f.n1 + f.n2) > 0 ? across : -across;
+      const Vec3<double> d = e.p - f.p;
       const double gap = normal.dot(d);
-      if (!(gap < 0 && gap > -kEdgeDepth * length)) continue;
+      if (!(gap < 0 && gap > -kEdgeDepth * std::min(length_a, length_b))) continue;
       // The feet of the common perpendicular.
-      const double aa = along.dot(along), ab = along.dot(way), bb = way.dot(way), det = aa * bb - ab * ab;
-      const double s = (ab * way.dot(d) - bb * along.dot(d)) / det,
-                   u = (aa * way.dot(d) - ab * along.dot(d)) / det;
+      const double aa = length_a * length_a, ab = e.along.dot(f.along), bb = length_b * length_b,
+                   det = aa * bb - ab * ab, ad = e.along.dot(d), bd = f.along.dot(d);
+      const double s = (ab * bd - bb * ad) / det, u = (aa * bd - ab * ad) / det;
       if (!(s >= 0 && s <= 1 && u >= 0 && u <= 1)) continue;
       MeshTouch touch;
       touch.a.vertex = {e.from, e.to, -1};
       touch.a.weight = {1 - s, s, 0};
       touch.b.vertex = {f.from, f.to, -1};
       touch.b.weight = {1 - u, u, 0};
-      touch.x = p + s * along;
+      touch.x = e.p + s * e.along;
       touch.normal = normal;
       touch.gap = gap;
       found.push_back(touch);
     }
-  }
 }
 
 /// Whether a point of a triangle, told by its weights, is on an edge or a corner from which nothing sticks
-/// out: behind it there are points that are behind no triangle.
+/// out: behind it there are points that are straight behind no triangle.
 bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weight) {
   std::array<int, 3> on{};
   std::size_t n = 0;
@@ -186,59 +245,59 @@ bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weigh
   return !m.edges()[static_cast<std::size_t>(m.edges_of(triangle)[edge])].sharp;
 }
 
-/// Vertices of a that are behind triangles that they are turned towards.
+/// Vertices of a that are behind triangles that they are turned towards; of a plate those that it parts from
+/// the middle of a.
 void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
                      std::vector<MeshTouch>& found) {
+  std::vector<Candidates::Face> faces;
+  std::vector<int> numbers;
+  const Vec3<double> middle = a.x.rowwise().mean();
+  for (const int t : triangles) {
+    const Vec3<double> p0 = b.vertices().col(b.triangles()(0, t)), normal = b.normal(t);
+    if (b.is_plate() && normal.dot(middle - p0) < 0) continue;
+    faces.push_back(face_of(b.triangles().col(t), b.vertices(), normal));
+    numbers.push_back(t);
+  }
   Eigen::Matrix3Xd out = Eigen::Matrix3Xd::Zero(3, a.x.cols());
-  for (Eigen::Index t = 0; t < a.normal.cols(); ++t)
-    for (Eigen::Index k = 0; k < 3; ++k) out.col(a.mesh->triangles()(k, t)) += a.normal.col(t);
+  for (Eigen::Index t = 0; t < a.mesh->triangles().cols(); ++t) {
+    const auto corner = a.mesh->triangles().col(t);
+    const Vec3<double> p0 = a.x.col(corner[0]);
+    const Vec3<double> normal =
+        (Vec3<double>(a.x.col(corner[1])) - p0).cross(Vec3<double>(a.x.col(corner[2])) - p0);
+    for (Eigen::Index k = 0; k < 3; ++k) out.col(corner[k]) += normal;
+  }
   for (int k = 0; k < a.x.cols(); ++k) {
-    const Vec3<double> x = a.x.col(k);
-    double nearest = std::numeric_limits<double>::infinity(), gap = 0;
-    int which = -1;
-    Vec3<double> foot, weight;
-    for (const int t : triangles) {
-      const Vec3<double> normal = b.normal(t);
-      if (normal.dot(out.col(k)) >= 0) continue;
-      const auto corner = b.triangles().col(t);
-      const Vec3<double> p0 = b.vertices().col(corner[0]);
-      const double height = normal.dot(x - p0);
-      if (height * height > nearest * (1 + kTie)) continue;
-      const Vec3<double> p1 = b.vertices().col(corner[1]), p2 = b.vertices().col(corner[2]);
-      const Vec3<double> w = nearest_weights(x, p0, p1, p2), there = w[0] * p0 + w[1] * p1 + w[2] * p2;
-      const double distance = (there - x).squaredNorm();
-      const bool nearer = distance < nearest * (1 - kTie);
-      if (!nearer && !(distance < nearest * (1 + kTie) && std::abs(height) > std::abs(gap))) continue;
-      nearest = distance;
-      gap = height;
-      which = t;
-      foot = there;
-      weight = w;
-    }
-    if (which < 0 || !(gap < 0)) continue;
+    const Vec3<double> x = a.x.col(k), outward = out.col(k);
+    const NearestFace nearest =
+        nearest_face(x, faces, [&](const Candidates::Face& face) { return face.normal.dot(outward) < 0; });
+    if (!(nearest.gap < 0)) continue;
     MeshTouch touch;
     touch.a.vertex[0] = k;
     touch.x = x;
-    touch.gap = gap;
-    touch.normal = b.normal(which);
-    if (nearest > gap * gap * (1 + kStraight)) {
-      if (!is_in_valley(b, which, weight)) continue;
-      touch.gap = -std::sqrt(nearest);
-      touch.normal = (x - foot) / touch.gap;
+    touch.gap = nearest.gap;
+    touch.normal = nearest.face->normal;
+    if (b.is_plate()) {
+      const double share = nearest.gap / (nearest.gap - touch.normal.dot(middle - nearest.face->p0));
+      const Vec3<double> across = x + share * (middle - x);
+      const double near = kTie * b.box().diagonal().norm();
+      if (std::none_of(numbers.begin(), numbers.end(),
+                       [&](int t) { return (b.nearest(t, across) - across).norm() <= near; }))
+        continue;
+    }
+    if (!nearest.is_straight_behind()) {
+      const auto which = static_cast<std::size_t>(nearest.face - faces.data());
+      if (!is_in_valley(b, numbers[which], nearest.weight)) continue;
+      touch.gap = -std::sqrt(nearest.square);
+      touch.normal = (x - nearest.foot()) / touch.gap;
     }
     found.push_back(touch);
   }
 }
 
-/// What sticks out of some triangles of an obstacle; a border does to its side, both sides of a plate to
-/// their front and back.
-struct Sharp {
-  std::vector<int> corners;
-  std::vector<Ridge> ridges;
-};
-
-Sharp sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
-  Sharp sharp;
+/// What sticks out of some triangles of an obstacle: the border does so to its side, the edge of a plate from
+/// its front to its side and from there to its back.
+Candidates sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
+  Candidates sharp;
   std::vector<int> edges;
   for (const int t : triangles)
     for (const int e : m.edges_of(t))
@@ -250,72 +309,79 @@ Sharp sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
   once(edges);
   for (const int number : edges) {
     const ObstacleMesh::Edge& e = m.edges()[static_cast<std::size_t>(number)];
-    const Vec3<double> left = m.normal(e.triangle[0]), out = m.along(e).cross(left);
-    for (const int v : e.vertex) sharp.corners.push_back(v);
-    if (e.triangle[1] >= 0 && left.dot(m.normal(e.triangle[1])) > kBackToBack) {
-      sharp.ridges.push_back({e.vertex[0], e.vertex[1], left, m.normal(e.triangle[1])});
-      continue;
+    const Vec3<double> p = m.vertices().col(e.vertex[0]),
+                       along = Vec3<double>(m.vertices().col(e.vertex[1])) - p,
+                       front = m.normal(e.triangle[0]), side = m.along(e).cross(front);
+    auto add = [&](const Vec3<double>& n1, const Vec3<double>& n2) {
+      sharp.edges.push_back({e.vertex[0], e.vertex[1], p, along, n1, n2, n2.cross(n1)});
+    };
+    sharp.vertices.insert(sharp.vertices.end(), e.vertex.begin(), e.vertex.end());
+    if (e.triangle[1] < 0) {
+      add(front, side);
+    } else if (const Vec3<double> back = m.normal(e.triangle[1]); front.dot(back) > kBackToBack) {
+      add(front, back);
+    } else {
+      add(front, side);
+      add(side, back);
     }
-    sharp.ridges.push_back({e.vertex[0], e.vertex[1], left, out});
-    if (e.triangle[1] >= 0) sharp.ridges.push_back({e.vertex[0], e.vertex[1], out, m.normal(e.triangle[1])});
   }
-  once(sharp.corners);
+  once(sharp.vertices);
   return sharp;
 }
 
 }  // namespace
 
 PlacedMesh::PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at)
-    : mesh(&of), x(std::move(at)), normal(3, of.triangles().cols()) {
-  box = Eigen::AlignedBox3d(x.rowwise().minCoeff(), x.rowwise().maxCoeff());
-  for (Eigen::Index t = 0; t < normal.cols(); ++t) {
-    const auto corner = of.triangles().col(t);
-    const Vec3<double> p0 = x.col(corner[0]), p1 = x.col(corner[1]), p2 = x.col(corner[2]);
-    normal.col(t) = (p1 - p0).cross(p2 - p0).normalized();
-  }
-}
+    : mesh(&of), x(std::move(at)), box(x.rowwise().minCoeff(), x.rowwise().maxCoeff()) {}
 
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found) {
   if (!a.box.intersects(b.box)) return;
   // Nothing of a that is behind all of b touches it, whatever the direction; the same the other way round.
-  const Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
-  const VecX<double> along_a = a.x.transpose() * towards, along_b = b.x.transpose() * towards;
-  const double end_of_a = along_a.maxCoeff(), start_of_b = along_b.minCoeff();
+  Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
+  VecX<double> along_a = a.x.transpose() * towards, along_b = -(b.x.transpose() * towards);
+  double end_of_a = along_a.maxCoeff(), start_of_b = -along_b.maxCoeff();
   if (end_of_a < start_of_b) return;
-  const Candidates of_a = candidates(a, b.box, along_a, start_of_b);
-  const Candidates of_b = candidates(b, a.box, -along_b, -end_of_a);
-  vertices_inside(a.x, of_a.vertices, b, of_b.triangles, true, found);
-  vertices_inside(b.x, of_b.vertices, a, of_a.triangles, false, found);
-  edges_across(a.x, of_a.ridges, b.x, of_b.ridges, found);
+  Candidates of_a = candidates(a, b.box, along_a, start_of_b),
+             of_b = candidates(b, a.box, along_b, -end_of_a);
+  // Those that are left tell a direction that parts the bodies better.
+  towards.setZero();
+  for (const Candidates::Face& face : of_a.faces) towards += face.normal;
+  for (const Candidates::Face& face : of_b.faces) towards -= face.normal;
+  towards.normalize();
+  along_a = a.x.transpose() * towards;
+  along_b = -(b.x.transpose() * towards);
+  end_of_a = along_a.maxCoeff();
+  start_of_b = -along_b.maxCoeff();
+  if (end_of_a < start_of_b) return;
+  keep_above(of_a, along_a, start_of_b);
+  keep_above(of_b, along_b, -end_of_a);
+  vertices_inside(a.x, of_a.vertices, of_b.faces, false, true, found);
+  vertices_inside(b.x, of_b.vertices, of_a.faces, false, false, found);
+  edges_across(of_a.edges, of_b.edges, found);
 }
 
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found) {
   const double margin = kMargin * deepest;
   const Eigen::AlignedBox3d around(a.box.min().array() - margin, a.box.max().array() + margin);
-  std::vector<int> near;
   if (!around.intersects(b.box())) return;
+  std::vector<int> near;
   b.query(around, near);
   if (near.empty()) return;
-  const std::size_t first = found.size();
+  const auto first = static_cast<std::ptrdiff_t>(found.size());
   vertices_behind(a, b, near, found);
-  const Sharp sharp = sharp_of(b, near);
-  if (!sharp.ridges.empty()) {
-    Eigen::AlignedBox3d box;
-    for (const Ridge& ridge : sharp.ridges)
-      box.extend(b.vertices().col(ridge.from)).extend(b.vertices().col(ridge.to));
-    const Candidates of_a = candidates(a, box, VecX<double>::Zero(a.x.cols()), 0);
-    edges_across(a.x, of_a.ridges, b.vertices(), sharp.ridges, found);
-    std::vector<int> all(static_cast<std::size_t>(a.mesh->triangles().cols()));
-    std::iota(all.begin(), all.end(), 0);
-    const std::size_t before = found.size();
-    vertices_inside(b.vertices(), sharp.corners, a, all, false, found);
-    found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(before), found.end(),
+  const Candidates sharp = sharp_of(b, near);
+  const auto of_corners = static_cast<std::ptrdiff_t>(found.size());
+  if (!sharp.edges.empty()) {
+    const Candidates of_a = candidates(a, around, VecX<double>::Zero(a.x.cols()), 0);
+    vertices_inside(b.vertices(), sharp.vertices, of_a.faces, true, false, found);
+    found.erase(std::remove_if(found.begin() + of_corners, found.end(),
                                [&](const MeshTouch& touch) {
                                  return !b.leads_out(touch.b.vertex[0], touch.normal, kOut);
                                }),
                 found.end());
+    edges_across(of_a.edges, sharp.edges, found);
   }
-  found.erase(std::remove_if(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+  found.erase(std::remove_if(found.begin() + first, found.end(),
                              [&](const MeshTouch& touch) { return touch.gap < -deepest; }),
               found.end());
 }

@@ -21,8 +21,10 @@ namespace {
 constexpr double kResting = 1e-6;
 /// Impacts of this speed, in units of what gravity gives in a step, do not rebound.
 constexpr double kSlow = 1e-3;
-/// Most pairs whose impacts in one step are told in time, and most such times in a step.
+/// Most pairs whose impacts in one step are told in time, which takes the step of all parts several times
+/// again; and most moving parts of a body for which that is worth it.
 constexpr std::size_t kMostPairs = 3;
+constexpr std::ptrdiff_t kMostLocated = 8;
 /// Most parts of a step, so that nothing passes through anything.
 constexpr double kMostParts = 1e4;
 constexpr int kMostEvents = 200;
@@ -38,7 +40,7 @@ constexpr int kMostPartings = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kRounding = 1e-8;
 /// Meshes may overlap by this, in sizes, without being parted.
-constexpr double kMeshOverlap = 1e-5;
+constexpr double kMeshOverlap = 2e-4;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -125,6 +127,8 @@ ContactStepping::ContactStepping(const Dynamics& dynamics)
     : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model(), finder_.obstacles()) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
+  few_parts_ = std::count_if(dynamics.model().parts().begin(), dynamics.model().parts().end(),
+                             [](const PartModel& m) { return m.q0 >= 0; }) <= kMostLocated;
   for (const PartModel& m : dynamics.model().parts())
     resting_gap_ = std::max(resting_gap_, kResting * m.part->size());
 }
@@ -205,7 +209,7 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
             return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
           }))
         contact.since = reach * length;
-      if (impacts.size() <= kMostPairs && !rest.has(contact) && !Pairs(impacts).has(contact))
+      if (impacts.size() <= kMostPairs && few_parts_ && !rest.has(contact) && !Pairs(impacts).has(contact))
         impacts.push_back(contact);
     }
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
@@ -391,12 +395,7 @@ void ContactStepping::reconcile(const std::vector<int>& parts, State& state, dou
 void ContactStepping::settle(const State& before, double since_of_limits, double h, State& state, double t,
                              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
   if (contacts.empty()) return;
-  // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
-  // string has stopped something within it too, it is what the energy changes by.
-  const bool broken = state.at_limit != before.at_limit || state.joints != before.joints;
   const std::vector<int> parts = parts_touched(contacts);
-  Workspace<double> scratch;
-  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
   const double booked = state.work.sum();
   evaluate(state, t, contacts, work);
   double most = 0;  // that they are parted by
@@ -423,9 +422,16 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     const double moved = c.since * (solution.velocity[k] - finder_.velocity(state, c)).dot(c.normal);
     deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
+  problem.add_joint_impulses(record_.joint_impulses);
+  if (deep) problem.part_bodies(most);
+  // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
+  // string has stopped something within it too, or bodies are parted, it is what the energy changes by.
+  const bool broken = deep || state.at_limit != before.at_limit || state.joints != before.joints;
+  Workspace<double> scratch;
+  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
   move(problem.movers(), work, state);
   if (h > 0 || deep) reconcile(parts, state, t, work, counters);
-  if (h > 0 && (smooth || deep)) part_overlaps(most, deep, state, t, work, counters);
+  if (h > 0 && smooth) part_overlaps(most, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
     state.work[static_cast<int>(Work::contact)] +=
@@ -436,38 +442,27 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     record_.impulses.push_back(solution.impulse[k]);
     record_.sliding.push_back((u - u.dot(n) * n).norm());
   }
-  problem.add_joint_impulses(record_.joint_impulses);
 }
 
-/// Moves bodies that overlap apart, by at most so many m.
-void ContactStepping::part_overlaps(double most, bool meshes, State& state, double t, Workspace<double>& work,
+/// Moves smooth bodies that overlap apart, by at most so many m.
+void ContactStepping::part_overlaps(double most, State& state, double t, Workspace<double>& work,
                                     StepCounters& counters) {
-  const Model& model = dynamics_.model();
   double left = most;
   for (int i = 0; i < kMostPartings; ++i) {
     last_ = finder_.find(state, t, resting_gap_);
     last_q_ = state.q;
     last_t_ = t;
-    std::vector<Contact> deep;
-    double deepest = 0;  // beyond what is left as it is
-    auto take = [&](const Contact& contact, double allowed) {
-      if (contact.gap > 0) return;
-      deep.push_back(contact);
-      deepest = std::max(deepest, -contact.gap - allowed);
-    };
-    for (const Contact& contact : last_) take(contact, kRounding * resting_gap_);
-    if (meshes) {
-      std::vector<Contact> of_meshes;
-      meshes_.find(state, t, of_meshes);
-      for (const Contact& contact : of_meshes)
-        take(contact, kMeshOverlap * model.parts()[at(contact.a.part)].part->size());
-    }
-    if (!(deepest > 0) || left <= 0) return;
+    std::vector<Contact> deep = last_;
+    deep.erase(std::remove_if(deep.begin(), deep.end(), [](const Contact& c) { return c.gap > 0; }),
+               deep.end());
+    double deepest = 0;
+    for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
+    if (!(deepest > kRounding * resting_gap_) || left <= 0) return;
     const std::vector<int> parts = parts_touched(deep);
     Workspace<double> scratch;
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
     evaluate(state, t, deep, work);
-    ContactProblem parting(model, state, work, deep);
+    ContactProblem parting(dynamics_.model(), state, work, deep);
     parting.part_bodies(left);
     left -= std::min(left, deepest);
     move(parting.movers(), work, state);

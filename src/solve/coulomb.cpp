@@ -9,11 +9,15 @@ namespace pliant {
 
 namespace {
 constexpr int kMostIterations = 200;
-}
+/// W that differs from a multiple of 1 by less than this part is one.
+constexpr double kEven = 1e-11;
+}  // namespace
 
 CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
     : mu_(mu), W_n_(W(0, 0)), coupling_(W.block<2, 1>(1, 0)) {
   if (!(mu > 0)) return;
+  even_ = (W - W_n_ * Mat3<double>::Identity()).lpNorm<Eigen::Infinity>() <= kEven * W_n_;
+  if (even_) return;
   A_ = W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_;
   factor_.compute(W);
 }
@@ -22,6 +26,12 @@ Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
   if (!(b[0] < 0)) return Vec3<double>::Zero();
   const double p_alone = -b[0] / W_n_;  // without friction
   if (!(mu_ > 0)) return {p_alone, 0, 0};
+  if (even_) {
+    const Eigen::Vector2d stop = -b.tail<2>() / W_n_;
+    const double most = mu_ * p_alone, size = stop.norm();
+    const double share = size > most ? most / size : 1;
+    return {p_alone, share * stop[0], share * stop[1]};
+  }
   const Vec3<double> stick = -factor_.solve(b);
   if (stick[0] > 0 && stick.tail<2>().norm() <= mu_ * stick[0]) return stick;
   return slide(b, p_alone);

@@ -106,28 +106,35 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
     Mesh mesh = roof;
     for (Eigen::Index i = 0; i < mesh.x.cols(); ++i)
       if (std::abs(mesh.x(0, i)) < 0.16) mesh.x.col(i) = Vec3<double>(0, mesh.x(1, i), 0);
-    MultiBody body;
-    const double r = 0.1;
-    const Vec3<double> n = Vec3<double>(-slope, 0, 1).normalized();  // of the side x < 0
-    ball(body, r, Vec3<double>(-0.5, 0.05, -0.5 * slope) + r * n)
-        .move({1.8, 0, 1.8 * slope}, {0, 1.8 / r * std::hypot(1, slope), 0});
-    body.obstacle("roof", mesh.x, mesh.triangles);
-    Simulation simulation(body, "rk4");
-    double highest = 0, lowest = 0;
-    for (int i = 0; i < 600; ++i) {
-      simulation.step(1e-3);
-      const Vec3<double> c = simulation.state().q.head<3>();
-      const Vec3<double> side(c[0] < 0 ? -slope : slope, 0, 1);
-      double distance = side.normalized().dot(c);
-      if (slope > 0 && std::abs(c[0]) < slope * c[2]) distance = std::hypot(c[0], c[2]);
-      highest = std::max(highest, distance - r);
-      lowest = std::min(lowest, distance - r);
+    std::vector<double> balance;
+    for (const int steps : {600, 1200, 2400}) {
+      MultiBody body;
+      const double r = 0.1;
+      const Vec3<double> n = Vec3<double>(-slope, 0, 1).normalized();  // of the side x < 0
+      ball(body, r, Vec3<double>(-0.5, 0.05, -0.5 * slope) + r * n)
+          .move({1.8, 0, 1.8 * slope}, {0, 1.8 / r * std::hypot(1, slope), 0});
+      body.obstacle("roof", mesh.x, mesh.triangles);
+      Simulation simulation(body, "rk4");
+      double highest = 0, lowest = 0;
+      for (int i = 0; i < steps; ++i) {
+        simulation.step(0.6 / steps);
+        const Vec3<double> c = simulation.state().q.head<3>();
+        const Vec3<double> side(c[0] < 0 ? -slope : slope, 0, 1);
+        double distance = side.normalized().dot(c);
+        if (slope > 0 && std::abs(c[0]) < slope * c[2]) distance = std::hypot(c[0], c[2]);
+        highest = std::max(highest, distance - r);
+        lowest = std::min(lowest, distance - r);
+      }
+      CHECK(simulation.state().q[0] > 0.3);
+      CHECK(lowest > -1e-6);
+      CHECK(std::abs(simulation.state().q[1] - 0.05) < 1e-9);
+      if (slope < 0) CHECK(highest < 1e-4);
+      balance.push_back(std::abs(simulation.ledger().balance));
     }
-    CHECK(simulation.state().q[0] > 0.3);
-    CHECK(lowest > -1e-6);
-    CHECK(std::abs(simulation.state().q[1] - 0.05) < 1e-9);
-    if (slope < 0) CHECK(highest < 1e-4);
-    CHECK(std::abs(simulation.ledger().balance) < 1e-6);
+    CAPTURE(slope, balance[0], balance[1], balance[2]);
+    // The other side of the groove takes up 1 J, told to first order in the step.
+    for (const double error : balance) CHECK(error < (slope > 0 ? 1e-9 : 1e-2));
+    CHECK(balance[2] < 0.6 * balance[1] + 1e-9);
   }
 }
 
@@ -179,7 +186,7 @@ TEST_CASE("what tumbles over rough ground neither sinks in nor lets a peak in, a
     CHECK(below < 1e-9);
     CHECK(peak < 1e-9);
     CHECK(gain < 1e-9);
-    CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+    CHECK(std::abs(simulation.ledger().balance) < 2e-3 * energy);
   }
 }
 

@@ -48,7 +48,7 @@ class ContactProblem {
   /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
   /// another state.
   std::vector<Vec3<double>> velocities(const State& of) const;
-  /// Without friction, and for changes of x instead of velocities: what takes the gaps to zero where they are
+  /// Adds to the shifts, without friction: what takes the gaps that these leave to zero where they are
   /// negative, by at most `most` m.
   void part_bodies(double most);
 
@@ -60,7 +60,7 @@ class ContactProblem {
   struct Side {
     std::size_t mover;
     int first;       ///< of its part in x
-    MatX<double> J;  ///< 3 x n
+    Eigen::Matrix3Xd J;
   };
   struct Response {
     std::size_t mover;
@@ -90,6 +90,7 @@ class ContactProblem {
   /// Blocks and movers that push on each other and on nothing else.
   struct Cluster {
     Numbers blocks, movers;
+    bool nodes = false;  ///< whether nodes are among the movers
     double exact = 0;    ///< velocities below this are rounding, m/s
     double allowed = 0;  ///< and what may be left
   };

@@ -13,8 +13,7 @@ namespace pliant {
 /// A mesh where it is, world.
 struct PlacedMesh {
   const ContactMesh* mesh;
-  Eigen::Matrix3Xd x;       ///< vertices, m
-  Eigen::Matrix3Xd normal;  ///< of the triangles, outward, of length 1
+  Eigen::Matrix3Xd x;  ///< vertices, m
   Eigen::AlignedBox3d box;
 
   PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at);

@@ -50,6 +50,8 @@ class ObstacleMesh {
   bool leads_out(int vertex, const Vec3<double>& direction, double sine) const;
   /// Whether it has no border.
   bool closed() const { return closed_; }
+  /// Whether it is flat and has two sides.
+  bool is_plate() const { return closed_ && faces_.size() == 2; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
   /// Triangles whose boxes meet a box, in order; `found` is overwritten.

@@ -54,8 +54,7 @@ class ContactStepping {
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
-  void part_overlaps(double most, bool meshes, State& state, double t, Workspace<double>& work,
-                     StepCounters& counters);
+  void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
   std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;
@@ -65,6 +64,7 @@ class ContactStepping {
   ContactFinder finder_;
   MeshFinder meshes_;
   double resting_gap_ = 0;  ///< of the largest part, m
+  bool few_parts_ = false;  ///< so that impacts are told in time
   // What lies near each other in a state that was looked at last.
   VecX<double> last_q_;
   double last_t_ = 0;

@@ -21,6 +21,7 @@ class CoulombLaw {
   Vec3<double> slide(const Vec3<double>& b, double p_alone) const;
 
   double mu_ = 0, W_n_ = 1;
+  bool even_ = false;  ///< whether W is a multiple of 1, as where points push on points
   Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
   Eigen::Matrix2d A_ = Eigen::Matrix2d::Identity();     ///< Schur complement of the normal
   Eigen::LDLT<Mat3<double>> factor_;
