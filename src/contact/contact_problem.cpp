@@ -21,7 +21,7 @@ namespace {
 constexpr double kExact = 1e-13, kUlps = 8;
 /// The same where nodes are pushed, many at a time and lightly coupled.
 constexpr double kExactOfNodes = 1e-7;
-constexpr int kMostNewton = 20;
+constexpr int kMostNewton = 20, kMostFutile = 4;  // steps, and those in a row that make nothing better
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 /// Most blocks that are solved as one system.
@@ -418,7 +418,8 @@ bool ContactProblem::newton(const Cluster& cluster) {
   take(cluster, best);
   best.residual = residual(cluster);
   const double start = best.residual;
-  for (int step = 0; step < kMostNewton && best.residual > cluster.exact; ++step) {
+  int futile = 0;
+  for (int step = 0; step < kMostNewton && futile < kMostFutile && best.residual > cluster.exact; ++step) {
     MatX<double> K = MatX<double>::Zero(n, n);
     VecX<double> F = VecX<double>::Zero(n);
     for (std::size_t k = 0; k < ours.size(); ++k) {
@@ -463,7 +464,9 @@ bool ContactProblem::newton(const Cluster& cluster) {
       block.p += dp;
     }
     const double now = residual(cluster);
+    ++futile;
     if (now < best.residual) {
+      futile = 0;
       take(cluster, best);
       best.residual = now;
     }
