@@ -9,7 +9,7 @@ namespace pliant {
 
 namespace {
 /// Edges along a quarter of a great circle, of the mesh over a part that has none of its own.
-constexpr int kResolution = 8;
+constexpr int kResolution = 6;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {

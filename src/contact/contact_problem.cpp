@@ -20,7 +20,7 @@ namespace {
 /// many units of rounding of the velocities themselves.
 constexpr double kExact = 1e-13, kUlps = 8;
 /// The same where nodes are pushed, many at a time and lightly coupled.
-constexpr double kExactOfNodes = 1e-7;
+constexpr double kExactOfNodes = 1e-6;
 constexpr int kMostNewton = 20;
 /// Of these, in a row, that may make nothing better in clusters of more blocks than this, where they are
 /// dear.
@@ -28,8 +28,9 @@ constexpr int kMostFutile = 4;
 constexpr std::size_t kDear = 30;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
+constexpr std::size_t kRoundsOfNodes = 2;
 /// Most blocks that are solved as one system.
-constexpr std::size_t kMostDense = 100, kMostDenseOfNodes = 30;
+constexpr std::size_t kMostDense = 100, kMostDenseOfNodes = 12;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
@@ -343,8 +344,8 @@ void ContactProblem::set_scale(Cluster& cluster) const {
                               [&](std::size_t i) { return movers_[i].node >= 0; });
   cluster.exact = std::max((cluster.nodes ? kExactOfNodes : kExact) * scale,
                            kUlps * std::numeric_limits<double>::epsilon() * terms);
-  cluster.allowed =
-      std::max(cluster.exact, (cluster.blocks.size() > kMostDense ? kLeftOfMany : kLeft) * scale);
+  cluster.allowed = std::max(
+      cluster.exact, (cluster.nodes || cluster.blocks.size() > kMostDense ? kLeftOfMany : kLeft) * scale);
 }
 
 double ContactProblem::sweep(const Cluster& cluster, bool forward) {
@@ -543,7 +544,8 @@ bool ContactProblem::relax(const Cluster& cluster, int most, int history, int& s
 bool ContactProblem::iterate(const Cluster& cluster, int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
   const bool dense = cluster.blocks.size() <= (cluster.nodes ? kMostDenseOfNodes : kMostDense);
-  for (const auto& [most, history] : kRounds) {
+  for (std::size_t round = 0; round < (cluster.nodes ? kRoundsOfNodes : kRounds.size()); ++round) {
+    const auto& [most, history] = kRounds[round];
     if (!dense && history == 0) continue;  // it would take too long
     if (relax(cluster, most, history, sweeps)) return true;
     if (dense && newton(cluster) && residual(cluster) <= cluster.exact) return true;

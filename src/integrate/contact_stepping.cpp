@@ -346,6 +346,17 @@ std::vector<int> ContactStepping::parts_touched(const std::vector<Contact>& cont
   return std::vector<int>(touched.begin(), touched.end());
 }
 
+/// Whether hands move joints of some parts.
+bool ContactStepping::driven(const std::vector<int>& parts) const {
+  const Model& model = dynamics_.model();
+  return std::any_of(parts.begin(), parts.end(), [&](int part) {
+    const int island = model.parts()[at(part)].island;
+    if (island < 0) return false;
+    const std::vector<int>& joints = model.islands()[at(island)].joints;
+    return std::any_of(joints.begin(), joints.end(), [&](int j) { return model.joints()[at(j)].driven; });
+  });
+}
+
 /// What the contact problem needs: masses of the parts that it does not move node by node.
 void ContactStepping::evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                                Workspace<double>& work) const {
@@ -425,8 +436,10 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   problem.add_joint_impulses(record_.joint_impulses);
   if (deep) problem.part_bodies(most);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
-  // string has stopped something within it too, or bodies are parted, it is what the energy changes by.
-  const bool broken = deep || state.at_limit != before.at_limit || state.joints != before.joints;
+  // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
+  // that of hands that move joints, on which impulses push back.
+  const bool hands = driven(parts);
+  const bool broken = hands || deep || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
   move(problem.movers(), work, state);
@@ -434,7 +447,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   if (h > 0 && smooth) part_overlaps(most, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
-    state.work[static_cast<int>(Work::contact)] +=
+    state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;

@@ -55,6 +55,7 @@ class ContactStepping {
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
   void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
+  bool driven(const std::vector<int>& parts) const;
   std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;

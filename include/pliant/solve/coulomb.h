@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <pliant/math/types.h>
 
@@ -22,8 +23,8 @@ class CoulombLaw {
 
   double mu_ = 0, W_n_ = 1;
   bool even_ = false;  ///< whether W is a multiple of 1, as where points push on points
-  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
-  Eigen::Matrix2d A_ = Eigen::Matrix2d::Identity();     ///< Schur complement of the normal
+  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();    ///< of the tangents with the normal
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes_;  ///< of the Schur complement A of the normal
   Eigen::LDLT<Mat3<double>> factor_;
 };
 
