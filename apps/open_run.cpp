@@ -17,7 +17,7 @@ OpenRun open_run(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file))
     throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
   pliant::Diagnostics warnings;  // they were shown when the run began
-  run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings);
+  run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings, pliant::MeshFiles::of_a_run);
   use_solvers(*run.scene);
   if (run.scene->hash != run.record.scene_hash)
     throw pliant::RecordingMismatch(file.string() +

@@ -4,7 +4,7 @@
 
 # Words of these lists are packages; a|b,c means a, or where the distribution has no a, both b and c.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
-nlohmann-json3-dev libcli11-dev libpng-dev libosmesa6|libegl1,libgl1-mesa-dri"
+nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
 # Tests need these too: both ways to draw without a screen, and an independent judge of the scenes' schema.
 pliant_test_packages="catch2 pkgconf libegl1 libgl1-mesa-dri libvalijson-dev"
 

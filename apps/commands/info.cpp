@@ -4,6 +4,7 @@
 #include <memory>
 
 #include <pliant/body/placed_point.h>
+#include <pliant/contact/obstacle_mesh.h>
 #include <pliant/integrate/stable_step.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/io/joint_notes.h>
@@ -85,6 +86,19 @@ void print_part(const pliant::PartModel& model) {
               << points.level
               << (points.unsettled > 0 ? ", settled to " + pliant::rounded_text(points.unsettled) : "")
               << "\n";
+}
+
+void print_obstacles(const pliant::MultiBody& body) {
+  for (const pliant::ContactObstacle& obstacle : body.contact.obstacles) {
+    const pliant::ObstacleMesh mesh(obstacle.vertices, obstacle.triangles);
+    std::cout << "obstacle " << obstacle.name << ": "
+              << pliant::count_text(mesh.triangles().cols(), "triangle")
+              << (mesh.closed() ? ", closed" : ", open: one-sided") << ", from ";
+    print_vector(mesh.box().min());
+    std::cout << " to ";
+    print_vector(mesh.box().max());
+    std::cout << " m\n";
+  }
 }
 
 void print_point(const pliant::Simulation& simulation, const pliant::Point& point) {
@@ -184,6 +198,7 @@ int info(const SceneOptions& options) {
             << model.n_v() << " degrees of freedom (" << model.n_limits() << " dynamic parameters, " << frozen
             << " frozen), " << mass << " kg in motion\n";
   for (const pliant::PartModel& part : model.parts()) print_part(part);
+  print_obstacles(scene->body);
   print_joints(simulation);
   print_forces(*scene, simulation);
   std::cout << "skipped:\n";

@@ -80,6 +80,28 @@ ContactPlane& MultiBody::plane(std::string name, TimeVector point, const Vec3<do
   return contact.planes.back();
 }
 
+ContactObstacle& MultiBody::obstacle(std::string name, Eigen::Matrix3Xd vertices,
+                                     Eigen::Matrix3Xi triangles) {
+  for (const ContactObstacle& other : contact.obstacles)
+    if (other.name == name) throw std::invalid_argument("an obstacle '" + name + "' is there already");
+  contact.active = true;
+  contact.obstacles.push_back({std::move(name), std::move(vertices), std::move(triangles)});
+  return contact.obstacles.back();
+}
+
+ContactObstacle& MultiBody::plate(std::string name, const Vec3<double>& middle,
+                                  const Eigen::Quaterniond& orientation, double half_x, double half_y) {
+  if (!(half_x > 0 && half_y > 0) || !std::isfinite(half_x + half_y))
+    throw std::invalid_argument("plate '" + name + "': its half extents must be positive");
+  // A tetrahedron pressed flat: two triangles above, two below.
+  Eigen::Matrix3Xd corners(3, 4);
+  corners << -half_x, half_x, half_x, -half_x, -half_y, -half_y, half_y, half_y, 0, 0, 0, 0;
+  Eigen::Matrix3Xi triangles(3, 4);
+  triangles << 0, 0, 1, 1, 1, 2, 0, 3, 2, 3, 3, 2;
+  return obstacle(std::move(name), (orientation.normalized().toRotationMatrix() * corners).colwise() + middle,
+                  triangles);
+}
+
 Joint& MultiBody::hinge(std::string name, Point a, Point b, const Vec3<double>& axis) {
   JointSetting setting{std::move(a), std::move(b)};
   setting.axis = axis;

@@ -22,6 +22,10 @@ constexpr double kExact = 1e-13, kUlps = 8;
 /// The same where nodes are pushed, many at a time and lightly coupled.
 constexpr double kExactOfNodes = 1e-6;
 constexpr int kMostNewton = 20;
+/// Of these, in a row, that may make nothing better in clusters of more blocks than this, where they are
+/// dear.
+constexpr int kMostFutile = 4;
+constexpr std::size_t kDear = 30;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 constexpr std::size_t kRoundsOfNodes = 2;
@@ -419,7 +423,9 @@ bool ContactProblem::newton(const Cluster& cluster) {
   take(cluster, best);
   best.residual = residual(cluster);
   const double start = best.residual;
-  for (int step = 0; step < kMostNewton && best.residual > cluster.exact; ++step) {
+  int futile = 0;
+  const int most_futile = ours.size() > kDear ? kMostFutile : kMostNewton;
+  for (int step = 0; step < kMostNewton && futile < most_futile && best.residual > cluster.exact; ++step) {
     MatX<double> K = MatX<double>::Zero(n, n);
     VecX<double> F = VecX<double>::Zero(n);
     for (std::size_t k = 0; k < ours.size(); ++k) {
@@ -464,7 +470,9 @@ bool ContactProblem::newton(const Cluster& cluster) {
       block.p += dp;
     }
     const double now = residual(cluster);
+    ++futile;
     if (now < best.residual) {
+      futile = 0;
       take(cluster, best);
       best.residual = now;
     }

@@ -27,7 +27,9 @@ std::pair<int, int> in_order(int a, int b) {
 }  // namespace
 
 ContactRules::ContactRules(const Model& model)
-    : model_(&model), n_parts_(static_cast<int>(model.parts().size())) {
+    : model_(&model),
+      n_parts_(static_cast<int>(model.parts().size())),
+      n_planes_(static_cast<int>(model.body().contact.planes.size())) {
   const ContactSettings& settings = model.body().contact;
   check(settings.friction, settings.restitution);
   std::map<std::string, int> numbers;
@@ -37,6 +39,8 @@ ContactRules::ContactRules(const Model& model)
   };
   for (const PartModel& m : model.parts()) add(m.part->name(), "two parts are");
   for (const ContactPlane& plane : settings.planes) add(plane.name, "a part and a plane are");
+  for (const ContactObstacle& obstacle : settings.obstacles)
+    add(obstacle.name, "an obstacle and another thing are");
   const int n_things = static_cast<int>(numbers.size());
   for (const ContactGroup& group : settings.groups)
     add(group.name, "a group of contact and another thing are");
@@ -49,16 +53,17 @@ ContactRules::ContactRules(const Model& model)
   groups_of_.resize(at(n_things));
   for (const ContactGroup& group : settings.groups)
     for (const std::string& name : group.members) {
-      const int member = number(name, "part or plane");
+      const int member = number(name, "part, plane or obstacle");
       if (member >= n_things)
         throw std::invalid_argument("contact: the group '" + name + "' is in the group '" + group.name +
-                                    "'; its members are parts and planes");
+                                    "'; its members are parts, planes and obstacles");
       groups_of_[at(member)].push_back(number(group.name, "group"));
     }
   for (std::size_t k = 0; k < settings.pairs.size(); ++k) {
     const ContactPair& pair = settings.pairs[k];
     check(pair.friction.value_or(0), pair.restitution.value_or(0));
-    const int a = number(pair.a, "part, plane or group"), b = number(pair.b, "part, plane or group");
+    const int a = number(pair.a, "part, plane, obstacle or group"),
+              b = number(pair.b, "part, plane, obstacle or group");
     if (a == b && a < n_things) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
     last_pair_[in_order(a, b)] = static_cast<int>(k);
   }
@@ -79,7 +84,15 @@ ContactRule ContactRules::of_parts(int a, int b) const {
 }
 
 ContactRule ContactRules::on_plane(int part, int plane) const {
-  ContactRule rule = rule_of(pair(part, n_parts_ + plane));
+  return on_fixed(part, n_parts_ + plane);
+}
+
+ContactRule ContactRules::on_obstacle(int part, int obstacle) const {
+  return on_fixed(part, n_parts_ + n_planes_ + obstacle);
+}
+
+ContactRule ContactRules::on_fixed(int part, int thing) const {
+  ContactRule rule = rule_of(pair(part, thing));
   if (!moves(part)) rule.touch = false;
   return rule;
 }

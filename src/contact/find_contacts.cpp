@@ -10,6 +10,7 @@
 #include <pliant/body/multibody.h>
 #include <pliant/contact/box_tree.h>
 #include <pliant/contact/ellipsoid_points.h>
+#include <pliant/contact/find_on_mesh.h>
 #include <pliant/contact/node_motion.h>
 
 namespace pliant {
@@ -25,6 +26,8 @@ constexpr double kThinShare = 0.4;
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 /// How far the surface may be outside the box of its points, in sizes of the part.
 constexpr double kBulge = 0.05;
+/// Gaps over an obstacle are told up to this, in sizes of the part.
+constexpr double kSeen = 0.1;
 /// Normals of one contact differ by less than this.
 constexpr double kSameNormal = 0.2;
 
@@ -55,6 +58,7 @@ struct ContactFinder::Scratch {
     Vec3<double> point, carried;
   };
   std::vector<PlaneNow> planes;
+  MeshSearch mesh_search;
   struct Ball {
     Vec3<double> c, c_dot;
     double speed, reach;  ///< of any point against the frame's origin, m/s; the ball and the way, m
@@ -112,22 +116,6 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   double thickness_;
 };
 
-namespace {
-
-/// The height over a plane.
-class OverPlane final : public CollisionSurface::Field {
- public:
-  OverPlane(const Vec3<double>& normal, double offset) : normal_(normal), offset_(offset) {}
-  double height(const Vec3<double>& p) const override { return p.dot(normal_) + offset_; }
-  double descent(const Vec3<double>& p) const override { return height(p); }
-
- private:
-  Vec3<double> normal_;
-  double offset_;
-};
-
-}  // namespace
-
 ContactFinder::~ContactFinder() = default;
 
 ContactFinder::ContactFinder(const Model& model)
@@ -142,6 +130,16 @@ ContactFinder::ContactFinder(const Model& model)
   for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k)
       on_planes_.push_back(rules_.on_plane(i, static_cast<int>(k)));
+  for (const ContactObstacle& obstacle : model.body().contact.obstacles) {
+    try {
+      obstacles_.emplace_back(obstacle.vertices, obstacle.triangles);
+    } catch (const std::invalid_argument& fault) {
+      throw std::invalid_argument("obstacle '" + obstacle.name + "': " + fault.what());
+    }
+  }
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i)
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      on_obstacles_.push_back(rules_.on_obstacle(i, static_cast<int>(k)));
   const std::size_t n = model.parts().size();
   scratch_->parts.resize(n);
   scratch_->points.resize(n);
@@ -239,7 +237,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
     contact.restitution = rule.restitution;
     found.push_back(contact);
   };
-  const OverPlane field(n, offset);
+  const CollisionSurface::OverPlane field(n, offset);
   if (placed.axes) {
     const Vec3<double> y = lowest_direction(*placed.axes, n);
     if (field.height(placed.axes->cwiseProduct(y)) > most) return;
@@ -250,6 +248,23 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   const Eigen::Matrix3Xd& p = points_of(a);
   const VecX<double> heights = (p.transpose() * n).array() + offset;
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, most, field)) add(low);
+}
+
+void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double most,
+                                     std::vector<Contact>& found) const {
+  if (!model_->body().contact.obstacles[number].acts_at(t)) return;
+  const Placed& placed = scratch_->parts[at(a)];
+  const std::size_t first = found.size();
+  find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,
+                placed.axes, world_box(a), [&]() -> const Eigen::Matrix3Xd& { return points_of(a); }},
+               obstacles_[number], most, scratch_->mesh_search, found);
+  const ContactRule& rule = on_obstacles_[at(a) * obstacles_.size() + number];
+  for (std::size_t k = first; k < found.size(); ++k) {
+    found[k].a.part = a;
+    found[k].obstacle = static_cast<int>(number);
+    found[k].friction = rule.friction;
+    found[k].restitution = rule.restitution;
+  }
 }
 
 void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double most,
@@ -362,6 +377,8 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
     place(state, t, i);
     for (std::size_t k = 0; k < s.planes.size(); ++k)
       if (on_planes_[at(i) * s.planes.size() + k].touch) find_on_plane(i, k, most, found);
+    for (std::size_t k = 0; k < obstacles_.size(); ++k)
+      if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, most, found);
   }
   if (!any_pairs_) return found;
   s.boxes.clear();
@@ -444,6 +461,20 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
           near.empty = false;
     }
   }
+  const auto& obstacles = model_->body().contact.obstacles;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (!(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h))) continue;
+    for (const int i : smooth_) {
+      const Scratch::Ball& ball = s.balls[at(i)];
+      const double way = h * (ball.c_dot.norm() + ball.speed),
+                   thin = kThinShare * surfaces_[at(i)]->thickness();
+      if (!near.empty && way <= thin) continue;  // it would change nothing
+      if (!on_obstacles_[at(i) * obstacles.size() + k].touch || !obstacles_[k].comes_near(ball.c, ball.reach))
+        continue;
+      near.empty = false;
+      if (way > thin) near.h = std::min(near.h, h * thin / way);
+    }
+  }
   if (!any_pairs_) return near;
   if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
   s.boxes.clear();
@@ -469,7 +500,10 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {
   std::vector<Contact> found;
   place(state, t, of.a.part);
-  if (of.b.part < 0) {
+  if (of.obstacle >= 0) {
+    most = std::min(most, kSeen * model_->parts()[at(of.a.part)].part->size());
+    find_on_obstacle(of.a.part, at(of.obstacle), t, most, found);
+  } else if (of.b.part < 0) {
     place_planes(t);
     find_on_plane(of.a.part, at(of.plane), most, found);
   } else {

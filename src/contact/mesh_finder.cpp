@@ -15,6 +15,9 @@ namespace {
 
 /// Share of the thinner of two parts that they may move against each other in a step.
 constexpr double kThinShare = 0.4;
+/// An obstacle holds what is no deeper behind it than this share of the part's thickness: beyond may be the
+/// far side of the part, over a plate that it lies on. In a step it moves by less.
+constexpr double kDeepest = 0.25, kStepShare = 0.2;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -22,7 +25,7 @@ std::size_t at(int i) {
 
 }  // namespace
 
-MeshFinder::MeshFinder(const Model& model) : model_(&model) {
+MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles) : model_(&model) {
   const ContactRules rules(model);
   const int n = static_cast<int>(model.parts().size());
   auto soft = [&](int i) { return model.parts()[at(i)].local != nullptr; };
@@ -39,6 +42,12 @@ MeshFinder::MeshFinder(const Model& model) : model_(&model) {
       if (!rule.touch) continue;
       need(i);
       planes_.push_back({i, k, rule});
+    }
+    for (std::size_t k = 0; k < obstacles.size(); ++k) {
+      const ContactRule rule = rules.on_obstacle(i, static_cast<int>(k));
+      if (!rule.touch) continue;
+      need(i);
+      on_obstacles_.push_back({i, k, &obstacles[k], rule});
     }
   }
   for (int i = 0; i < n; ++i)
@@ -109,6 +118,23 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     }
   }
   std::vector<MeshTouch> touches;
+  for (const OnObstacle& on : on_obstacles_) {
+    if (!model_->body().contact.obstacles[on.obstacle].acts_at(t)) continue;
+    touches.clear();
+    const PlacedMesh& m = placed.at(on.part);
+    find_touches(m, *on.mesh, kDeepest * m.mesh->thickness(), touches);
+    for (const MeshTouch& touch : touches) {
+      Contact contact;
+      contact.a = side(m, on.part, state, touch.a, touch.x);
+      contact.obstacle = static_cast<int>(on.obstacle);
+      contact.x = touch.x;
+      contact.normal = touch.normal;
+      contact.gap = touch.gap;
+      contact.friction = on.rule.friction;
+      contact.restitution = on.rule.restitution;
+      found.push_back(contact);
+    }
+  }
   for (const Pair& pair : pairs_) {
     touches.clear();
     const PlacedMesh &a = placed.at(pair.a), &b = placed.at(pair.b);
@@ -168,6 +194,15 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     const Swept& a = all.at(on.part);
     for (const double when : {t, t + h})
       if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.empty = false;
+  }
+  for (const OnObstacle& on : on_obstacles_) {
+    const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
+    if (!obstacle.acts_at(t) && !obstacle.acts_at(t + h)) continue;
+    const Swept& a = all.at(on.part);
+    if (!on.mesh->comes_near(a.c, a.reach)) continue;
+    near.empty = false;
+    const double way = h * a.speed, thin = kStepShare * meshes_.at(on.part).thickness();
+    if (way > thin) near.h = std::min(near.h, h * thin / way);
   }
   for (const Pair& pair : pairs_) {
     const Swept &a = all.at(pair.a), &b = all.at(pair.b);

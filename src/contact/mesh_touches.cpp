@@ -21,6 +21,12 @@ constexpr double kTie = 1e-9;
 constexpr double kStraight = 1e-6;
 /// Edges whose triangles turn by less than this, rad, do not stick out.
 constexpr double kFlat = 1e-6;
+/// Triangles of an obstacle are searched to this share of the greatest depth around a part.
+constexpr double kMargin = 0.1;
+/// Sine of an angle by which a normal at a corner of an obstacle may point into it.
+constexpr double kOut = 1e-3;
+/// Two triangles of a ridge whose normals have a cosine below this are the sides of a plate.
+constexpr double kBackToBack = -0.999999;
 
 /// The point of a triangle that is nearest to x: its weights.
 Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, const Vec3<double>& p1,
@@ -67,6 +73,15 @@ Vec3<double> normal_of(const PlacedMesh& m, int triangle) {
   return (p1 - p0).cross(p2 - p0).normalized();
 }
 
+Candidates::Face face_of(const Eigen::Vector3i& corner, const Eigen::Matrix3Xd& x,
+                         const Vec3<double>& normal) {
+  const Vec3<double> p0 = x.col(corner[0]), p1 = x.col(corner[1]), p2 = x.col(corner[2]),
+                     centre = (p0 + p1 + p2) / 3;
+  const double radius = std::sqrt(
+      std::max({(p0 - centre).squaredNorm(), (p1 - centre).squaredNorm(), (p2 - centre).squaredNorm()}));
+  return {corner, p0, p1, p2, normal, centre, radius};
+}
+
 /// Of a mesh those that are in a box and, by `height` over its vertices, not below `least`.
 Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const VecX<double>& height,
                       double least) {
@@ -91,10 +106,7 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
     if ((p0.cwiseMax(p1).cwiseMax(p2).array() < box.min().array()).any() ||
         (p0.cwiseMin(p1).cwiseMin(p2).array() > box.max().array()).any())
       continue;
-    const Vec3<double> centre = (p0 + p1 + p2) / 3;
-    const double radius = std::sqrt(
-        std::max({(p0 - centre).squaredNorm(), (p1 - centre).squaredNorm(), (p2 - centre).squaredNorm()}));
-    chosen.faces.push_back({corner, p0, p1, p2, normal_of(m, t), centre, radius});
+    chosen.faces.push_back(face_of(corner, m.x, normal_of(m, t)));
   }
   return chosen;
 }
@@ -110,47 +122,77 @@ void keep_above(Candidates& chosen, const VecX<double>& height, double least) {
   keep(chosen.faces, [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= least; });
 }
 
-/// Vertices of one mesh that are behind faces of the other. one_is_a: which is which in what is found.
-void vertices_inside(const PlacedMesh& one, const std::vector<int>& vertices,
-                     const std::vector<Candidates::Face>& faces, bool one_is_a,
+/// The face that a point is nearest to.
+struct NearestFace {
+  const Candidates::Face* face = nullptr;
+  Vec3<double> weight = Vec3<double>::Zero();               ///< of its corners in the point of it
+  double square = std::numeric_limits<double>::infinity();  ///< of the distance, m^2
+  double gap = 0;                                           ///< height over its plane, m
+
+  /// The point of it.
+  Vec3<double> foot() const { return weight[0] * face->p0 + weight[1] * face->p1 + weight[2] * face->p2; }
+  bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraight); }
+};
+
+/// Of those that count.
+template <class F>
+NearestFace nearest_face(const Vec3<double>& x, const std::vector<Candidates::Face>& faces, F&& counts) {
+  NearestFace best;
+  double reach = std::numeric_limits<double>::infinity();
+  auto consider = [&](const Candidates::Face& face) {
+    const double height = face.normal.dot(x - face.p0);
+    const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
+    const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
+    // Where several are as near, the one that x stands highest over or below tells inside from outside.
+    const bool nearer = square < best.square * (1 - kTie);
+    if (!nearer && !(square < best.square * (1 + kTie) && std::abs(height) > std::abs(best.gap))) return;
+    best = {&face, w, square, height};
+    reach = std::sqrt(square) * (1 + kTie);
+  };
+  // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
+  const Candidates::Face* first = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidates::Face& face : faces) {
+    const double square = (face.centre - x).squaredNorm();
+    if (!(square < least) || !counts(face)) continue;
+    least = square;
+    first = &face;
+  }
+  if (first == nullptr) return best;
+  consider(*first);
+  for (const Candidates::Face& face : faces) {
+    const double most = reach + face.radius;
+    if ((x - face.centre).squaredNorm() <= most * most && counts(face)) consider(face);
+  }
+  return best;
+}
+
+/// Vertices of one mesh that are behind faces of the other. all: these are all of its faces, so
+/// that what is behind one is inside even where another one meets it in a dent. one_is_a: which is which in
+/// what is found.
+void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
+                     const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
                      std::vector<MeshTouch>& found) {
   for (const int k : vertices) {
-    const Vec3<double> x = one.x.col(k);
-    double nearest = std::numeric_limits<double>::infinity(), reach = nearest, gap = 0;
-    const Candidates::Face* which = nullptr;
-    Vec3<double> weight;
-    auto consider = [&](const Candidates::Face& face) {
-      const double height = face.normal.dot(x - face.p0);
-      const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
-      const double distance = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
-      // Where several are as near, the one that x stands highest over or below tells inside from outside.
-      const bool nearer = distance < nearest * (1 - kTie);
-      if (!nearer && !(distance < nearest * (1 + kTie) && std::abs(height) > std::abs(gap))) return;
-      nearest = distance;
-      reach = std::sqrt(nearest) * (1 + kTie);
-      gap = height;
-      which = &face;
-      weight = w;
-    };
-    // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
-    const auto first = std::min_element(faces.begin(), faces.end(), [&](const auto& left, const auto& right) {
-      return (left.centre - x).squaredNorm() < (right.centre - x).squaredNorm();
-    });
-    if (first != faces.end()) consider(*first);
-    for (const Candidates::Face& face : faces) {
-      const double least = reach + face.radius;
-      if ((x - face.centre).squaredNorm() <= least * least) consider(face);
+    const Vec3<double> x = one.col(k);
+    const NearestFace nearest = nearest_face(x, faces, [](const Candidates::Face&) { return true; });
+    if (!(nearest.gap < 0) || !(all || nearest.is_straight_behind())) continue;
+    const Candidates::Face& which = *nearest.face;
+    Vec3<double> normal = which.normal;
+    double gap = nearest.gap;
+    if (!nearest.is_straight_behind()) {
+      gap = -std::sqrt(nearest.square);
+      normal = (x - nearest.foot()) / gap;
     }
-    if (which == nullptr || !(gap < 0) || !(nearest <= gap * gap * (1 + kStraight))) continue;
     MeshTouch touch;
     MeshPoint point, face;
     point.vertex[0] = k;
-    face.vertex = {which->corner[0], which->corner[1], which->corner[2]};
-    face.weight = weight;
+    face.vertex = {which.corner[0], which.corner[1], which.corner[2]};
+    face.weight = nearest.weight;
     touch.a = one_is_a ? point : face;
     touch.b = one_is_a ? face : point;
     touch.x = x;
-    touch.normal = one_is_a ? which->normal : Vec3<double>(-which->normal);
+    touch.normal = one_is_a ? normal : Vec3<double>(-normal);
     touch.gap = gap;
     found.push_back(touch);
   }
@@ -190,6 +232,103 @@ void edges_across(const std::vector<Candidates::Edge>& of_a, const std::vector<C
     }
 }
 
+/// Whether a point of a triangle, told by its weights, is on an edge or a corner from which nothing sticks
+/// out: behind it there are points that are straight behind no triangle.
+bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weight) {
+  std::array<int, 3> on{};
+  std::size_t n = 0;
+  for (int k = 0; k < 3; ++k)
+    if (weight[k] > 0) on[n++] = k;
+  if (n == 1) return m.corner(m.triangles()(on[0], triangle)).empty();
+  if (n == 3) return false;
+  const std::size_t edge = on[0] == 0 && on[1] == 2 ? 2 : static_cast<std::size_t>(on[0]);
+  return !m.edges()[static_cast<std::size_t>(m.edges_of(triangle)[edge])].sharp;
+}
+
+/// Vertices of a that are behind triangles that they are turned towards; of a plate those that it parts from
+/// the middle of a.
+void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
+                     std::vector<MeshTouch>& found) {
+  std::vector<Candidates::Face> faces;
+  std::vector<int> numbers;
+  const Vec3<double> middle = a.x.rowwise().mean();
+  for (const int t : triangles) {
+    const Vec3<double> p0 = b.vertices().col(b.triangles()(0, t)), normal = b.normal(t);
+    if (b.is_plate() && normal.dot(middle - p0) < 0) continue;
+    faces.push_back(face_of(b.triangles().col(t), b.vertices(), normal));
+    numbers.push_back(t);
+  }
+  Eigen::Matrix3Xd out = Eigen::Matrix3Xd::Zero(3, a.x.cols());
+  for (Eigen::Index t = 0; t < a.mesh->triangles().cols(); ++t) {
+    const auto corner = a.mesh->triangles().col(t);
+    const Vec3<double> p0 = a.x.col(corner[0]);
+    const Vec3<double> normal =
+        (Vec3<double>(a.x.col(corner[1])) - p0).cross(Vec3<double>(a.x.col(corner[2])) - p0);
+    for (Eigen::Index k = 0; k < 3; ++k) out.col(corner[k]) += normal;
+  }
+  for (int k = 0; k < a.x.cols(); ++k) {
+    const Vec3<double> x = a.x.col(k), outward = out.col(k);
+    const NearestFace nearest =
+        nearest_face(x, faces, [&](const Candidates::Face& face) { return face.normal.dot(outward) < 0; });
+    if (!(nearest.gap < 0)) continue;
+    MeshTouch touch;
+    touch.a.vertex[0] = k;
+    touch.x = x;
+    touch.gap = nearest.gap;
+    touch.normal = nearest.face->normal;
+    if (b.is_plate()) {
+      const double share = nearest.gap / (nearest.gap - touch.normal.dot(middle - nearest.face->p0));
+      const Vec3<double> across = x + share * (middle - x);
+      const double near = kTie * b.box().diagonal().norm();
+      if (std::none_of(numbers.begin(), numbers.end(),
+                       [&](int t) { return (b.nearest(t, across) - across).norm() <= near; }))
+        continue;
+    }
+    if (!nearest.is_straight_behind()) {
+      const auto which = static_cast<std::size_t>(nearest.face - faces.data());
+      if (!is_in_valley(b, numbers[which], nearest.weight)) continue;
+      touch.gap = -std::sqrt(nearest.square);
+      touch.normal = (x - nearest.foot()) / touch.gap;
+    }
+    found.push_back(touch);
+  }
+}
+
+/// What sticks out of some triangles of an obstacle: the border does so to its side, the edge of a plate from
+/// its front to its side and from there to its back.
+Candidates sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
+  Candidates sharp;
+  std::vector<int> edges;
+  for (const int t : triangles)
+    for (const int e : m.edges_of(t))
+      if (m.edges()[static_cast<std::size_t>(e)].sharp) edges.push_back(e);
+  auto once = [](std::vector<int>& some) {
+    std::sort(some.begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+  };
+  once(edges);
+  for (const int number : edges) {
+    const ObstacleMesh::Edge& e = m.edges()[static_cast<std::size_t>(number)];
+    const Vec3<double> p = m.vertices().col(e.vertex[0]),
+                       along = Vec3<double>(m.vertices().col(e.vertex[1])) - p,
+                       front = m.normal(e.triangle[0]), side = m.along(e).cross(front);
+    auto add = [&](const Vec3<double>& n1, const Vec3<double>& n2) {
+      sharp.edges.push_back({e.vertex[0], e.vertex[1], p, along, n1, n2, n2.cross(n1)});
+    };
+    sharp.vertices.insert(sharp.vertices.end(), e.vertex.begin(), e.vertex.end());
+    if (e.triangle[1] < 0) {
+      add(front, side);
+    } else if (const Vec3<double> back = m.normal(e.triangle[1]); front.dot(back) > kBackToBack) {
+      add(front, back);
+    } else {
+      add(front, side);
+      add(side, back);
+    }
+  }
+  once(sharp.vertices);
+  return sharp;
+}
+
 }  // namespace
 
 PlacedMesh::PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at)
@@ -216,9 +355,35 @@ void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouc
   if (end_of_a < start_of_b) return;
   keep_above(of_a, along_a, start_of_b);
   keep_above(of_b, along_b, -end_of_a);
-  vertices_inside(a, of_a.vertices, of_b.faces, true, found);
-  vertices_inside(b, of_b.vertices, of_a.faces, false, found);
+  vertices_inside(a.x, of_a.vertices, of_b.faces, false, true, found);
+  vertices_inside(b.x, of_b.vertices, of_a.faces, false, false, found);
   edges_across(of_a.edges, of_b.edges, found);
+}
+
+void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found) {
+  const double margin = kMargin * deepest;
+  const Eigen::AlignedBox3d around(a.box.min().array() - margin, a.box.max().array() + margin);
+  if (!around.intersects(b.box())) return;
+  std::vector<int> near;
+  b.query(around, near);
+  if (near.empty()) return;
+  const auto first = static_cast<std::ptrdiff_t>(found.size());
+  vertices_behind(a, b, near, found);
+  const Candidates sharp = sharp_of(b, near);
+  const auto of_corners = static_cast<std::ptrdiff_t>(found.size());
+  if (!sharp.edges.empty()) {
+    const Candidates of_a = candidates(a, around, VecX<double>::Zero(a.x.cols()), 0);
+    vertices_inside(b.vertices(), sharp.vertices, of_a.faces, true, false, found);
+    found.erase(std::remove_if(found.begin() + of_corners, found.end(),
+                               [&](const MeshTouch& touch) {
+                                 return !b.leads_out(touch.b.vertex[0], touch.normal, kOut);
+                               }),
+                found.end());
+    edges_across(of_a.edges, sharp.edges, found);
+  }
+  found.erase(std::remove_if(found.begin() + first, found.end(),
+                             [&](const MeshTouch& touch) { return touch.gap < -deepest; }),
+              found.end());
 }
 
 }  // namespace pliant

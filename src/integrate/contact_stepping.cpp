@@ -70,9 +70,11 @@ class Pairs {
   }
 
  private:
-  using Key = std::array<int, 3>;
+  using Key = std::array<int, 4>;
   using Entry = std::pair<Key, const Contact*>;
-  static Key key(const Contact& contact) { return {contact.a.part, contact.b.part, contact.plane}; }
+  static Key key(const Contact& contact) {
+    return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
+  }
   std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
       const Contact& contact) const {
     struct Before {
@@ -122,7 +124,7 @@ void ContactRecord::clear() {
 }
 
 ContactStepping::ContactStepping(const Dynamics& dynamics)
-    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model()) {
+    : dynamics_(dynamics), finder_(dynamics.model()), meshes_(dynamics.model(), finder_.obstacles()) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
   few_parts_ = std::count_if(dynamics.model().parts().begin(), dynamics.model().parts().end(),

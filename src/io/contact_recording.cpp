@@ -74,9 +74,10 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
 }  // namespace
 
 std::vector<Column> contact_columns() {
-  std::vector<Column> columns{{"t", "s", "time of the recorded state, which ends the step"},
-                              {"a", "1", "part; in the .npy table its number, from 0"},
-                              {"b", "1", "part or plane; planes are numbered after the parts"}};
+  std::vector<Column> columns{
+      {"t", "s", "time of the recorded state, which ends the step"},
+      {"a", "1", "part; in the .npy table its number, from 0"},
+      {"b", "1", "part, plane or obstacle; planes are numbered after the parts, obstacles after these"}};
   add_axes(columns, "point", "m", "where they touch, world");
   add_axes(columns, "normal", "1", "from b to a, of length 1, world");
   columns.push_back({"gap", "m", "before overlaps are parted; negative: so deep"});
@@ -115,6 +116,18 @@ ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::pat
   return {go_on(kContactsFile, contact_columns()), go_on(kJointImpulsesFile, joint_impulse_columns())};
 }
 
+namespace {
+
+/// Of what a part touches, among the parts, planes and obstacles.
+int number_of_b(const Model& model, const Contact& contact) {
+  const std::size_t parts = model.parts().size(), planes = model.body().contact.planes.size();
+  if (contact.b.part >= 0) return contact.b.part;
+  if (contact.plane >= 0) return static_cast<int>(parts) + contact.plane;
+  return static_cast<int>(parts + planes) + contact.obstacle;
+}
+
+}  // namespace
+
 void ContactRecordingWriter::append(const Simulation& simulation) {
   if (simulation.contact() == nullptr) return;
   const ContactRecord& record = simulation.contact()->record();
@@ -122,8 +135,7 @@ void ContactRecordingWriter::append(const Simulation& simulation) {
   std::vector<double> row;
   for (std::size_t k = 0; k < record.contacts.size(); ++k) {
     const Contact& contact = record.contacts[k];
-    const int b = contact.b.part >= 0 ? contact.b.part
-                                      : static_cast<int>(simulation.model().parts().size()) + contact.plane;
+    const int b = number_of_b(simulation.model(), contact);
     row = {state.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
     add_vector(row, contact.x);
     add_vector(row, contact.normal);
@@ -166,6 +178,7 @@ void write_contact_tables(const std::filesystem::path& folder, const Model& mode
   std::vector<std::string> things, joints;
   for (const PartModel& m : model.parts()) things.push_back(m.part->name());
   for (const ContactPlane& plane : model.body().contact.planes) things.push_back(plane.name);
+  for (const ContactObstacle& obstacle : model.body().contact.obstacles) things.push_back(obstacle.name);
   for (const JointModel& joint : model.joints()) joints.push_back(joint.joint->name());
   write_table(folder / kContactsFile, folder / kContactsTable, contact_columns(), things, 2);
   write_table(folder / kJointImpulsesFile, folder / kJointImpulsesTable, joint_impulse_columns(), joints, 1);

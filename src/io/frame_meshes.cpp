@@ -1,8 +1,33 @@
 #include <pliant/io/frame_meshes.h>
 
 #include <algorithm>
+#include <utility>
+
+#include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
+
+namespace {
+
+/// The triangles with a normal each; of an open mesh both sides.
+TriangleMesh faceted(const ObstacleMesh& obstacle) {
+  const Eigen::Index n = obstacle.triangles().cols(), all = obstacle.closed() ? n : 2 * n;
+  TriangleMesh mesh;
+  mesh.x = obstacle.vertices();
+  mesh.normals.resize(3, all);
+  mesh.triangles.resize(3, all);
+  mesh.corners.resize(3, all);
+  for (Eigen::Index t = 0; t < all; ++t) {
+    const bool front = t < n;
+    mesh.triangles.col(t) = obstacle.triangles().col(front ? t : t - n);
+    if (!front) std::swap(mesh.triangles(1, t), mesh.triangles(2, t));
+    mesh.normals.col(t) = (front ? 1 : -1) * obstacle.normal(static_cast<int>(front ? t : t - n));
+    mesh.corners.col(t).setConstant(static_cast<int>(t));
+  }
+  return mesh;
+}
+
+}  // namespace
 
 FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) : model_(&model) {
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
@@ -26,6 +51,18 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
                            shown.surface->triangles());
     else
       shown.values.emplace(scene.coloring->by, shown.nodes.of(part.local()->mesh().X), shown.nodes.triangles);
+  }
+  lay_obstacles(scene, values);
+}
+
+void FrameMeshes::lay_obstacles(const Scene& scene, Values values) {
+  const auto& obstacles = model_->body().contact.obstacles;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (!scene.obstacles.at(k).visible) continue;
+    const ObstacleMesh mesh(obstacles[k].vertices, obstacles[k].triangles);
+    NamedMesh named{obstacles[k].name, scene.obstacles[k].color, faceted(mesh)};
+    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    obstacles_.push_back({k, std::move(named)});
   }
 }
 
@@ -60,6 +97,16 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
+  std::size_t there = shown_.size();  // obstacles come and go
+  for (const ShownObstacle& shown : obstacles_) {
+    if (!model_->body().contact.obstacles[shown.number].acts_at(state.time())) continue;
+    if (there == meshes_.size() || meshes_[there].name != shown.mesh.name) {
+      meshes_.resize(there);
+      meshes_.push_back(shown.mesh);
+    }
+    ++there;
+  }
+  meshes_.resize(there);
   return meshes_;
 }
 
@@ -71,6 +118,10 @@ Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) const {
     const Eigen::Matrix3Xd x = (R * vertices(shown, state)).colwise() + model_->position(state, part);
     box.extend(Vec3<double>(x.rowwise().minCoeff()));
     box.extend(Vec3<double>(x.rowwise().maxCoeff()));
+  }
+  for (const ShownObstacle& shown : obstacles_) {
+    box.extend(Vec3<double>(shown.mesh.mesh.x.rowwise().minCoeff()));
+    box.extend(Vec3<double>(shown.mesh.mesh.x.rowwise().maxCoeff()));
   }
   return box;
 }
@@ -92,6 +143,7 @@ std::int64_t FrameMeshes::triangles() const {
   std::int64_t sum = 0;
   for (const Shown& shown : shown_)
     sum += shown.surface ? shown.surface->triangles().cols() : shown.nodes.triangles.cols();
+  for (const ShownObstacle& shown : obstacles_) sum += shown.mesh.mesh.triangles.cols();
   return sum;
 }
 

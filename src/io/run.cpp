@@ -8,6 +8,7 @@
 #include <pliant/integrate/stable_step.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
+#include <pliant/io/ply.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/skipped.h>
 #include <pliant/io/trajectory.h>
@@ -41,6 +42,10 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
   if (scene.appearance.size() != scene.body.parts().size())
     throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) +
                                 " parts, but tells the looks of " + std::to_string(scene.appearance.size()));
+  if (scene.obstacles.size() != scene.body.contact.obstacles.size())
+    throw std::invalid_argument("the scene has " + std::to_string(scene.body.contact.obstacles.size()) +
+                                " obstacles, but tells the looks of " +
+                                std::to_string(scene.obstacles.size()));
   for (const Track& track : scene.tracks)
     if (track.point.part == nullptr)
       throw std::invalid_argument("track '" + track.name + "' follows no part");
@@ -134,6 +139,15 @@ void Run::begin_anew() {
   write_run_record(*folder_ / kRunFile, record_);  // from here on the folder is known as a run's
   if (!scene_->document.empty())
     write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
+  for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
+    const MeshFile& mesh = scene_->obstacles[i].mesh;
+    if (mesh.triangles.cols() == 0) continue;
+    const std::string& name = scene_->body.contact.obstacles[i].name;
+    const std::string file = recorded_mesh_name(name);
+    write_ply(folder_->path() / file,
+              {{name, scene_->obstacles[i].color, node_mesh(mesh.triangles, mesh.vertices)}});
+    record_.add_file(file);
+  }
   writer_ = std::make_unique<RecordingWriter>(RecordingWriter::create(folder_->path(), simulation_->model()));
   if (scene_->contacts)
     contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(folder_->path()));

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include <pliant/scene/mesh_file.h>
+
 namespace pliant {
 namespace {
 
@@ -45,7 +47,7 @@ bool is_run_file(const std::filesystem::path& relative) {
       kJointImpulsesFile, kJointImpulsesTable, kLockFile};
   const std::string folder = relative.parent_path().string(),
                     name = finished_name(relative.filename().string());
-  if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end();
+  if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end() || is_recorded_mesh(name);
   if (folder == kMeshFolder) return name == kMaterialFile || is_frame(name, "obj") || is_frame(name, "ply");
   return folder == kFrameFolder && is_frame(name, "png");
 }

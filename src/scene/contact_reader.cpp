@@ -12,7 +12,7 @@
 
 namespace pliant {
 
-schema::Record contact_record() {
+schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
   using namespace schema;
   const Record plane{
       "plane",
@@ -24,21 +24,23 @@ schema::Record contact_record() {
        optional("off", number(above(0), "s"), "When it goes; never when not given.")}};
   const Record pair{
       "pair",
-      "How two parts, or a part and a plane, touch; a group stands for all of its members.",
+      "How two parts, or a part and a plane or an obstacle, touch; a group stands for all of its members.",
       {required("between", array(name(), 2, 2), "Their names, or those of groups.", "[\"ball\", \"floor\"]"),
        optional("touch", boolean(),
                 "Whether they touch; parts that a joint ties do so only where a pair names both.", "true"),
        optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
        optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
   return {"contact",
-          "Parts touch planes and each other; when not given, they pass through everything.",
+          "Parts touch planes, obstacles and each other; when not given, they pass through everything.",
           {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
            optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
                     "0"),
            optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
-           optional("groups", map(array(name(), 1)), "Names of parts and planes by the name of their group.",
-                    "{}"),
+           optional("obstacles", array(record(obstacle_record(orientation, color))),
+                    "Meshes and plates that do not move.", "[]"),
+           optional("groups", map(array(name(), 1)),
+                    "Names of parts, planes and obstacles by the name of their group.", "{}"),
            optional("pairs", array(record(pair)),
                     "Pairs that are out of the ordinary. Where several fit, the one with the fewest groups "
                     "counts, and of these the last.",
@@ -89,8 +91,8 @@ void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFa
     names.push_back(group.key);
     if (contact.is_faulty(group.value)) continue;
     if (std::find(things.begin(), things.end(), group.key) != things.end())
-      faults.key(groups, group.key, "a part or plane has this name; expected one of its own");
-    if (!are_known(group.value, "part or plane", things, faults)) continue;
+      faults.key(groups, group.key, "a part, plane or obstacle has this name; expected one of its own");
+    if (!are_known(group.value, "part, plane or obstacle", things, faults)) continue;
     settings.groups.push_back({group.key, {}});
     for (const JsonValue& member : group.value.array())
       settings.groups.back().members.push_back(member.string());
@@ -101,7 +103,7 @@ void read_pair(const Reader& r, const std::vector<std::string>& names, std::size
                SceneFaults& faults, ContactSettings& settings) {
   if (!r.complete() || !r.given("between")) return;
   const JsonValue& between = r.at("between");
-  if (!are_known(between, "part, plane or group", names, faults)) return;
+  if (!are_known(between, "part, plane, obstacle or group", names, faults)) return;
   ContactPair pair;
   pair.a = between.array()[0].string();
   pair.b = between.array()[1].string();
@@ -118,7 +120,7 @@ void read_pair(const Reader& r, const std::vector<std::string>& names, std::size
 }  // namespace
 
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
-                  const TimeReader& times, SceneFaults& faults, MultiBody& body) {
+                  const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene) {
   for (const auto& [name, part] : parts)
     if (part.part != nullptr && part.prepared && part.part->local() != nullptr &&
         part.part->local()->nodal() == nullptr)
@@ -126,6 +128,7 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
                    "part \"" + name +
                        "\" deforms by modes of its whole body; contact is of parts that deform "
                        "at the nodes of a mesh, and of those that do not deform locally");
+  MultiBody& body = scene.body;
   ContactSettings& settings = body.contact;
   settings.active = true;
   settings.friction = contact.number("friction");
@@ -135,6 +138,10 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
   for (const ContactPlane& plane : settings.planes) names.push_back(plane.name);
+  for (const Reader& r : contact.objects("obstacles")) {
+    read_obstacle(r, names, folder, faults, scene);
+    if (r.given("name")) names.push_back(r.text("name"));
+  }
   const std::size_t n_things = names.size();
   read_groups(contact, names, faults, settings);
   for (const Reader& r : contact.objects("pairs")) read_pair(r, names, n_things, faults, settings);

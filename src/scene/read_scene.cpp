@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include <pliant/scene/faulty_values.h>
 #include <pliant/scene/json_document.h>
@@ -12,10 +13,12 @@
 #include <pliant/scene/scene_schema.h>
 #include <pliant/scene/validate.h>
 
+#include "color_reader.h"
 #include "coloring_reader.h"
 #include "contact_reader.h"
 #include "direction_reader.h"
 #include "joint_reader.h"
+#include "obstacle_reader.h"
 #include "part_reader.h"
 #include "point_reader.h"
 #include "scene_faults.h"
@@ -24,13 +27,6 @@
 namespace pliant {
 
 namespace {
-
-Color color(const JsonValue& v) {
-  if (v.is_array()) return {v.array()[0].number(), v.array()[1].number(), v.array()[2].number()};
-  Color c;
-  for (std::size_t i = 0; i < 3; ++i) c[i] = std::stoi(v.string().substr(1 + 2 * i, 2), nullptr, 16) / 255.0;
-  return c;
-}
 
 /// Colours of parts that name none; quiet tones that stay apart.
 Color palette(std::size_t i) {
@@ -47,8 +43,9 @@ Color palette(std::size_t i) {
 
 class SceneReader {
  public:
-  SceneReader(const JsonDocument& document, Diagnostics& diagnostics)
+  SceneReader(const JsonDocument& document, MeshFolder folder, Diagnostics& diagnostics)
       : document_(document),
+        folder_(std::move(folder)),
         faulty_(faulty_values(document, diagnostics)),
         faults_(document, diagnostics),
         root_(document.root(), scene_record(), &faulty_) {}
@@ -67,7 +64,8 @@ class SceneReader {
     const PointReader points(parts_, scene_->end, faults_);
     scene_->body.stabilization = read_stabilization(root_.object("stabilization"));
     for (const Reader& r : named("joints")) read_joint(r, points, faults_, scene_->body);
-    if (root_.given("contact")) read_contact(root_.object("contact"), parts_, times(), faults_, scene_->body);
+    if (root_.given("contact"))
+      read_contact(root_.object("contact"), parts_, times(), folder_, faults_, *scene_);
     for (const Reader& r : named("springs")) read_spring(r, points);
     for (const Reader& r : named("forces")) read_force(r, points);
     for (const Reader& r : named("torques")) read_torque(r, points);
@@ -139,7 +137,7 @@ class SceneReader {
     if (!made || !r.given("name") || scene_->body.find(r.text("name")) != nullptr) return;
     parts_[r.text("name")] = {&r.at("name"), &scene_->body.add(std::move(made)), reader.prepared()};
     Appearance look;
-    look.color = r.given("color") ? color(r.at("color")) : palette(scene_->appearance.size());
+    look.color = r.given("color") ? read_color(r.at("color")) : palette(scene_->appearance.size());
     look.resolution = static_cast<int>(r.integer("resolution"));
     look.visible = r.boolean("visible");
     if (look.visible) check_mesh(r, *parts_[r.text("name")].part, look.resolution);
@@ -222,7 +220,7 @@ class SceneReader {
     Track track;
     track.point = *at;
     track.name = name_of(r, "track", scene_->tracks.size());
-    if (r.given("color")) track.color = color(r.at("color"));
+    if (r.given("color")) track.color = read_color(r.at("color"));
     scene_->tracks.push_back(track);
   }
 
@@ -239,6 +237,7 @@ class SceneReader {
   }
 
   const JsonDocument& document_;
+  const MeshFolder folder_;
   const FaultyValues faulty_;
   SceneFaults faults_;
   const Reader root_;
@@ -247,7 +246,7 @@ class SceneReader {
   Scene* scene_ = nullptr;
 };
 
-/// FNV-1a of the document with its overrides.
+/// FNV-1a of the document with its overrides, and the meshes it names.
 std::uint64_t hash_of(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) {
@@ -258,14 +257,22 @@ std::uint64_t hash_of(const std::string& text) {
 }
 
 std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::string>& overrides,
-                                Diagnostics& diagnostics) {
+                                MeshFiles files, Diagnostics& diagnostics) {
+  const MeshFolder folder{std::filesystem::path(document.name()).parent_path(), files == MeshFiles::of_a_run};
   for (const std::string& assignment : overrides) document.set(assignment, diagnostics);
   validate(document, scene_record(), diagnostics);
   if (!document.root().is_object() || diagnostics.full()) diagnostics.throw_if_errors();
-  std::unique_ptr<Scene> scene = SceneReader(document, diagnostics).read();
+  std::unique_ptr<Scene> scene = SceneReader(document, folder, diagnostics).read();
   diagnostics.throw_if_errors();
   std::string resolved = document.text();
   for (const std::string& assignment : overrides) resolved += "\n" + assignment;
+  for (const ObstacleLook& obstacle : scene->obstacles) {
+    const MeshFile& mesh = obstacle.mesh;
+    resolved.append(reinterpret_cast<const char*>(mesh.vertices.data()),
+                    static_cast<std::size_t>(mesh.vertices.size()) * sizeof(double));
+    resolved.append(reinterpret_cast<const char*>(mesh.triangles.data()),
+                    static_cast<std::size_t>(mesh.triangles.size()) * sizeof(int));
+  }
   scene->hash = hash_of(resolved);
   scene->document = document.text();
   scene->overrides = overrides;
@@ -275,13 +282,14 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
 }  // namespace
 
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
-                                  Diagnostics& diagnostics) {
-  return scene_of(JsonDocument::read(file, diagnostics), overrides, diagnostics);
+                                  Diagnostics& diagnostics, MeshFiles files) {
+  return scene_of(JsonDocument::read(file, diagnostics), overrides, files, diagnostics);
 }
 
 std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
                                    const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
-  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, diagnostics);
+  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named,
+                  diagnostics);
 }
 
 }  // namespace pliant

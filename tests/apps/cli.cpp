@@ -415,8 +415,9 @@ TEST_CASE("scripts print chains and nets of any size, and say how they are used"
     CHECK(has(check.out, "ok: "));
     CHECK(check.err.empty());
   }
-  for (const char* script : {"chain.sh'", "chain.sh' 0", "chain.sh' -3", "chain.sh' 2 2", "chain.sh' many",
-                             "net.sh'", "net.sh' 5", "net.sh' 2 5", "net.sh' 4 4.5"}) {
+  for (const char* script :
+       {"chain.sh'", "chain.sh' 0", "chain.sh' -3", "chain.sh' 2 2", "chain.sh' many", "net.sh'", "net.sh' 5",
+        "net.sh' 2 5", "net.sh' 4 4.5", "pour.sh'", "pour.sh' 0"}) {
     INFO(script);
     const std::string file = (place.folder / "usage").string();
     const int status =

@@ -380,7 +380,7 @@ TEST_CASE("contact that cannot be is refused by name", "[contact]") {
   body.contact.groups = {{"floor", {"ball"}}};
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("'floor'"));
   body.contact.groups = {{"round", {"ball"}}, {"all", {"round", "floor"}}};
-  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("members are parts and planes"));
+  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("members are parts, planes and obstacles"));
 }
 
 TEST_CASE("of pairs and groups the most particular counts, and of those the last", "[contact]") {

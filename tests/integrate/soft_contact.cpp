@@ -7,6 +7,7 @@
 
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/contact/mesh_touches.h>
+#include <pliant/contact/obstacle_mesh.h>
 #include <pliant/part/local_laws.h>
 
 #include "motion.h"
@@ -217,4 +218,130 @@ TEST_CASE("meshes that cross: corners behind faces, edges across edges", "[conta
   }
   CHECK(touches(turned, {0.1, 0.05, 1 + reach + 1e-3}).empty());
   CHECK(touches(Eigen::Quaterniond::Identity(), {0, 0, 2.001}).empty());
+}
+
+namespace {
+
+/// The nodes of a part where they are.
+Eigen::Matrix3Xd placed(const Simulation& simulation, int part) {
+  const Mat3<double> R = simulation.model().orientation(simulation.state(), part).toRotationMatrix();
+  return (R * simulation.model().node_positions(simulation.state(), part).transpose()).colwise() +
+         simulation.model().position(simulation.state(), part);
+}
+
+struct Ground {
+  Eigen::Matrix3Xd x;
+  Eigen::Matrix3Xi triangles;
+  int n;
+
+  /// Over n x n squares of a map of [-1, 1]^2, half a metre to each side.
+  template <class F>
+  Ground(int squares, F&& height) : n(squares) {
+    x.resize(3, (n + 1) * (n + 1));
+    triangles.resize(3, 2 * n * n);
+    for (int i = 0, t = 0; i <= n; ++i)
+      for (int j = 0; j <= n; ++j) {
+        const double u = (2.0 * i / n - 1) / 2, v = (2.0 * j / n - 1) / 2;
+        const int k = i * (n + 1) + j, next = k + n + 1;
+        x.col(k) = Vec3<double>(u, v, height(u, v));
+        if (i == n || j == n) continue;
+        triangles.col(t++) = Eigen::Vector3i(k, next, next + 1);
+        triangles.col(t++) = Eigen::Vector3i(k, next + 1, k + 1);
+      }
+  }
+  /// How far a point is above the triangle below it, m.
+  double above(const Vec3<double>& p) const {
+    for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+      const Vec3<double> a = x.col(triangles(0, t)), b = x.col(triangles(1, t)), c = x.col(triangles(2, t));
+      Eigen::Matrix2d edges;
+      edges << b[0] - a[0], c[0] - a[0], b[1] - a[1], c[1] - a[1];
+      const Eigen::Vector2d w = edges.inverse() * (p - a).head<2>();
+      if (w[0] < 0 || w[1] < 0 || w.sum() > 1) continue;
+      const Vec3<double> normal = (b - a).cross(c - a).normalized();
+      return normal.dot(p - a);
+    }
+    return 1;
+  }
+};
+
+/// How deep a point is in a closed mesh, m; 0 outside.
+double depth_in(const ObstacleMesh& mesh, const Vec3<double>& p) {
+  double turns = 0, nearest = 1;
+  for (int t = 0; t < mesh.triangles().cols(); ++t) {
+    const Vec3<double> a = mesh.vertices().col(mesh.triangles()(0, t)) - p,
+                       b = mesh.vertices().col(mesh.triangles()(1, t)) - p,
+                       c = mesh.vertices().col(mesh.triangles()(2, t)) - p;
+    turns += std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                               b.dot(c) * a.norm() + c.dot(a) * b.norm());
+    nearest = std::min(nearest, (mesh.nearest(t, p) - p).norm());
+  }
+  return turns > kPi ? nearest : 0;  // half the solid angle
+}
+
+}  // namespace
+
+TEST_CASE("a balloon rests on a plate, on a flat mesh and in a bowl, and each carries its weight",
+          "[contact]") {
+  const std::vector<Ground> grounds{Ground(7, [](double, double) { return 0.0; }),
+                                    Ground(12, [](double u, double v) { return 1.5 * (u * u + v * v); })};
+  for (const std::string on : {"plate", "flat mesh", "bowl"}) {
+    CAPTURE(on);
+    const Ground& ground = grounds[on == "bowl" ? 1 : 0];
+    MultiBody body;
+    body.contact.friction = 0.3;
+    balloon(body, "ball", on == "bowl" ? Vec3<double>(0.09, 0.02, 0.2) : Vec3<double>(0.02, 0.03, 0.15));
+    if (on == "plate")
+      body.plate("ground", {0, 0, 0}, Eigen::Quaterniond::Identity(), 0.5, 0.5);
+    else
+      body.obstacle("ground", ground.x, ground.triangles);
+    Simulation simulation(body, "semi_implicit_euler");
+    const double weight = kG * body.parts()[0]->total_mass();
+    Vec3<double> impulse = Vec3<double>::Zero();
+    double deep = 0;
+    const int steps = on == "bowl" ? 12000 : 6000;
+    for (int i = 0; i < steps; ++i) {
+      simulation.step(5e-4);
+      if (i % 20 == 0) {
+        const Eigen::Matrix3Xd x = placed(simulation, 0);
+        for (Eigen::Index k = 0; k < x.cols(); ++k) deep = std::max(deep, -ground.above(x.col(k)));
+      }
+      if (i >= steps - 1000)
+        for (const Vec3<double>& p : simulation.contact()->impulses()) impulse += p;
+    }
+    CHECK(deep < 1e-3 * 0.1);
+    CHECK((impulse / 0.5 - Vec3<double>(0, 0, weight)).norm() < 0.02 * weight);
+    CHECK(simulation.ledger().kinetic < 1e-3 * weight * 0.05);
+    CHECK(simulation.step_counters().contact_residual < 1e-7);
+  }
+}
+
+TEST_CASE("a ridge and a peak dent a balloon and do not come in", "[contact]") {
+  for (const std::string what : {"ridge", "peak"}) {
+    CAPTURE(what);
+    const double slope = 0.8;
+    const Ground ground(2, [&](double u, double v) {
+      if (what == "ridge") return -slope * std::abs(u);
+      return -slope * std::max(std::abs(u), std::abs(v));
+    });
+    MultiBody body;
+    body.contact.friction = 0;
+    balloon(body, "ball", {0.003, 0.002, 0.12}).move({0, 0, -1}, {0, 0, 0});
+    std::vector<Vec3<double>> sharp;
+    body.obstacle("ground", ground.x, ground.triangles);
+    for (int i = -50; i <= 50; ++i)
+      if (what != "peak" || i == 0) sharp.push_back({0, 0.1 * i / 50, 0});
+    Simulation simulation(body, "semi_implicit_euler");
+    const LocalMesh& mesh = simulation.model().parts()[0].local->mesh();
+    double deep = 0;
+    bool met = false;
+    for (int i = 0; i < 1000; ++i) {
+      simulation.step(1e-4);
+      met = met || !simulation.contact()->contacts().empty();
+      if (i % 10 != 0) continue;
+      const ObstacleMesh surface(placed(simulation, 0), surface_nodes(mesh).triangles);
+      for (const Vec3<double>& p : sharp) deep = std::max(deep, depth_in(surface, p));
+    }
+    REQUIRE(met);
+    CHECK(deep < 1e-3 * 0.1);
+  }
 }

@@ -265,6 +265,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "nested_too_deep",
                                         "no_materials",
                                         "nul_in_text",
+                                        "obstacles_beyond",
                                         "parameter_as_text",
                                         "parameter_of_no_deformation",
                                         "parameter_out_of_a_second_link",

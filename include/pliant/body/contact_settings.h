@@ -1,4 +1,4 @@
-// Who touches whom: planes, friction and restitution, and pairs that are out of the ordinary.
+// Who touches whom: planes, obstacles, friction and restitution, and pairs that are out of the ordinary.
 #pragma once
 
 #include <deque>
@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include <pliant/math/time_function.h>
 
@@ -22,14 +24,26 @@ struct ContactPlane {
   bool acts_at(double t) const { return on <= t && t < off; }
 };
 
-/// Parts and planes that pairs can name together.
+/// An immobile body whose surface is a triangle mesh, one-sided where it is open (contact/obstacle_mesh.h).
+struct ContactObstacle {
+  std::string name;
+  Eigen::Matrix3Xd vertices;   ///< m, world
+  Eigen::Matrix3Xi triangles;  ///< columns of these, counter-clockwise seen from the side that is free
+  double on = 0;               ///< it is there from this time, s
+  double off = std::numeric_limits<double>::infinity();  ///< until that, s
+
+  bool acts_at(double t) const { return on <= t && t < off; }
+};
+
+/// Parts, planes and obstacles that pairs can name together.
 struct ContactGroup {
   std::string name;
   std::vector<std::string> members;
 };
 
-/// How two things touch that are named: parts, planes or groups; a group with itself says it of its members.
-/// Of several pairs that two things are in, that with the fewest groups counts, and of these the last.
+/// How two things touch that are named: parts, planes, obstacles or groups; a group with itself says it of
+/// its members. Of several pairs that two things are in, that with the fewest groups counts, and of these the
+/// last.
 struct ContactPair {
   std::string a, b;
   bool touch = true;                                ///< false: they pass through each other
@@ -38,13 +52,14 @@ struct ContactPair {
 
 struct ContactSettings {
   bool active = false;        ///< whether anything touches at all
-  bool between_parts = true;  ///< whether parts touch parts, or planes alone
+  bool between_parts = true;  ///< whether parts touch parts, or planes and obstacles alone
   double friction = 0.5;      ///< Coulomb's coefficient mu
   double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
   /// Parts that a joint ties together touch only where a pair names both.
   std::vector<ContactPair> pairs;
   std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
+  std::deque<ContactObstacle> obstacles;
 };
 
 }  // namespace pliant

@@ -107,6 +107,14 @@ class MultiBody {
   /// An impenetrable plane through a point (m, world), and with it contact. Throws std::invalid_argument when
   /// the normal has no direction or the name is taken.
   ContactPlane& plane(std::string name, TimeVector point, const Vec3<double>& normal);
+  /// An immobile triangle mesh (vertices: m, world; triangles: counter-clockwise seen from the side that is
+  /// free), and with it contact. Throws std::invalid_argument when the name is taken; a Model tells what else
+  /// is wrong with it.
+  ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
+  /// A rectangle without thickness that is solid from both sides: x and y of its frame run along its edges,
+  /// and it reaches this far along them to either side of its middle (m). Throws std::invalid_argument.
+  ContactObstacle& plate(std::string name, const Vec3<double>& middle, const Eigen::Quaterniond& orientation,
+                         double half_x, double half_y);
 
   const std::vector<std::unique_ptr<Part>>& parts() const { return parts_; }
   const std::vector<std::unique_ptr<Spring>>& springs() const { return springs_; }

@@ -24,6 +24,17 @@ class CollisionSurface {
     /// Cheaper, and zero where the height is: what a search goes down along (m, as far as it is small).
     virtual double descent(const Vec3<double>& p) const = 0;
   };
+  /// The height over a plane: normal, of length 1, in the body frame; offset: of the frame's origin, m.
+  class OverPlane final : public Field {
+   public:
+    OverPlane(const Vec3<double>& normal, double offset) : normal_(normal), offset_(offset) {}
+    double height(const Vec3<double>& p) const override { return p.dot(normal_) + offset_; }
+    double descent(const Vec3<double>& p) const override { return height(p); }
+
+   private:
+    Vec3<double> normal_;
+    double offset_;
+  };
   struct LowPoint {
     Material<double> material;
     Vec3<double> p = Vec3<double>::Zero();  ///< body frame, m

@@ -10,7 +10,7 @@ namespace pliant {
 /// The side of a contact that is on a part: a material point, or of a part that deforms at the nodes of a
 /// mesh a point between up to three of them.
 struct ContactSide {
-  int part = -1;                                ///< number of the part; -1: a plane
+  int part = -1;                                ///< number of the part; -1: a plane or an obstacle
   Material<double> material;                    ///< the point of it
   std::array<int, 3> node{-1, -1, -1};          ///< or between these, as many as are not -1
   Vec3<double> weight = Vec3<double>::UnitX();  ///< with these, whose sum is 1
@@ -19,8 +19,8 @@ struct ContactSide {
 };
 
 struct Contact {
-  ContactSide a, b;                            ///< b may be a plane
-  int plane = -1;                              ///< its number
+  ContactSide a, b;                            ///< b may be a plane or an obstacle
+  int plane = -1, obstacle = -1;               ///< its number
   Vec3<double> x = Vec3<double>::Zero();       ///< where they meet, m, world
   Vec3<double> normal = Vec3<double>::Zero();  ///< from b to a, of length 1, world
   double gap = 0;                              ///< m; negative: so deep

@@ -1,5 +1,5 @@
 // Which surfaces meet: a tree of boxes tells which parts are near each other, then the low points of each
-// part over planes and other parts.
+// part over planes, obstacles and other parts.
 #pragma once
 
 #include <memory>
@@ -10,6 +10,7 @@
 #include <pliant/contact/collision_surface.h>
 #include <pliant/contact/contact.h>
 #include <pliant/contact/contact_rules.h>
+#include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
 
@@ -17,9 +18,12 @@ namespace pliant {
 class ContactFinder {
  public:
   /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
-  /// ContactRules.
+  /// ContactRules and ObstacleMesh.
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
+
+  /// Meshes of the obstacles, in their order; they stay where they are as long as this does.
+  const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m).
   std::vector<Contact> find(const State& state, double t, double most) const;
@@ -31,7 +35,7 @@ class ContactFinder {
     double h = 0;       ///< so long that no part passes through another, s
   };
   Neighbourhood neighbourhood(const State& state, double t, double h) const;
-  /// The least gap of a part over another or a plane, m; no more than `most`.
+  /// The least gap of a part over another, a plane or an obstacle, m; no more than `most`.
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
  private:
@@ -45,6 +49,8 @@ class ContactFinder {
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;
   void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
+  void find_on_obstacle(int a, std::size_t obstacle, double t, double most,
+                        std::vector<Contact>& found) const;
   bool are_apart(int a, int b, double most) const;
   void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   /// Low points of a over b.
@@ -54,8 +60,10 @@ class ContactFinder {
   std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part that is this class's
   ContactRules rules_;
   std::vector<ContactRule> on_planes_;  // part after part, plane after plane
-  bool any_pairs_;                      // whether parts may touch parts
-  std::vector<int> smooth_;             // numbers of these parts
+  std::vector<ObstacleMesh> obstacles_;
+  std::vector<ContactRule> on_obstacles_;  // likewise
+  bool any_pairs_;                         // whether parts may touch parts
+  std::vector<int> smooth_;                // numbers of these parts
   std::unique_ptr<Scratch> scratch_;
 };
 

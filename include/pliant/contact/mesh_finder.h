@@ -1,5 +1,5 @@
-// Contacts of parts that deform locally: their nodes on planes, their surfaces as meshes against those of
-// other parts.
+// Contacts of parts that deform locally: their nodes on planes, their surfaces as meshes against obstacles
+// and other parts.
 #pragma once
 
 #include <map>
@@ -11,15 +11,17 @@
 #include <pliant/contact/contact_rules.h>
 #include <pliant/contact/find_contacts.h>
 #include <pliant/contact/mesh_touches.h>
+#include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
 
 class MeshFinder {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for parts that deform by modes.
-  explicit MeshFinder(const Model& model);
+  /// The model and its obstacles must outlive it. Throws std::invalid_argument for parts that deform by
+  /// modes.
+  MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
-  bool empty() const { return planes_.empty() && pairs_.empty(); }
+  bool empty() const { return planes_.empty() && on_obstacles_.empty() && pairs_.empty(); }
   /// Where surfaces have gone through each other at a state and a time, s. Appends.
   void find(const State& state, double t, std::vector<Contact>& found) const;
   /// What a step from a state comes near to, on top of what is in `near` already.
@@ -29,6 +31,12 @@ class MeshFinder {
   struct OnPlane {
     int part;
     std::size_t plane;
+    ContactRule rule;
+  };
+  struct OnObstacle {
+    int part;
+    std::size_t obstacle;
+    const ObstacleMesh* mesh;
     ContactRule rule;
   };
   struct Pair {
@@ -43,6 +51,7 @@ class MeshFinder {
   const Model* model_;
   std::map<int, ContactMesh> meshes_;  // of each part that needs one
   std::vector<OnPlane> planes_;
+  std::vector<OnObstacle> on_obstacles_;
   std::vector<Pair> pairs_;  // one of the two deforms locally
 };
 

@@ -1,11 +1,12 @@
-// Where two closed triangle meshes have gone through each other: vertices of one behind triangles of the
-// other, and edges across edges.
+// Where two triangle meshes have gone through each other: vertices of one behind triangles of the other, and
+// edges across edges.
 #pragma once
 
 #include <array>
 #include <vector>
 
 #include <pliant/contact/contact_mesh.h>
+#include <pliant/contact/obstacle_mesh.h>
 
 namespace pliant {
 
@@ -33,5 +34,8 @@ struct MeshTouch {
 
 /// Appends them, in an order that depends on the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
+/// Likewise where b is an obstacle, whose points are not told. What is deeper behind it than this (m) came
+/// from elsewhere, and so did what faces the way a triangle does.
+void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// The surfaces of all visible parts at a state: what meshes and pictures of a frame are made of.
+// The surfaces of all visible parts and obstacles at a state: what meshes and pictures of a frame are made
+// of.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,7 @@
 namespace pliant {
 
 struct NamedMesh {
-  std::string name;  ///< of the part
+  std::string name;  ///< of the part or obstacle
   Color color{};
   TriangleMesh mesh;       ///< world
   VecX<double> values{};   ///< of its vertices, what the scene's coloring tells; empty without
@@ -27,12 +28,12 @@ class FrameMeshes {
   /// Whether the values of vertices are told that the scene's coloring asks for.
   enum class Values { told, left_out };
 
-  /// Lays the surfaces of the visible parts. Both must outlive it. Throws std::invalid_argument on a bad
-  /// resolution.
+  /// Lays the surfaces of the visible parts and obstacles, these from both sides when they are open. Both
+  /// must outlive it. Throws std::invalid_argument on a bad resolution.
   FrameMeshes(const Scene& scene, const Model& model, Values values = Values::told);
 
-  /// The meshes at a state, in the order of the parts; the reference is valid until the next call. Meshes of
-  /// rigid parts are evaluated once and then only moved.
+  /// The meshes at a state, in the order of the parts, the obstacles that are there after them; the reference
+  /// is valid until the next call. Meshes of rigid parts are evaluated once and then only moved.
   const std::vector<NamedMesh>& at(const State& state);
   /// The box around all vertices at a state.
   Eigen::AlignedBox3d bounds(const State& state) const;
@@ -51,11 +52,17 @@ class FrameMeshes {
     TriangleMesh body;               // of a rigid part, body frame
     std::optional<SurfaceValues> values;
   };
+  void lay_obstacles(const Scene& scene, Values values);
   Eigen::Matrix3Xd vertices(const Shown& shown, const State& state) const;
   TriangleMesh body_mesh(const Shown& shown, const State& state) const;
 
   const Model* model_;
+  struct ShownObstacle {
+    std::size_t number;
+    NamedMesh mesh;
+  };
   std::vector<Shown> shown_;
+  std::vector<ShownObstacle> obstacles_;
   std::vector<NamedMesh> meshes_;
 };
 

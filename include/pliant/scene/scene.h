@@ -11,6 +11,7 @@
 
 #include <pliant/body/multibody.h>
 #include <pliant/scene/coloring.h>
+#include <pliant/scene/mesh_file.h>
 
 namespace pliant {
 
@@ -22,6 +23,13 @@ struct Appearance {
   Color color{0.8, 0.5, 0.2};
   int resolution = 8;  ///< of its Surface
   bool visible = true;
+};
+
+/// How an obstacle looks, and where its surface is from; one for each of the body's, in their order.
+struct ObstacleLook {
+  Color color{0.6, 0.58, 0.53};
+  bool visible = true;
+  MeshFile mesh;  ///< as the file has it, neither scaled nor placed; empty of a plate
 };
 
 /// A material point whose path is drawn and recorded (the paper's Fig. 6b).
@@ -51,6 +59,7 @@ struct Scene {
   std::string description;  ///< what the scene must show
   MultiBody body;
   std::vector<Appearance> appearance;
+  std::vector<ObstacleLook> obstacles;
   std::vector<Track> tracks;
 
   double end = 1;      ///< s
