@@ -567,6 +567,8 @@ void ContactProblem::yield(const Cluster& cluster, double softness) {
 /// Each cluster by itself. What has no solution, as where joints and contacts contradict each other, or where
 /// none is found, is solved with contacts that yield, which has one; the better of the two stays.
 void ContactProblem::iterate(ContactSolution& solution) {
+  std::vector<VecX<double>> start_x;
+  for (const Mover& mover : movers_) start_x.push_back(mover.x);
   for (const Block& block : blocks_)
     if (block.sides.empty()) solution.residual = std::max(solution.residual, -velocity(block)[0]);
   for (Cluster& cluster : clusters()) {
@@ -603,6 +605,9 @@ void ContactProblem::iterate(ContactSolution& solution) {
     }
     solution.residual = std::max(solution.residual, left);
   }
+  // Rounding has grown where impulses were extrapolated: what is pushed moves as they say in the end.
+  for (std::size_t i = 0; i < movers_.size(); ++i) movers_[i].x = start_x[i];
+  for (const Block& block : blocks_) push(block, block.p);
 }
 
 ContactSolution ContactProblem::solve(double since_of_limits) {
