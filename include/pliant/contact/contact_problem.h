@@ -59,7 +59,7 @@ class ContactProblem {
  private:
   struct Side {
     std::size_t mover;
-    int first;       ///< of its part in x
+    int first;  ///< of its part in x
     Eigen::Matrix3Xd J;
   };
   struct Response {
