@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/Eigenvalues>
+
 namespace pliant {
 
 namespace {
@@ -16,7 +18,10 @@ CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
   if (!(mu > 0)) return;
   even_ = (W - W_n_ * Mat3<double>::Identity()).lpNorm<Eigen::Infinity>() <= kEven * W_n_;
   if (even_) return;
-  modes_.computeDirect(Eigen::Matrix2d(W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_));
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes;
+  modes.computeDirect(Eigen::Matrix2d(W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_));
+  stiffness_ = modes.eigenvalues();
+  modes_ = modes.eigenvectors();
   factor_.compute(W);
 }
 
@@ -37,10 +42,9 @@ Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
 
 Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
   // It slides at u_t = -s p_t, s > 0, with u_n = 0: (A + s) p_t = -c, A the Schur complement of the normal.
-  const Eigen::Vector2d along = modes_.eigenvectors().transpose() * (b.tail<2>() + coupling_ * p_alone);
+  const Eigen::Vector2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_alone);
   const auto push = [&](double s) {
-    const Eigen::Vector2d t =
-        modes_.eigenvectors() * (-along.array() / (modes_.eigenvalues().array() + s)).matrix();
+    const Eigen::Vector2d t = modes_ * (-along.array() / (stiffness_.array() + s)).matrix();
     return Vec3<double>(p_alone - coupling_.dot(t) / W_n_, t[0], t[1]);
   };
   const auto beyond = [&](double s) {
@@ -48,7 +52,7 @@ Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
     return p.tail<2>().norm() - mu_ * p[0];
   };
   // |p_t| falls with s to 0, and p_n goes to p_alone > 0: there is a root.
-  double low = 0, high = modes_.eigenvalues()[1];
+  double low = 0, high = stiffness_[1];
   while (beyond(high) > 0) {
     low = high;
     high *= 4;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <pliant/math/types.h>
 
@@ -23,9 +22,11 @@ class CoulombLaw {
 
   double mu_ = 0, W_n_ = 1;
   bool even_ = false;  ///< whether W is a multiple of 1, as where points push on points
-  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();    ///< of the tangents with the normal
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes_;  ///< of the Schur complement A of the normal
-  Eigen::LDLT<Mat3<double>> factor_;
+  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
+  // Of the Schur complement A of the normal.
+  Eigen::Vector2d stiffness_ = Eigen::Vector2d::Ones();
+  Eigen::Matrix2d modes_ = Eigen::Matrix2d::Identity();
+  Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< of W
 };
 
 inline Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
