@@ -15,6 +15,7 @@
 
 #include <pliant/pliant.h>
 
+#include "exponent.h"
 #include "table_file.h"
 #include "timing.h"
 
@@ -118,20 +119,6 @@ Cost measure(const System& system, int n) {
   return cost;
 }
 
-/// Slope of log(time of all bodies) over log(bodies), least squares.
-double exponent(const std::vector<Cost>& costs, double Cost::*time) {
-  double x = 0, y = 0, xx = 0, xy = 0;
-  const auto n = static_cast<double>(costs.size());
-  for (const Cost& cost : costs) {
-    const double a = std::log(cost.bodies), b = std::log(cost.*time * cost.bodies);
-    x += a;
-    y += b;
-    xx += a * a;
-    xy += a * b;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -167,7 +154,8 @@ int main(int argc, char** argv) try {
                      c.residual, c.fallbacks);
     }
     if (costs.size() < 2) continue;
-    const double moving = exponent(costs, &Cost::step), still = exponent(costs, &Cost::still_step);
+    const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),
+                 still = bench::exponent(costs, &Cost::bodies, &Cost::still_step);
     std::printf("%-14s grows as bodies to the power %.3f (step) %.3f (still)\n", system.name, moving, still);
     exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, still);
   }

@@ -16,6 +16,7 @@
 
 #include <pliant/pliant.h>
 
+#include "exponent.h"
 #include "linkage.h"
 #include "table_file.h"
 #include "timing.h"
@@ -90,20 +91,6 @@ Cost measure(const System& system, int size) {
   return cost;
 }
 
-/// Slope of log(time of all links) over log(links), least squares.
-double exponent(const std::vector<Cost>& costs, double Cost::*time) {
-  double x = 0, y = 0, xx = 0, xy = 0;
-  const auto n = static_cast<double>(costs.size());
-  for (const Cost& cost : costs) {
-    const double a = std::log(cost.links), b = std::log(cost.*time * cost.links);
-    x += a;
-    y += b;
-    xx += a * a;
-    xy += a * b;
-  }
-  return (n * xy - x * y) / (n * xx - x * x);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -150,8 +137,9 @@ int main(int argc, char** argv) try {
                      c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(),
                      c.evaluation * 1e-6 * peak);
     }
-    const double e = exponent(costs, &Cost::evaluation), r = exponent(costs, &Cost::rk4_step),
-                 s = exponent(costs, &Cost::euler_step);
+    const double e = bench::exponent(costs, &Cost::links, &Cost::evaluation),
+                 r = bench::exponent(costs, &Cost::links, &Cost::rk4_step),
+                 s = bench::exponent(costs, &Cost::links, &Cost::euler_step);
     std::printf("%-20s grows as links to the power %.3f (evaluation) %.3f (rk4) %.3f (euler)\n", system.name,
                 e, r, s);
     exponents_file.row("\"%s\",%.4f,%.4f,%.4f\n", system.name, e, r, s);

@@ -1,0 +1,24 @@
+// How cost grows with size.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace pliant::bench {
+
+/// Slope of log(time of all) over log(size), least squares, from times of one (time / size).
+template <class Cost, class Size>
+double exponent(const std::vector<Cost>& costs, Size Cost::*size, double Cost::*time) {
+  double x = 0, y = 0, xx = 0, xy = 0;
+  const auto n = static_cast<double>(costs.size());
+  for (const Cost& cost : costs) {
+    const double a = std::log(cost.*size), b = std::log(cost.*time * cost.*size);
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+}  // namespace pliant::bench
