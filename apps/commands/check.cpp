@@ -5,8 +5,8 @@
 #include <memory>
 
 #include <pliant/integrate/stable_step.h>
-#include <pliant/io/frame_schedule.h>
 #include <pliant/io/number_text.h>
+#include <pliant/io/run.h>
 #include <pliant/scene/read_scene.h>
 
 #include "command.h"
@@ -21,19 +21,19 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
-// Wall time of a step, s: of the first steps of the scene, for a twentieth of a second.
-double seconds_per_step(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
+// Wall time of a run, s, if it goes on as in its first twentieth of a second.
+double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   using Clock = std::chrono::steady_clock;
-  if (schedule.steps() == 0) return 0;
   const Clock::time_point start = Clock::now();
-  std::int64_t steps = 0;
   double seconds = 0;
-  while (steps < schedule.steps() && seconds < 0.05) {
-    simulation.step(schedule.step());
-    ++steps;
+  while (simulation.time() < schedule.end() && seconds < 0.05) {
+    if (simulation.tolerance() > 0)
+      simulation.step_up_to(schedule.end());
+    else
+      simulation.step(schedule.step());
     seconds = std::chrono::duration<double>(Clock::now() - start).count();
   }
-  return seconds / static_cast<double>(steps);
+  return simulation.time() > 0 ? seconds / simulation.time() * schedule.end() : 0;
 }
 
 // ", 2 obstacles of 644 triangles"; nothing where there are none.
@@ -47,22 +47,24 @@ std::string obstacle_text(const pliant::MultiBody& body) {
 }
 
 void print_estimate(pliant::Scene& scene) {
-  const pliant::FrameSchedule schedule(scene.end, scene.step, scene.frame_rate);
-  pliant::Simulation simulation(scene.body, scene.integrator);
+  const pliant::FrameSchedule schedule = pliant::schedule_of(scene);
+  pliant::Simulation simulation(scene.body, scene.integrator, 1, scene.tolerance);
   const pliant::StableStep stable = pliant::stable_step(simulation);
-  const double numbers = 4.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
+  const double numbers = 5.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
                          simulation.model().n_limits() + 1;
   const auto frames = static_cast<double>(schedule.frames());
   std::cout << "ok: " << pliant::count_text(static_cast<std::int64_t>(scene.body.parts().size()), "part")
             << obstacle_text(scene.body) << ", " << simulation.model().n_v() << " degrees of freedom\n"
-            << "estimate: " << schedule.steps() << " steps of " << schedule.step() << " s";
-  if (schedule.step() > stable.step)
+            << "estimate: ";
+  if (scene.tolerance > 0)
+    std::cout << "steps to a tolerance of " << scene.tolerance;
+  else
+    std::cout << schedule.steps() << " steps of " << schedule.step() << " s";
+  if (scene.tolerance == 0 && schedule.step() > stable.step)
     std::cout << "\nwarning: the step is above the largest stable one, about "
               << pliant::rounded_text(stable.step) << " s, set by " << stable.limit;
   else
-    std::cout << ", about "
-              << pliant::rounded_text(
-                     seconds_per_step(simulation, schedule) * static_cast<double>(schedule.steps()), 2)
+    std::cout << ", about " << pliant::rounded_text(seconds_of_run(simulation, schedule), 2)
               << " s of computing";
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
             << pliant::rounded_text(frames * numbers * 8 / 1e6, 2) << " MB\n";

@@ -6,9 +6,9 @@
 #include <pliant/body/placed_point.h>
 #include <pliant/contact/obstacle_mesh.h>
 #include <pliant/integrate/stable_step.h>
-#include <pliant/io/frame_schedule.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
+#include <pliant/io/run.h>
 #include <pliant/io/skipped.h>
 
 #include "command.h"
@@ -185,7 +185,7 @@ void print_joints(const pliant::Simulation& simulation) {
 
 int info(const SceneOptions& options) {
   const std::unique_ptr<pliant::Scene> scene = read(options);
-  const pliant::Simulation simulation(scene->body, scene->integrator);
+  const pliant::Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
   const pliant::Model& model = simulation.model();
   std::cout << scene->name << (scene->description.empty() ? "" : ": " + scene->description) << "\n";
   int frozen = 0;
@@ -203,10 +203,15 @@ int info(const SceneOptions& options) {
   print_forces(*scene, simulation);
   std::cout << "skipped:\n";
   for (const std::string& what : pliant::skipped_work(model)) std::cout << "  " << what << "\n";
-  const pliant::FrameSchedule schedule(scene->end, scene->step, scene->frame_rate);
-  std::cout << "run: " << schedule.steps() << " steps of " << schedule.step() << " s to " << schedule.end()
-            << " s by " << scene->integrator << ", " << pliant::count_text(schedule.frames(), "frame")
-            << "\n";
+  const pliant::FrameSchedule schedule = pliant::schedule_of(*scene);
+  std::cout << "run: ";
+  if (scene->tolerance > 0)
+    std::cout << "steps to a tolerance of " << simulation.tolerance();
+  else
+    std::cout << schedule.steps() << " steps of " << schedule.step() << " s";
+  std::cout << " to " << schedule.end() << " s by " << simulation.integrator().name() << ", "
+            << pliant::count_text(schedule.frames(), "frame") << "\n";
+  if (!simulation.choice().why.empty()) std::cout << "  chosen: " << simulation.choice().why << "\n";
   const pliant::StableStep stable = pliant::stable_step(simulation);
   if (std::isfinite(stable.step))
     std::cout << "largest stable step: about " << pliant::rounded_text(stable.step)
@@ -214,7 +219,7 @@ int info(const SceneOptions& options) {
   else
     std::cout << "largest stable step: no bound, nothing is stiff\n";
   if (!stable.uncounted.empty()) std::cout << "  " << stable.uncounted << "\n";
-  if (schedule.step() > stable.step)
+  if (scene->tolerance == 0 && schedule.step() > stable.step)
     std::cout << "warning: the step of " << schedule.step() << " s is above it; the run would likely fail\n";
   return kDone;
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <pliant/body/joint_registry.h>
-#include <pliant/integrate/integrator.h>
+#include <pliant/integrate/choose_integrator.h>
 #include <pliant/math/formula.h>
 #include <pliant/part/local_laws.h>
 #include <pliant/part/registry.h>
@@ -74,6 +74,8 @@ void list_joints() {
 }
 
 void list_integrators() {
+  std::cout << pliant::kAutomatic
+            << "\n  by trial, of those below what comes farthest at a cost; to a tolerance\n";
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
 }

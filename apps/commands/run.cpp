@@ -1,4 +1,5 @@
 // pliant run: simulates a scene into a folder, and writes meshes and pictures of its frames when asked.
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -28,9 +29,9 @@ namespace fs = std::filesystem;
 struct RunCommand {
   SceneOptions scene;
   ColorOptions colors;
-  std::string folder, size;
-  std::optional<double> end, step, frame_rate;
-  bool obj = false, png = false, quiet = false, force = false, resume = false;
+  std::string folder, size, integrator;
+  std::optional<double> end, step, tolerance, frame_rate;
+  bool obj = false, png = false, quiet = false, force = false, resume = false, estimate = false;
   int threads = 0;
   pliant::GlBackend backend = pliant::GlBackend::automatic;
   std::vector<std::string> command_line;
@@ -47,14 +48,29 @@ void apply_options(const RunCommand& command, const std::optional<pliant::RunRec
                    pliant::Scene& scene) {
   if (begun) {
     scene.end = begun->end;
-    scene.step = begun->asked_step;
+    if (begun->tolerance == 0) scene.step = begun->asked_step;
+    scene.tolerance = begun->tolerance;
+    scene.integrator = begun->asked_integrator;
     scene.frame_rate = begun->frame_rate;
     scene.width = begun->width;
     scene.height = begun->height;
   }
   apply_colors(command.colors, scene);
   scene.end = command.end.value_or(scene.end);
-  scene.step = command.step.value_or(scene.step);
+  if (command.step) {
+    scene.step = *command.step;
+    scene.tolerance = 0;
+  }
+  if (!command.integrator.empty()) scene.integrator = command.integrator;
+  if (command.tolerance) {
+    scene.tolerance = *command.tolerance;
+    const std::vector<std::string> controlled = pliant::controlled_integrators();
+    if (command.integrator.empty() &&
+        std::find(controlled.begin(), controlled.end(), scene.integrator) == controlled.end())
+      scene.integrator = pliant::kAutomatic;
+  }
+  if (scene.integrator == pliant::kAutomatic && scene.tolerance == 0)
+    scene.tolerance = pliant::kStandardTolerance;
   scene.frame_rate = command.frame_rate.value_or(scene.frame_rate);
   if (!command.size.empty()) {
     const PictureSize size = parse_picture_size(command.size);
@@ -91,6 +107,26 @@ void write_frames(const RunCommand& command, pliant::Run& run, pliant::Progress&
   }
 }
 
+void print_error(const pliant::ErrorEstimate& error) {
+  std::cout << "error, by a run ";
+  if (error.tolerance > 0)
+    std::cout << "to a tolerance of " << error.tolerance;
+  else
+    std::cout << "with steps of " << error.step << " s";
+  const auto tell = [](const char* what, double value, const char* unit) {
+    if (value > 0) std::cout << "\n  " << what << " " << pliant::rounded_text(value) << " " << unit;
+  };
+  tell("place", error.place, "m");
+  tell("rotation", error.rotation, "rad");
+  tell("parameters that are lengths", error.length, "m");
+  tell("other parameters", error.parameter, "");
+  tell("local displacement", error.displacement, "m, or of modes m kg^(1/2)");
+  tell("velocity", error.velocity, "m/s");
+  tell("angular velocity", error.angular_velocity, "rad/s");
+  tell("energy", error.energy, "J");
+  std::cout << "\n";
+}
+
 int run_scene(const RunCommand& command) {
   const fs::path folder = folder_of(command);
   SceneOptions asked = command.scene;
@@ -103,8 +139,7 @@ int run_scene(const RunCommand& command) {
   apply_options(command, begun, *scene);
 
   // What would fail after the simulation fails before it.
-  if (command.obj || command.png)
-    pliant::FrameRange().size(pliant::FrameSchedule(scene->end, scene->step, scene->frame_rate).frames());
+  if (command.obj || command.png) pliant::FrameRange().size(pliant::schedule_of(*scene).frames());
   pliant::RunOptions options;
   if (command.png) options.graphics = require_graphics(command.backend);
 
@@ -119,7 +154,7 @@ int run_scene(const RunCommand& command) {
   options.command = command.command_line;
   options.stop = [] { return stop_signal() != 0; };
   pliant::Run run(*scene, std::move(options), *progress);
-  if (!command.quiet && std::isfinite(run.record().stable_step))
+  if (!command.quiet && scene->tolerance == 0 && std::isfinite(run.record().stable_step))
     progress->note("step " + pliant::number_text(run.record().step) +
                    " s; the largest stable one at the start is about " +
                    pliant::rounded_text(run.record().stable_step) + " s");
@@ -129,6 +164,7 @@ int run_scene(const RunCommand& command) {
     return kSignal + stop_signal();
   }
   try {
+    if (command.estimate) print_error(run.estimate_error());
     write_frames(command, run, *progress);
   } catch (const pliant::Interrupted&) {
     std::cerr << "pliant: stopped while writing files; the motion is recorded: go on with --resume\n";
@@ -143,6 +179,12 @@ int run_scene(const RunCommand& command) {
   return kDone;
 }
 
+std::vector<std::string> integrator_names() {
+  std::vector<std::string> names{pliant::kAutomatic};
+  for (const pliant::IntegratorInfo& info : pliant::all_integrators()) names.emplace_back(info.name);
+  return names;
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line) {
@@ -153,7 +195,16 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   command->add_option("-o,--out", options->folder, "Folder for everything that is written [out/SCENE]")
       ->type_name("DIR");
   command->add_option("--end", options->end, "End of the run, s")->check(number_from_zero())->type_name("T");
-  command->add_option("--step", options->step, "Time step, s")->check(positive_number())->type_name("H");
+  CLI::Option* step = command->add_option("--step", options->step, "Time step, s: all are so long")
+                          ->check(positive_number())
+                          ->type_name("H");
+  command->add_option("--tolerance", options->tolerance, "Error of a step, which then finds its own length")
+      ->check(positive_number())
+      ->excludes(step)
+      ->type_name("E");
+  command->add_option("--integrator", options->integrator, "Method of time integration, see pliant list")
+      ->check(CLI::IsMember(integrator_names()))
+      ->option_text("NAME");
   command->add_option("--fps", options->frame_rate, "Recorded states and frames per second of the motion")
       ->check(positive_number())
       ->type_name("N");
@@ -169,6 +220,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
                    "Threads [as many as are of use]; results do not depend on it")
       ->check(count_up_to(4096))
       ->type_name("N");
+  command->add_flag("--estimate-error", options->estimate,
+                    "Run again, to a tenth of the tolerance or with half the step, and tell the differences");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run that is in the folder");
   command

@@ -2,9 +2,14 @@
 
 #include <stdexcept>
 
+#include <pliant/integrate/dop853.h>
+#include <pliant/integrate/dormand_prince.h>
+#include <pliant/integrate/esdirk.h>
+#include <pliant/integrate/implicit_midpoint.h>
 #include <pliant/integrate/linearly_implicit.h>
 #include <pliant/integrate/rk4.h>
 #include <pliant/integrate/semi_implicit_euler.h>
+#include <pliant/integrate/settle.h>
 
 namespace pliant {
 
@@ -15,6 +20,21 @@ std::unique_ptr<Integrator> make() {
 }
 }  // namespace
 
+void Integrator::settle(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                        StepCounters& counters) {
+  if (scale_ != nullptr) {
+    unsettled_ = state.q;
+    joints_before_ = state.joints;
+  }
+  settle_limits(dynamics, t, state, work, counters);
+  settle_joints(dynamics, t, state, work, counters);
+  if (scale_ == nullptr) return;
+  for (std::size_t j = 0; j < joints_before_.size(); ++j)
+    if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing) return;
+  unsettled_ -= state.q;
+  note_error(scale_->norm(unsettled_));
+}
+
 const std::vector<IntegratorInfo>& all_integrators() {
   static const std::vector<IntegratorInfo> all{
       {"semi_implicit_euler", 1, "the paper's: one evaluation a step; robust, first order",
@@ -23,8 +43,24 @@ const std::vector<IntegratorInfo>& all_integrators() {
       {"linearly_implicit", 2,
        "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit it",
        &make<LinearlyImplicit>},
+      {"implicit_midpoint", 2, "keeps what is quadratic in the motion: for very many steps without friction",
+       &make<ImplicitMidpoint>},
+      {"esdirk", 4, "ESDIRK 4(3): for motion with stiff springs or parameters, to a tolerance or in steps",
+       &make<Esdirk>},
+      {"dormand_prince", 5,
+       "Dormand-Prince 5(4): for smooth motion, to a tolerance or in steps of one length",
+       &make<DormandPrince>},
+      {"dop853", 8, "Dormand-Prince 8(5,3): for smooth motion at high accuracy, to a tolerance or in steps",
+       &make<Dop853>},
   };
   return all;
+}
+
+std::vector<std::string> controlled_integrators() {
+  std::vector<std::string> names;
+  for (const IntegratorInfo& info : all_integrators())
+    if (info.make()->error_order() > 0) names.emplace_back(info.name);
+  return names;
 }
 
 std::unique_ptr<Integrator> make_integrator(const std::string& name) {

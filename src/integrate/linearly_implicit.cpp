@@ -111,6 +111,11 @@ void LinearlyImplicit::step(const Dynamics& dynamics, State& state, Workspace<do
   dynamics.coordinate_rates(state.q, v_rate2_, q_dot_);
   q_rate2_ += c * q_dot_;
 
+  if (scale() != nullptr) {
+    q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
+    v_ = 0.5 * h * (v_rate1_ + v_rate2_);
+    note_error(scale()->norm(q_dot_, v_, state.v));
+  }
   state.q += h * (1.5 * q_rate1_ + 0.5 * q_rate2_);
   state.v += h * (1.5 * v_rate1_ + 0.5 * v_rate2_);
   state.work += 0.5 * h * power;
@@ -118,8 +123,7 @@ void LinearlyImplicit::step(const Dynamics& dynamics, State& state, Workspace<do
   normalise_rotations(model, state.q);
   settle_frames(dynamics, t + h, state, work);
   const StepResponse response(model, soft_, work);
-  settle_limits(dynamics, t + h, state, work, counters);
-  settle_joints(dynamics, t + h, state, work, counters);
+  settle(dynamics, t + h, state, work, counters);
 }
 
 double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

@@ -63,8 +63,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   hold_inertialess(dynamics.model(), work, state.v);
   normalise_rotations(dynamics.model(), state.q);
   settle_frames(dynamics, t + h, state, work);
-  settle_limits(dynamics, t + h, state, work, counters);
-  settle_joints(dynamics, t + h, state, work, counters);
+  settle(dynamics, t + h, state, work, counters);
 }
 
 double Rk4::growth(const MatX<double>& K, const MatX<double>& D, double h) const {

@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include <pliant/integrate/advance.h>
+#include <pliant/integrate/choose_integrator.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_length.h>
 #include <pliant/local/inverted_element.h>
 #include <pliant/math/finite.h>
 
@@ -17,6 +19,10 @@ namespace {
 constexpr double kNear = 1e-9, kUlps = 8;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
+/// Longest step to a tolerance in which more bodies touch than have their impacts told in time, s.
+constexpr double kManyTouch = 2e-3;
+/// No step to a tolerance is shorter than this part of the time.
+constexpr double kLeastStep = 16 * std::numeric_limits<double>::epsilon();
 
 /// A part whose nodes have gone this many times its size from rest has burst, whatever is told of it then.
 constexpr double kBurst = 2;
@@ -36,6 +42,14 @@ std::string burst(const Model& model, const State& state) {
   return message.str();
 }
 
+void require_tolerance(double tolerance) {
+  constexpr double kLeast = 1e-12, kMost = 0.1;
+  if (tolerance >= kLeast && tolerance <= kMost) return;
+  std::ostringstream message;
+  message << "a tolerance of " << tolerance << "; expected a number from " << kLeast << " to " << kMost;
+  throw std::invalid_argument(message.str());
+}
+
 /// Does something about the state of a time t (s); what cannot be told of it is a failure of the run.
 template <class F>
 auto at_time(double t, F&& act) {
@@ -47,24 +61,50 @@ auto at_time(double t, F&& act) {
 }
 }  // namespace
 
-Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads)
+Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads, double tolerance)
     : model_(body),
       pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
       dynamics_(model_, pool_.get()),
-      integrator_(make_integrator(integrator)),
       contact_(body.contact.active ? std::make_unique<ContactStepping>(dynamics_) : nullptr),
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
-  dynamics_.set_hold({integrator_->order() == 1, body.stabilization.projection.value_or(true)});
+  const bool automatic = integrator == kAutomatic;
+  const double asked = automatic && tolerance == 0 ? kStandardTolerance : tolerance;
+  if (asked != 0) {
+    require_tolerance(asked);
+    scale_.emplace(model_, asked);
+  }
+  if (!automatic) take_method(make_integrator(integrator));
+  const bool projected = body.stabilization.projection.value_or(true);
+  dynamics_.set_hold({!automatic && integrator_->order() == 1, projected});
   at_time(0, [&] {
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     settle_frames(dynamics_, 0, state_, output_work_);
     if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
     for (const Island& island : model_.islands())
       take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);
+    if (automatic) {
+      choice_ = choose_integrator(dynamics_, *scale_, state_);
+      take_method(make_integrator(choice_.integrator));
+    }
     start_energy_ = dynamics_.ledger(state_, output_work_).energy() - state_.work.sum();
   });
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
+}
+
+/// Steps are taken by a method. Throws std::invalid_argument where there is a tolerance and it cannot be held
+/// to it.
+void Simulation::take_method(std::unique_ptr<Integrator> method) {
+  integrator_ = std::move(method);
+  if (!scale_) return;
+  integrator_->measure(&*scale_);
+  if (integrator_->error_order() > 0) return;
+  std::ostringstream message;
+  message << "integrator '" << integrator_->name()
+          << "' does not tell the error of its steps, which a tolerance needs; expected one of '"
+          << kAutomatic << "'";
+  for (const std::string& name : controlled_integrators()) message << ", '" << name << "'";
+  throw std::invalid_argument(message.str());
 }
 
 void Simulation::step(double h) {
@@ -73,6 +113,10 @@ void Simulation::step(double h) {
     message << "a step of " << h << " s is not a positive time";
     throw std::invalid_argument(message.str());
   }
+  if (scale_) {
+    for (const double end = time() + h; time() < end;) step_up_to(end);
+    return;
+  }
   if (h != state_.h) {  // a change of step starts a new count, so that time stays count * step
     state_.start = state_.time();
     state_.step = 0;
@@ -80,8 +124,18 @@ void Simulation::step(double h) {
   }
   last_good_ = state_;
   if (contact_) contact_->begin_step();
+  guarded(h, [&] { advance(h); });
+  ++state_.step;
+  ++step_counters_.steps;
+  check(last_good_);
+  note_held();
+}
+
+/// Does what a step of h seconds does; where it fails, the last good state is back, and the failure says what
+/// may be said of it.
+void Simulation::guarded(double h, const std::function<void()>& step) {
   try {
-    advance(h);
+    step();
   } catch (const UnsatisfiableModel& failure) {
     const bool shorter = shorter_steps_pass(h);
     give_up_step();
@@ -100,7 +154,29 @@ void Simulation::step(double h) {
     give_up_step();
     throw;
   }
-  ++state_.step;
+}
+
+void Simulation::step_up_to(double until) {
+  if (!scale_) throw std::logic_error("a simulation without a tolerance has no step of its own");
+  const double now = time();
+  if (!(until > now) || !std::isfinite(until)) {
+    std::ostringstream message;
+    message << "a step from " << now << " s cannot end at " << until << " s";
+    throw std::invalid_argument(message.str());
+  }
+  const double least = kLeastStep * std::max(std::abs(now), std::abs(until));
+  const std::vector<double>& times = model_.switch_times();
+  const auto next = std::upper_bound(times.begin(), times.end(), now + least);
+  const double end = next == times.end() ? until : std::min(until, *next);
+  state_.start = now;
+  state_.step = 0;
+  last_good_ = state_;
+  if (!times.empty()) switch_joints(now, least);
+  const int order = integrator_->error_order();
+  if (!(state_.h > 0)) state_.h = first_step(dynamics_, *scale_, order, state_, work_, step_counters_);
+  const bool done = take_controlled_step(state_, end, least, step_counters_, [&] { return try_step(); });
+  if (!done) guarded(state_.h, [&] { fail_at_tolerance(); });
+  if (!times.empty()) switch_joints(state_.start, least);
   ++step_counters_.steps;
   check(last_good_);
   note_held();
@@ -109,6 +185,61 @@ void Simulation::step(double h) {
 void Simulation::give_up_step() {
   state_ = last_good_;
   if (contact_) contact_->undo_step();
+}
+
+/// A step of the length in the state. Where bodies touch it is made in two halves as well: what these differ
+/// by from the whole is its error then, and the halves are kept. Where many do, their steps are short
+/// instead.
+StepError Simulation::try_step() {
+  const State begun = state_;
+  const StepError failed{std::numeric_limits<double>::infinity(), integrator_->error_order()};
+  auto attempt = [&](int parts) {
+    if (contact_) contact_->begin_step();
+    bool done = false;
+    try {
+      for (int i = 0; i < parts; ++i) {
+        state_.start = begun.start + i * begun.h / parts;
+        state_.h = begun.h / parts;
+        take_step();
+      }
+      done = state_.q.allFinite() && state_.v.allFinite();
+    } catch (const StepFailure&) {
+    } catch (const InvertedElement&) {
+    }
+    const double error = integrator_->take_error();
+    if (done && error <= 1) return StepError{error, failed.order};
+    if (contact_) contact_->undo_step();
+    return done ? StepError{error, failed.order} : failed;
+  };
+  const StepError whole = attempt(1);
+  if (!(whole.error <= 1) || !contact_ || contact_->contacts().empty()) return whole;
+  if (!contact_->few_parts()) {
+    const double too_long = begun.h / kManyTouch;
+    if (too_long <= 1)
+      ++step_counters_.uncontrolled;
+    else
+      contact_->undo_step();
+    return {std::max(whole.error, too_long), 0};
+  }
+  const State in_one = state_;
+  contact_->undo_step();
+  state_ = begun;
+  const StepError halves = attempt(2);
+  if (!(halves.error <= 1)) return halves;
+  const double apart = scale_->norm(state_.q - in_one.q, state_.v - in_one.v, state_.v);
+  if (apart <= whole.error) return whole;
+  if (!(apart <= 1)) contact_->undo_step();
+  return {apart, 1};
+}
+
+/// What stops a step that cannot be made any shorter.
+void Simulation::fail_at_tolerance() {
+  take_step();
+  std::ostringstream message;
+  message << "the error of a step from t = " << last_good_.time() << " s stays above the tolerance of "
+          << scale_->tolerance()
+          << " however short it is; expected a larger tolerance, or motion without jumps";
+  throw NumericalFailure(message.str(), last_good_.time());
 }
 
 /// Whether joints that did not close after a step do so after shorter ones.

@@ -41,6 +41,15 @@ FrameSchedule::FrameSchedule(double end, double step, double rate) : step_(step)
   const double steps = steps_between(end, step, rate);
   steps_ = static_cast<std::int64_t>(steps);
   if (steps > 0 && std::abs(steps * step - end) > 1e-9 * end) step_ = end / steps;
+  end_ = steps * step_;
+}
+
+FrameSchedule FrameSchedule::with_free_steps(double end, double rate) {
+  FrameSchedule schedule(end, std::max(end, 1.0), rate);
+  schedule.step_ = 0;
+  schedule.steps_ = 0;
+  schedule.end_ = end;
+  return schedule;
 }
 
 FrameSchedule FrameSchedule::with_exact_step(double end, double step, double rate) {
@@ -48,6 +57,7 @@ FrameSchedule FrameSchedule::with_exact_step(double end, double step, double rat
   schedule.step_ = step;
   schedule.rate_ = rate;
   schedule.steps_ = static_cast<std::int64_t>(steps_between(end, step, rate));
+  schedule.end_ = static_cast<double>(schedule.steps_) * step;
   return schedule;
 }
 
@@ -62,6 +72,11 @@ bool FrameSchedule::records(std::int64_t step) const {
     if (std::abs(place - on) <= kOnStep ? on == at : std::abs(place - at) < 1) return true;
   }
   return false;
+}
+
+bool FrameSchedule::records(double before, double time, double next) const {
+  const double reach = time + 1.02 * next;  // the last step before the end may be a little longer
+  return time == 0 || reach >= end_ || frames(reach) != frames(before);
 }
 
 std::int64_t FrameSchedule::frames(double until) const {

@@ -18,7 +18,7 @@ namespace pliant {
 namespace {
 
 int mode_count(const Model& model) {
-  return 3 + kWorks + model.n_limits() + static_cast<int>(model.joints().size()) + 1;
+  return 4 + kWorks + model.n_limits() + static_cast<int>(model.joints().size()) + 1;
 }
 
 // The names of a table's columns must be the model's.
@@ -142,6 +142,45 @@ State Recording::state(std::int64_t row) const {
   return state;
 }
 
+namespace {
+
+/// q at a part x of the way from one state to another by cubic Hermite interpolation.
+VecX<double> cubic(const Model& model, const State& low, const State& high, double x) {
+  const double h01 = x * x * (3 - 2 * x), h00 = 1 - h01, h10 = x * (1 - x) * (1 - x), h11 = -x * x * (1 - x);
+  const Dynamics dynamics(model);
+  VecX<double> low_rate, high_rate;
+  dynamics.coordinate_rates(low.q, low.v, low_rate);
+  dynamics.coordinate_rates(high.q, high.v, high_rate);
+  return h00 * low.q + h01 * high.q + (high.time() - low.time()) * (h10 * low_rate + h11 * high_rate);
+}
+
+/// The same by a polynomial of degree 5, with the accelerations at both.
+VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
+  const Dynamics dynamics(model);
+  Workspace<double> work;
+  struct Motion {
+    VecX<double> rate, curvature;
+  };
+  auto motion_at = [&](const State& state) {
+    Motion motion;
+    dynamics.accelerations(state.time(), state.q, state.v, state, work);
+    dynamics.coordinate_rates(state.q, state.v, motion.rate);
+    dynamics.coordinate_rates(state.q, work.v_dot, motion.curvature);
+    VecX<double> turning;
+    dynamics.coordinate_rates(motion.rate, state.v, turning);
+    for (const PartModel& part : model.parts())
+      if (part.q0 >= 0) motion.curvature.segment<4>(part.q0 + 3) += turning.segment<4>(part.q0 + 3);
+    return motion;
+  };
+  const Motion a = motion_at(low), b = motion_at(high);
+  const double h = high.time() - low.time(), y = 1 - x, x3 = x * x * x, y3 = y * y * y;
+  return y3 * (1 + 3 * x + 6 * x * x) * low.q + x3 * (1 + 3 * y + 6 * y * y) * high.q +
+         h * (x * y3 * (1 + 3 * x) * a.rate - y * x3 * (1 + 3 * y) * b.rate) +
+         0.5 * h * h * (x * x * y3 * a.curvature + y * y * x3 * b.curvature);
+}
+
+}  // namespace
+
 State Recording::at(double t) const {
   if (times_.empty()) throw std::out_of_range("the recording holds no state");
   const auto next = std::lower_bound(times_.begin(), times_.end(), t);
@@ -155,12 +194,8 @@ State Recording::at(double t) const {
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;
   const double x = (t - low.time()) / span;
-  const double h01 = x * x * (3 - 2 * x), h00 = 1 - h01, h10 = x * (1 - x) * (1 - x), h11 = -x * x * (1 - x);
-  const Dynamics dynamics(*model_);
-  VecX<double> low_rate, high_rate;
-  dynamics.coordinate_rates(low.q, low.v, low_rate);
-  dynamics.coordinate_rates(high.q, high.v, high_rate);
-  low.q = h00 * low.q + h01 * high.q + span * (h10 * low_rate + h11 * high_rate);
+  const bool long_step = high.error > 0;
+  low.q = long_step ? quintic(*model_, low, high, x) : cubic(*model_, low, high, x);
   for (const PartModel& part : model_->parts())
     if (part.q0 >= 0) low.q.segment<4>(part.q0 + 3).normalize();
   low.v = (1 - x) * low.v + x * high.v;

@@ -49,7 +49,7 @@ std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
   for (const Track& track : scene.tracks)
     if (track.point.part == nullptr)
       throw std::invalid_argument("track '" + track.name + "' follows no part");
-  return std::make_unique<Simulation>(scene.body, scene.integrator, threads);
+  return std::make_unique<Simulation>(scene.body, scene.integrator, threads, scene.tolerance);
 }
 
 }  // namespace
@@ -71,11 +71,13 @@ int automatic_threads(Scene& scene) {
   return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);
 }
 
+FrameSchedule schedule_of(const Scene& scene) {
+  return scene.tolerance > 0 ? FrameSchedule::with_free_steps(scene.end, scene.frame_rate)
+                             : FrameSchedule(scene.end, scene.step, scene.frame_rate);
+}
+
 Run::Run(Scene& scene, RunOptions options, Progress& progress)
-    : scene_(&scene),
-      options_(std::move(options)),
-      progress_(&progress),
-      schedule_(scene.end, scene.step, scene.frame_rate) {
+    : scene_(&scene), options_(std::move(options)), progress_(&progress), schedule_(schedule_of(scene)) {
   const Clock::time_point start = Clock::now();
   if (options_.threads <= 0) options_.threads = automatic_threads(scene);
   simulation_ = prepare(scene, options_.threads);
@@ -102,11 +104,13 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());
   record_.add_seconds("prepare", seconds_since(start));
-  if (schedule_.step() > stable.step) {
+  if (scene.tolerance == 0 && schedule_.step() > stable.step) {
     note("warning: the step of " + number_text(schedule_.step()) +
          " s is above the largest stable one, about " + rounded_text(stable.step) + " s, set by " +
          stable.limit);
   }
+  if (!simulation_->choice().integrator.empty())
+    note("integrator " + simulation_->choice().integrator + ": " + simulation_->choice().why);
   const AssemblyReport& assembly = simulation_->assembly();
   if (assembly.iterations > 0)
     note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
@@ -128,11 +132,13 @@ Run::~Run() = default;
 void Run::begin_anew() {
   record_.build = build_info();
   record_.scene_hash = scene_->hash;
-  record_.asked_step = scene_->step;
+  record_.asked_step = scene_->tolerance > 0 ? 0 : scene_->step;
+  record_.tolerance = scene_->tolerance;
   record_.step = schedule_.step();
   record_.frame_rate = scene_->frame_rate;
-  record_.integrator = scene_->integrator;
-  if (schedule_.step() != scene_->step) {
+  record_.integrator = simulation_->integrator().name();
+  record_.asked_integrator = scene_->integrator;
+  if (schedule_.step() != record_.asked_step) {
     note("the end " + number_text(scene_->end) + " s is no multiple of the step " +
          number_text(scene_->step) + " s: steps of " + number_text(schedule_.step()) + " s are taken");
   }
@@ -167,10 +173,13 @@ void Run::begin_again() {
   if (record_.scene_hash != scene_->hash)
     throw RecordingMismatch(
         "the run cannot be gone on with: the scene or its --set values are not those it began with");
-  require_same("the integrator", record_.integrator, scene_->integrator);
+  require_same("the integrator", record_.asked_integrator, scene_->integrator);
   require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
-  require_same("the step", record_.asked_step, scene_->step);
-  schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  require_same("the tolerance", record_.tolerance, scene_->tolerance);
+  if (scene_->tolerance == 0) {
+    require_same("the step", record_.asked_step, scene_->step);
+    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  }
   if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
     note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " +
          number_text(record_.step) + " s: it goes on to " + number_text(schedule_.end()) + " s");
@@ -178,15 +187,21 @@ void Run::begin_again() {
 
   const Recording recorded = recording();
   std::int64_t keep = recorded.rows();
+  // A step that was cut short by the end is taken again when that is no longer there.
+  if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
+      scene_->end > record_.end)
+    --keep;
   if (keep > 0) {
     State last = recorded.state(keep - 1);
-    if (last.step > schedule_.steps())
+    if (last.time() > schedule_.end() * (1 + 1e-9))
       throw RecordingMismatch("the run is at t = " + number_text(last.time()) +
                               " s already, beyond the end of " + number_text(scene_->end) + " s");
-    first_step_ = last.step;
     // A state recorded only because the run ended there is not in the recording of an unbroken run.
-    if (schedule_.records(last.step))
-      recorded_step_ = last.step;
+    const bool in_unbroken =
+        scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
+                              : schedule_.records(last.step);
+    if (in_unbroken)
+      recorded_time_ = last.time();
     else
       --keep;
     simulation_->set_state(std::move(last));
@@ -196,7 +211,7 @@ void Run::begin_again() {
   if (scene_->contacts)
     contacts_ = std::make_unique<ContactRecordingWriter>(
         ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
-  if (keep == 0 && first_step_ == 0) record_state();
+  if (keep == 0 && simulation_->time() == 0) record_state();
   counted_steps_ = record_.step_counters;
   counted_work_ = record_.counters;
   ++record_.resumed;
@@ -209,8 +224,8 @@ void Run::note(const std::string& text) {
 }
 
 void Run::record_state() {
-  if (simulation_->state().step == recorded_step_) return;
-  recorded_step_ = simulation_->state().step;
+  if (simulation_->time() == recorded_time_) return;
+  recorded_time_ = simulation_->time();
   writer_->append(simulation_->state());
   if (contacts_) contacts_->append(*simulation_);
   const Ledger ledger = simulation_->ledger();
@@ -237,7 +252,6 @@ void Run::write_tables() {
 void Run::save(bool to_disk) {
   flush(to_disk);
   record_.time = simulation_->time();
-  record_.steps_done = simulation_->state().step;
   record_.states = writer_->rows();
   write_record();
 }
@@ -245,7 +259,10 @@ void Run::save(bool to_disk) {
 void Run::write_record() {
   const StepCounters& session = simulation_->step_counters();
   record_.step_counters.steps = counted_steps_.steps + session.steps;
+  record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
   record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
+  record_.step_counters.rejected = counted_steps_.rejected + session.rejected;
+  record_.step_counters.uncontrolled = counted_steps_.uncontrolled + session.uncontrolled;
   record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
   record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
   record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
@@ -262,20 +279,35 @@ void Run::write_record() {
   saved_ = Clock::now();
 }
 
+bool Run::at_end() const {
+  return scene_->tolerance > 0 ? simulation_->time() >= schedule_.end()
+                               : simulation_->state().step >= schedule_.steps();
+}
+
+/// Whether the state after it is one that is recorded.
+bool Run::take_step() {
+  if (scene_->tolerance == 0) {
+    simulation_->step(schedule_.step());
+    return schedule_.records(simulation_->state().step);
+  }
+  const double before = simulation_->time();
+  simulation_->step_up_to(schedule_.end());
+  return schedule_.records(before, simulation_->time(), simulation_->state().h);
+}
+
 void Run::step_to_end() {
-  if (first_step_ >= schedule_.steps()) return;
+  if (at_end()) return;
   Clock::time_point flushed = Clock::now();
   const double first_time = simulation_->time();
   progress_->begin("simulate", schedule_.end() - first_time, "s");
-  for (std::int64_t step = first_step_; step < schedule_.steps();) {
+  while (!at_end()) {
     if (options_.stop && options_.stop()) {
       stopped_ = true;
       break;
     }
-    simulation_->step(schedule_.step());
-    step = simulation_->state().step;
+    const bool records = take_step();
     progress_->advance(simulation_->time() - first_time);
-    if (!schedule_.records(step)) continue;
+    if (!records) continue;
     record_state();
     const Clock::time_point now = Clock::now();
     const std::size_t pending = writer_->pending_bytes() + (contacts_ ? contacts_->pending_bytes() : 0);
@@ -303,6 +335,10 @@ bool Run::simulate() {
     }
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
+    if (record_.step_counters.uncontrolled > 0)
+      note("more bodies touched than have their error controlled: " +
+           count_text(record_.step_counters.uncontrolled, "step") +
+           " of at most 0.002 s; --estimate-error tells");
     write("trajectory", {}, [&] { write_tables(); });
   } catch (const std::exception& failure) {
     fail(failure.what());
@@ -326,6 +362,14 @@ void Run::write(const std::string& stage, const std::vector<std::string>& files,
   record_.add_seconds(stage, seconds_since(start));
   for (const std::string& file : files) record_.add_file(file);
   save();
+}
+
+const ErrorEstimate& Run::estimate_error() {
+  write("estimate error", {}, [&] {
+    record_.error = pliant::estimate_error(*scene_, simulation_->integrator().name(), schedule_.step(),
+                                           recording(), options_.threads, *progress_);
+  });
+  return *record_.error;
 }
 
 void Run::finish(RunRecord::Status status, const std::string& message) {

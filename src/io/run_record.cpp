@@ -82,8 +82,10 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["options"] = {{"end", r.end},
                      {"asked_step", r.asked_step},
                      {"step", r.step},
+                     {"tolerance", r.tolerance},
                      {"frame_rate", r.frame_rate},
                      {"integrator", r.integrator},
+                     {"asked_integrator", r.asked_integrator},
                      {"joint_solver", r.joint_solver},
                      {"threads", r.threads},
                      {"width", r.width},
@@ -94,6 +96,8 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   json["wall_seconds"] = pairs(r.seconds);
   json["work"] = {{"steps", r.step_counters.steps},
                   {"evaluations", r.step_counters.evaluations},
+                  {"rejected", r.step_counters.rejected},
+                  {"uncontrolled", r.step_counters.uncontrolled},
                   {"limit_impulses", r.step_counters.limit_impulses},
                   {"factorisations", r.step_counters.factorisations},
                   {"impacts", r.step_counters.impacts},
@@ -111,6 +115,19 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"max_gap", r.max_gap},
                       {"max_contact_residual", r.step_counters.contact_residual},
                       {"largest_stable_step", bound(r.stable_step)}};
+  if (r.error) {
+    const ErrorEstimate& e = *r.error;
+    json["error_estimate"] = {{"place", e.place},
+                              {"rotation", e.rotation},
+                              {"length", e.length},
+                              {"parameter", e.parameter},
+                              {"displacement", e.displacement},
+                              {"velocity", e.velocity},
+                              {"angular_velocity", e.angular_velocity},
+                              {"energy", e.energy},
+                              {"tolerance", e.tolerance},
+                              {"step", e.step}};
+  }
   json["held"] = r.held;
   json["skipped"] = r.skipped;
   json["notes"] = r.notes;
@@ -147,8 +164,10 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     options.at("end").get_to(r.end);
     options.at("asked_step").get_to(r.asked_step);
     options.at("step").get_to(r.step);
+    r.tolerance = options.value("tolerance", 0.0);  // older runs had none
     options.at("frame_rate").get_to(r.frame_rate);
     options.at("integrator").get_to(r.integrator);
+    r.asked_integrator = options.value("asked_integrator", r.integrator);
     options.at("joint_solver").get_to(r.joint_solver);
     options.at("threads").get_to(r.threads);
     options.at("width").get_to(r.width);
@@ -161,7 +180,9 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     work.at("steps").get_to(r.step_counters.steps);
     work.at("evaluations").get_to(r.step_counters.evaluations);
     work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
-    r.step_counters.factorisations = work.value("factorisations", 0L);  // older runs had none
+    r.step_counters.rejected = work.value("rejected", 0L);  // older runs had none of these
+    r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
+    r.step_counters.factorisations = work.value("factorisations", 0L);
     r.step_counters.impacts = work.value("impacts", 0L);
     r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
     r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);

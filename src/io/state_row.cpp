@@ -54,8 +54,10 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
 }
 
 std::vector<Column> mode_columns_of(const Model& model) {
-  std::vector<Column> columns{
-      {"start", "s", "time of step 0"}, {"step_size", "s", "step"}, {"step", "1", "steps since start"}};
+  std::vector<Column> columns{{"start", "s", "time of step 0"},
+                              {"step_size", "s", "step; where errors are controlled, the next one"},
+                              {"step", "1", "steps since start"},
+                              {"error", "1", "of the last step, in tolerances; 0 where it is not measured"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
@@ -74,6 +76,7 @@ void write_modes(const State& state, std::vector<double>& row) {
   row.push_back(state.start);
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
+  row.push_back(state.error);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   for (const JointMode mode : state.joints) row.push_back(static_cast<double>(mode));
@@ -81,13 +84,14 @@ void write_modes(const State& state, std::vector<double>& row) {
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, State& state) {
-  constexpr std::size_t first_limit = 3 + kWorks;
+  constexpr std::size_t first_work = 4, first_limit = first_work + kWorks;
   const std::size_t first_joint = first_limit + static_cast<std::size_t>(n_limits);
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
   state.start = row[0];
   state.h = row[1];
   state.step = static_cast<std::int64_t>(row[2]);
-  for (int i = 0; i < kWorks; ++i) state.work[i] = row[3 + static_cast<std::size_t>(i)];
+  state.error = row[3];
+  for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
   for (std::size_t i = first_limit; i < first_joint; ++i) {
     if (!(row[i] == -1 || row[i] == 0 || row[i] == 1)) return false;

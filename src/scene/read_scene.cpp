@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include <pliant/integrate/choose_integrator.h>
 #include <pliant/scene/faulty_values.h>
 #include <pliant/scene/json_document.h>
 #include <pliant/scene/reader.h>
@@ -80,6 +81,10 @@ class SceneReader {
     scene_->end = time.number("end");
     scene_->step = time.number("step");
     scene_->integrator = time.text("integrator");
+    if (time.given("tolerance")) read_tolerance(time);
+    if (scene_->integrator == kAutomatic && scene_->tolerance == 0) scene_->tolerance = kStandardTolerance;
+    if (scene_->tolerance > 0 && time.given("step"))
+      faults_.warn(time.at("step"), "it has no effect, because steps to a tolerance find their own length");
     scene_->body.joint_solver.choice = joint_solver(time.text("solver"));
     scene_->frame_rate = output.number("frame_rate");
     constexpr double kMost = 1e12;
@@ -97,6 +102,19 @@ class SceneReader {
     const std::vector<double> size = output.numbers("size");
     scene_->width = static_cast<int>(size[0]);
     scene_->height = static_cast<int>(size[1]);
+  }
+
+  void read_tolerance(const Reader& time) {
+    scene_->tolerance = time.number("tolerance");
+    if (!time.given("integrator")) scene_->integrator = kAutomatic;
+    if (scene_->integrator == kAutomatic) return;
+    const std::vector<std::string> controlled = controlled_integrators();
+    if (std::find(controlled.begin(), controlled.end(), scene_->integrator) != controlled.end()) return;
+    std::string names = std::string("\"") + kAutomatic + "\"";
+    for (const std::string& name : controlled) names += ", \"" + name + "\"";
+    faults_.value(
+        time.at("integrator"),
+        "it does not tell the error of its steps, which \"tolerance\" needs; expected one of " + names);
   }
 
   void read_gravity() {

@@ -1,6 +1,6 @@
 #include <pliant/scene/scene_schema.h>
 
-#include <pliant/integrate/integrator.h>
+#include <pliant/integrate/choose_integrator.h>
 #include <pliant/part/registry.h>
 #include <pliant/scene/point_value.h>
 #include <pliant/scene/time_value.h>
@@ -27,7 +27,7 @@ std::vector<Choice> deformation_choices() {
   return all;
 }
 std::vector<Choice> integrator_choices() {
-  std::vector<Choice> all;
+  std::vector<Choice> all{{kAutomatic, "by trial, what comes farthest at a cost; to a \"tolerance\""}};
   for (const IntegratorInfo& info : all_integrators()) all.push_back({info.name, info.description});
   return all;
 }
@@ -155,6 +155,10 @@ Record make_scene_record() {
        optional("step", number(above(0), "s"), "Time step.", "0.001"),
        optional("integrator", choice(integrator_choices()), "Method of time integration.",
                 "\"semi_implicit_euler\""),
+       optional(
+           "tolerance", number(between(1e-12, 0.1), "1"),
+           "Error of a step, in sizes of each part and radians, and of their rates; steps are then as long "
+           "as it lets them be. Not given: all are \"step\" long."),
        optional("solver",
                 choice({{"auto", "what a fixed model of the cost says, for each island of parts"},
                         {"blocks", "blocks of C_q M^-1 C_q^T"},

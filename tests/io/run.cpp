@@ -154,6 +154,82 @@ TEST_CASE("a complete run goes on to a later end as if it had never stopped") {
   CHECK_THROWS_AS(run(*until(0.1), folder / "b", {Existing::resume}), RecordingMismatch);
 }
 
+namespace {
+std::unique_ptr<Scene> scene_to(double tolerance, double end) {
+  auto scene = pulled_scene();
+  scene->integrator = kAutomatic;
+  scene->tolerance = tolerance;
+  scene->end = end;
+  return scene;
+}
+}  // namespace
+
+TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywhere or gone on with") {
+  const NewFolder folder;
+  const fs::path unbroken = folder / "unbroken", longer = folder / "longer";
+  REQUIRE(run(*scene_to(1e-7, 0.2), unbroken));
+  const long steps = record_of(unbroken).at("progress").at("steps_done");
+  REQUIRE(steps > 6);
+  for (const long first : {0L, 1L, steps / 3, steps / 2, steps - 1}) {
+    CAPTURE(first, steps);
+    const fs::path broken = folder / ("broken" + std::to_string(first));
+    CHECK_FALSE(run(*scene_to(1e-7, 0.2), broken, {Existing::refuse, 1, first}));
+    run(*scene_to(1e-7, 0.2), broken, {Existing::resume, 2, 2});
+    REQUIRE(run(*scene_to(1e-7, 0.2), broken, {Existing::resume}));
+    CHECK(results_of(broken) == results_of(unbroken));
+    CHECK(record_of(broken).at("progress").at("steps_done") == steps);
+  }
+  REQUIRE(run(*scene_to(1e-7, 0.13), longer));
+  REQUIRE(run(*scene_to(1e-7, 0.2), longer, {Existing::resume}));
+  CHECK(results_of(longer) == results_of(unbroken));
+  CHECK_THROWS_AS(run(*scene_to(1e-6, 0.2), longer, {Existing::resume}), RecordingMismatch);
+}
+
+TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its steps") {
+  const NewFolder folder;
+  auto scene = scene_to(1e-8, 0.2), exact = scene_to(1e-12, 0.2);
+  Progress silent;
+  RunOptions options;
+  options.folder = folder / "run";
+  Run session(*scene, options, silent);
+  REQUIRE(session.simulate());
+  Simulation simulation(exact->body, "dop853", 1, 1e-12);
+  double worst = 0;
+  for (double t = 0.01; t < 0.2; t += 0.01) {
+    while (simulation.time() < t) simulation.step_up_to(t);
+    worst = std::max(worst, (session.recording().at(t).q - simulation.state().q).norm());
+  }
+  CHECK(worst < 1e-6);
+}
+
+TEST_CASE("the estimated error of a run is its error") {
+  const NewFolder folder;
+  Progress silent;
+  auto measured = [&](const std::string& name, Scene& scene) {
+    RunOptions options;
+    options.folder = folder / name;
+    Run session(scene, options, silent);
+    REQUIRE(session.simulate());
+    const ErrorEstimate error = session.estimate_error();
+    auto exact = scene_to(1e-12, 0.2);
+    Simulation simulation(exact->body, "dop853", 1, 1e-12);
+    double worst = 0;
+    for (std::int64_t row = 1; row < session.recording().rows(); ++row) {
+      const State state = session.recording().state(row);
+      while (simulation.time() < state.time()) simulation.step_up_to(state.time());
+      worst = std::max(worst, (state.q - simulation.state().q).head<3>().norm());
+    }
+    CAPTURE(name, error.place, worst);
+    CHECK(error.place > 0.5 * worst);
+    CHECK(error.place < 2 * worst);
+    CHECK(record_of(folder / name).at("error_estimate").at("place") == error.place);
+  };
+  measured("tolerance", *scene_to(1e-6, 0.2));
+  auto fixed = scene_for("rk4");
+  fixed->end = 0.2;
+  measured("step", *fixed);
+}
+
 TEST_CASE("N30: the frame rate does not steer the motion") {
   const NewFolder folder;
   const Model* model = nullptr;

@@ -291,6 +291,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "stiffness_row_too_short",
                                         "taper_out_of_range",
                                         "tiny_density",
+                                        "tolerance_of_rk4",
                                         "too_many_dynamic_parameters",
                                         "too_many_steps",
                                         "torus_closed",

@@ -39,8 +39,9 @@ enum class JointMode : std::int8_t {
 
 struct State {
   double start = 0;       ///< time of step 0, s
-  double h = 0;           ///< step, s
+  double h = 0;           ///< step, s; where errors are controlled, the next one
   std::int64_t step = 0;  ///< steps done since start; time is start + step * h
+  double error = 0;       ///< of the last step, in tolerances; 0 where it is not measured
   VecX<double> q;         ///< per part: c (3), quaternion w x y z (4), q_s
   VecX<double> v;         ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
   Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< done so far

@@ -37,6 +37,8 @@ class ContactStepping {
   void step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters);
 
   const ContactFinder& finder() const { return finder_; }
+  /// Whether there are so few parts that impacts are told in time.
+  bool few_parts() const { return few_parts_; }
   /// Of the last whole step; empty where nothing touched.
   const ContactRecord& record() const { return record_; }
   const std::vector<Contact>& contacts() const { return record_.contacts; }

@@ -3,16 +3,20 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/integrate/error_scale.h>
 
 namespace pliant {
 
 /// Counts what a method did.
 struct StepCounters {
   long steps = 0;
-  long evaluations = 0;  ///< of the accelerations
+  long evaluations = 0;   ///< of the accelerations
+  long rejected = 0;      ///< steps whose error was too large, taken again
+  long uncontrolled = 0;  ///< steps in which more bodies touched than have their error controlled
   long limit_impulses = 0;
   long factorisations = 0;      ///< of the stiffness of nodes
   long impacts = 0;             ///< whose time in the step was found
@@ -38,6 +42,29 @@ class Integrator {
   /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
   /// the step free.
   virtual bool local_is_implicit() const { return false; }
+
+  /// The error that is estimated of a step is O(h^(this + 1)); 0: none is.
+  virtual int error_order() const { return 0; }
+  /// From here on errors of steps are measured in this; nullptr: they are not.
+  void measure(const ErrorScale* scale) { scale_ = scale; }
+  /// The largest error of the steps since it was asked last, in tolerances.
+  double take_error() { return std::exchange(error_, 0); }
+
+ protected:
+  const ErrorScale* scale() const { return scale_; }
+  void note_error(double error) {
+    if (!(error <= error_)) error_ = error;
+  }
+  /// What every method does with a state that it has brought to the end of a step, at time t (s): it keeps to
+  /// limits, strings and joints. What that moves is an error of the step too, but for joints that close.
+  void settle(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+              StepCounters& counters);
+
+ private:
+  VecX<double> unsettled_;
+  std::vector<JointMode> joints_before_;
+  const ErrorScale* scale_ = nullptr;
+  double error_ = 0;
 };
 
 struct IntegratorInfo {
@@ -49,6 +76,8 @@ struct IntegratorInfo {
 
 /// All methods. A new one is its file and an entry here.
 const std::vector<IntegratorInfo>& all_integrators();
+/// Names of those that tell the error of their steps.
+std::vector<std::string> controlled_integrators();
 /// Throws std::invalid_argument listing the names.
 std::unique_ptr<Integrator> make_integrator(const std::string& name);
 

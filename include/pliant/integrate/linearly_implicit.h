@@ -3,7 +3,8 @@
 // of second order whatever A is, and L-stable where A is the Jacobian, with gamma = 1 - 1/sqrt(2). A holds
 // q_dot = v for all coordinates, which costs nothing and makes what swings freely neither grow nor die for h
 // omega < 2.26, and of parts that deform locally the elasticity and damping of their nodes or modes
-// and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit.
+// and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit. Its error is
+// estimated by u + h k1, of first order.
 #pragma once
 
 #include <memory>
@@ -21,6 +22,7 @@ class LinearlyImplicit final : public Integrator {
   ~LinearlyImplicit() override;
   const char* name() const override { return "linearly_implicit"; }
   int order() const override { return 2; }
+  int error_order() const override { return 1; }
   /// Throws NumericalFailure and OutOfMemory, naming the part, where the stiffness of its nodes cannot be
   /// factored.
   void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;

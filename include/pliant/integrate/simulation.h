@@ -1,34 +1,50 @@
 // Simulation: a model, its state, and a method that steps it.
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <pliant/integrate/assemble.h>
+#include <pliant/integrate/choose_integrator.h>
 #include <pliant/integrate/contact_stepping.h>
+#include <pliant/integrate/error_scale.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/integrate/step_length.h>
 
 namespace pliant {
 
 class Simulation {
  public:
   /// Prepares the body (which must outlive the simulation) and starts at time 0: joints with a small gap are
-  /// closed, and the velocities made to agree with them. Throws std::invalid_argument, UnsatisfiableModel.
-  explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler",
-                      int threads = 1);
+  /// closed, and the velocities made to agree with them. integrator: the name of a method, or kAutomatic.
+  /// tolerance: of the error of a step, which then finds its own length (integrate/error_scale.h says what it
+  /// is a part of); 0: steps are as long as they are asked to be, or kStandardTolerance with kAutomatic.
+  /// Throws std::invalid_argument, UnsatisfiableModel.
+  explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
+                      double tolerance = 0);
   Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
   Simulation& operator=(const Simulation&) = delete;
 
-  /// One step of h seconds (> 0 and finite), in several where joints begin or cease to act within it. Throws
-  /// NumericalFailure, UnsatisfiableModel, std::invalid_argument.
+  /// Goes on by h seconds (> 0 and finite): by one step, made in several where joints begin or cease to act
+  /// within it; with a tolerance by as many as that needs. Throws NumericalFailure, UnsatisfiableModel,
+  /// std::invalid_argument.
   void step(double h);
+  /// With a tolerance: one step of the length that it allows, which ends at a time (s, later than now) at the
+  /// latest, and then exactly there. Throws as step() does, std::logic_error without a tolerance.
+  void step_up_to(double until);
 
   const Model& model() const { return model_; }
   const Dynamics& dynamics() const { return dynamics_; }
   const Integrator& integrator() const { return *integrator_; }
+  /// Which method was chosen with kAutomatic, and why; empty without.
+  const IntegratorChoice& choice() const { return choice_; }
+  /// Of the error of a step; 0: it is not controlled.
+  double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
   /// Goes on from another state of the same model.
   void set_state(State state);
@@ -51,8 +67,12 @@ class Simulation {
   std::set<std::string> held() const;
 
  private:
+  void guarded(double h, const std::function<void()>& step);
   void advance(double h);
   void take_step();
+  void take_method(std::unique_ptr<Integrator> method);
+  StepError try_step();
+  void fail_at_tolerance();
   bool shorter_steps_pass(double h);
   void switch_joints(double t, double near);
   void give_up_step();
@@ -63,6 +83,8 @@ class Simulation {
   std::unique_ptr<ThreadPool> pool_;
   Dynamics dynamics_;
   std::unique_ptr<Integrator> integrator_;
+  std::optional<ErrorScale> scale_;  ///< with a tolerance
+  IntegratorChoice choice_;
   std::unique_ptr<ContactStepping> contact_;  ///< where anything touches
   State state_, last_good_;
   Workspace<double> work_, output_work_;

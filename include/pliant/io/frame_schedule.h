@@ -1,7 +1,8 @@
 // Which steps a run takes, which of them it records, and at which times pictures are taken. Frame k is at k /
 // rate. A frame that falls on a step is that step's state; of one between two steps both are recorded, so
 // that the picture comes from Hermite interpolation over a single step. The first and the last state are
-// always recorded.
+// always recorded. Where steps find their own length, those are recorded that end at a frame or after it, and
+// those that the next may lead beyond one.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,17 @@ class FrameSchedule {
   FrameSchedule(double end, double step, double rate);
   /// The same with a step that must not change (a run goes on): the end is the first step at or after `end`.
   static FrameSchedule with_exact_step(double end, double step, double rate);
+  /// The same of steps that find their own length.
+  static FrameSchedule with_free_steps(double end, double rate);
 
-  double step() const { return step_; }          ///< s, as it is taken
-  std::int64_t steps() const { return steps_; }  ///< of the whole run
+  double step() const { return step_; }          ///< s, as it is taken; 0 of free steps
+  std::int64_t steps() const { return steps_; }  ///< of the whole run; 0 of free steps
   double rate() const { return rate_; }
-  double end() const { return static_cast<double>(steps_) * step_; }
+  double end() const { return end_; }
   bool records(std::int64_t step) const;
+  /// Of free steps: whether a state at a time is recorded, the last one before it being at another, and the
+  /// next step being so long at most (s).
+  bool records(double before, double time, double next) const;
   /// Frames up to a time of the run (or to its end): 0 <= k < frames().
   std::int64_t frames(double until) const;
   std::int64_t frames() const { return frames(end()); }
@@ -30,7 +36,7 @@ class FrameSchedule {
  private:
   FrameSchedule() = default;
 
-  double step_ = 0, rate_ = 0;
+  double step_ = 0, rate_ = 0, end_ = 0;
   std::int64_t steps_ = 0;
 };
 

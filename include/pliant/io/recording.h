@@ -60,7 +60,8 @@ class Recording {
   /// fit.
   State state(std::int64_t row) const;
   /// The state at a time (s): the recorded one where there is one, else q by cubic Hermite interpolation from
-  /// q and v of the states around it, v by its derivative's end values linearly; for pictures and meshes, not
+  /// q and v of the states around it, of steps to a tolerance by quintic from the accelerations too, v
+  /// linearly; for pictures and meshes, not
   /// to go on from. Times outside the recording give its first or last state. Throws RecordingMismatch,
   /// std::out_of_range when it is empty.
   State at(double time) const;

@@ -50,6 +50,9 @@ class Run {
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
+  /// Runs it again more exactly and notes how far the two are apart; a stage like those of write().
+  const ErrorEstimate& estimate_error();
+
   /// Writes the last word into run.json: complete, or stopped with a message.
   void finish(RunRecord::Status status, const std::string& message = "");
 
@@ -65,6 +68,8 @@ class Run {
   void begin_anew();
   void begin_again();
   void record_state();
+  bool at_end() const;
+  bool take_step();
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
@@ -83,13 +88,15 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  std::int64_t first_step_ = 0;      // where this session began
-  std::int64_t recorded_step_ = -1;  // of the last recorded state
-  StepCounters counted_steps_;       // of the sessions before
+  double recorded_time_ = -1;   // of the last recorded state
+  StepCounters counted_steps_;  // of the sessions before
   Counters counted_work_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
 };
+
+/// The steps and frames of a scene.
+FrameSchedule schedule_of(const Scene& scene);
 
 /// As many threads as the parts of a scene have a use for, at most what the machine has; results do not
 /// depend on it. Prepares the parts, and throws what that throws.

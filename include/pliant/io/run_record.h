@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/build_info.h>
+#include <pliant/io/estimate_error.h>
 
 namespace pliant {
 
@@ -30,9 +32,10 @@ struct RunRecord {
   double end = 0;         ///< s, as asked
   double asked_step = 0;  ///< s
   double step = 0;        ///< s, as taken: asked_step, or a little less so that steps fill the run
+  double tolerance = 0;   ///< of the error of steps that find their own length, both above are 0 then; or 0
   double frame_rate = 0;  ///< 1/s
-  std::string integrator;
-  std::string joint_solver;  ///< "blocks", "augmented", both, or empty without joints
+  std::string integrator, asked_integrator;  ///< the latter may be kAutomatic
+  std::string joint_solver;                  ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
   int width = 0, height = 0;  ///< of pictures
   std::string graphics;       ///< library that drew them; empty without
@@ -54,6 +57,7 @@ struct RunRecord {
   double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
   double max_kinetic = 0;                                        ///< J
   double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
+  std::optional<ErrorEstimate> error;                            ///< where it was asked for
   std::vector<std::string> held;     ///< parameters that had no inertia and were held
   std::vector<std::string> skipped;  ///< what the scene did not need
   std::vector<std::string> notes;    ///< warnings and choices

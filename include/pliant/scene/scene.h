@@ -62,8 +62,9 @@ struct Scene {
   std::vector<ObstacleLook> obstacles;
   std::vector<Track> tracks;
 
-  double end = 1;      ///< s
-  double step = 1e-3;  ///< s
+  double end = 1;        ///< s
+  double step = 1e-3;    ///< s; of no meaning with a tolerance
+  double tolerance = 0;  ///< of the error of a step, see Simulation; 0: it is not controlled
   std::string integrator = "semi_implicit_euler";
   double frame_rate = 25;         ///< recorded states and pictures per second
   bool contacts = false;          ///< whether a run tells what touches

@@ -1,0 +1,307 @@
+// Run time against error of every method of integration, over the problems of problems.h.
+//
+//   work_precision [--all] [--only PROBLEM] [FOLDER]
+//
+// writes to FOLDER work_precision.csv (a run a row; bench/plot.py draws it), precision_cost.csv (time at an
+// error) and precision_reference.csv (where bodies are at the end); tables to standard output. --all: the
+// long problems too, and four times as long runs.
+//
+// Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
+// others tolerances from 1e-2 on, each a tenth of the one before. error: at the end, of the places of bodies
+// over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times; error_v: of
+// velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
+// Time: CPU time of the stepping loop, one thread, the least of several. Reference: dop853 to 1e-12 (to 1e-8
+// where bodies touch); its difference is that from the method of extrapolation.h, of parts with parameters or
+// nodes from dormand_prince to 1e-11, where bodies touch from rk4 in short steps. Errors below 10 times that
+// count as that.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <pliant/integrate/advance.h>
+#include <pliant/pliant.h>
+
+#include "extrapolation.h"
+#include "problems.h"
+#include "table_file.h"
+
+using namespace pliant;
+using bench::Problem;
+
+namespace {
+
+constexpr int kSamples = 8;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// How a method is asked to step: to a tolerance, or in so many steps.
+struct Setting {
+  std::string method;
+  double tolerance;
+  long steps;
+};
+
+/// A run: its states at the samples, the forces of joints at the end, what it cost.
+struct Outcome {
+  std::vector<State> states;
+  VecX<double> lambda;
+  double cpu_ms = 0, balance = 0, kinetic = 0, gap = 0;
+  long evaluations = 0, steps = 0;
+};
+
+double worst_gap(const Model& model, const State& state) {
+  double worst = 0;
+  for (std::size_t j = 0; j < model.joints().size(); ++j)
+    if (state.joints[j] == JointMode::closed) worst = std::max(worst, model.gap(state, static_cast<int>(j)));
+  return worst;
+}
+
+/// Throws StepFailure. repeats: until so many seconds are spent.
+Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) {
+  Outcome result;
+  double spent = 0, least = std::numeric_limits<double>::infinity();
+  do {
+    MultiBody body;
+    problem.build(body);
+    Simulation simulation(body, setting.method, 1, setting.tolerance);
+    double seconds = 0;
+    const bool first = result.states.empty();
+    for (int sample = 1; sample <= kSamples; ++sample) {
+      const double until = problem.end * sample / kSamples;
+      const std::clock_t begin = std::clock();
+      if (setting.tolerance > 0) {
+        while (simulation.time() < until) simulation.step_up_to(until);
+      } else {
+        for (long i = 0; i < setting.steps / kSamples; ++i)
+          simulation.step(problem.end / static_cast<double>(setting.steps));
+      }
+      seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+      if (!first) continue;
+      const Ledger ledger = simulation.ledger();
+      result.balance = std::max(result.balance, std::abs(ledger.balance));
+      result.kinetic = std::max(result.kinetic, ledger.kinetic);
+      result.gap = std::max(result.gap, worst_gap(simulation.model(), simulation.state()));
+      result.states.push_back(simulation.state());
+    }
+    if (first) {
+      result.evaluations = simulation.step_counters().evaluations;
+      result.steps = simulation.step_counters().steps;
+      Workspace<double> work;
+      const State& end = simulation.state();
+      simulation.dynamics().accelerations(end.time(), end.q, end.v, end, work);
+      result.lambda = work.joints.lambda;
+    }
+    least = std::min(least, seconds);
+    spent += seconds;
+  } while (spent < repeats);
+  result.cpu_ms = least * 1e3;
+  return result;
+}
+
+/// What errors are measured by: a model of the problem.
+class Meter {
+ public:
+  explicit Meter(const Problem& problem) : length_(problem.length) {
+    problem.build(body_);
+    simulation_ = std::make_unique<Simulation>(body_);
+    scale_ = std::make_unique<ErrorScale>(simulation_->model(), 1);
+  }
+  const Model& model() const { return simulation_->model(); }
+
+  double of_places(const State& a, const State& b) const {
+    if (!a.q.allFinite()) return std::numeric_limits<double>::infinity();
+    if (length_ == 0) return scale_->norm(a.q - b.q);
+    double worst = 0;
+    for (const PartModel& part : model().parts())
+      if (part.q0 >= 0)
+        worst = std::max(worst, (a.q.segment<3>(part.q0) - b.q.segment<3>(part.q0)).norm() / length_);
+    return worst;
+  }
+  double along(const Outcome& a, const Outcome& b) const {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.states.size(); ++i)
+      worst = std::max(worst, of_places(a.states[i], b.states[i]));
+    return worst;
+  }
+  double of_velocities(const State& a, const State& b) const {
+    return scale_->norm(VecX<double>::Zero(a.q.size()), a.v - b.v, b.v);
+  }
+
+ private:
+  double length_;
+  MultiBody body_;
+  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<ErrorScale> scale_;
+};
+
+/// Of rigid parts on joints, by the method of extrapolation.h: with the step at which it agrees best with
+/// that of twice the length; further ones only round.
+Outcome extrapolated(const Problem& problem, const Meter& meter) {
+  constexpr double kAgree = 1e-12, kFirstStep = 0.0125;
+  constexpr int kMostHalvings = 6;
+  MultiBody body;
+  problem.build(body);
+  const Simulation simulation(body, "rk4");
+  Outcome best, before;
+  double least = std::numeric_limits<double>::infinity();
+  for (int halving = 0; halving <= kMostHalvings && least > kAgree; ++halving) {
+    const long each = std::max(1L, std::lround(problem.end / kSamples / kFirstStep)) << halving;
+    const double h = problem.end / kSamples / static_cast<double>(each);
+    bench::Extrapolation method(simulation.dynamics(), simulation.state());
+    Outcome now;
+    for (long i = 0; i < kSamples * each; ++i) {
+      method.step(static_cast<double>(i) * h, h);
+      if ((i + 1) % each != 0) continue;
+      now.states.push_back(simulation.state());
+      now.states.back().q = method.q();
+      normalise_rotations(simulation.model(), now.states.back().q);
+    }
+    const double difference = halving == 0 ? least : meter.along(now, before);
+    before = now;
+    if (halving > 0 && difference >= least) continue;
+    least = difference;
+    best = now;
+  }
+  return best;
+}
+
+struct Cost {
+  double cpu_ms, error;
+};
+
+/// CPU time at an error, log-log between the runs on either side, from where all finer ones are below it; NaN
+/// when none is.
+double cost_at(const std::vector<Cost>& runs, double level) {
+  for (std::size_t i = runs.size(); i-- > 0;) {
+    if (runs[i].error <= level) continue;
+    if (i + 1 == runs.size()) return kNone;
+    const Cost &above = runs[i], &below = runs[i + 1];
+    const double part = std::log(above.error / level) / std::log(above.error / below.error);
+    return above.cpu_ms * std::pow(below.cpu_ms / above.cpu_ms, part);
+  }
+  return runs.empty() ? kNone : runs.front().cpu_ms;
+}
+/// CPU time of the cheapest run with at most this error that neither of the next two finer ones is three
+/// times worse than; NaN when there is none.
+double cost_of_run(const std::vector<Cost>& runs, double level) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    bool counts = runs[i].error <= level;
+    for (std::size_t k = i + 1; k < std::min(i + 3, runs.size()); ++k)
+      counts = counts && runs[k].error <= 3 * runs[i].error;
+    if (counts) least = std::min(least, runs[i].cpu_ms);
+  }
+  return std::isfinite(least) ? least : kNone;
+}
+
+/// The settings of a method, from the coarsest on.
+std::vector<Setting> settings_of(const std::string& method, bool controlled, double end) {
+  std::vector<Setting> all;
+  if (controlled) {
+    for (double tolerance = 1e-2; tolerance > 2e-12; tolerance *= 0.1) all.push_back({method, tolerance, 0});
+    return all;
+  }
+  const long first = kSamples * std::max(1L, std::lround(end / 0.05 / kSamples));
+  for (int halving = 0; halving < 22; ++halving) all.push_back({method, 0, first << halving});
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  bool all = false;
+  std::string folder, only;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--all") == 0)
+      all = true;
+    else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc)
+      only = argv[++i];
+    else
+      folder = std::string(argv[i]) + "/";
+  }
+  auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
+  bench::TableFile runs_file(in_folder("work_precision.csv"),
+                             "problem,method,step_or_tolerance,steps,evaluations,cpu_ms,cpu_ms_per_s,error,"
+                             "error_along,error_v,error_lambda,gap_m,balance_J,kinetic_J,failed,"
+                             "reference_difference\n");
+  bench::TableFile cost_file(in_folder("precision_cost.csv"),
+                             "problem,method,error,cpu_ms_per_s_interpolated,cpu_ms_per_s_of_run\n");
+  bench::TableFile reference_file(in_folder("precision_reference.csv"),
+                                  "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
+  constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
+  const double most_ms = all ? 16e3 : 4e3, enough = 0.05;
+  std::vector<std::string> methods{kAutomatic};
+  for (const IntegratorInfo& info : all_integrators()) methods.emplace_back(info.name);
+
+  for (const Problem& problem : bench::problems()) {
+    if (only.empty() ? problem.long_running && !all : only != problem.name) continue;
+    const Meter meter(problem);
+    const bool touches = meter.model().body().contact.active;
+    const Outcome exact = run(problem, {"dop853", touches ? 1e-8 : 1e-12, 0});
+    const bool rigid = meter.model().n_limits() == 0 && !touches;
+    const Outcome other = touches ? run(problem, {"rk4", 0, 1L << 15})
+                          : rigid ? extrapolated(problem, meter)
+                                  : run(problem, {"dormand_prince", 1e-11, 0});
+    const double difference = meter.along(other, exact);
+    std::printf("%s: the two references differ by %.1e; gap %.1e m\n", problem.name.c_str(), difference,
+                exact.gap);
+    for (std::size_t i = 0; i < meter.model().parts().size(); ++i) {
+      const int at = meter.model().parts()[i].q0;
+      if (at < 0) continue;
+      const VecX<double>& q = exact.states.back().q;
+      reference_file.row("%s,%zu,%g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3e,%.3e\n",
+                         problem.name.c_str(), i, problem.end, q[at], q[at + 1], q[at + 2], q[at + 3],
+                         q[at + 4], q[at + 5], q[at + 6], difference, exact.gap);
+    }
+    const double largest = exact.lambda.size() > 0 ? exact.lambda.cwiseAbs().maxCoeff() : 0;
+    for (const std::string& method : methods) {
+      const bool controlled = method == kAutomatic ||
+                              (make_integrator(method)->error_order() > 0 && method != "linearly_implicit");
+      std::vector<Cost> points;
+      for (const Setting& setting : settings_of(method, controlled, problem.end)) {
+        const double asked =
+            controlled ? setting.tolerance : problem.end / static_cast<double>(setting.steps);
+        Outcome of;
+        try {
+          of = run(problem, setting, enough);
+        } catch (const StepFailure&) {
+          runs_file.row("%s,%s,%g,,,,,,,,,,,,1,%.3e\n", problem.name.c_str(), method.c_str(), asked,
+                        difference);
+          continue;
+        }
+        const State &end = of.states.back(), &true_end = exact.states.back();
+        const double error = meter.of_places(end, true_end), along = meter.along(of, exact);
+        const double lambda =
+            largest > 0 ? (of.lambda - exact.lambda).cwiseAbs().maxCoeff() / largest : kNone;
+        // What is nearer to the reference than that is to itself may be as far from the truth.
+        const bool resolved = !(error < 10 * difference);
+        points.push_back({of.cpu_ms, resolved ? error : 10 * difference});
+        runs_file.row("%s,%s,%g,%ld,%ld,%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e\n",
+                      problem.name.c_str(), method.c_str(), asked, of.steps, of.evaluations, of.cpu_ms,
+                      of.cpu_ms / problem.end, error, along, meter.of_velocities(end, true_end), lambda,
+                      of.gap, of.balance, of.kinetic, difference);
+        std::printf("  %-20s %9.3g  %8ld steps  %9.2f ms  error %.2e, along %.2e\n", method.c_str(), asked,
+                    of.steps, of.cpu_ms, error, along);
+        std::fflush(stdout);
+        if (!resolved || of.cpu_ms > most_ms || (points.size() >= 6 && error < 1e-11)) break;
+      }
+      std::printf("  %-20s CPU ms per simulated s (of one run) at error", method.c_str());
+      for (const double level : kLevels) {
+        const double between = cost_at(points, level) / problem.end,
+                     of = cost_of_run(points, level) / problem.end;
+        std::printf("  %g: %.3g (%.3g)", level, between, of);
+        cost_file.row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, between, of);
+      }
+      std::printf("\n");
+    }
+  }
+  return 0;
+} catch (const std::exception& fault) {
+  std::fprintf(stderr, "%s\n", fault.what());
+  return 1;
+}

@@ -1,0 +1,103 @@
+#include <pliant/integrate/choose_integrator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <pliant/integrate/step_failure.h>
+#include <pliant/integrate/step_length.h>
+#include <pliant/local/inverted_element.h>
+
+namespace pliant {
+
+namespace {
+
+/// Steps of a trial; what counts is how far the second half of them comes, when the steps have grown to what
+/// the motion lets them be.
+constexpr int kSteps = 24;
+/// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
+/// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
+constexpr double kFactorisation = 0.005;
+/// A factorisation of a stiffness of nodes, which is sparse, in evaluations.
+constexpr double kSparseFactorisation = 5;
+/// Velocities of parts beyond which stiff ones are not taken all at once.
+constexpr int kMostStiff = 300;
+
+/// Seconds of motion per evaluation of the accelerations, or what costs as much; 0 where it fails.
+double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
+            double factorisation) {
+  State state = start;
+  Workspace<double> work;
+  StepCounters counters;
+  const double far = std::numeric_limits<double>::max();
+  const int order = method.error_order();
+  const StepError none{std::numeric_limits<double>::infinity(), order};
+  method.measure(&scale);
+  auto attempt = [&] {
+    try {
+      method.step(dynamics, state, work, counters);
+    } catch (const StepFailure&) {
+      return none;
+    } catch (const InvertedElement&) {
+      return none;
+    }
+    const StepError error{method.take_error(), order};
+    return state.q.allFinite() && state.v.allFinite() ? error : none;
+  };
+  auto cost = [&] {
+    return static_cast<double>(counters.evaluations) +
+           factorisation * static_cast<double>(counters.factorisations);
+  };
+  double half_time = 0, half_cost = 0;
+  state.h = first_step(dynamics, scale, order, state, work, counters);
+  for (int i = 0; i < kSteps; ++i) {
+    if (i == kSteps / 2) {
+      half_time = state.time();
+      half_cost = cost();
+    }
+    if (!take_controlled_step(state, far, 0, counters, attempt)) return 0;
+  }
+  return (state.time() - half_time) / (cost() - half_cost);
+}
+
+/// Whether anything pushes back: elasticity or damping of parts, springs.
+bool anything_stiff(const Model& model) {
+  if (!model.springs().empty()) return true;
+  return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
+    return m.q0 >= 0 && (m.n_s > 0 || m.local != nullptr || m.drag > 0);
+  });
+}
+
+}  // namespace
+
+IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start) {
+  const Model& model = dynamics.model();
+  if (!anything_stiff(model)) return {"dop853", "nothing is elastic or damped"};
+  const bool nodes = std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
+    return m.local != nullptr && m.local->oscillators() == nullptr;
+  });
+  std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
+  if (nodes)
+    candidates.emplace_back("linearly_implicit", kSparseFactorisation);
+  else if (model.n_v() <= kMostStiff)
+    candidates.emplace_back("esdirk", kFactorisation * model.n_v() * model.n_v());
+  IntegratorChoice best;
+  double fastest = -1;
+  std::ostringstream told;
+  told.precision(2);
+  for (const auto& [name, factorisation] : candidates) {
+    const std::unique_ptr<Integrator> method = make_integrator(name);
+    const double speed = pace(*method, dynamics, scale, start, factorisation);
+    told << (best.integrator.empty() ? "" : ", ") << name << " comes " << speed
+         << " s far with an evaluation of the accelerations";
+    if (speed > fastest) best.integrator = name;
+    fastest = std::max(fastest, speed);
+  }
+  best.why = told.str();
+  return best;
+}
+
+}  // namespace pliant

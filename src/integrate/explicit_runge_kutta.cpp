@@ -1,0 +1,134 @@
+#include <pliant/integrate/explicit_runge_kutta.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include <Eigen/Eigenvalues>
+
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
+
+namespace pliant {
+
+namespace {
+
+/// to = from + h sum of weights_i column_i, in one pass over memory.
+void combine(const VecX<double>& from, const MatX<double>& columns, const double* weights, int count,
+             double h, VecX<double>& to) {
+  constexpr Eigen::Index in_cache = 256;
+  const Eigen::Index n = from.size();
+  to.resize(n);
+  for (Eigen::Index i = 0; i < n; i += in_cache) {
+    const Eigen::Index length = std::min(in_cache, n - i);
+    auto sum = to.segment(i, length);
+    sum = from.segment(i, length);
+    for (int k = 0; k < count; ++k)
+      if (weights[k] != 0) sum += (h * weights[k]) * columns.col(k).segment(i, length);
+  }
+}
+
+/// to = h sum of weights_i column_i.
+void sum(const MatX<double>& columns, const double* weights, int count, double h, VecX<double>& to) {
+  to.setZero(columns.rows());
+  for (int k = 0; k < count; ++k)
+    if (weights[k] != 0) to += (h * weights[k]) * columns.col(k);
+}
+
+}  // namespace
+
+void ExplicitRungeKutta::take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank,
+                                    const State& modes, Workspace<double>& work, StepCounters& counters) {
+  dynamics.accelerations(t, q_, v_, modes, work, rank);
+  ++counters.evaluations;
+  hold_inertialess(dynamics.model(), work, v_);
+  dynamics.coordinate_rates(q_, v_, q_dot_);
+  q_rates_.col(stage) = q_dot_;
+  v_rates_.col(stage) = work.v_dot;
+  powers_.col(stage) = work.power;
+}
+
+void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                              StepCounters& counters) {
+  const ButcherTableau& of = *of_;
+  const double h = state.h, t = state.time();
+  const int n = of.stages;
+  if (q_rates_.rows() != state.q.size()) {
+    last_.q.resize(0);
+    q_rates_.resize(state.q.size(), n + 1);
+    v_rates_.resize(state.v.size(), n + 1);
+    powers_.resize(kWorks, n + 1);
+  }
+  const bool known = last_t_ == t && last_.q.size() == state.q.size() && last_.q == state.q &&
+                     last_.v == state.v && last_.at_limit == state.at_limit && last_.joints == state.joints;
+  if (known) {
+    q_rates_.col(0) = q_rates_.col(n);
+    v_rates_.col(0) = v_rates_.col(n);
+    powers_.col(0) = powers_.col(n);
+  } else {
+    q_ = state.q;
+    v_ = state.v;
+    take_rates(dynamics, t, 0, RankRule::decide, state, work, counters);
+  }
+  const double* a = of.a;
+  for (int stage = 1; stage < n; a += stage, ++stage) {
+    combine(state.q, q_rates_, a, stage, h, q_);
+    combine(state.v, v_rates_, a, stage, h, v_);
+    take_rates(dynamics, t + of.c[stage] * h, stage, RankRule::keep, state, work, counters);
+  }
+  const VecX<double> v_before = scale() != nullptr ? state.v : VecX<double>();
+  for (int k = 0; k < n; ++k)
+    if (of.b[k] != 0) state.work += (h * of.b[k]) * powers_.col(k);
+  combine(state.q, q_rates_, of.b, n, h, q_);
+  combine(state.v, v_rates_, of.b, n, h, v_);
+  state.q.swap(q_);
+  state.v.swap(v_);
+  hold_inertialess(dynamics.model(), work, state.v);
+  normalise_rotations(dynamics.model(), state.q);
+  settle_frames(dynamics, t + h, state, work);
+  settle(dynamics, t + h, state, work, counters);
+  if (scale() == nullptr || !state.q.allFinite() || !state.v.allFinite()) return;
+  if (of.rates_at_end) {
+    q_ = state.q;
+    v_ = state.v;
+    take_rates(dynamics, t + h, n, RankRule::decide, state, work, counters);
+    last_ = state;
+    last_t_ = t + h;
+  }
+  note_error(error_of(h, v_before));
+}
+
+double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {
+  const int count = of_->stages + (of_->rates_at_end ? 1 : 0);
+  auto size = [&](const double* weights) {
+    sum(q_rates_, weights, count, h, q_error_);
+    sum(v_rates_, weights, count, h, v_error_);
+    return scale()->norm(q_error_, v_error_, v);
+  };
+  const double first = size(of_->error);
+  if (of_->second_error == nullptr || first == 0) return first;
+  const double second = size(of_->second_error);
+  return first * first / std::sqrt(first * first + 0.01 * second * second);
+}
+
+double ExplicitRungeKutta::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
+  const Eigen::Index n = K.rows();
+  MatX<double> A(2 * n, 2 * n);
+  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
+  std::vector<std::complex<double>> k(static_cast<std::size_t>(of_->stages));
+  double worst = 0;
+  for (const std::complex<double>& lambda : A.eigenvalues()) {
+    const double* a = of_->a;
+    std::complex<double> end = 1;
+    for (int stage = 0; stage < of_->stages; a += stage, ++stage) {
+      std::complex<double> y = 1;
+      for (int j = 0; j < stage; ++j) y += a[j] * k[static_cast<std::size_t>(j)];
+      k[static_cast<std::size_t>(stage)] = h * lambda * y;
+      end += of_->b[stage] * k[static_cast<std::size_t>(stage)];
+    }
+    worst = std::max(worst, std::abs(end));
+  }
+  return worst;
+}
+
+}  // namespace pliant

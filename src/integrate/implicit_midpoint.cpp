@@ -1,0 +1,61 @@
+#include <pliant/integrate/implicit_midpoint.h>
+
+#include <algorithm>
+#include <complex>
+
+#include <Eigen/Eigenvalues>
+
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/settle.h>
+
+#include "stage_solver.h"
+
+namespace pliant {
+
+namespace {
+/// What may be left of the equations of a step, in sizes and radians: rounding.
+constexpr double kExactly = 1e-13;
+}  // namespace
+
+ImplicitMidpoint::ImplicitMidpoint() = default;
+ImplicitMidpoint::~ImplicitMidpoint() = default;
+
+void ImplicitMidpoint::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
+                            StepCounters& counters) {
+  const Model& model = dynamics.model();
+  const double h = state.h, t = state.time();
+  if (!solver_) {
+    solver_ = std::make_unique<StageSolver>(model);
+    exactly_ = std::make_unique<ErrorScale>(model, kExactly);
+  }
+  dynamics.accelerations(t, state.q, state.v, state, work);
+  ++counters.evaluations;
+  v_ = state.v;
+  hold_inertialess(model, work, v_);
+  dynamics.coordinate_rates(state.q, v_, q_dot_);
+  q_ = state.q + 0.5 * h * q_dot_;
+  v_ += 0.5 * h * work.v_dot;
+  solver_->begin(dynamics, state, 0.5 * h, *exactly_);
+  solver_->solve(t + 0.5 * h, state.q, state.v, q_, v_, work, counters);
+  state.q = 2 * q_ - state.q;
+  state.v = 2 * v_ - state.v;
+  state.work += h * work.power;
+  hold_inertialess(model, work, state.v);
+  normalise_rotations(model, state.q);
+  settle_frames(dynamics, t + h, state, work);
+  settle(dynamics, t + h, state, work, counters);
+}
+
+double ImplicitMidpoint::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
+  const Eigen::Index n = K.rows();
+  MatX<double> A(2 * n, 2 * n);
+  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
+  double worst = 0;
+  for (const std::complex<double>& lambda : A.eigenvalues()) {
+    const std::complex<double> z = 0.5 * h * lambda;
+    worst = std::max(worst, std::abs((1. + z) / (1. - z)));
+  }
+  return worst;
+}
+
+}  // namespace pliant

@@ -1,0 +1,220 @@
+#include "stage_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/step_failure.h>
+
+namespace pliant {
+
+namespace {
+
+/// An iteration that leaves more than this part of its change is slow; without the matrix, and with it.
+constexpr double kSlowFree = 0.2, kSlow = 0.9;
+constexpr int kMostIterations = 20;
+/// Changes that no longer fall and are below this, in sizes and radians, are rounding.
+constexpr double kRounding = 1e-13;
+/// Differences, in sizes of what is varied.
+constexpr double kDifference = 1e-7;
+/// Most velocities in a dense matrix.
+constexpr Eigen::Index kMostVelocities = 1000;
+/// Changes below this, in tolerances, are taken for convergence.
+constexpr double kConverged = 0.02;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// The turn (rad, body frame) of each part that a change of quaternions is, all else as it is.
+void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& change,
+                VecX<double>& tangent) {
+  tangent.resize(model.n_v());
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    tangent.segment<3>(m.v0) = change.segment<3>(m.q0);
+    const auto theta = q.segment<4>(m.q0 + 3), by = change.segment<4>(m.q0 + 3);
+    const Vec3<double> of = theta.tail<3>(), d = by.tail<3>();
+    tangent.segment<3>(m.v0 + 3) = 2 / theta.squaredNorm() * (theta[0] * d - by[0] * of - of.cross(d));
+    tangent.segment(m.v0 + 6, m.n_s + m.n_d()) = change.segment(m.q0 + 7, m.n_s + m.n_d());
+  }
+}
+
+/// The first of the set that a part is in.
+int leader(std::vector<int>& of, int i) {
+  while (of[at(i)] != i) i = of[at(i)] = of[at(of[at(i)])];
+  return i;
+}
+
+}  // namespace
+
+StageSolver::StageSolver(const Model& model) : model_(model), difference_(model.n_v()) {
+  const int n = static_cast<int>(model.parts().size());
+  std::vector<int> set(at(n));
+  std::iota(set.begin(), set.end(), 0);
+  auto tie = [&](int a, int b) {
+    if (a < 0 || b < 0 || model.parts()[at(a)].q0 < 0 || model.parts()[at(b)].q0 < 0) return;
+    set[at(leader(set, std::max(a, b)))] = leader(set, std::min(a, b));
+  };
+  for (const SpringModel& spring : model.springs()) tie(spring.a.part, spring.b.part);
+  for (const Island& island : model.islands())
+    for (const int part : island.parts) tie(island.parts.front(), part);
+  std::vector<int> cluster(at(n), -1);
+  for (int i = 0; i < n; ++i) {
+    const PartModel& m = model.parts()[at(i)];
+    if (m.q0 < 0) continue;
+    int& number = cluster[at(leader(set, i))];
+    if (number < 0) {
+      number = static_cast<int>(clusters_.size());
+      clusters_.emplace_back();
+    }
+    Cluster& of = clusters_[at(number)];
+    of.parts.push_back(i);
+    for (int k = 0; k < m.n_v(); ++k) of.velocities.push_back(m.v0 + k);
+    const double size = m.part->size();
+    difference_.segment(m.v0, m.n_v()).setConstant(kDifference * size);
+    difference_.segment<3>(m.v0 + 3).setConstant(kDifference);
+    for (int k = 0; k < m.n_s; ++k)
+      if (m.part->parameters().moving(k).spec->quantity != Quantity::length)
+        difference_[m.v0 + 6 + k] = kDifference;
+  }
+}
+
+void StageSolver::begin(const Dynamics& dynamics, const State& state, double c, const ErrorScale& scale) {
+  dynamics_ = &dynamics;
+  state_ = &state;
+  scale_ = &scale;
+  c_ = c;
+  linear_ = false;
+}
+
+void StageSolver::solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q,
+                        VecX<double>& v, Workspace<double>& work, StepCounters& counters) {
+  q_guess_ = q;
+  v_guess_ = v;
+  if (iterate(t, r_q, r_v, q, v, work, counters)) return;
+  if (!linear_) {
+    linearise(work, counters);
+    q = q_guess_;
+    v = v_guess_;
+    if (iterate(t, r_q, r_v, q, v, work, counters)) return;
+  }
+  std::ostringstream message;
+  message << "the equations of an implicit step of " << state_->h << " s from t = " << state_->time()
+          << " s have not been solved, worst " << scale_->worst(rho_q_, rho_v_, v)
+          << "; a smaller step may cure it";
+  throw NumericalFailure(message.str(), state_->time());
+}
+
+bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q,
+                          VecX<double>& v, Workspace<double>& work, StepCounters& counters) {
+  const double slow = linear_ ? kSlow : kSlowFree;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostIterations; ++i) {
+    dynamics_->accelerations(t, q, v, *state_, work, RankRule::keep);
+    ++counters.evaluations;
+    hold_inertialess(model_, work, v);
+    dynamics_->coordinate_rates(q, v, rho_q_);
+    rho_q_ = r_q + c_ * rho_q_ - q;
+    rho_v_ = r_v + c_ * work.v_dot - v;
+    correct(q, rho_q_, rho_v_);
+    q += rho_q_;
+    v += rho_v_;
+    const double change = scale_->norm(rho_q_, rho_v_, v);
+    if (!std::isfinite(change)) return false;
+    const double left = change / before;  // of a change, by one more iteration
+    const bool small = change <= kConverged && left / (1 - std::min(left, 0.99)) * change <= kConverged;
+    if (change == 0 || (i > 0 && small)) return true;
+    if (left > kSlow && change * scale_->tolerance() <= kRounding) return true;
+    // The first change with the matrix is as crude as the guess was.
+    if (i > (linear_ ? 1 : 0) && left > slow) return false;
+    before = change;
+  }
+  return false;
+}
+
+void StageSolver::correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const {
+  if (linear_) {
+    to_tangent(model_, q, rho_q, tangent_);
+    for (const Cluster& of : clusters_) {
+      const auto n = static_cast<Eigen::Index>(of.velocities.size());
+      right_.resize(n);
+      for (Eigen::Index i = 0; i < n; ++i) right_[i] = tangent_[of.velocities[static_cast<std::size_t>(i)]];
+      right_ = (c_ * of.A_q * right_).eval();
+      for (Eigen::Index i = 0; i < n; ++i) right_[i] += rho_v[of.velocities[static_cast<std::size_t>(i)]];
+      right_ = of.factor.solve(right_).eval();
+      for (Eigen::Index i = 0; i < n; ++i) rho_v[of.velocities[static_cast<std::size_t>(i)]] = right_[i];
+    }
+  }
+  dynamics_->coordinate_rates(q, rho_v, tangent_);
+  rho_q += c_ * tangent_;
+}
+
+void StageSolver::damp(VecX<double>& of_q, VecX<double>& of_v) const {
+  if (linear_) correct(state_->q, of_q, of_v);
+}
+
+void StageSolver::linearise(Workspace<double>& work, StepCounters& counters) {
+  const double t = state_->time();
+  Eigen::Index most = 0;
+  for (Cluster& of : clusters_) {
+    const auto n = static_cast<Eigen::Index>(of.velocities.size());
+    if (n > kMostVelocities) {
+      std::ostringstream message;
+      message << n << " velocities of parts that act on each other are stiff, from part '"
+              << model_.parts()[at(of.parts.front())].part->name() << "' on; expected at most "
+              << kMostVelocities << " for this method, or linearly_implicit, or smaller steps";
+      throw NumericalFailure(message.str(), t);
+    }
+    of.A_q.setZero(n, n);
+    of.A_v.setZero(n, n);
+    most = std::max(most, n);
+  }
+  dynamics_->accelerations(t, state_->q, state_->v, *state_, work, RankRule::decide);
+  const VecX<double> v_dot = work.v_dot;
+  VecX<double> q = state_->q, v = state_->v, turn;
+  // A parameter that rests at a limit stays there.
+  std::vector<bool> rests(static_cast<std::size_t>(model_.n_v()));
+  for (const PartModel& m : model_.parts())
+    for (int k = 0; m.q0 >= 0 && k < m.n_s; ++k)
+      rests[at(m.v0 + 6 + k)] = state_->at_limit[at(m.limit0 + k)] != 0;
+  for (Eigen::Index column = 0; column < most; ++column) {
+    VecX<double> change = VecX<double>::Zero(v.size());
+    for (const Cluster& of : clusters_) {
+      if (column >= static_cast<Eigen::Index>(of.velocities.size())) continue;
+      const Eigen::Index k = of.velocities[static_cast<std::size_t>(column)];
+      if (!rests[static_cast<std::size_t>(k)]) change[k] = difference_[k];
+    }
+    auto take = [&](MatX<double> Cluster::*A) {
+      ++counters.evaluations;
+      for (Cluster& of : clusters_) {
+        const auto n = static_cast<Eigen::Index>(of.velocities.size());
+        if (column >= n) continue;
+        const double by = change[of.velocities[static_cast<std::size_t>(column)]];
+        if (by == 0) continue;
+        for (Eigen::Index i = 0; i < n; ++i) {
+          const Eigen::Index k = of.velocities[static_cast<std::size_t>(i)];
+          (of.*A)(i, column) = (work.v_dot[k] - v_dot[k]) / by;
+        }
+      }
+    };
+    q = state_->q;
+    advance_coordinates(model_, q, change, 1);
+    dynamics_->accelerations(t, q, state_->v, *state_, work, RankRule::keep);
+    take(&Cluster::A_q);
+    v = state_->v + change;
+    dynamics_->accelerations(t, state_->q, v, *state_, work, RankRule::keep);
+    take(&Cluster::A_v);
+  }
+  for (Cluster& of : clusters_) {
+    const Eigen::Index n = of.A_q.rows();
+    of.factor.compute(MatX<double>::Identity(n, n) - c_ * of.A_v - c_ * c_ * of.A_q);
+    ++counters.factorisations;
+  }
+  linear_ = true;
+}
+
+}  // namespace pliant

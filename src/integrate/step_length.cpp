@@ -1,0 +1,46 @@
+#include <pliant/integrate/step_length.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pliant {
+
+namespace {
+constexpr double kSafety = 0.9, kMostGrowth = 6, kMostCut = 0.2;
+/// The share of the integral part.
+constexpr double kIntegral = 0.2;
+/// Errors below this part of the tolerance count as that: what is zero once says little.
+constexpr double kLeastError = 1e-6;
+}  // namespace
+
+double next_step(double h, double error, double last_error, int order, bool rejected) {
+  if (!std::isfinite(error)) return kMostCut * h;
+  const double power = 1.0 / (order + 1), now = std::max(error, kLeastError);
+  double factor = kSafety * std::pow(now, -power);
+  if (!rejected && last_error > 0)
+    factor = kSafety * std::pow(now, -power * (1 - 0.75 * kIntegral)) *
+             std::pow(std::max(last_error, kLeastError), power * kIntegral);
+  return h * std::clamp(factor, kMostCut, rejected ? 1 : kMostGrowth);
+}
+
+double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, const State& state,
+                  Workspace<double>& work, StepCounters& counters) {
+  // The step by Euler's method whose way is a hundredth of what a step may be wrong by in one of order 0 ...
+  dynamics.accelerations(state.time(), state.q, state.v, state, work);
+  VecX<double> q_dot, q_dot_then;
+  dynamics.coordinate_rates(state.q, state.v, q_dot);
+  const VecX<double> v_dot = work.v_dot;
+  const double tolerance = scale.tolerance(), rate = tolerance * scale.norm(q_dot, v_dot, state.v);
+  double h = rate > 0 ? 0.01 / rate : 1e-3;
+  // ... and how much the rates change over it.
+  dynamics.accelerations(state.time() + h, state.q + h * q_dot, state.v + h * v_dot, state, work);
+  dynamics.coordinate_rates(state.q + h * q_dot, state.v + h * v_dot, q_dot_then);
+  counters.evaluations += 2;
+  const double change = tolerance * scale.norm(q_dot_then - q_dot, work.v_dot - v_dot, state.v) / h;
+  const double fastest = std::max(rate, std::sqrt(change));
+  if (fastest > 0 && std::isfinite(fastest))
+    h = std::min(100 * h, std::pow(tolerance, 1.0 / (order + 1)) / fastest);
+  return h;
+}
+
+}  // namespace pliant

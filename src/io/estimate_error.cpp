@@ -1,0 +1,71 @@
+#include <pliant/io/estimate_error.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <pliant/integrate/simulation.h>
+
+namespace pliant {
+
+namespace {
+
+constexpr double kTighter = 10;
+
+void raise(double& most, double value) {
+  if (!(value <= most)) most = value;
+}
+
+void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    const VecX<double> q = a.q - b.q, v = a.v - b.v;
+    raise(error.place, q.segment<3>(m.q0).norm());
+    raise(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
+    raise(error.velocity, v.segment<3>(m.v0).norm());
+    raise(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
+    for (int k = 0; k < m.n_s; ++k) {
+      const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+      raise(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
+    }
+    if (m.n_d() > 0)
+      raise(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
+  }
+}
+
+/// On to a time, in steps of one length as near to `step` as lets it be met.
+void go_to(Simulation& simulation, double until, double step) {
+  const double now = simulation.time();
+  if (!(until > now)) return;
+  if (simulation.tolerance() > 0) {
+    while (simulation.time() < until) simulation.step_up_to(until);
+    return;
+  }
+  const double steps = std::max(1.0, std::round((until - now) / step));
+  for (double i = 0; i < steps; ++i) simulation.step((until - now) / steps);
+}
+
+}  // namespace
+
+ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
+                             int threads, Progress& progress) {
+  constexpr double least = 1e-12;
+  ErrorEstimate error;
+  error.tolerance = scene.tolerance > 0 ? std::max(least, scene.tolerance / kTighter) : 0;
+  error.step = scene.tolerance > 0 ? 0 : step / 2;
+  Simulation simulation(scene.body, integrator, threads, error.tolerance);
+  Workspace<double> work;
+  const double end = run.rows() > 0 ? run.time(run.rows() - 1) : 0;
+  progress.begin("estimate error", end, "s");
+  for (std::int64_t row = 0; row < run.rows(); ++row) {
+    const State recorded = run.state(row);
+    go_to(simulation, recorded.time(), error.step);
+    compare(simulation.model(), recorded, simulation.state(), error);
+    raise(error.energy,
+          std::abs(simulation.dynamics().ledger(recorded, work).energy() - simulation.ledger().energy()));
+    progress.advance(recorded.time());
+  }
+  progress.end();
+  return error;
+}
+
+}  // namespace pliant

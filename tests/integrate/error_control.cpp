@@ -1,0 +1,171 @@
+// Steps to a tolerance: the error follows it, times are hit exactly, states go on to the same bits, events
+// are met, what cannot be done is told; and the choice of a method.
+#include "catch.h"
+
+#include <functional>
+#include <limits>
+
+#include <pliant/body/joints/string.h>
+#include <pliant/integrate/choose_integrator.h>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+
+void swing(MultiBody& body) {
+  Part& part = body.add<Primitive<Ellipsoid>>("link");
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.3, 0, 0}).move({0, 0.6, 0}, {0, 0, 2});
+  body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
+}
+
+State end_of(const std::function<void(MultiBody&)>& build, const std::string& method, double tolerance,
+             double end, StepCounters* counters = nullptr) {
+  MultiBody body;
+  build(body);
+  Simulation simulation(body, method, 1, tolerance);
+  while (simulation.time() < end) simulation.step_up_to(end);
+  CHECK(simulation.time() == end);
+  if (counters != nullptr) *counters = simulation.step_counters();
+  return simulation.state();
+}
+
+/// A force that jumps up and down faster than any step.
+void shaken(MultiBody& body) {
+  Part& part = body.add<Primitive<Sphere>>("ball");
+  body.force("noise", point(part, 0, 0), [](double t, const Vec3<double>&, const Vec3<double>&) {
+    const double noise = std::sin(1e20 * t) > 0 ? 1e9 : -1e9;
+    return Vec3<double>(t < 0.1 ? 0 : noise, 0, 0);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("errors follow the tolerance", "[error]") {
+  const State exact = end_of(swing, "dop853", 1e-12, 3);
+  for (const std::string& method : controlled_integrators()) {
+    const bool low = make_integrator(method)->order() == 2;
+    double before = 1;
+    for (double tolerance = 1e-4; tolerance > (low ? 2e-7 : 2e-9); tolerance *= 0.1) {
+      const State end = end_of(swing, method, tolerance, 3);
+      const double error = (end.q - exact.q).norm();
+      CAPTURE(method, tolerance, error);
+      CHECK(error < 300 * tolerance);
+      CHECK(error < before);
+      before = error;
+    }
+  }
+}
+
+TEST_CASE("steps to a tolerance hit times exactly, and a cut one does not hold up the next", "[error]") {
+  MultiBody body;
+  swing(body);
+  Simulation free(body, "dop853", 1, 1e-8);
+  while (free.time() < 1) free.step_up_to(1);
+  MultiBody other;
+  swing(other);
+  Simulation cut(other, "dop853", 1, 1e-8);
+  cut.step_up_to(0.5);
+  const double natural = cut.state().h;
+  cut.step(1e-6);
+  CHECK(cut.state().h >= natural);
+  MultiBody third;
+  swing(third);
+  Simulation frames(third, "dop853", 1, 1e-8);
+  for (int i = 1; i <= 25; ++i) frames.step(0.04);
+  CHECK(frames.time() == Approx(1).epsilon(1e-14));
+  CHECK((frames.state().q - free.state().q).norm() < 1e-6);
+  CHECK_THROWS_AS(frames.step_up_to(0.5), std::invalid_argument);
+}
+
+TEST_CASE("a state to a tolerance goes on to the same bits elsewhere", "[error]") {
+  for (const std::string& method : controlled_integrators()) {
+    CAPTURE(method);
+    MultiBody body, other;
+    test::tumbling_solid(body);
+    test::tumbling_solid(other);
+    Simulation unbroken(body, method, 1, 1e-6), resumed(other, method, 1, 1e-6);
+    while (unbroken.time() < 0.02) unbroken.step_up_to(10);
+    resumed.set_state(unbroken.state());
+    for (int i = 0; i < 5; ++i) {
+      unbroken.step_up_to(10);
+      resumed.step_up_to(10);
+    }
+    CHECK(hash(unbroken.state()) == hash(resumed.state()));
+  }
+}
+
+TEST_CASE("N25: what no step can follow is told, with the last good state kept", "[error]") {
+  MultiBody body;
+  shaken(body);
+  Simulation simulation(body, "dop853", 1, 1e-9);
+  try {
+    while (simulation.time() < 1) simulation.step_up_to(1);
+    FAIL("the motion cannot be followed");
+  } catch (const NumericalFailure& failure) {
+    CHECK_THAT(failure.what(), test::has_text("tolerance"));
+  }
+  CHECK(simulation.time() > 0.05);
+  CHECK(simulation.state().q.allFinite());
+}
+
+TEST_CASE("tolerances that mean nothing, and methods that have none, are refused", "[error]") {
+  for (const double tolerance : {-1.0, 1e-13, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
+    MultiBody body;
+    swing(body);
+    CHECK_THROWS_AS(Simulation(body, "dop853", 1, tolerance), std::invalid_argument);
+  }
+  MultiBody body;
+  swing(body);
+  try {
+    Simulation simulation(body, "rk4", 1, 1e-6);
+    FAIL("rk4 does not tell its error");
+  } catch (const std::invalid_argument& failure) {
+    CHECK_THAT(failure.what(), test::has_text("'dop853'"));
+  }
+  MultiBody fixed;
+  swing(fixed);
+  Simulation simulation(fixed, "dop853");
+  CHECK_THROWS_AS(simulation.step_up_to(1), std::logic_error);
+}
+
+TEST_CASE("strings and limits are met as exactly as the tolerance asks", "[error]") {
+  // A ball falls until its string is taut, 0.5 s later, and a disc spreads against its limit.
+  auto build = [](MultiBody& body) {
+    Part& ball = body.add<Primitive<Sphere>>("ball");
+    ball.rest({{"r", 0.1}});
+    body.join("string", String{0.5 * 9.81 * 0.25 + 0.1}, {world(0, 0, 0.1), point(ball, 0, 0, 0)});
+  };
+  for (const double tolerance : {1e-5, 1e-7}) {
+    MultiBody body;
+    build(body);
+    Simulation simulation(body, "dop853", 1, tolerance);
+    while (simulation.time() < 1) simulation.step_up_to(1);
+    CAPTURE(tolerance, simulation.step_counters().rejected);
+    CHECK(simulation.state().q[2] == Approx(-0.5 * 9.81 * 0.25).margin(20 * tolerance));
+    CHECK(std::abs(simulation.state().v[2]) < 1e-9);
+    CHECK(simulation.ledger().balance == Approx(0).margin(100 * tolerance));
+  }
+}
+
+TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
+  auto chosen = [](const std::function<void(MultiBody&)>& build) {
+    MultiBody body;
+    build(body);
+    const Simulation simulation(body, kAutomatic);
+    CHECK(simulation.tolerance() == kStandardTolerance);
+    CHECK(simulation.choice().integrator == simulation.integrator().name());
+    INFO(simulation.choice().why);
+    return simulation.choice().integrator;
+  };
+  CHECK(chosen(swing) == "dop853");
+  CHECK(chosen([](MultiBody& body) { test::tumbling_solid(body); }) == "dop853");
+  CHECK(chosen([](MultiBody& body) {
+          Part& part = body.add<Primitive<Ellipsoid>>("stiff");
+          part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
+          part.stiffness({{"a1", 1e10}, {"a2", 1e10}, {"a3", 1e10}}).damping(0, 1e-3);
+          part.move({0, 0, 0}, {1, 2, 3});
+          body.ball("joint", world(0.3, 0, 0), point(part, 0, 0));
+        }) == "esdirk");
+}

@@ -1,0 +1,171 @@
+// All methods of integration: their orders on smooth problems, free and jointed, along the way; what the
+// implicit midpoint rule keeps; the stiff method's steps.
+#include "catch.h"
+
+#include <functional>
+
+#include <pliant/integrate/integrator.h>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+
+struct Problem {
+  const char* name;
+  std::function<void(MultiBody&)> build;
+  double end;
+  int steps;  ///< of the longest step of a method of order 4; others take more or fewer
+};
+
+/// Two links hung from each other, both stretching.
+void soft_pendulum(MultiBody& body) {
+  Part* before = nullptr;
+  for (int i = 0; i < 2; ++i) {
+    Part& link = body.add<Primitive<Ellipsoid>>("link" + std::to_string(i));
+    link.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).stiffness({{"a1", 2e4}, {"a2", 2e4}, {"a3", 2e4}});
+    link.place({0.3 + 0.6 * i, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.7 * i, Vec3<double>::UnitX())));
+    body.ball("joint" + std::to_string(i), before == nullptr ? world(0, 0, 0) : point(*before, 0, 0),
+              point(link, 0, kPi));
+    before = &link;
+  }
+}
+
+/// A body on a damped spring from its surface to a point that moves.
+void sprung(MultiBody& body) {
+  Part& part = body.add<Primitive<Ellipsoid>>("body");
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0.5, 0, 0}, {1, 2, 0.5});
+  body.spring("spring", point(part, 0.4, 0.3), world(0, 0, 1), 500, 5, 0.5);
+}
+
+const std::vector<Problem> kProblems{
+    {"a free solid of many parameters", [](MultiBody& body) { test::tumbling_solid(body); }, 0.08, 16},
+    {"stretching links on ball joints", soft_pendulum, 0.2, 16},
+    {"a body on a spring", sprung, 0.8, 16}};
+
+/// States at the quarters of a run; the forces of joints at its end.
+struct Way {
+  VecX<double> q, v, lambda;
+};
+Way way(const Problem& problem, const std::string& method, int steps, double tolerance = 0) {
+  MultiBody body;
+  problem.build(body);
+  Simulation simulation(body, method, 1, tolerance);
+  Way way;
+  const Eigen::Index n_q = simulation.state().q.size(), n_v = simulation.state().v.size();
+  way.q.resize(4 * n_q);
+  way.v.resize(4 * n_v);
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    if (tolerance > 0)
+      simulation.step(problem.end / 4);
+    else
+      for (int i = 0; i < steps / 4; ++i) simulation.step(problem.end / steps);
+    way.q.segment(quarter * n_q, n_q) = simulation.state().q;
+    way.v.segment(quarter * n_v, n_v) = simulation.state().v;
+  }
+  Workspace<double> work;
+  const State& end = simulation.state();
+  simulation.dynamics().accelerations(end.time(), end.q, end.v, end, work);
+  way.lambda = work.joints.lambda;
+  return way;
+}
+
+}  // namespace
+
+TEST_CASE("every method has its order on smooth motion, free, jointed and sprung", "[methods]") {
+  for (const Problem& problem : kProblems) {
+    const Way exact = way(problem, "dop853", 64 * problem.steps);
+    for (const IntegratorInfo& method : all_integrators()) {
+      CAPTURE(problem.name, method.name);
+      const int first = method.order >= 8   ? problem.steps / 4
+                        : method.order == 5 ? 2 * problem.steps
+                        : method.order == 4 ? 4 * problem.steps
+                                            : 8 * problem.steps;
+      std::vector<double> q, v, lambda;
+      for (int halving = 0; halving < 3; ++halving) {
+        const Way at = way(problem, method.name, first << halving);
+        q.push_back((at.q - exact.q).norm());
+        v.push_back((at.v - exact.v).norm());
+        if (exact.lambda.size() > 0) lambda.push_back((at.lambda - exact.lambda).norm());
+      }
+      const double least = method.order >= 8 ? method.order - 0.5 : method.order - 0.1;
+      CAPTURE(q, v, lambda);
+      CHECK(test::observed_order(q) > least);
+      CHECK(test::observed_order(v) > least);
+      // Forces come to their order late: that of the last two.
+      if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > least);
+    }
+  }
+}
+
+TEST_CASE("methods of different kinds come to the same end", "[methods]") {
+  for (const Problem& problem : kProblems) {
+    CAPTURE(problem.name);
+    const Way exact = way(problem, "dop853", 0, 1e-12);
+    for (const char* method : {"dormand_prince", "esdirk"}) {
+      const Way other = way(problem, method, 0, 1e-9);
+      CHECK((other.q - exact.q).norm() < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("N17, N18: the implicit midpoint rule keeps energy and angular momentum of a free box bounded",
+          "[methods]") {
+  MultiBody body;
+  body.gravity.setZero();
+  body.add<Primitive<Box>>("box").rest({{"a1", 0.1}, {"a2", 0.2}, {"a3", 0.3}}).move({0, 0, 0}, {1, 2, 3});
+  Simulation simulation(body, "implicit_midpoint");
+  const Ledger start = simulation.ledger();
+  double energy = 0, momentum = 0;
+  for (int i = 0; i < 20000; ++i) {
+    simulation.step(0.01);
+    if (i % 100 != 0) continue;
+    const Ledger now = simulation.ledger();
+    energy = std::max(energy, std::abs(now.kinetic / start.kinetic - 1));
+    momentum = std::max(momentum, std::abs(now.angular_momentum.norm() / start.angular_momentum.norm() - 1));
+  }
+  CHECK(energy < 1e-11);
+  CHECK(momentum < 1e-11);
+}
+
+TEST_CASE("N21: implicit methods bear any stiffness: no growth, and the L-stable one damps", "[methods]") {
+  for (const double stiffness : {1e4, 1e8, 1e12}) {
+    for (const char* method : {"implicit_midpoint", "esdirk"}) {
+      CAPTURE(stiffness, method);
+      MultiBody body;
+      body.gravity.setZero();
+      Part& part = body.add<Primitive<Sphere>>("ball");
+      part.rest({{"r", 0.2}}).stiffness({{"r", stiffness}}).initial({{"r", 0.201}});
+      Simulation simulation(body, method);
+      double largest = 0;
+      for (int i = 0; i < 200; ++i) {
+        simulation.step(0.01);
+        largest = std::max(largest, std::abs(simulation.state().q[7] - 0.2));
+      }
+      CHECK(largest <= 1.0001e-3);
+      if (stiffness >= 1e8 && std::string(method) == "esdirk")
+        CHECK(std::abs(simulation.state().q[7] - 0.2) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("steps of the stiff method do not depend on the stiffness", "[methods]") {
+  // An ellipsoid that spins, or swings on a ball joint, ever stiffer, its vibrations damped.
+  auto steps = [](double stiffness, bool jointed) {
+    MultiBody body;
+    Part& part = body.add<Primitive<Ellipsoid>>("body");
+    part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
+    part.stiffness({{"a1", stiffness}, {"a2", stiffness}, {"a3", stiffness}}).damping(0, 1e-3);
+    part.move({0, 0, 0}, {1, 2, 3});
+    if (jointed) body.ball("joint", world(0.3, 0, 0), point(part, 0, 0));
+    Simulation simulation(body, "esdirk", 1, 1e-5);
+    while (simulation.time() < 1) simulation.step_up_to(1);
+    return simulation.step_counters().steps;
+  };
+  const long free = steps(1e6, false);
+  for (const double stiffness : {1e8, 1e10, 1e12}) CHECK(steps(stiffness, false) <= free);
+  // A joint turns the stiff directions, which costs the method its order in their limit: its steps get a
+  // little shorter.
+  CHECK(steps(1e9, true) <= 3 * steps(1e6, true));
+}
