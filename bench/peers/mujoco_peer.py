@@ -10,8 +10,8 @@ DISTRIBUTION = "mujoco"
 
 mujoco.set_mju_user_warning(lambda _: None)  # of what is counted as failed
 
-# The stiffest that is stable by the documentation: time constant twice the step, critically damped.
-IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]
+IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]  # of `connect`: the stiffest that is taken
+STEPS_OF_CONNECT = 2  # its time constant in steps, the shortest that the documentation calls stable
 
 
 def add_body(parent, body, name, pos, quat):
@@ -23,17 +23,18 @@ def connect(spec, step, a, ra, b):
     """Point ra of body a is where it touches body b at the start."""
     name = "world" if a == WORLD else f"body{a}"
     spec.add_equality(type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_BODY, name1=name,
-                      name2=f"body{b}", data=[*ra, *[0] * (mujoco.mjNEQDATA - 3)], solref=[2 * step, 1], solimp=IMPEDANCE)
+                      name2=f"body{b}", data=[*ra, *[0] * (mujoco.mjNEQDATA - 3)],
+                      solref=[STEPS_OF_CONNECT * step, 1], solimp=IMPEDANCE)
 
 
-def model_of(problem, tree, integrator, step, jacobian=mujoco.mjtJacobian.mjJAC_AUTO):
+def model_of(problem, tree, integrator, step):
     spec = mujoco.MjSpec()
     spec.compiler.autolimits = False
     option = spec.option
     option.timestep, option.integrator, option.gravity = step, integrator, problem.gravity
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_AUTORESET
     option.solver, option.iterations, option.tolerance = mujoco.mjtSolver.mjSOL_NEWTON, 100, 1e-14
-    option.ls_iterations, option.ls_tolerance, option.jacobian = 100, 1e-6, jacobian
+    option.ls_iterations, option.ls_tolerance = 100, 1e-6
     spanning, loops = problem.tree()
     bodies = {WORLD: spec.worldbody}
     if tree and spanning:

@@ -42,8 +42,8 @@ def curves(peers, pliant):
 
 
 def time_at(points, level):
-    """Least time of the runs that count at a level; infinite without."""
-    least = math.inf
+    """Least time of the runs that count at a level; infinite without. Failed runs are left out."""
+    least, points = math.inf, [p for p in points if not math.isnan(p[0])]
     for i, (error, time) in enumerate(points):
         finer = points[i + 1 : i + 3]
         if error <= level and all(e <= 3 * error for e, _ in finer):

@@ -10,6 +10,7 @@ import importlib.metadata
 import math
 import multiprocessing
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -75,6 +76,7 @@ def available(engine, folder):
 
 def serve(connection, engine, name, folder, index):
     """In a process of its own: runs of one ladder, each asked for by the parent."""
+    os.setsid()  # so that what it starts ends with it
     run = ladders(engine, name, folder)[index][3]
     while True:
         setting = connection.recv()
@@ -103,7 +105,10 @@ def runs(engine, name, folder, index, settings, limit):
                 return
             yield setting, result
     finally:
-        process.kill()
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            process.kill()
         process.join()
 
 
