@@ -1,0 +1,25 @@
+"""Reference end poses and the error against them."""
+import csv
+
+import numpy as np
+
+
+def read_references(path):
+    """{problem: (centres, quaternions)} of a joint_reference.csv."""
+    poses = {}
+    with open(path, newline="") as file:
+        for row in csv.DictReader(file):
+            poses.setdefault(row["problem"], []).append([float(row[k]) for k in "x y z qw qx qy qz".split()])
+    return {name: (np.array(p)[:, :3], np.array(p)[:, 3:]) for name, p in poses.items()}
+
+
+def error(problem, pose, reference):
+    """The worst distance of a body's centre in lengths of a body; of A the angle of rotation, rad."""
+    (c, q), (c0, q0) = pose, reference
+    if not (np.isfinite(c).all() and np.isfinite(q).all()):
+        return float("nan")
+    if not problem.joints:
+        w = abs(np.sum(q * q0, axis=1))
+        v = q0[:, :1] * q[:, 1:] - q[:, :1] * q0[:, 1:] - np.cross(q0[:, 1:], q[:, 1:])
+        return float(np.max(2 * np.arctan2(np.linalg.norm(v, axis=1), w)))
+    return float(np.max(np.linalg.norm(c - c0, axis=1)) / problem.length)
