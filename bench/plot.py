@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
-"""Draws the CSV of bench/work_error or bench/joint_work_error as run time against error, one panel a problem.
+"""Draws the CSV of bench/work_precision as run time against error, one panel a problem.
 
-usage: work_error > work_error.csv; bench/plot.py work_error.csv work_error.svg   (needs matplotlib)
-       joint_work_error FOLDER; bench/plot.py FOLDER/joint_work_error.csv joint_work_error.svg
+usage: work_precision FOLDER; bench/plot.py FOLDER/work_precision.csv work_precision.svg   (needs matplotlib)
 """
 import csv
 import math
@@ -31,7 +30,11 @@ def main() -> None:
             panel.set_axis_off()
             continue
         for method in methods:
-            points = [r for r in rows if r["problem"] == problems[index] and r["method"] == method]
+            points = [
+                r
+                for r in rows
+                if r["problem"] == problems[index] and r["method"] == method and r["failed"] != "1"
+            ]
             errors = [float(r["error"]) for r in points]
             panel.loglog(errors, [float(r["cpu_ms"]) for r in points], "o-", ms=4, label=method)
         panel.set(title=problems[index])
@@ -44,7 +47,7 @@ def main() -> None:
         if lines == 1:
             panel.legend()
     if lines > 1:
-        figure.legend(*panels[0][0].get_legend_handles_labels(), loc="upper center", ncols=len(methods))
+        figure.legend(*panels[0][0].get_legend_handles_labels(), loc="upper center", ncols=min(len(methods), 5))
     figure.tight_layout(rect=(0, 0, 1, 1 if lines == 1 else 0.94))
     figure.savefig(target)
 

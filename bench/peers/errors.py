@@ -5,7 +5,7 @@ import numpy as np
 
 
 def read_references(path):
-    """{problem: (centres, quaternions)} of a joint_reference.csv."""
+    """{problem: (centres, quaternions)} of a precision_reference.csv."""
     poses = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):

@@ -3,7 +3,7 @@
 
 usage: plot.py PEERS.csv PLIANT.csv FOLDER
 
-PLIANT.csv: of joint_work_error or work_precision (columns problem, method, cpu_ms_per_s, error). Writes
+PLIANT.csv: of work_precision (columns problem, method, cpu_ms_per_s, error). Writes
 FOLDER/peers.png and FOLDER/peers_table.csv: CPU ms per simulated second at each error. A run counts at an error
 only if neither of the next two finer ones is 3 times worse.
 """

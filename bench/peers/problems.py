@@ -1,4 +1,4 @@
-"""The rigid problems of bench/linkage.h and bench/joint_work_error.cpp, from their few parameters.
+"""The rigid problems of bench/linkage.h and bench/problems.h, from their few parameters.
 
 SI units; quaternions w x y z, body to world; the body frame is central and principal.
 """

@@ -34,7 +34,7 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
   StepCounters counters;
   const double far = std::numeric_limits<double>::max();
   const int order = method.error_order();
-  const StepError none{std::numeric_limits<double>::infinity(), order};
+  const StepError none{std::numeric_limits<double>::infinity(), order, 0};
   method.measure(&scale);
   auto attempt = [&] {
     try {
@@ -44,7 +44,7 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
     } catch (const InvertedElement&) {
       return none;
     }
-    const StepError error{method.take_error(), order};
+    const StepError error{method.take_error(), order, state.h};
     return state.q.allFinite() && state.v.allFinite() ? error : none;
   };
   auto cost = [&] {

@@ -142,6 +142,11 @@ void ContactStepping::undo_step() {
   std::swap(record_, record_before_);
 }
 
+bool ContactStepping::any_lasts() const {
+  return std::any_of(record_.contacts.begin(), record_.contacts.end(),
+                     [](const Contact& contact) { return contact.since > 0; });
+}
+
 /// Surfaces of this pair that are nearer than this rest on each other, m.
 double ContactStepping::resting_gap(const Contact& contact) const {
   const std::vector<PartModel>& parts = dynamics_.model().parts();
@@ -164,9 +169,10 @@ std::vector<Contact> ContactStepping::resting_at(const State& state, double t, d
   return resting;
 }
 
-void ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
-                           StepCounters& counters) {
-  const double start = state.start, h = state.h, end = state.time() + h;
+double ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
+                             StepCounters& counters, bool to_impact) {
+  const double start = state.start, h = state.h, begin = state.time(), end = begin + h;
+  double taken = h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
@@ -240,7 +246,9 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
           if (!rest.has(contact) && rebound > slow) contact.rebound = rebound;
         }
         settle(state, 0, 0, state, now, std::move(there), work, counters);
-        continue;
+        if (!to_impact || !(now > begin)) continue;
+        taken = now - begin;
+        break;
       }
     }
     meshes_.find(state, after, contacts);
@@ -251,6 +259,7 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
   state.start = start;
   state.step = number;
   state.h = h;
+  return taken;
 }
 
 /// The time into the step from `before` at which the first of the impacts happens; the state is that of then.

@@ -19,8 +19,8 @@ namespace {
 constexpr double kNear = 1e-9, kUlps = 8;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
-/// Longest step to a tolerance in which more bodies touch than have their impacts told in time, s.
-constexpr double kManyTouch = 2e-3;
+/// Longest step to a tolerance in which bodies lie on each other, s.
+constexpr double kTouching = 2e-3;
 /// No step to a tolerance is shorter than this part of the time.
 constexpr double kLeastStep = 16 * std::numeric_limits<double>::epsilon();
 
@@ -187,49 +187,30 @@ void Simulation::give_up_step() {
   if (contact_) contact_->undo_step();
 }
 
-/// A step of the length in the state. Where bodies touch it is made in two halves as well: what these differ
-/// by from the whole is its error then, and the halves are kept. Where many do, their steps are short
+/// A step of the length in the state. Its error is that of the method, impacts that are told in time
+/// included; where bodies lie on each other, or more meet than are told, it says nothing: steps are short
 /// instead.
 StepError Simulation::try_step() {
-  const State begun = state_;
-  const StepError failed{std::numeric_limits<double>::infinity(), integrator_->error_order()};
-  auto attempt = [&](int parts) {
-    if (contact_) contact_->begin_step();
-    bool done = false;
-    try {
-      for (int i = 0; i < parts; ++i) {
-        state_.start = begun.start + i * begun.h / parts;
-        state_.h = begun.h / parts;
-        take_step();
-      }
-      done = state_.q.allFinite() && state_.v.allFinite();
-    } catch (const StepFailure&) {
-    } catch (const InvertedElement&) {
-    }
+  if (contact_) contact_->begin_step();
+  const int order = integrator_->error_order();
+  const double h = state_.h;
+  StepError result{std::numeric_limits<double>::infinity(), order, h};
+  try {
+    result.length = take_step();
     const double error = integrator_->take_error();
-    if (done && error <= 1) return StepError{error, failed.order};
-    if (contact_) contact_->undo_step();
-    return done ? StepError{error, failed.order} : failed;
-  };
-  const StepError whole = attempt(1);
-  if (!(whole.error <= 1) || !contact_ || contact_->contacts().empty()) return whole;
-  if (!contact_->few_parts()) {
-    const double too_long = begun.h / kManyTouch;
-    if (too_long <= 1)
-      ++step_counters_.uncontrolled;
-    else
-      contact_->undo_step();
-    return {std::max(whole.error, too_long), 0};
+    if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
+  } catch (const StepFailure&) {
+    integrator_->take_error();
+  } catch (const InvertedElement&) {
+    integrator_->take_error();
   }
-  const State in_one = state_;
-  contact_->undo_step();
-  state_ = begun;
-  const StepError halves = attempt(2);
-  if (!(halves.error <= 1)) return halves;
-  const double apart = scale_->norm(state_.q - in_one.q, state_.v - in_one.v, state_.v);
-  if (apart <= whole.error) return whole;
-  if (!(apart <= 1)) contact_->undo_step();
-  return {apart, 1};
+  if (contact_ && result.error <= 1 && contact_->any_lasts()) {
+    result.error = std::max(result.error, h / kTouching);
+    result.order = 0;
+    if (result.error <= 1) ++step_counters_.uncontrolled;
+  }
+  if (contact_ && !(result.error <= 1)) contact_->undo_step();
+  return result;
 }
 
 /// What stops a step that cannot be made any shorter.
@@ -260,17 +241,20 @@ bool Simulation::shorter_steps_pass(double h) {
   return state_.q.allFinite() && state_.v.allFinite();
 }
 
-void Simulation::take_step() {
-  if (contact_)
-    contact_->step(*integrator_, state_, work_, step_counters_);
-  else
-    integrator_->step(dynamics_, state_, work_, step_counters_);
+/// Returns how long the step was, which to a tolerance ends where bodies meet.
+double Simulation::take_step() {
+  if (contact_) return contact_->step(*integrator_, state_, work_, step_counters_, scale_.has_value());
+  integrator_->step(dynamics_, state_, work_, step_counters_);
+  return state_.h;
 }
 
 /// Moves the state on by h but for the count of its step, stopping where joints switch.
 void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
-  if (times.empty()) return take_step();
+  if (times.empty()) {
+    take_step();
+    return;
+  }
   const double end = state_.time() + h;
   const double near = std::max(kNear * h, kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;

@@ -154,6 +154,9 @@ VecX<double> cubic(const Model& model, const State& low, const State& high, doub
   return h00 * low.q + h01 * high.q + (high.time() - low.time()) * (h10 * low_rate + h11 * high_rate);
 }
 
+/// Rates that jump by more than this part of what they change by in a step have been struck.
+constexpr double kJump = 0.5;
+
 /// The same by a polynomial of degree 5, with the accelerations at both.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
@@ -174,9 +177,29 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
   };
   const Motion a = motion_at(low), b = motion_at(high);
   const double h = high.time() - low.time(), y = 1 - x, x3 = x * x * x, y3 = y * y * y;
-  return y3 * (1 + 3 * x + 6 * x * x) * low.q + x3 * (1 + 3 * y + 6 * y * y) * high.q +
-         h * (x * y3 * (1 + 3 * x) * a.rate - y * x3 * (1 + 3 * y) * b.rate) +
-         0.5 * h * h * (x * x * y3 * a.curvature + y * y * x3 * b.curvature);
+  VecX<double> q(low.q.size());
+  auto fill = [&](int first, int count) {
+    auto of = [&](auto& all) { return all.segment(first, count); };
+    // What is left of the way at the end, when the rates and accelerations at the start have had their share.
+    const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
+    const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
+    const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
+    if (jump > kJump * h * bend) {  // something struck at the end: the rate there is that after it
+      of(q) = of(low.q) + x * h * of(a.rate) + 0.5 * x * x * h * h * of(a.curvature) + x3 * rest;
+      return;
+    }
+    of(q) = y3 * (1 + 3 * x + 6 * x * x) * of(low.q) + x3 * (1 + 3 * y + 6 * y * y) * of(high.q) +
+            h * (x * y3 * (1 + 3 * x) * of(a.rate) - y * x3 * (1 + 3 * y) * of(b.rate)) +
+            0.5 * h * h * (x * x * y3 * of(a.curvature) + y * y * x3 * of(b.curvature));
+  };
+  for (const PartModel& part : model.parts()) {
+    if (part.q0 < 0) continue;
+    fill(part.q0, 3);
+    fill(part.q0 + 3, 4);
+    for (int k = 0; k < part.n_s; ++k) fill(part.q0 + 7 + k, 1);
+    if (part.n_d() > 0) fill(part.q0 + 7 + part.n_s, part.n_d());
+  }
+  return q;
 }
 
 }  // namespace

@@ -336,9 +336,8 @@ bool Run::simulate() {
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
     if (record_.step_counters.uncontrolled > 0)
-      note("more bodies touched than have their error controlled: " +
-           count_text(record_.step_counters.uncontrolled, "step") +
-           " of at most 0.002 s; --estimate-error tells");
+      note("bodies lay on each other in " + count_text(record_.step_counters.uncontrolled, "step") +
+           ", whose error is not controlled; they are of at most 0.002 s, and --estimate-error tells it");
     write("trajectory", {}, [&] { write_tables(); });
   } catch (const std::exception& failure) {
     fail(failure.what());

@@ -169,3 +169,43 @@ TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
           body.ball("joint", world(0.3, 0, 0), point(part, 0, 0));
         }) == "esdirk");
 }
+
+TEST_CASE("impacts are met within the tolerance, whatever the steps", "[error]") {
+  // A ball dropped from 1 m rebounds 0.8 times as fast: its k-th bounce is at T (1 + 2 e + ... + 2 e^k).
+  MultiBody body;
+  body.add<Primitive<Sphere>>("ball").rest({{"r", 0.1}}).place({0, 0, 1.1});
+  body.contact.active = true;
+  body.contact.restitution = 0.8;
+  body.contact.planes.emplace_back().name = "floor";
+  Simulation simulation(body, "dop853", 1, 1e-6);
+  while (simulation.time() < 2) simulation.step_up_to(2);
+  const double fall = std::sqrt(2 / 9.81), speed = 9.81 * fall;
+  double start = fall, up = speed;
+  for (double flight = 0; start + flight < 2; flight = 2 * up / 9.81) {
+    start += flight;
+    up *= 0.8;
+  }
+  const double since = 2 - start;
+  CHECK(simulation.state().q[2] == Approx(0.1 + up * since - 0.5 * 9.81 * since * since).margin(1e-9));
+  CHECK(simulation.step_counters().impacts == 3);
+  CHECK(simulation.step_counters().uncontrolled == 0);
+  CHECK(simulation.step_counters().steps < 40);
+}
+
+TEST_CASE("bodies that lie on each other take short steps, which are counted", "[error]") {
+  // A box slides to a stop: v^2 / (2 mu g).
+  MultiBody body;
+  body.add<Primitive<Box>>("box")
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
+      .place({0, 0, 0.1})
+      .move({1, 0, 0}, {0, 0, 0});
+  body.contact.active = true;
+  body.contact.friction = 0.5;
+  body.contact.planes.emplace_back().name = "floor";
+  Simulation simulation(body, "dop853", 1, 1e-6);
+  while (simulation.time() < 0.5) simulation.step_up_to(0.5);
+  CHECK(simulation.state().q[0] == Approx(1 / (2 * 0.5 * 9.81)).margin(1e-3));
+  CHECK(simulation.state().v.norm() < 1e-9);
+  CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
+  CHECK(simulation.step_counters().steps < 300);
+}

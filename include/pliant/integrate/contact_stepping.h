@@ -33,12 +33,14 @@ class ContactStepping {
   /// A new step begins, which may come in parts; the one that began last counts for nothing.
   void begin_step();
   void undo_step();
-  /// Advances q, v and work by state.h; the caller counts the step.
-  void step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters);
+  /// Advances q, v and work by state.h, or to the first impact that is told in time where the step is to end
+  /// there, and returns by how much; the caller counts the step.
+  double step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters,
+              bool to_impact = false);
 
   const ContactFinder& finder() const { return finder_; }
-  /// Whether there are so few parts that impacts are told in time.
-  bool few_parts() const { return few_parts_; }
+  /// Whether some of what touched in the last step did so for a time, or was not met at its time.
+  bool any_lasts() const;
   /// Of the last whole step; empty where nothing touched.
   const ContactRecord& record() const { return record_; }
   const std::vector<Contact>& contacts() const { return record_.contacts; }

@@ -16,7 +16,7 @@ struct StepCounters {
   long steps = 0;
   long evaluations = 0;   ///< of the accelerations
   long rejected = 0;      ///< steps whose error was too large, taken again
-  long uncontrolled = 0;  ///< steps in which more bodies touched than have their error controlled
+  long uncontrolled = 0;  ///< steps to a tolerance in which bodies lay on each other
   long limit_impulses = 0;
   long factorisations = 0;      ///< of the stiffness of nodes
   long impacts = 0;             ///< whose time in the step was found

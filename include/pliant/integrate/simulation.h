@@ -69,7 +69,7 @@ class Simulation {
  private:
   void guarded(double h, const std::function<void()>& step);
   void advance(double h);
-  void take_step();
+  double take_step();
   void take_method(std::unique_ptr<Integrator> method);
   StepError try_step();
   void fail_at_tolerance();

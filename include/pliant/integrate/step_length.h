@@ -21,6 +21,7 @@ double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, 
 struct StepError {
   double error;
   int order;
+  double length;  ///< of the step as it was taken, s: it may have ended where bodies met
 };
 
 /// Takes a step from a state, whose h is the first it tries, which ends at a time at the latest and then
@@ -40,11 +41,12 @@ bool take_controlled_step(State& state, double end, double least, StepCounters& 
     state.step = 0;
     state.h = taken;
     if (taken <= least && !last) return false;
-    const auto [error, order] = attempt();
+    const auto [error, order, length] = attempt();
     const double next = next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1));
     if (error <= 1) {
-      state.start = last ? end : now + taken;
-      state.h = last ? std::max(h, next) : next;  // one that was cut short says little about the next
+      const bool cut = length < taken;
+      state.start = last && !cut ? end : now + length;
+      state.h = last || cut ? std::max(h, next) : next;  // one that was cut short says little about the next
       state.error = error;
       return true;
     }
