@@ -54,6 +54,9 @@ class ContactStepping {
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
+  const std::vector<Contact>& near(const State& state, double t);
+  void settle_chain(std::vector<Contact> settled, double h, double slow, State& state, double t,
+                    Workspace<double>& work, StepCounters& counters);
   void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
   bool driven(const std::vector<int>& parts) const;
   std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
