@@ -70,6 +70,8 @@ struct ContactFinder::Scratch {
   std::vector<Contact> ours, theirs;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;
+  std::vector<int> nodes;
+  Eigen::Matrix3Xd x_dot;
 };
 
 /// w - 1 of a part b, over points of the frame of a; to first order the distance to b is that over the length
@@ -398,11 +400,11 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
     if (side.at_nodes()) {
-      Vec3<double> u = Vec3<double>::Zero();
+      scratch_->nodes.clear();
       for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
-        u += side.weight[static_cast<Eigen::Index>(k)] *
-             node_motion(*model_, state, side.part, side.node[k]).x_dot;
-      return u;
+        scratch_->nodes.push_back(side.node[k]);
+      node_velocities(*model_, state, side.part, scratch_->nodes, scratch_->x_dot);
+      return scratch_->x_dot * side.weight.head(scratch_->x_dot.cols());
     }
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());

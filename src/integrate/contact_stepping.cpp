@@ -377,16 +377,16 @@ void ContactStepping::evaluate(const State& state, double t, const std::vector<C
 }
 
 /// The velocities that impulses gave, and the ways they went since.
-void ContactStepping::move(const std::vector<Mover>& movers, const Workspace<double>& work,
-                           State& state) const {
-  for_each_part(movers, [&](const Mover& mover, int part, int first) {
+void ContactStepping::move(const ContactProblem& problem, const Workspace<double>& work, State& state) const {
+  for_each_part(problem.movers(), [&](const Mover& mover, int part, int first) {
     const PartModel& m = dynamics_.model().parts()[at(part)];
     if (mover.node < 0) {
-      give_velocity(m, work.parts[at(part)], mover.x.segment(first, m.n_x()), state.v);
-      return advance_with(m, work.parts[at(part)], mover.shift.segment(first, m.n_x()), 1, state.q);
+      give_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);
     }
     const Eigen::Quaterniond to_body = dynamics_.model().orientation(state, part).conjugate();
-    const Vec3<double> shift = to_body * mover.shift, change = to_body * (mover.x - mover.before),
+    const Vec3<double> shift = to_body * problem.shift(mover).head<3>(),
+                       change = to_body * (problem.after(mover) - problem.before(mover)).head<3>(),
                        omega = state.v.segment<3>(m.v0 + 3);
     move_node(dynamics_.model(), mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
     // Its velocity is omega x p + d_dot, and p has moved.
@@ -448,7 +448,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
       hands || deep || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
-  move(problem.movers(), work, state);
+  move(problem, work, state);
   if (h > 0 || deep) reconcile(parts, state, t, work, counters);
   if (h > 0 && smooth) part_overlaps(most + thrown, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
@@ -521,7 +521,7 @@ void ContactStepping::part_overlaps(double most, State& state, double t, Workspa
     evaluate(state, t, deep, work);
     ContactProblem parting(dynamics_.model(), state, work, deep);
     parting.part_bodies(left);
-    move(parting.movers(), work, state);
+    move(parting, work, state);
     reconcile(parts, state, t, work, counters);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);

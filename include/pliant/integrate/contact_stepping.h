@@ -62,7 +62,7 @@ class ContactStepping {
   std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;
-  void move(const std::vector<Mover>& movers, const Workspace<double>& work, State& state) const;
+  void move(const ContactProblem& problem, const Workspace<double>& work, State& state) const;
 
   const Dynamics& dynamics_;
   ContactFinder finder_;
