@@ -19,9 +19,9 @@ constexpr double kExact = 1e-13, kUlps = 8;
 constexpr double kExactOfPoints = 1e-6;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
-constexpr std::size_t kRoundsOfPoints = 2;
+constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{30, 6}, {120, 0}, {100, 8}}};
 /// Most contacts that are solved as one system.
-constexpr int kMostDense = 100, kMostDenseOfPoints = 12;
+constexpr int kMostDense = 100, kMostDenseOfPoints = 25;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.
@@ -216,8 +216,10 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
 bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
   const bool dense = size_ <= (points_ ? kMostDenseOfPoints : kMostDense);
-  for (std::size_t round = 0; round < (points_ ? kRoundsOfPoints : kRounds.size()); ++round) {
-    const auto& [most, history] = kRounds[round];
+  const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
+  const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
+  for (const auto* round = first; round != last; ++round) {
+    const auto& [most, history] = *round;
     if (!dense && history == 0) continue;  // it would take too long
     if (relax(most, history, sweeps)) return true;
     if (dense && newton() && residual() <= exact_) return true;
