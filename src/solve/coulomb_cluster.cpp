@@ -19,7 +19,7 @@ constexpr double kExact = 1e-13, kUlps = 8;
 constexpr double kExactOfPoints = 1e-6;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
-constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{30, 6}, {120, 0}, {100, 8}}};
+constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
 /// Most contacts that are solved as one system.
 constexpr int kMostDense = 100, kMostDenseOfPoints = 25;
 /// Extrapolation starts anew when it has made things worse by this factor.

@@ -37,8 +37,6 @@ class CoulombCluster {
   void set(const VecX<double>& impulses);
   bool relax(int most, int history, int& sweeps);
   bool newton();
-  double ahead(int i, const Vec3<double>& u) const;
-  void linearise(int i, Eigen::Index row, const MatX<double>& U, MatX<double>& K, VecX<double>& F) const;
   bool search(int& sweeps);
 
   CoulombSystem& system_;

@@ -18,43 +18,56 @@ constexpr double kProximal = 1e-9;
 
 /// Leaves the best it has seen; returns whether that is better than what it began with.
 bool CoulombCluster::newton() {
-  MatX<double> A(3 * size_, 3 * size_);  // takes the impulses to their velocities
+  const Eigen::Index n = 3 * size_;
+  MatX<double> A(n, n);  // takes the impulses to their velocities
   for (int i = 0; i < size_; ++i)
     for (int j = 0; j < size_; ++j) A.block<3, 3>(3 * i, 3 * j) = system_.effect(contacts_[i], contacts_[j]);
   if (softness_ > 0)
     for (int i = 0; i < size_; ++i) A.diagonal().segment<3>(3 * i) += softness_ * point(i).W.diagonal();
-  VecX<double> best, F;
+  VecX<double> best, F(n);
   take(best);
   const double start = residual();
   double best_left = start;
-  MatX<double> U, K;
-  std::vector<int> pushed;
+  MatX<double> K(n, n);
   int futile = 0;
   const int most_futile = size_ > kDear ? kMostFutile : kMostNewton;
   for (int step = 0; step < kMostNewton && futile < most_futile && best_left > exact_; ++step) {
-    // Contacts that open take no part in the equations.
-    pushed.clear();
-    for (int i = 0; i < size_; ++i)
-      if (!is_fixed(i) && ahead(i, velocity(i)) > 0) pushed.push_back(i);
-    for (int i = 0, next = 0; i < size_; ++i)
-      if (next < static_cast<int>(pushed.size()) && pushed[static_cast<std::size_t>(next)] == i)
-        ++next;
-      else
-        push(i, -p(i));
-    const auto n = static_cast<Eigen::Index>(3 * pushed.size());
-    U.resize(3, n);
-    K.setZero(n, n);
-    F.setZero(n);
-    for (Eigen::Index row = 0; row < n; row += 3) {
-      const int i = pushed[static_cast<std::size_t>(row / 3)];
-      for (Eigen::Index column = 0; column < n; column += 3)
-        U.middleCols<3>(column) = A.block<3, 3>(3 * i, 3 * pushed[static_cast<std::size_t>(column / 3)]);
-      linearise(i, row, U, K, F);
+    K.setZero();
+    for (int i = 0; i < size_; ++i) {
+      const Eigen::Index row = 3 * i;
+      const Vec3<double> u = velocity(i);
+      const double r = 1 / point(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0], mu = point(i).mu;
+      const auto U = A.middleRows<3>(row);
+      if (is_fixed(i) || !(ahead > 0)) {
+        K.block<3, 3>(row, row).setIdentity();
+        F.segment<3>(row) = p(i);
+        continue;
+      }
+      K.row(row) = r * U.row(0);
+      K(row, row) += kProximal;
+      F[row] = r * u[0];
+      auto tangents = K.middleRows<2>(row + 1);
+      const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
+      const double radius = mu * ahead;
+      if (point(i).rows == 1 || radius == 0) {
+        K.block<2, 2>(row + 1, row + 1).setIdentity();
+        F.segment<2>(row + 1) = p(i).tail<2>();
+      } else if (pull.norm() <= radius) {
+        tangents = r * U.bottomRows<2>();
+        K.block<2, 2>(row + 1, row + 1) += kProximal * Eigen::Matrix2d::Identity();
+        F.segment<2>(row + 1) = r * u.tail<2>();
+      } else {
+        const Eigen::Vector2d e = pull.normalized();
+        const Eigen::Matrix2d turn = radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
+        tangents = r * mu * e * U.row(0) + r * turn * U.bottomRows<2>();
+        tangents.block<2, 1>(0, row) -= mu * e;
+        tangents.block<2, 2>(0, row + 1) += Eigen::Matrix2d::Identity() - turn;
+        F.segment<2>(row + 1) = p(i).tail<2>() - radius * e;
+      }
     }
     const VecX<double> change = -K.partialPivLu().solve(F);
     if (!change.allFinite()) break;
-    for (Eigen::Index row = 0; row < n; row += 3)
-      push(pushed[static_cast<std::size_t>(row / 3)], change.segment<3>(row));
+    for (int i = 0; i < size_; ++i) push(i, change.segment<3>(3 * i));
     const double left = residual();
     ++futile;
     if (left < best_left) {
@@ -65,43 +78,6 @@ bool CoulombCluster::newton() {
   }
   set(best);
   return best_left < start;
-}
-
-/// p_n - r u_n.
-double CoulombCluster::ahead(int i, const Vec3<double>& u) const {
-  return p(i)[0] - u[0] / point(i).W.diagonal().maxCoeff();
-}
-
-/// Rows of contact i in K dp = -F. U: its velocity by the impulses of all.
-void CoulombCluster::linearise(int i, Eigen::Index row, const MatX<double>& U, MatX<double>& K,
-                               VecX<double>& F) const {
-  const Vec3<double> u = velocity(i);
-  const double r = 1 / point(i).W.diagonal().maxCoeff(), mu = point(i).mu, radius = mu * ahead(i, u);
-  if (!(ahead(i, u) > 0)) {
-    K.block<3, 3>(row, row).setIdentity();
-    F.segment<3>(row) = p(i);
-    return;
-  }
-  K.row(row) = r * U.row(0);
-  K(row, row) += kProximal;
-  F[row] = r * u[0];
-  auto tangents = K.middleRows<2>(row + 1);
-  const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
-  if (point(i).rows == 1 || radius == 0) {
-    K.block<2, 2>(row + 1, row + 1).setIdentity();
-    F.segment<2>(row + 1) = p(i).tail<2>();
-  } else if (pull.norm() <= radius) {
-    tangents = r * U.bottomRows<2>();
-    K.block<2, 2>(row + 1, row + 1) += kProximal * Eigen::Matrix2d::Identity();
-    F.segment<2>(row + 1) = r * u.tail<2>();
-  } else {
-    const Eigen::Vector2d e = pull.normalized();
-    const Eigen::Matrix2d turn = radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
-    tangents = r * mu * e * U.row(0) + r * turn * U.bottomRows<2>();
-    tangents.block<2, 1>(0, row) -= mu * e;
-    tangents.block<2, 2>(0, row + 1) += Eigen::Matrix2d::Identity() - turn;
-    F.segment<2>(row + 1) = p(i).tail<2>() - radius * e;
-  }
 }
 
 }  // namespace pliant
