@@ -13,6 +13,8 @@
 #include <pliant/contact/find_on_mesh.h>
 #include <pliant/contact/node_motion.h>
 
+#include "outline.h"
+
 namespace pliant {
 
 namespace {
@@ -247,7 +249,9 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   }
   const Eigen::Matrix3Xd& p = points_of(a);
   const VecX<double> heights = (p.transpose() * n).array() + offset;
+  const std::size_t first = found.size();
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, most, field)) add(low);
+  if (is_still(a)) keep_outline(found, first, model_->parts()[at(a)].part->size());
 }
 
 void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double most,
@@ -319,10 +323,11 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
       // At an edge of b its faces have one normal each: the one that holds for the middle of the contact
       // does.
       Vec3<double> inner;
-      const double inner_gap = field.height(field.into_b(low.p + kInner * (middle - low.p)), inner);
+      const Vec3<double> inwards = field.R() * (kInner * (middle - low.p));
+      const double inner_gap = field.height(field.into_b(low.p) + inwards, inner);
       if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
         gradient = inner;
-        gap = std::max(gap, inner_gap);
+        gap = inner_gap - inner.normalized().dot(inwards);
       }
     }
     add(low, gap, gradient);
@@ -366,6 +371,8 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
     else if (contact.gap < twin->gap)
       *twin = contact;
   }
+  if (is_still(a) && is_still(b))
+    keep_outline(ours, 0, std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
   found.insert(found.end(), ours.begin(), ours.end());
 }
 
