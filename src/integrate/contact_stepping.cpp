@@ -108,6 +108,14 @@ void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Ei
   for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
+/// Great impulses at other times each, as on something light between heavy things, may nearly cancel in
+/// velocity and not at all in place: what they moved goes no farther than its change of velocity in the whole
+/// step, of h seconds, or counts as moved for a time of `since` by all.
+void bound_shift(double since, double h, Mover& mover) {
+  const VecX<double> change = mover.x - mover.before;
+  if (mover.shift.norm() > h * change.norm()) mover.shift = since * change;
+}
+
 void set_step(State& state, double t, double h) {
   state.start = t;
   state.step = 0;
@@ -152,10 +160,10 @@ double ContactStepping::resting_gap(const Contact& contact) const {
 /// Whether surfaces with this gap between them and this velocity against each other rest there.
 bool ContactStepping::rests(const Contact& contact, double gap, double velocity, double slow) const {
   const double near = resting_gap(contact);
-  return gap < -near || (gap <= near && velocity <= slow && -contact.restitution * velocity <= slow);
+  return gap < -near || (gap <= near && std::abs(velocity) <= slow);
 }
 
-/// Contacts at the start of a step that neither open nor rebound.
+/// Contacts at the start of a step that neither open nor strike.
 std::vector<Contact> ContactStepping::resting_at(const State& state, double t, double slow) {
   if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t)
     last_ = finder_.find(state, t, resting_gap_);
@@ -449,7 +457,12 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
   problem.add_joint_impulses(record_.joint_impulses);
-  if (deep) problem.part_bodies(most);
+  std::vector<Mover> movers = problem.movers();
+  for (Mover& mover : movers) bound_shift(since_of_limits, h, mover);
+  if (deep) {
+    problem.part_bodies(most);
+    movers = problem.movers();
+  }
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
   // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
   // that of hands that move joints, on which impulses push back.
@@ -457,7 +470,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   const bool broken = hands || deep || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
-  move(problem.movers(), work, state);
+  move(movers, work, state);
   if (h > 0 || deep) reconcile(parts, state, t, work, counters);
   if (h > 0 && smooth) part_overlaps(most, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
