@@ -30,7 +30,7 @@ constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,
 
 struct System {
   const char* name;
-  double E, thickness, pressure, duration;
+  double E, thickness, pressure, beta, drag, duration;
   const char* method;
 };
 
@@ -41,9 +41,11 @@ Part& balloon(MultiBody& body, const System& system, const std::string& name, in
   LocalSettings settings;
   settings.resolution = resolution;
   settings.alpha = 1;
+  settings.beta = system.beta;
   settings.energies.push_back(local_law("neo_hookean_membrane", {system.E, 0.45, system.thickness}));
   settings.energies.push_back(local_law("pressure", {system.pressure}));
   part.deform_locally(settings);
+  part.damping(0, 0, system.drag);
   return part;
 }
 
@@ -93,8 +95,8 @@ int main(int argc, char** argv) try {
       std::string(calibration) +
           "system,method,triangles,step_s,simulated_s,free_step_ms,step_ms,real_time_factor,"
           "deepest_m,string_error_m,contact_residual_m_s,balance_share\n");
-  const std::vector<System> systems{{"drop", 1e7, 1e-3, 0, 0.5, "semi_implicit_euler"},
-                                    {"nine on strings", 1e5, 5e-4, 30, 1, "semi_implicit_euler"}};
+  const std::vector<System> systems{{"drop", 1e7, 1e-3, 0, 0, 0, 0.5, "semi_implicit_euler"},
+                                    {"nine on strings", 1e5, 5e-4, 30, 3e-4, 0.25, 1, "semi_implicit_euler"}};
   for (const System& system : systems) {
     const bool nine = system.duration == 1;
     for (const int resolution : {3, 5, 10}) {
