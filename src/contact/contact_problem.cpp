@@ -191,6 +191,14 @@ void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
   }
 }
 
+void ContactProblem::bound_shifts(double since, double most) {
+  for (const Mover& mover : movers_.all()) {
+    auto moved = shift_.segment(mover.first, mover.size);
+    const auto change = after(mover) - before(mover);
+    if (moved.norm() > most * change.norm()) moved = since * change;
+  }
+}
+
 void ContactProblem::part_bodies(double most) {
   for (int k = 0; k < system_.size(); ++k) {
     system_.set_friction(k, 0);

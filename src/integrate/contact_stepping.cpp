@@ -151,17 +151,30 @@ double ContactStepping::resting_gap(const Contact& contact) const {
   return kResting * (contact.b.part < 0 ? a : std::min(a, parts[at(contact.b.part)].part->size()));
 }
 
-/// Contacts at the start of a step that neither open nor rebound.
+/// Whether surfaces with this gap between them and this velocity against each other rest there.
+bool ContactStepping::rests(const Contact& contact, double gap, double velocity, double slow) const {
+  const double near = resting_gap(contact);
+  return gap < -near || (gap <= near && std::abs(velocity) <= slow);
+}
+
+/// Contacts at the start of a step that neither open nor strike.
 std::vector<Contact> ContactStepping::resting_at(const State& state, double t, double slow) {
   std::vector<Contact> resting = near(state, t);
   resting.erase(std::remove_if(resting.begin(), resting.end(),
                                [&](const Contact& c) {
-                                 const double u = finder_.velocity(state, c).dot(c.normal);
-                                 return c.gap > resting_gap(c) ||
-                                        (c.gap >= -resting_gap(c) && (u > slow || -c.restitution * u > slow));
+                                 return !rests(c, c.gap, finder_.velocity(state, c).dot(c.normal), slow);
                                }),
                 resting.end());
   return resting;
+}
+
+/// Whether a contact at the end of a step rested at its start, by how its sides have moved in between: faces
+/// that lie on each other may touch at other points of theirs.
+bool ContactStepping::rested(const Contact& contact, const State& before, const State& state, double reach,
+                             double slow) const {
+  const double u_start = finder_.velocity(before, contact).dot(contact.normal),
+               u = finder_.velocity(state, contact).dot(contact.normal);
+  return rests(contact, contact.gap - state.h * ((1 - reach) * u_start + reach * u), u_start, slow);
 }
 
 void ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
@@ -205,9 +218,11 @@ void ContactStepping::step(Integrator& method, State& state, Workspace<double>& 
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
       const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
-      if (rest.has(contact, [&](const Contact& other) {
-            return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
-          }))
+      if (rest.has(contact,
+                   [&](const Contact& other) {
+                     return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
+                   }) ||
+          (rest.has(contact) && rested(contact, before, state, reach, slow)))
         contact.since = reach * length;
       if (impacts.size() <= kMostPairs && few_parts_ && !rest.has(contact) && !Pairs(impacts).has(contact))
         impacts.push_back(contact);
@@ -439,6 +454,7 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
   problem.add_joint_impulses(record_.joint_impulses);
+  problem.bound_shifts(since_of_limits, h);
   if (deep) problem.part_bodies(most);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
   // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is

@@ -32,6 +32,10 @@ class ContactProblem {
   /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
   /// another state.
   std::vector<Vec3<double>> velocities(const State& of) const;
+  /// Great impulses at other times each, as on something light between heavy things, may nearly cancel in
+  /// velocity and not at all in place: no mover goes farther by them than by its change of velocity in `most`
+  /// seconds, or it counts as moved for a time of `since` by all.
+  void bound_shifts(double since, double most);
   /// Adds to the shifts, without friction: what takes the gaps that these leave to zero where they are
   /// negative, by at most `most` m.
   void part_bodies(double most);

@@ -44,6 +44,9 @@ class ContactStepping {
 
  private:
   double resting_gap(const Contact& contact) const;
+  bool rests(const Contact& contact, double gap, double velocity, double slow) const;
+  bool rested(const Contact& contact, const State& before, const State& state, double reach,
+              double slow) const;
   std::vector<Contact> resting_at(const State& state, double t, double slow);
   std::optional<double> locate(Integrator& method, const State& before, double t, double h,
                                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
