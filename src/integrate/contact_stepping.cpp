@@ -39,8 +39,9 @@ constexpr double kPartingSpeed = 1;
 constexpr int kMostPartings = 8;
 /// Most times in a step that bodies which impulses throw meet others.
 constexpr int kMostLinks = 4;
-/// Overlaps below this share of what counts as resting are left.
-constexpr double kRounding = 1e-8;
+/// Overlaps below this share of what counts as resting are left; and below this when they have been parted
+/// once in a step, as they will be in the next.
+constexpr double kRounding = 1e-8, kParted = 0.1;
 /// Meshes may overlap by this, in sizes, without being parted.
 constexpr double kMeshOverlap = 2e-4;
 
@@ -528,7 +529,7 @@ void ContactStepping::part_overlaps(double most, State& state, double t, Workspa
     for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
     if (i == 0) start = deepest;
     const double left = most - std::max(0.0, start - deepest);
-    if (!(deepest > kRounding * resting_gap_) || !(left > 0)) return;
+    if (!(deepest > (i == 0 ? kRounding : kParted) * resting_gap_) || !(left > 0)) return;
     // Parted by so much, they may meet what is as near.
     if (deepest > resting_gap_) deep = finder_.find(state, t, std::min(deepest, left));
     const std::vector<int> parts = parts_touched(deep);
