@@ -21,10 +21,12 @@ constexpr double kSag = 0.02;
 constexpr double kSpacing = 0.1;
 /// Points this near in height, in sizes of the part, lie as low as each other.
 constexpr double kLevel = 1e-6;
-/// Points nearer than this, in sizes, are one.
-constexpr double kSame = 0.02;
-/// Size of the stencil, in spacings, that tells whether a point is lowest already.
-constexpr double kCorner = 1e-3, kRounding = 1e-15;
+/// Points nearer than this, in sizes, are one; and how deep the chord between two may lie below a face, in
+/// sizes.
+constexpr double kSame = 0.02, kFlat = 1e-6;
+/// Size of the stencil, in spacings, that tells whether a point is lowest already; and heights, in sizes,
+/// that differ by rounding alone: on a flat face nothing is sought among them.
+constexpr double kCorner = 1e-3, kRounding = 1e-14;
 /// The search ends when its stencil is this small, in spacings.
 constexpr double kSmallest = 1e-8;
 constexpr int kMostIterations = 60;
@@ -104,7 +106,8 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
 }
 
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
-                                                     const Field& field) const {
+                                                     const Field& field,
+                                                     const std::vector<LowPoint>& ends) const {
   // A stencil of three by three places about the best so far; a quadratic through its heights tells the next.
   const bool ball = part_->shape().mesh() == MeshPattern::ball;
   const Vec3<double> start = laid().surface.places()[static_cast<std::size_t>(i)];
@@ -173,12 +176,16 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       }
     }
     next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
+    if (std::any_of(ends.begin(), ends.end(), [&](const LowPoint& end) {
+          return end.height <= best.height && (end.p - best.p).norm() < 0.5 * kSame * part_->size();
+        }))
+      return best;
     const bool stays = (next - at).norm() <= 0.5 * radius;
     at = next;
     if (good)
       radius *= 0.1;
-    else if (stays)
-      radius *= 0.4;
+    else
+      radius = stays ? 0.25 * radius : std::min(2 * radius, 0.5 * spacing_);
   }
   return best;
 }
@@ -208,11 +215,27 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
   for (const double band : {kLevel * size, kSag * size})
     for (const Eigen::Index i : outermost(p, within(band), kSame * size))
       if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
+  // On a face the way down would lead to one side of it: what it rests on is its corners, as far as they lie
+  // low enough.
+  auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
+    return (a - b).norm() >= kSame * size &&
+           thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlat * size;
+  };
+  std::vector<LowPoint> ends;
+  LowPoint deepest;
+  deepest.height = most + size;
   for (const Eigen::Index i : seeds) {
-    LowPoint point = descend(values, i, field);
+    LowPoint point = descend(values, i, field, ends);
+    ends.push_back(point);
     point.height = field.height(point.p);
+    if (point.height < deepest.height) deepest = point;
+    if (!(heights[i] > most) && on_one_face(p.col(i), point.p))
+      point = {
+          part_->shape().mesh_label(laid().surface.places()[static_cast<std::size_t>(i)], values.b.data()),
+          p.col(i), heights[i]};
     add(point);
   }
+  if (!found.empty()) add(deepest);
   found.erase(std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > most; }),
               found.end());
   return found;

@@ -40,12 +40,14 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     material_ = surface.material();
     triangles_ = surface.triangles();
     p = m.part->s(material_, m.part->parameters().rest());
+    if (m.n_s == 0 || m.q0 < 0) rigid_ = p;
   }
   edges_ = mesh_edges(triangles_);
   thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
 }
 
 Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, int number) const {
+  if (rigid_.cols() > 0) return rigid_;
   if (part_->local == nullptr) return part_->part->s(material_, model.values(state, number));
   const Nodes all = model.node_positions(state, number);
   Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(nodes_.size()));

@@ -13,6 +13,8 @@
 #include <pliant/contact/find_on_mesh.h>
 #include <pliant/contact/node_motion.h>
 
+#include "outline.h"
+
 namespace pliant {
 
 namespace {
@@ -21,9 +23,13 @@ namespace {
 constexpr double kSame = 0.03;
 /// Share of the thinner of two parts that they may move against each other in a step.
 constexpr double kThinShare = 0.4;
+/// Most that a part may turn in a step over a plane, rad.
+constexpr double kMostTurn = 0.5;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
+/// Points this near to a surface, in sizes of the part, are in it.
+constexpr double kFlush = 1e-4;
 /// How far the surface may be outside the box of its points, in sizes of the part.
 constexpr double kBulge = 0.05;
 /// Gaps over an obstacle are told up to this, in sizes of the part.
@@ -70,6 +76,8 @@ struct ContactFinder::Scratch {
   std::vector<Contact> ours, theirs;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;
+  std::vector<int> nodes;
+  Eigen::Matrix3Xd x_dot;
 };
 
 /// w - 1 of a part b, over points of the frame of a; to first order the distance to b is that over the length
@@ -247,7 +255,9 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   }
   const Eigen::Matrix3Xd& p = points_of(a);
   const VecX<double> heights = (p.transpose() * n).array() + offset;
+  const std::size_t first = found.size();
   for (const CollisionSurface::LowPoint& low : surface.low_points(values, p, heights, most, field)) add(low);
+  if (is_still(a)) keep_outline(found, first, model_->parts()[at(a)].part->size());
 }
 
 void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double most,
@@ -319,10 +329,14 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
       // At an edge of b its faces have one normal each: the one that holds for the middle of the contact
       // does.
       Vec3<double> inner;
-      const double inner_gap = field.height(field.into_b(low.p + kInner * (middle - low.p)), inner);
+      const Vec3<double> inwards = field.R() * (kInner * (middle - low.p));
+      const double inner_gap = field.height(field.into_b(low.p) + inwards, inner);
       if (inner.normalized().dot(gradient.normalized()) < kEdgeCosine) {
+        // A point in a side of b, as where faces of a size lie on each other, is as deep as its face is
+        // there.
+        const bool flush = std::abs(gap) < kFlush * part_b.size();
+        gap = flush ? inner_gap - inner.normalized().dot(inwards) : std::max(gap, inner_gap);
         gradient = inner;
-        gap = std::max(gap, inner_gap);
       }
     }
     add(low, gap, gradient);
@@ -366,6 +380,8 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
     else if (contact.gap < twin->gap)
       *twin = contact;
   }
+  if (is_still(a) && is_still(b))
+    keep_outline(ours, 0, std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
   found.insert(found.end(), ours.begin(), ours.end());
 }
 
@@ -398,11 +414,11 @@ Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact)
     if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
     const PartModel& m = model_->parts()[at(side.part)];
     if (side.at_nodes()) {
-      Vec3<double> u = Vec3<double>::Zero();
+      scratch_->nodes.clear();
       for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
-        u += side.weight[static_cast<Eigen::Index>(k)] *
-             node_motion(*model_, state, side.part, side.node[k]).x_dot;
-      return u;
+        scratch_->nodes.push_back(side.node[k]);
+      node_velocities(*model_, state, side.part, scratch_->nodes, scratch_->x_dot);
+      return scratch_->x_dot * side.weight.head(scratch_->x_dot.cols());
     }
     const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
     const auto v = state.v.segment(m.v0, m.n_v());
@@ -455,10 +471,16 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
     if (!(planes[k].acts_at(t) || planes[k].acts_at(t + h))) continue;
     for (const double when : {t, t + h}) {
       const Vec3<double> point = planes[k].point.value(when);
-      for (const int i : smooth_)
-        if (on_planes_[at(i) * planes.size() + k].touch &&
-            planes[k].normal.dot(s.balls[at(i)].c - point) < s.balls[at(i)].reach)
-          near.empty = false;
+      for (const int i : smooth_) {
+        const Scratch::Ball& ball = s.balls[at(i)];
+        if (!on_planes_[at(i) * planes.size() + k].touch ||
+            !(planes[k].normal.dot(ball.c - point) < ball.reach))
+          continue;
+        near.empty = false;
+        // None is thin, but what spins may come round with its other end.
+        if (const double turn = h * ball.speed / s.parts[at(i)].reach; turn > kMostTurn)
+          near.h = std::min(near.h, h * kMostTurn / turn);
+      }
     }
   }
   const auto& obstacles = model_->body().contact.obstacles;

@@ -36,9 +36,12 @@ constexpr int kMostTrials = 60;
 constexpr double kSamePoint = 0.2;
 /// Bodies that overlap are parted at most at this speed, in sizes of side a a second.
 constexpr double kPartingSpeed = 1;
-constexpr int kMostPartings = 4;
-/// Overlaps below this share of what counts as resting are left.
-constexpr double kRounding = 1e-8;
+constexpr int kMostPartings = 8;
+/// Most times in a step that bodies which impulses throw meet others.
+constexpr int kMostLinks = 4;
+/// Overlaps below this share of what counts as resting are left; and below this when they have been parted
+/// once in a step, as they will be in the next.
+constexpr double kRounding = 1e-8, kParted = 0.1;
 /// Meshes may overlap by this, in sizes, without being parted.
 constexpr double kMeshOverlap = 2e-4;
 
@@ -154,19 +157,30 @@ double ContactStepping::resting_gap(const Contact& contact) const {
   return kResting * (contact.b.part < 0 ? a : std::min(a, parts[at(contact.b.part)].part->size()));
 }
 
-/// Contacts at the start of a step that neither open nor rebound.
+/// Whether surfaces with this gap between them and this velocity against each other rest there.
+bool ContactStepping::rests(const Contact& contact, double gap, double velocity, double slow) const {
+  const double near = resting_gap(contact);
+  return gap < -near || (gap <= near && std::abs(velocity) <= slow);
+}
+
+/// Contacts at the start of a step that neither open nor strike.
 std::vector<Contact> ContactStepping::resting_at(const State& state, double t, double slow) {
-  if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t)
-    last_ = finder_.find(state, t, resting_gap_);
-  std::vector<Contact> resting = last_;
+  std::vector<Contact> resting = near(state, t);
   resting.erase(std::remove_if(resting.begin(), resting.end(),
                                [&](const Contact& c) {
-                                 const double u = finder_.velocity(state, c).dot(c.normal);
-                                 return c.gap > resting_gap(c) ||
-                                        (c.gap >= -resting_gap(c) && (u > slow || -c.restitution * u > slow));
+                                 return !rests(c, c.gap, finder_.velocity(state, c).dot(c.normal), slow);
                                }),
                 resting.end());
   return resting;
+}
+
+/// Whether a contact at the end of a step rested at its start, by how its sides have moved in between: faces
+/// that lie on each other may touch at other points of theirs.
+bool ContactStepping::rested(const Contact& contact, const State& before, const State& state, double reach,
+                             double slow) const {
+  const double u_start = finder_.velocity(before, contact).dot(contact.normal),
+               u = finder_.velocity(state, contact).dot(contact.normal);
+  return rests(contact, contact.gap - state.h * ((1 - reach) * u_start + reach * u), u_start, slow);
 }
 
 double ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
@@ -211,9 +225,11 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
       const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
-      if (rest.has(contact, [&](const Contact& other) {
-            return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
-          }))
+      if (rest.has(contact,
+                   [&](const Contact& other) {
+                     return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
+                   }) ||
+          (rest.has(contact) && rested(contact, before, state, reach, slow)))
         contact.since = reach * length;
       if (impacts.size() <= kMostPairs && few_parts_ && !rest.has(contact) && !Pairs(impacts).has(contact))
         impacts.push_back(contact);
@@ -253,7 +269,8 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     }
     meshes_.find(state, after, contacts);
     time_impacts(before, state, reach, length, slow, contacts);
-    settle(before, reach * length, length, state, after, std::move(contacts), work, counters);
+    settle(before, reach * length, length, state, after, contacts, work, counters);
+    settle_chain(std::move(contacts), length, slow, state, after, work, counters);
     now = after;
   }
   state.start = start;
@@ -385,16 +402,16 @@ void ContactStepping::evaluate(const State& state, double t, const std::vector<C
 }
 
 /// The velocities that impulses gave, and the ways they went since.
-void ContactStepping::move(const std::vector<Mover>& movers, const Workspace<double>& work,
-                           State& state) const {
-  for_each_part(movers, [&](const Mover& mover, int part, int first) {
+void ContactStepping::move(const ContactProblem& problem, const Workspace<double>& work, State& state) const {
+  for_each_part(problem.movers(), [&](const Mover& mover, int part, int first) {
     const PartModel& m = dynamics_.model().parts()[at(part)];
     if (mover.node < 0) {
-      give_velocity(m, work.parts[at(part)], mover.x.segment(first, m.n_x()), state.v);
-      return advance_with(m, work.parts[at(part)], mover.shift.segment(first, m.n_x()), 1, state.q);
+      give_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);
     }
     const Eigen::Quaterniond to_body = dynamics_.model().orientation(state, part).conjugate();
-    const Vec3<double> shift = to_body * mover.shift, change = to_body * (mover.x - mover.before),
+    const Vec3<double> shift = to_body * problem.shift(mover).head<3>(),
+                       change = to_body * (problem.after(mover) - problem.before(mover)).head<3>(),
                        omega = state.v.segment<3>(m.v0 + 3);
     move_node(dynamics_.model(), mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
     // Its velocity is omega x p + d_dot, and p has moved.
@@ -418,10 +435,13 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   const std::vector<int> parts = parts_touched(contacts);
   const double booked = state.work.sum();
   evaluate(state, t, contacts, work);
-  double most = 0;  // that they are parted by
-  for (const Contact& contact : contacts)
+  double most = 0, thrown = 0;  // that they are parted by; that impulses move their sides
+  std::vector<double> opening;
+  for (const Contact& contact : contacts) {
+    opening.push_back(finder_.velocity(state, contact).dot(contact.normal));
     most = std::max(most, kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size() +
-                              h * std::max(0.0, -finder_.velocity(state, contact).dot(contact.normal)));
+                              h * std::max(0.0, -opening.back()));
+  }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
   const ContactSolution solution = problem.solve(since_of_limits);
@@ -435,25 +455,28 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
     const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
     state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
+    const double moved = c.since * (solution.velocity[k].dot(c.normal) - opening[k]);
+    thrown = std::max(thrown, moved);
     if (!of_meshes(c)) {
       smooth = true;
       continue;
     }
-    const double moved = c.since * (solution.velocity[k] - finder_.velocity(state, c)).dot(c.normal);
     deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
   }
   problem.add_joint_impulses(record_.joint_impulses);
+  problem.bound_shifts(since_of_limits, h);
   if (deep) problem.part_bodies(most);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
   // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
-  // that of hands that move joints, on which impulses push back.
-  const bool hands = driven(parts);
-  const bool broken = hands || deep || state.at_limit != before.at_limit || state.joints != before.joints;
+  // that of hands that move joints, on which impulses push back, and of impulses at one moment.
+  const bool hands = driven(parts), moment = &before == &state;
+  const bool broken =
+      hands || deep || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
-  move(problem.movers(), work, state);
+  move(problem, work, state);
   if (h > 0 || deep) reconcile(parts, state, t, work, counters);
-  if (h > 0 && smooth) part_overlaps(most, state, t, work, counters);
+  if (h > 0 && smooth) part_overlaps(most + thrown, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
@@ -466,28 +489,65 @@ void ContactStepping::settle(const State& before, double since_of_limits, double
   }
 }
 
-/// Moves smooth bodies that overlap apart, by at most so many m.
-void ContactStepping::part_overlaps(double most, State& state, double t, Workspace<double>& work,
-                                    StepCounters& counters) {
-  double left = most;
-  for (int i = 0; i < kMostPartings; ++i) {
+/// What lies near each other, within what counts as resting.
+const std::vector<Contact>& ContactStepping::near(const State& state, double t) {
+  if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t) {
     last_ = finder_.find(state, t, resting_gap_);
     last_q_ = state.q;
     last_t_ = t;
-    std::vector<Contact> deep = last_;
-    deep.erase(std::remove_if(deep.begin(), deep.end(), [](const Contact& c) { return c.gap > 0; }),
-               deep.end());
+  }
+  return last_;
+}
+
+/// Impulses of a step of h seconds at some contacts throw bodies against others that were out of their way:
+/// these impacts are of the same step, and so are those that follow from them.
+void ContactStepping::settle_chain(std::vector<Contact> settled, double h, double slow, State& state,
+                                   double t, Workspace<double>& work, StepCounters& counters) {
+  for (int link = 0; link < kMostLinks && !settled.empty(); ++link) {
+    const Pairs known(settled);
+    std::vector<Contact> contacts = near(state, t);
+    double earliest = 0;  // how long ago, s
+    for (Contact& contact : contacts) {
+      const double u = finder_.velocity(state, contact).dot(contact.normal);
+      if (!(contact.gap < -resting_gap(contact) && u < -slow) ||
+          known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
+        continue;
+      contact.since = std::min(h, contact.gap / u);
+      if (-contact.restitution * u > slow) contact.rebound = -contact.restitution * u;
+      earliest = std::max(earliest, contact.since);
+    }
+    if (earliest == 0) return;
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                  [&](const Contact& c) { return c.gap > resting_gap(c); }),
+                   contacts.end());
+    meshes_.find(state, t, contacts);
+    for (Contact& contact : contacts)
+      if (contact.since == 0) contact.since = earliest;
+    settle(state, 0, h, state, t, contacts, work, counters);
+    settled.insert(settled.end(), contacts.begin(), contacts.end());
+  }
+}
+
+/// Moves smooth bodies that overlap apart, by at most so many m.
+void ContactStepping::part_overlaps(double most, State& state, double t, Workspace<double>& work,
+                                    StepCounters& counters) {
+  double start = 0;  // the deepest at first, m
+  for (int i = 0; i < kMostPartings; ++i) {
+    std::vector<Contact> deep = near(state, t);
     double deepest = 0;
     for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
-    if (!(deepest > kRounding * resting_gap_) || left <= 0) return;
+    if (i == 0) start = deepest;
+    const double left = most - std::max(0.0, start - deepest);
+    if (!(deepest > (i == 0 ? kRounding : kParted) * resting_gap_) || !(left > 0)) return;
+    // Parted by so much, they may meet what is as near.
+    if (deepest > resting_gap_) deep = finder_.find(state, t, std::min(deepest, left));
     const std::vector<int> parts = parts_touched(deep);
     Workspace<double> scratch;
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
     evaluate(state, t, deep, work);
     ContactProblem parting(dynamics_.model(), state, work, deep);
     parting.part_bodies(left);
-    left -= std::min(left, deepest);
-    move(parting.movers(), work, state);
+    move(parting, work, state);
     reconcile(parts, state, t, work, counters);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);

@@ -9,6 +9,10 @@ namespace pliant {
 
 namespace {
 constexpr int kMostIterations = 200;
+/// Rates of sliding grow by no more than this at a time while nothing bounds them.
+constexpr double kGrowth = 16;
+/// Rates of sliding that differ by less than this part are one.
+constexpr double kRounding = 2 * std::numeric_limits<double>::epsilon();
 /// W that differs from a multiple of 1 by less than this part is one.
 constexpr double kEven = 1e-11;
 }  // namespace
@@ -42,49 +46,33 @@ Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
 
 Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
   // It slides at u_t = -s p_t, s > 0, with u_n = 0: (A + s) p_t = -c, A the Schur complement of the normal.
-  const Eigen::Vector2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_alone);
-  const auto push = [&](double s) {
-    const Eigen::Vector2d t = modes_ * (-along.array() / (stiffness_.array() + s)).matrix();
-    return Vec3<double>(p_alone - coupling_.dot(t) / W_n_, t[0], t[1]);
-  };
-  const auto beyond = [&](double s) {
-    const Vec3<double> p = push(s);
-    return p.tail<2>().norm() - mu_ * p[0];
-  };
-  // |p_t| falls with s to 0, and p_n goes to p_alone > 0: there is a root.
-  double low = 0, high = stiffness_[1];
-  while (beyond(high) > 0) {
-    low = high;
-    high *= 4;
-    if (!std::isfinite(high)) return {p_alone, 0, 0};
+  const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_alone);
+  const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
+  Eigen::Array2d t;  // p_t along the modes
+  double p_n = 0;
+  // The root of mu p_n / |p_t| - 1, which rises nearly straight with s: |p_t| falls to 0 and p_n goes to
+  // p_alone > 0. By Newton's method, within bounds.
+  double low = 0, high = std::numeric_limits<double>::infinity(), s = 0;
+  for (int i = 0; i < kMostIterations; ++i) {
+    const Eigen::Array2d share = 1 / (stiffness_ + s);
+    t = -along * share;
+    p_n = p_alone - (coupling * t).sum();
+    const double size = std::sqrt(t.square().sum()), f = mu_ * p_n / size - 1;
+    if (f == 0) break;
+    (f < 0 ? low : high) = s;
+    const Eigen::Array2d t_s = -t * share;  // its change with s
+    const double slope = -mu_ * ((coupling * t_s).sum() + p_n * (t * t_s).sum() / (size * size)) / size;
+    const bool bounded = std::isfinite(high);
+    double next = s - f / slope;
+    if (!bounded) next = std::min(next, kGrowth * std::max(s, stiffness_[1]));
+    if (!(next > low && next < high))
+      next = bounded ? 0.5 * (low + high) : kGrowth * std::max(s, stiffness_[1]);
+    if (!std::isfinite(next)) return {p_alone, 0, 0};
+    if (std::abs(next - s) <= kRounding * next || (bounded && high - low <= kRounding * high)) break;
+    s = next;
   }
-  // The Illinois form of the false position, on 1 / |p_t| against 1 / (mu p_n), which is nearly straight.
-  const auto level = [&](double s) {
-    const Vec3<double> p = push(s);
-    return p[0] > 0 ? mu_ * p[0] / p.tail<2>().norm() - 1 : -1.0;
-  };
-  double f_low = level(low), f_high = level(high);
-  int side = 0;
-  for (int i = 0; i < kMostIterations && high - low > 2 * std::numeric_limits<double>::epsilon() * high;
-       ++i) {
-    double s = f_high > f_low ? low - f_low * (high - low) / (f_high - f_low) : 0.5 * (low + high);
-    if (!(s > low && s < high)) s = 0.5 * (low + high);
-    if (!(s > low && s < high)) break;
-    const double f = level(s);
-    if (f == 0) return push(s);
-    if (f < 0) {
-      low = s;
-      f_low = f;
-      if (side < 0) f_high *= 0.5;
-      side = -1;
-    } else {
-      high = s;
-      f_high = f;
-      if (side > 0) f_low *= 0.5;
-      side = 1;
-    }
-  }
-  return push(high);
+  const Eigen::Vector2d p_t = modes_ * t.matrix();
+  return {p_n, p_t[0], p_t[1]};
 }
 
 }  // namespace pliant

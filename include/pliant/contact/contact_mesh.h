@@ -36,6 +36,7 @@ class ContactMesh {
   std::vector<Edge> edges_;
   std::vector<int> nodes_;
   std::vector<Material<double>> material_;
+  Eigen::Matrix3Xd rigid_;  // vertices of a part that does not change
   double thickness_;
 };
 

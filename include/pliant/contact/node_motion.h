@@ -1,14 +1,14 @@
 // Places and velocities of nodes of parts that deform at the nodes of a mesh.
 #pragma once
 
+#include <vector>
+
 #include <pliant/body/model.h>
 
 namespace pliant {
 
-struct NodeMotion {
-  Vec3<double> x, x_dot;  ///< m and m/s, world
-};
-
-NodeMotion node_motion(const Model& model, const State& state, int part, int node);
+/// Velocities of some nodes of a part that deforms at them, columns, m/s, world.
+void node_velocities(const Model& model, const State& state, int part, const std::vector<int>& nodes,
+                     Eigen::Matrix3Xd& x_dot);
 
 }  // namespace pliant

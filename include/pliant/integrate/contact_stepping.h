@@ -48,6 +48,9 @@ class ContactStepping {
 
  private:
   double resting_gap(const Contact& contact) const;
+  bool rests(const Contact& contact, double gap, double velocity, double slow) const;
+  bool rested(const Contact& contact, const State& before, const State& state, double reach,
+              double slow) const;
   std::vector<Contact> resting_at(const State& state, double t, double slow);
   std::optional<double> locate(Integrator& method, const State& before, double t, double h,
                                const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
@@ -58,12 +61,15 @@ class ContactStepping {
               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
+  const std::vector<Contact>& near(const State& state, double t);
+  void settle_chain(std::vector<Contact> settled, double h, double slow, State& state, double t,
+                    Workspace<double>& work, StepCounters& counters);
   void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
   bool driven(const std::vector<int>& parts) const;
   std::vector<int> parts_touched(const std::vector<Contact>& contacts) const;
   void evaluate(const State& state, double t, const std::vector<Contact>& contacts,
                 Workspace<double>& work) const;
-  void move(const std::vector<Mover>& movers, const Workspace<double>& work, State& state) const;
+  void move(const ContactProblem& problem, const Workspace<double>& work, State& state) const;
 
   const Dynamics& dynamics_;
   ContactFinder finder_;

@@ -24,7 +24,7 @@ class CoulombLaw {
   bool even_ = false;  ///< whether W is a multiple of 1, as where points push on points
   Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
   // Of the Schur complement A of the normal.
-  Eigen::Vector2d stiffness_ = Eigen::Vector2d::Ones();
+  Eigen::Array2d stiffness_ = Eigen::Array2d::Ones();
   Eigen::Matrix2d modes_ = Eigen::Matrix2d::Identity();
   Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< of W
 };

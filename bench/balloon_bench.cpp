@@ -1,0 +1,140 @@
+// What soft contact costs: a balloon dropped on a plane, and nine balloons on strings that swing into each
+// other, by the triangles of each.
+//
+//   balloon_bench [FOLDER] [MOST]   writes balloon_bench.csv to FOLDER, a table to standard output; no more
+//   than MOST triangles a balloon (5120)
+//
+// The balloon: R = 0.1 m, rubber of E = 1e7 Pa, 1 mm thick, dropped by half its radius, for half a second;
+// the nine are of 0.5 mm and swing for a second. Real-time factor: simulated over processor time, one thread.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <pliant/body/joints/string.h>
+#include <pliant/part/local_laws.h>
+#include <pliant/pliant.h>
+
+#include "table_file.h"
+#include "timing.h"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,
+                 kLongest = 1e-3;  // of the largest stable step; s
+
+struct System {
+  const char* name;
+  double E, thickness, pressure, beta, drag, duration;
+  const char* method;
+};
+
+Part& balloon(MultiBody& body, const System& system, const std::string& name, int resolution,
+              const Vec3<double>& at) {
+  auto& part = body.add<Primitive<Ellipsoid>>(name, kDensity * system.thickness);
+  part.make_shell().rest({{"a1", kRadius}, {"a2", kRadius}, {"a3", kRadius}}).place(at);
+  LocalSettings settings;
+  settings.resolution = resolution;
+  settings.alpha = 1;
+  settings.beta = system.beta;
+  settings.energies.push_back(local_law("neo_hookean_membrane", {system.E, 0.45, system.thickness}));
+  settings.energies.push_back(local_law("pressure", {system.pressure}));
+  part.deform_locally(settings);
+  part.damping(0, 0, system.drag);
+  return part;
+}
+
+void drop(MultiBody& body, const System& system, int resolution) {
+  balloon(body, system, "balloon", resolution, {0, 0, 1.5 * kRadius});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+/// Three by three, those outside pulled away from the middle one.
+void hang(MultiBody& body, const System& system, int resolution) {
+  constexpr double length = 1;
+  body.contact.active = true;
+  for (int i = 0; i < 9; ++i) {
+    const double x = 0.22 * (i % 3 - 1), y = 0.22 * (i / 3 - 1);
+    const double angle = std::hypot(x, y) > 0 ? 0.5 : 0;
+    const Vec3<double> out = angle > 0 ? Vec3<double>(x, y, 0).normalized() : Vec3<double>(1, 0, 0);
+    const Vec3<double> hook(x, y, 0), down = std::sin(angle) * out - Vec3<double>(0, 0, std::cos(angle));
+    const std::string name = "balloon" + std::to_string(i + 1);
+    Part& part = balloon(body, system, name, resolution, hook + (length + kRadius) * down);
+    part.place(hook + (length + kRadius) * down,
+               Eigen::Quaterniond::FromTwoVectors(Vec3<double>(0, 0, -1), down));
+    body.join("string" + std::to_string(i + 1), String{length},
+              {world(hook[0], hook[1], hook[2]), point(part, kPi / 2, 0)});
+  }
+}
+
+/// How deep anything is in anything, m.
+double deepest(const Simulation& simulation, const MeshFinder& finder) {
+  std::vector<Contact> found;
+  finder.find(simulation.state(), simulation.time(), found);
+  double deep = 0;
+  for (const Contact& contact : found) deep = std::max(deep, -contact.gap);
+  return deep;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
+  const int most = argc > 2 ? std::atoi(argv[2]) : 5120;
+  char calibration[128];
+  std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
+                bench::multiply_add_peak(), bench::triad_bandwidth());
+  std::printf("%s%-22s %9s %9s %6s | %8s %8s %8s | %9s %9s %9s\n", calibration, "system", "triangles", "step",
+              "steps", "free", "contact", "factor", "deepest", "string", "residual");
+  bench::TableFile file(
+      folder.empty() ? "" : folder + "balloon_bench.csv",
+      std::string(calibration) +
+          "system,method,triangles,step_s,simulated_s,free_step_ms,step_ms,real_time_factor,"
+          "deepest_m,string_error_m,contact_residual_m_s,balance_share\n");
+  const std::vector<System> systems{{"drop", 1e7, 1e-3, 0, 0, 0, 0.5, "semi_implicit_euler"},
+                                    {"nine on strings", 1e5, 5e-4, 30, 3e-4, 0.25, 1, "semi_implicit_euler"}};
+  for (const System& system : systems) {
+    const bool nine = system.duration == 1;
+    for (const int resolution : {3, 5, 10}) {
+      MultiBody body, apart;
+      for (MultiBody* each : {&body, &apart}) (nine ? hang : drop)(*each, system, resolution);
+      apart.contact.active = false;
+      Simulation simulation(body, system.method), loose(apart, system.method);
+      const int triangles =
+          static_cast<int>(surface_nodes(simulation.model().parts()[0].local->mesh()).triangles.cols());
+      if (triangles > most || (nine && resolution > 3)) continue;
+      const MeshFinder finder(simulation.model(), simulation.contact()->finder().obstacles());
+      const double h = std::min(kLongest, kShare * largest_stable_step(simulation));
+      const auto steps = static_cast<int>(std::ceil(system.duration / h));
+      double seconds = 0, deep = 0, stretched = 0;
+      for (int i = 0; i < steps; ++i) {
+        const auto start = bench::ProcessorClock::now();
+        simulation.step(h);
+        seconds += std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
+        if (i % 10 != 0) continue;
+        deep = std::max(deep, deepest(simulation, finder));
+        for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
+          stretched = std::max(stretched, simulation.model().gap(simulation.state(), j));
+      }
+      const double free = bench::seconds_per_call<bench::ProcessorClock>([&] { loose.step(h); }, 0.02, 3);
+      const double factor = simulation.time() / seconds, step = seconds / steps;
+      const Ledger ledger = simulation.ledger();
+      std::printf("%-22s %9d %9.2e %6d | %8.4f %8.4f %8.3f | %9.1e %9.1e %9.1e\n", system.name, triangles, h,
+                  steps, 1e3 * free, 1e3 * step, factor, deep, stretched,
+                  simulation.step_counters().contact_residual);
+      std::fflush(stdout);
+      file.row("%s,%s,%d,%.4g,%.4g,%.5f,%.5f,%.4f,%.3e,%.3e,%.3e,%.3e\n", system.name, system.method,
+               triangles, h, simulation.time(), 1e3 * free, 1e3 * step, factor, deep, stretched,
+               simulation.step_counters().contact_residual,
+               std::abs(ledger.balance) / std::abs(ledger.work.sum()));
+    }
+  }
+  return 0;
+} catch (const std::exception& fault) {
+  std::fprintf(stderr, "%s\n", fault.what());
+  return 1;
+}

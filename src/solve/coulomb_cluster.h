@@ -1,0 +1,52 @@
+// The search for the impulses of one cluster of contacts: sweeps, one contact at a time, that are
+// extrapolated, and Newton's method on all of them at once.
+#pragma once
+
+#include <pliant/solve/coulomb_system.h>
+
+namespace pliant {
+
+/// What a search works with, kept from cluster to cluster.
+struct CoulombScratch {
+  VecX<double> now, next, best, last, r, last_r, weight;
+  MatX<double> dr, dp;
+};
+
+class CoulombCluster {
+ public:
+  /// Of so many contacts. system: its velocities are those by its impulses.
+  CoulombCluster(CoulombSystem& system, const int* contacts, int size, CoulombScratch& scratch);
+  /// Leaves the impulses in the system.
+  void solve(CoulombResult& result);
+
+ private:
+  using Point = CoulombSystem::Point;
+  Point& point(int i) { return system_.contacts_[CoulombSystem::at(contacts_[i])]; }
+  const Point& point(int i) const { return system_.contacts_[CoulombSystem::at(contacts_[i])]; }
+  Vec3<double>& p(int i) { return system_.p_[CoulombSystem::at(contacts_[i])]; }
+  const Vec3<double>& p(int i) const { return system_.p_[CoulombSystem::at(contacts_[i])]; }
+  bool is_fixed(int i) const { return point(i).first_push == point(i).last_push; }
+  void set_scale();
+  void yield(double softness);
+  Vec3<double> velocity(int i) const;
+  Vec3<double> met(int i, const Vec3<double>& u) const;
+  void push(int i, const Vec3<double>& dp);
+  double sweep(bool forward);
+  double residual() const;
+  void take(VecX<double>& impulses) const;
+  void set(const VecX<double>& impulses);
+  bool relax(int most, int history, int& sweeps);
+  bool newton();
+  bool search(int& sweeps);
+
+  CoulombSystem& system_;
+  const int* contacts_;
+  int size_;
+  CoulombScratch& scratch_;
+  bool points_ = false;  // whether points are among the movers
+  double exact_ = 0;     // velocities below this are rounding
+  double allowed_ = 0;   // and what may be left
+  double softness_ = 0;  // of all contacts, as a share of their W
+};
+
+}  // namespace pliant

@@ -1,0 +1,168 @@
+#include <pliant/solve/coulomb_system.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "coulomb_cluster.h"
+
+namespace pliant {
+
+namespace {
+/// W of a contact is made of full rank by this share of its largest entry.
+constexpr double kSoft = 1e-12;
+}  // namespace
+
+int CoulombSystem::add_mover(int size) {
+  movers_.push_back(movers_.back() + size);
+  return static_cast<int>(movers_.size()) - 2;
+}
+
+void CoulombSystem::begin_contact(int rows, double mu) {
+  Point point;
+  point.rows = rows;
+  point.mu = mu;
+  point.first_side = point.last_side = static_cast<int>(sides_.size());
+  point.first_push = point.last_push = static_cast<int>(pushes_.size());
+  contacts_.push_back(point);
+  p_.push_back(Vec3<double>::Zero());
+}
+
+void CoulombSystem::add_contact(double mu) {
+  begin_contact(3, mu);
+}
+
+void CoulombSystem::add_row() {
+  begin_contact(1, 0);
+}
+
+CoulombSystem::Term CoulombSystem::term(int first, int size) {
+  const Term term{first, size, numbers_.size()};
+  numbers_.resize(numbers_.size() + at(3 * size), 0.0);
+  return term;
+}
+
+CoulombSystem::Side CoulombSystem::add_side(int mover, int first, int size) {
+  sides_.push_back(term(this->first(mover) + first, size));
+  ++contacts_.back().last_side;
+  return Side(numbers_.data() + sides_.back().numbers, 3, size);
+}
+
+CoulombSystem::Push CoulombSystem::add_push(int mover) {
+  pushes_.push_back(term(first(mover), mover_size(mover)));
+  ++contacts_.back().last_push;
+  return push(size() - 1, pushes(size() - 1) - 1);
+}
+
+CoulombSystem::Push CoulombSystem::push(int k, int i) {
+  const Term& term = pushes_[at(contacts_[at(k)].first_push + i)];
+  return Push(numbers_.data() + term.numbers, term.size, 3);
+}
+
+/// The mover that a velocity is of.
+int CoulombSystem::mover_at(int x) const {
+  return static_cast<int>(std::upper_bound(movers_.begin(), movers_.end(), x) - movers_.begin()) - 1;
+}
+
+void CoulombSystem::drop_pushes() {
+  contacts_.back().last_push = contacts_.back().first_push;
+}
+
+Mat3<double> CoulombSystem::effect(int i, int j) const {
+  Mat3<double> A = Mat3<double>::Zero();
+  for (int s = contacts_[at(i)].first_side; s < contacts_[at(i)].last_side; ++s)
+    for (int r = contacts_[at(j)].first_push; r < contacts_[at(j)].last_push; ++r) {
+      const Term &side = sides_[at(s)], &push = pushes_[at(r)];
+      if (side.first < push.first || side.first >= push.first + push.size) continue;
+      A.noalias() += Eigen::Map<const Eigen::Matrix3Xd>(numbers_.data() + side.numbers, 3, side.size) *
+                     Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3)
+                         .middleRows(side.first - push.first, side.size);
+    }
+  return A;
+}
+
+Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x) const {
+  const Point& point = contacts_[at(k)];
+  Vec3<double> u = point.c;
+  for (int s = point.first_side; s < point.last_side; ++s) {
+    const Term& side = sides_[at(s)];
+    const double* J = numbers_.data() + side.numbers;
+    if (side.size == 3)
+      u.noalias() += Eigen::Map<const Mat3<double>>(J) * x.segment<3>(side.first);
+    else if (side.size == 6)
+      u.noalias() += Eigen::Map<const Eigen::Matrix<double, 3, 6>>(J) * x.segment<6>(side.first);
+    else
+      u.noalias() += Eigen::Map<const Eigen::Matrix3Xd>(J, 3, side.size) * x.segment(side.first, side.size);
+  }
+  return u;
+}
+
+void CoulombSystem::add_change(int k, double factor, VecX<double>& x) const {
+  const Vec3<double> p = factor * p_[at(k)];
+  for (int r = contacts_[at(k)].first_push; r < contacts_[at(k)].last_push; ++r) {
+    const Term& push = pushes_[at(r)];
+    x.segment(push.first, push.size).noalias() +=
+        Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3) * p;
+  }
+}
+
+void CoulombSystem::complete() {
+  complete_ = true;
+  for (int k = 0; k < size(); ++k) {
+    Point& point = contacts_[at(k)];
+    const Mat3<double> W = effect(k, k);
+    point.W = 0.5 * (W + W.transpose());
+    point.W.diagonal().array() += kSoft * point.W.diagonal().maxCoeff();
+  }
+  find_clusters();
+}
+
+/// Contacts by what they push, those of one cluster after each other, in their order.
+void CoulombSystem::find_clusters() {
+  std::vector<int> leader(movers_.size() - 1);
+  std::iota(leader.begin(), leader.end(), 0);
+  auto leader_of = [&](int i) {
+    while (leader[at(i)] != i) i = leader[at(i)] = leader[at(leader[at(i)])];
+    return i;
+  };
+  std::vector<int> mover(contacts_.size());
+  for (int k = 0; k < size(); ++k) {
+    const Point& point = contacts_[at(k)];
+    if (sides(k) == 0) continue;
+    mover[at(k)] = mover_at(sides_[at(point.first_side)].first);
+    for (int s = point.first_side + 1; s < point.last_side; ++s) {
+      const int one = leader_of(mover[at(k)]), other = leader_of(mover_at(sides_[at(s)].first));
+      leader[at(std::max(one, other))] = std::min(one, other);
+    }
+  }
+  order_.clear();
+  for (int k = 0; k < size(); ++k)
+    if (sides(k) > 0) {
+      mover[at(k)] = leader_of(mover[at(k)]);
+      order_.push_back(k);
+    }
+  std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) { return mover[at(i)] < mover[at(j)]; });
+  clusters_.clear();
+  for (int i = 0; i < static_cast<int>(order_.size()); ++i)
+    if (i == 0 || mover[at(order_[at(i)])] != mover[at(order_[at(i - 1)])]) clusters_.push_back(i);
+  clusters_.push_back(static_cast<int>(order_.size()));
+}
+
+CoulombResult CoulombSystem::solve(VecX<double>& x) {
+  if (!complete_) complete();
+  CoulombResult result;
+  x0_ = x;
+  x_ = x;
+  for (int k = 0; k < size(); ++k) {
+    add_change(k, 1, x_);
+    if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x_)[0]);
+  }
+  CoulombScratch scratch;
+  for (std::size_t i = 0; i + 1 < clusters_.size(); ++i)
+    CoulombCluster(*this, order_.data() + clusters_[i], clusters_[i + 1] - clusters_[i], scratch)
+        .solve(result);
+  // Rounding has grown on the way: what is pushed moves as its impulses say.
+  for (int k = 0; k < size(); ++k) add_change(k, 1, x);
+  return result;
+}
+
+}  // namespace pliant

@@ -1,0 +1,155 @@
+// Rest: stacks stand for an hour, dropped ones come to rest, sharp shapes lie on what is lowest, and what is
+// heavy on what is light.
+#include "catch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion.h"
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kSize = 0.1;
+
+Part& box(MultiBody& body, const std::string& name, const Vec3<double>& at, double density = 1000) {
+  Part& part = body.add(make_part(name, "box", {}, density));
+  return part.rest({{"a1", kSize}, {"a2", kSize}, {"a3", kSize}}).place(at);
+}
+void floor(MultiBody& body) {
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+/// Boxes on each other, each a little beside the one below.
+void stack(MultiBody& body, int boxes, double apart = 0) {
+  for (int i = 0; i < boxes; ++i)
+    box(body, "box" + std::to_string(i), {0.005 * (i % 3), 0, kSize + (2 * kSize + apart) * i + apart});
+  floor(body);
+}
+/// Stands for a time, looked at a thousand times; the farthest that any coordinate goes.
+double creep(Simulation& simulation, double time, double h) {
+  const VecX<double> start = simulation.state().q;
+  const auto steps = static_cast<int>(std::lround(time / h));
+  double farthest = 0;
+  for (int i = 1; i <= steps; ++i) {
+    simulation.step(h);
+    if (i % std::max(1, steps / 1000) == 0)
+      farthest = std::max(farthest, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
+  }
+  return farthest;
+}
+double deepest(const Simulation& simulation) {
+  double deep = 0;
+  for (const Contact& contact :
+       ContactFinder(simulation.model()).find(simulation.state(), simulation.time(), 0))
+    deep = std::max(deep, -contact.gap);
+  return deep;
+}
+
+}  // namespace
+
+TEST_CASE("N51: a stack of ten boxes stands without creep", "[contact]") {
+  for (const double h : {2e-3, 2e-2}) {
+    MultiBody body;
+    stack(body, 10);
+    Simulation simulation(body, "rk4");
+    CHECK(creep(simulation, 200 * h, h) < 1e-11 * kSize);
+    CHECK(simulation.state().v.norm() < 1e-11);
+    CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+    CHECK(simulation.step_counters().contact_fallbacks == 0);
+  }
+}
+
+TEST_CASE("N51: a box on a box and a stack of ten stand for an hour", "[contact][long]") {
+  for (const int boxes : {2, 10}) {
+    MultiBody body;
+    stack(body, boxes);
+    Simulation simulation(body, "rk4");
+    CHECK(creep(simulation, 3600, 3e-2) < 1e-5 * kSize);
+    CHECK(simulation.state().v.norm() < 1e-9);
+    CHECK(std::abs(simulation.ledger().balance) < 1e-6);
+  }
+}
+
+TEST_CASE("N51: dropped boxes come to rest on each other", "[contact]") {
+  for (const int boxes : {2, 5, 8}) {
+    MultiBody body;
+    stack(body, boxes, 1e-4);
+    Simulation simulation(body, "rk4");
+    const double start = simulation.ledger().energy(), mass = body.parts()[0]->total_mass();
+    test::run(simulation, 0.8, 400);
+    CAPTURE(boxes);
+    CHECK(simulation.state().v.norm() < 1e-12);
+    double fallen = 0;  // of all the gaps
+    for (int i = 1; i <= boxes; ++i) fallen += mass * 9.81 * 1e-4 * i;
+    CHECK(start - simulation.ledger().energy() == Approx(fallen).epsilon(2e-2));
+    CHECK(deepest(simulation) < 1e-9 * kSize);
+  }
+}
+
+TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they touch", "[contact]") {
+  struct Way {
+    const char* name;
+    Eigen::Quaterniond R;
+    bool balances;  // on a point or a line, from which rounding takes it in time
+  };
+  const std::vector<Way> ways{
+      {"face", Eigen::Quaterniond::Identity(), false},
+      {"edge", Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitX())), true},
+      {"corner",
+       Eigen::Quaterniond::FromTwoVectors(Vec3<double>(1, 1, 1).normalized(), Vec3<double>(0, 0, -1)), true}};
+  for (const double eps : {0.02, 0.1, 0.2, 1.99, 2.0})
+    for (const Way& way : ways) {
+      // The support of |x|^(2/eps) + |y|^(2/eps) + |z|^(2/eps) = a^(2/eps) is the norm dual to that.
+      auto support = [&](const Eigen::Quaterniond& R) {
+        const Vec3<double> d = (R.conjugate() * Vec3<double>(0, 0, -1)).cwiseAbs();
+        if (eps == 2) return kSize * d.maxCoeff();
+        const double p = 2 / (2 - eps), most = d.maxCoeff();
+        return kSize * most * std::pow((d / most).array().pow(p).sum(), 1 / p);
+      };
+      MultiBody body;
+      body.contact.friction = 0.6;
+      Part& part = body.add(make_part("solid", "superellipsoid", {}, 1000));
+      part.rest({{"a1", kSize}, {"a2", kSize}, {"a3", kSize}, {"eps1", eps}, {"eps2", eps}});
+      part.place({0, 0, support(way.R)}, way.R);
+      floor(body);
+      Simulation simulation(body, "rk4");
+      CAPTURE(eps, way.name);
+      const std::vector<Contact> contacts =
+          ContactFinder(simulation.model()).find(simulation.state(), 0, 1e-3);
+      REQUIRE_FALSE(contacts.empty());
+      double least = 1;
+      for (const Contact& contact : contacts) least = std::min(least, contact.gap);
+      CHECK(std::abs(least) < 1e-6 * kSize);
+      // At eps = 2 edge and corner are flat sides of an octahedron, between 1 and 2 flat enough.
+      const bool flat = eps > 1 ? std::string(way.name) != "face" : !way.balances;
+      for (int i = 0; i < 250; ++i) {
+        simulation.step(2e-3);
+        REQUIRE(support(simulation.model().orientation(simulation.state(), 0)) - simulation.state().q[2] <
+                1e-6 * kSize);
+        REQUIRE(simulation.state().v.norm() < (flat ? 1e-5 : 0.1));
+      }
+    }
+}
+
+TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[contact]") {
+  for (const double ratio : {1e-6, 1e6})
+    for (const double h : {1e-3, 2e-3}) {
+      MultiBody body;
+      box(body, "low", {0, 0, kSize}, ratio < 1 ? 1 / ratio : 1);
+      box(body, "high", {0.01, 0, 3 * kSize + 1e-3}, ratio < 1 ? 1 : ratio);
+      floor(body);
+      Simulation simulation(body, "rk4");
+      double deep = 0;
+      for (int i = 0; i < 400; ++i) {
+        simulation.step(h);
+        deep = std::max(deep, deepest(simulation));
+      }
+      CAPTURE(ratio, h);
+      CHECK(deep < 1e-3 * kSize);
+      CHECK(simulation.state().q[7 + 2] == Approx(3 * kSize).epsilon(1e-9));
+      CHECK(simulation.state().v.norm() < 1e-8);
+      CHECK(std::abs(simulation.ledger().balance) <
+            1e-9 * std::abs(simulation.ledger().work[static_cast<int>(Work::contact)]) + 1e-9);
+    }
+}

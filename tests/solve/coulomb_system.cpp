@@ -1,0 +1,153 @@
+// Impulses of many contacts at once, of movers that are plain masses: Coulomb's law at each of them, by the
+// velocities that come out; momentum; where the search begins.
+#include "catch.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include <pliant/solve/coulomb_system.h>
+
+#include "draws.h"
+
+using namespace pliant;
+using test::Draws;
+
+namespace {
+
+/// Masses in a line, each of which meets the next in several contacts with normals near the line, the first a
+/// wall besides.
+struct Line {
+  CoulombSystem system;
+  std::vector<double> mass;
+  VecX<double> x;
+  double mu;
+
+  /// size: of each mover, 3 for points, 6 for bodies of unit inertia pushed off their centres.
+  Line(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
+    for (int i = 0; i < movers; ++i) {
+      system.add_mover(size);
+      mass.push_back(std::pow(10, draws.uniform(-1, 1)));
+    }
+    x.setZero(size * movers);
+    for (double& velocity : x) velocity = draws.uniform(-1, 1);
+    for (int i = 0; i < movers; ++i) {
+      x[size * i] -= 1;
+      for (int k = 0; k < contacts; ++k) {
+        const Vec3<double> n = (Vec3<double>::UnitX() + draws.vector(0.2)).normalized();
+        Mat3<double> axes;
+        axes << n, n.unitOrthogonal(), n.cross(n.unitOrthogonal());
+        system.add_contact(mu);
+        add(i, size, axes.transpose(), draws.vector(1), i > 0 ? draws.vector(1) : Vec3<double>::Zero());
+      }
+    }
+  }
+
+  void add(int i, int size, const Mat3<double>& D, const Vec3<double>& arm, const Vec3<double>& other_arm) {
+    Eigen::Matrix3Xd J(3, size), J_other(3, size);
+    J.leftCols<3>() = D;
+    J_other.leftCols<3>() = -D;
+    if (size == 6) {
+      J.rightCols<3>() = -D * skew<double>(arm);
+      J_other.rightCols<3>() = D * skew<double>(other_arm);
+    }
+    system.add_side(i, 0, size) = J;
+    if (i > 0) system.add_side(i - 1, 0, size) = J_other;
+    system.add_push(i) = response(i, J);
+    if (i > 0) system.add_push(i - 1) = response(i - 1, J_other);
+  }
+
+  MatX<double> response(int i, const Eigen::Matrix3Xd& J) const {
+    MatX<double> Y = J.transpose();
+    Y.topRows<3>() /= mass[static_cast<std::size_t>(i)];
+    return Y;
+  }
+
+  /// What is missed at the worst contact, of the conditions on velocities.
+  double worst() const {
+    double worst = 0;
+    for (int k = 0; k < system.size(); ++k) {
+      const Vec3<double>&p = system.impulse(k), u = system.velocity(k, x);
+      const Eigen::Vector2d pull = p.tail<2>(), slip = u.tail<2>();
+      REQUIRE(p[0] >= -1e-9);
+      REQUIRE(pull.norm() <= mu * p[0] + 1e-6);
+      worst = std::max(worst, -u[0]);
+      if (p[0] > 1e-5) worst = std::max(worst, u[0]);
+      if (pull.norm() < mu * p[0] - 1e-5) worst = std::max(worst, slip.norm());
+    }
+    return worst;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("impulses of many contacts meet Coulomb's law at each", "[coulomb]") {
+  Draws draws(7);
+  for (const double mu : {0.0, 0.3, 0.8})
+    for (int trial = 0; trial < 20; ++trial) {
+      Line line(1 + trial % 7, 6, 2, mu, draws);
+      const CoulombResult result = line.system.solve(line.x);
+      CHECK(result.residual < 1e-10);
+      CHECK(result.fallbacks == 0);
+      CHECK(line.worst() < 1e-8);
+    }
+}
+
+TEST_CASE("impulses on points meet Coulomb's law", "[coulomb]") {
+  Draws draws(8);
+  for (int trial = 0; trial < 20; ++trial) {
+    Line line(10, 3, 1, 0.5, draws);
+    const CoulombResult result = line.system.solve(line.x);
+    CHECK(result.residual < 1e-5);
+    CHECK(line.worst() < 1e-4);
+  }
+}
+
+TEST_CASE("velocities after are those before and what the impulses change", "[coulomb]") {
+  Draws draws(9);
+  Line line(12, 3, 2, 0.5, draws);
+  const VecX<double> before = line.x;
+  line.system.solve(line.x);
+  VecX<double> x = before;
+  for (int k = 0; k < line.system.size(); ++k) line.system.add_change(k, 1, x);
+  CHECK((x - line.x).norm() < 1e-15 * x.norm());
+  CHECK((x - before).norm() > 1);
+}
+
+TEST_CASE("movers that nothing ties together do not change each other's impulses", "[coulomb]") {
+  Draws one(10), same(10);
+  Line alone(4, 6, 2, 0.5, one), two(4, 6, 2, 0.5, same);
+  const int far = two.system.add_mover(3);
+  two.mass.push_back(1);
+  two.system.add_contact(0.5);
+  two.system.add_side(far, 0, 3) = Mat3<double>::Identity();
+  two.system.add_push(far) = Mat3<double>::Identity();
+  two.x.conservativeResize(two.x.size() + 3);
+  two.x.tail<3>() << -1, 0.2, 0;
+  alone.system.solve(alone.x);
+  two.system.solve(two.x);
+  CHECK(two.x.head(alone.x.size()) == alone.x);
+  CHECK(two.x.tail<3>().norm() < 1e-11);
+}
+
+TEST_CASE("a search that begins at the solution ends there at once", "[coulomb]") {
+  Draws draws(11), same(11);
+  Line line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, same);
+  const CoulombResult first = line.system.solve(line.x);
+  CHECK(first.sweeps > 10);
+  for (int k = 0; k < line.system.size(); ++k) again.system.impulse(k) = line.system.impulse(k);
+  const CoulombResult second = again.system.solve(again.x);
+  CHECK(second.sweeps <= 4);
+  CHECK(second.residual < 1e-11);
+  CHECK((again.x - line.x).norm() < 1e-10);
+}
+
+TEST_CASE("what cannot be stopped shows in the residual", "[coulomb]") {
+  CoulombSystem system;
+  system.add_mover(3);
+  system.add_contact(0.5);
+  system.add_side(0, 0, 3) = Mat3<double>::Identity();
+  VecX<double> x = Vec3<double>(-2, 0, 0);
+  CHECK(system.solve(x).residual == Approx(2).epsilon(1e-15));
+  CHECK(x == Vec3<double>(-2, 0, 0));
+}
