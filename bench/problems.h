@@ -2,13 +2,13 @@
 // under gravity of 9.81 m/s^2 along -z unless it is said otherwise.
 //
 //   A          free ellipsoid, semi-axes 0.3, 0.2, 0.1 m, about its unstable axis
-//   B          that ellipsoid hung at the tip of its long axis and pushed sideways: a spherical compound
-//   pendulum C8 ...     chain of n of them tip to tip along x, released at rest, link i rolled by 0.7 i rad
+//   B          that ellipsoid hung at the tip of its long axis and pushed sideways
+//   C8 ...     chain of n of them tip to tip along x, released at rest, link i rolled by 0.7 i rad
 //   D4 ...     net of n x n touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
 //   dust       free spinning ellipsoid whose semi-axes nothing holds: every particle flies straight
 //   solid      free tumbling superellipsoid, tapered, twisted and bent, all its parameters elastic
 //   four-bars  40 windows of rods on hinges in a row that turn (IFToMM A02)
-//   assembly   five stretching ellipsoids, apart and turned, while their joints draw them together (Baumgarte)
+//   assembly   five stretching ellipsoids, apart, while their joints draw them together (Baumgarte)
 //   ringing    free balloon of 108 triangles that rings and tumbles
 //   stiff      the same, a thousand times as stiff and damped, on a string
 //   bounce     a ball that rebounds from a plane, 0.8 times as fast each time

@@ -8,8 +8,8 @@
 //
 // Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
 // others tolerances from 1e-2 on, each a tenth of the one before. error: at the end, of the places of bodies
-// over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times; error_v: of
-// velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
+// over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times; error_v:
+// of velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
 // Time: CPU time of the stepping loop, one thread, the least of several. Reference: dop853 to 1e-12 (to 1e-8
 // where bodies touch); its difference is that from the method of extrapolation.h, of parts with parameters or
 // nodes from dormand_prince to 1e-11, where bodies touch from rk4 in short steps. Errors below 10 times that
