@@ -106,8 +106,7 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
 }
 
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
-                                                     const Field& field,
-                                                     const std::vector<LowPoint>& ends) const {
+                                                     const Field& field) const {
   // A stencil of three by three places about the best so far; a quadratic through its heights tells the next.
   const bool ball = part_->shape().mesh() == MeshPattern::ball;
   const Vec3<double> start = laid().surface.places()[static_cast<std::size_t>(i)];
@@ -176,16 +175,12 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       }
     }
     next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
-    if (std::any_of(ends.begin(), ends.end(), [&](const LowPoint& end) {
-          return end.height <= best.height && (end.p - best.p).norm() < 0.5 * kSame * part_->size();
-        }))
-      return best;
     const bool stays = (next - at).norm() <= 0.5 * radius;
     at = next;
     if (good)
       radius *= 0.1;
-    else
-      radius = stays ? 0.25 * radius : std::min(2 * radius, 0.5 * spacing_);
+    else if (stays)
+      radius *= 0.4;
   }
   return best;
 }
@@ -221,12 +216,10 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
     return (a - b).norm() >= kSame * size &&
            thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlat * size;
   };
-  std::vector<LowPoint> ends;
   LowPoint deepest;
   deepest.height = most + size;
   for (const Eigen::Index i : seeds) {
-    LowPoint point = descend(values, i, field, ends);
-    ends.push_back(point);
+    LowPoint point = descend(values, i, field);
     point.height = field.height(point.p);
     if (point.height < deepest.height) deepest = point;
     if (!(heights[i] > most) && on_one_face(p.col(i), point.p))

@@ -12,11 +12,11 @@ using test::Draws;
 
 namespace {
 
-constexpr double kStep = 1e-2, kSize = 0.05;  // s; the largest semi-axis of a shot, m
+constexpr double kStep = 1e-2, kSize = 0.05, kLeast = 0.02;  // s; the largest and the least semi-axis, m
 
 Part& shot(MultiBody& body, const std::string& name, const std::string& shape) {
   Part& part = body.add(make_part(name, shape, {}, 1000));
-  part.rest({{"a1", kSize}, {"a2", 0.03}, {"a3", 0.02}});
+  part.rest({{"a1", kSize}, {"a2", 0.03}, {"a3", kLeast}});
   if (shape == "superellipsoid") part.rest({{"eps1", 0.5}, {"eps2", 1.5}});
   return part;
 }
@@ -62,7 +62,7 @@ Outcome shoot(const std::string& at, const std::string& shape, int shots, Draws&
         Vec3<double>(draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5), -1).normalized();
     const double far = draws.uniform(2.2, 12) * kSize;
     // Off the middle of a body by at most half its least semi-axis.
-    const Vec3<double> aim = pair ? draws.vector(0.5 * 0.02 / std::sqrt(3.0)) : Vec3<double>::Zero();
+    const Vec3<double> aim = pair ? draws.vector(0.5 * kLeast / std::sqrt(3.0)) : Vec3<double>::Zero();
     set(simulation.model(), 0, aim - far * along, turned(draws), speed * along, draws.vector(9), state);
     if (pair)
       set(simulation.model(), 1, Vec3<double>::Zero(), turned(draws), Vec3<double>::Zero(), draws.vector(9),
@@ -75,7 +75,15 @@ Outcome shoot(const std::string& at, const std::string& shape, int shots, Draws&
       met = !simulation.contact()->contacts().empty();
     }
     const Vec3<double> x = simulation.state().q.head<3>();
-    const bool passed = pair ? (x - simulation.state().q.segment<3>(7)).dot(along) > 0 : x[2] < 0;
+    bool passed = x[2] < 0;
+    if (pair && met) {
+      // One that glances off may overtake the other in what is left of its step, but only beside it.
+      const Contact& first_met = simulation.contact()->contacts().front();
+      const double opposes = (first_met.a.part == 0 ? -1 : 1) * first_met.normal.dot(along);
+      const Vec3<double> d = x - simulation.state().q.segment<3>(7);
+      const double ahead = d.dot(along);
+      passed = !(opposes > 0) || (ahead > 0 && (d - ahead * along).norm() < 2 * kLeast);
+    }
     outcome.met += met;
     outcome.through += passed || !met;
     for (const Contact& contact : finder.find(simulation.state(), simulation.time(), 0))
@@ -93,8 +101,8 @@ void shoot_all(int cheap, int dear) {
       const Outcome outcome = shoot(at, shape, is_cheap ? cheap : dear, draws);
       CAPTURE(at, shape, outcome.met);
       CHECK(outcome.through == 0);
-      // A second blow in the step, by the other end of what the first has set spinning, may leave some.
-      CHECK(outcome.deepest < 0.1);
+      // A blow of the other end of what the first has set spinning may leave some: 4e-3 has been seen.
+      CHECK(outcome.deepest < 1e-2);
     }
 }
 

@@ -75,10 +75,8 @@ class CollisionSurface {
     std::vector<Material<double>> few;  ///< that tell the reach of a part that changes
   };
   const Laid& laid() const;
-  /// Goes down from point number i, no further than to its neighbours, nor on to where other searches have
-  /// ended. The heights are those of descent().
-  LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field,
-                   const std::vector<LowPoint>& ends) const;
+  /// Goes down from point number i, no further than to its neighbours.
+  LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
   mutable std::optional<Laid> laid_;

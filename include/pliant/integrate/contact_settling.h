@@ -1,0 +1,52 @@
+// Impulses of contact: where bodies meet they are stopped, and what still overlaps is parted.
+#pragma once
+
+#include <vector>
+
+#include <pliant/contact/contact_problem.h>
+#include <pliant/contact/mesh_finder.h>
+#include <pliant/integrate/integrator.h>
+#include <pliant/integrate/resting_contacts.h>
+
+namespace pliant {
+
+/// What impulses did in a step: an entry for each time that they acted at a contact. Impacts within a step,
+/// and parts that move far in it, have it made in several parts.
+struct ContactRecord {
+  std::vector<Contact> contacts;
+  std::vector<Vec3<double>> impulses;  ///< on their sides a, N s, world
+  std::vector<double> sliding;         ///< speeds along them afterwards, m/s
+  VecX<double> joint_impulses;  ///< that equations of joints took up of them: on the parts act C_q^T of it
+
+  void clear();
+};
+
+class ContactSettling {
+ public:
+  /// All must outlive it. record: what is added to.
+  ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
+                  RestingContacts& resting, ContactRecord& record);
+
+  /// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
+  /// then what still overlaps is parted.
+  void settle(const State& before, double since_of_limits, double h, State& state, double t,
+              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+  /// Impulses of a step of h seconds at some contacts throw bodies against others that were out of their way:
+  /// these impacts are of the same step, and so are those that follow from them.
+  void settle_chain(std::vector<Contact> settled, double h, double slow, State& state, double t,
+                    Workspace<double>& work, StepCounters& counters);
+
+ private:
+  void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
+                 StepCounters& counters) const;
+  double swing(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
+  void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
+
+  const Dynamics& dynamics_;
+  const ContactFinder& finder_;
+  MeshFinder& meshes_;
+  RestingContacts& resting_;
+  ContactRecord& record_;
+};
+
+}  // namespace pliant

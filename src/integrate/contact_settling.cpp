@@ -1,0 +1,179 @@
+#include <pliant/integrate/contact_settling.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <pliant/integrate/settle.h>
+
+#include "contact_pairs.h"
+#include "pushed_parts.h"
+
+namespace pliant {
+
+namespace {
+
+/// Bodies that overlap are parted at most at this speed, in sizes of side a a second, or as fast as they
+/// move.
+constexpr double kPartingSpeed = 1;
+constexpr int kMostPartings = 8;
+/// Most times in a step that bodies which impulses throw meet others.
+constexpr int kMostLinks = 4;
+/// Overlaps below this share of what counts as resting are left.
+constexpr double kRounding = 1e-8;
+/// Meshes may overlap by this, in sizes, without being parted.
+constexpr double kMeshOverlap = 2e-4;
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+bool of_meshes(const Contact& contact) {
+  return contact.a.at_nodes() || contact.b.at_nodes();
+}
+
+}  // namespace
+
+void ContactRecord::clear() {
+  contacts.clear();
+  impulses.clear();
+  sliding.clear();
+  joint_impulses.setZero();
+}
+
+ContactSettling::ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
+                                 RestingContacts& resting, ContactRecord& record)
+    : dynamics_(dynamics), finder_(finder), meshes_(meshes), resting_(resting), record_(record) {}
+
+/// After velocities and places of what contacts push have changed: frames follow the nodes, joints hold.
+void ContactSettling::reconcile(const std::vector<int>& parts, State& state, double t,
+                                Workspace<double>& work, StepCounters& counters) const {
+  settle_frames(dynamics_, t, parts, state, work);
+  settle_joints(dynamics_, t, state, work, counters);
+}
+
+/// How far a point of a part that spins leaves its tangent in h seconds, m: it may come round and strike
+/// within a step, and move away at its end.
+double ContactSettling::swing(const ContactSide& side, const Vec3<double>& x, const State& state,
+                              double h) const {
+  if (side.part < 0 || side.at_nodes()) return 0;
+  const PartModel& m = dynamics_.model().parts()[at(side.part)];
+  if (m.q0 < 0) return 0;
+  const double turn = h * state.v.segment<3>(m.v0 + 3).norm();
+  return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
+}
+
+void ContactSettling::settle(const State& before, double since_of_limits, double h, State& state, double t,
+                             std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
+  if (contacts.empty()) return;
+  const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
+  const double booked = state.work.sum();
+  evaluate_touched(dynamics_, state, t, contacts, work);
+  double most = 0, thrown = 0;  // that they are parted by; that impulses move their sides
+  std::vector<double> opening;
+  for (const Contact& contact : contacts) {
+    opening.push_back(finder_.velocity(state, contact).dot(contact.normal));
+    most = std::max(most, kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size() +
+                              h * std::max(0.0, -opening.back()) + swing(contact.a, contact.x, state, h) +
+                              swing(contact.b, contact.x, state, h));
+  }
+  ContactProblem problem(dynamics_.model(), state, work, contacts);
+  const std::vector<Vec3<double>> u_start = problem.velocities(before);
+  const ContactSolution solution = problem.solve(since_of_limits);
+  counters.contact_sweeps += solution.sweeps;
+  counters.contact_fallbacks += solution.fallbacks;
+  counters.contact_residual = std::max(counters.contact_residual, solution.residual);
+  bool smooth = false, deep = false;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Contact& c = contacts[k];
+    const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
+    const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
+    state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
+    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
+    const double moved = c.since * (solution.velocity[k].dot(c.normal) - opening[k]);
+    thrown = std::max(thrown, moved);
+    if (!of_meshes(c)) {
+      smooth = true;
+      continue;
+    }
+    deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
+  }
+  problem.add_joint_impulses(record_.joint_impulses);
+  problem.bound_shifts(since_of_limits, h);
+  if (deep) problem.part_bodies(most);
+  // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
+  // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
+  // that of hands that move joints, on which impulses push back, and of impulses at one moment.
+  const bool hands = are_driven(dynamics_.model(), parts), moment = &before == &state;
+  const bool broken =
+      hands || deep || moment || state.at_limit != before.at_limit || state.joints != before.joints;
+  Workspace<double> scratch;
+  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
+  move_by(problem, dynamics_.model(), work, state);
+  if (h > 0 || deep) reconcile(parts, state, t, work, counters);
+  if (h > 0 && smooth) part_overlaps(most + thrown, state, t, work, counters);
+  settle_limits(dynamics_, t, state, work, counters);
+  if (broken)
+    state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;
+    record_.contacts.push_back(contacts[k]);
+    record_.impulses.push_back(solution.impulse[k]);
+    record_.sliding.push_back((u - u.dot(n) * n).norm());
+  }
+}
+
+void ContactSettling::settle_chain(std::vector<Contact> settled, double h, double slow, State& state,
+                                   double t, Workspace<double>& work, StepCounters& counters) {
+  for (int link = 0; link < kMostLinks && !settled.empty(); ++link) {
+    const Pairs known(settled);
+    std::vector<Contact> contacts = resting_.near(state, t);
+    double earliest = 0;  // how long ago, s
+    for (Contact& contact : contacts) {
+      const double u = finder_.velocity(state, contact).dot(contact.normal);
+      if (!(contact.gap < -resting_.gap(contact) && u < -slow) ||
+          known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
+        continue;
+      contact.since = std::min(h, contact.gap / u);
+      if (-contact.restitution * u > slow) contact.rebound = -contact.restitution * u;
+      earliest = std::max(earliest, contact.since);
+    }
+    if (earliest == 0) return;
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                  [&](const Contact& c) { return c.gap > resting_.gap(c); }),
+                   contacts.end());
+    meshes_.find(state, t, contacts);
+    for (Contact& contact : contacts)
+      if (contact.since == 0) contact.since = earliest;
+    settle(state, 0, h, state, t, contacts, work, counters);
+    settled.insert(settled.end(), contacts.begin(), contacts.end());
+  }
+}
+
+/// Moves smooth bodies that overlap apart, by at most so many m.
+void ContactSettling::part_overlaps(double most, State& state, double t, Workspace<double>& work,
+                                    StepCounters& counters) {
+  double start = 0;  // the deepest at first, m
+  for (int i = 0; i < kMostPartings; ++i) {
+    std::vector<Contact> deep = resting_.near(state, t);
+    double deepest = 0;
+    for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
+    if (i == 0) start = deepest;
+    const double left = most - std::max(0.0, start - deepest);
+    if (!(deepest > kRounding * resting_.gap()) || !(left > 0)) return;
+    // Parted by so much, they may meet what is as near.
+    if (deepest > resting_.gap()) deep = finder_.find(state, t, std::min(deepest, left));
+    const std::vector<int> parts = parts_touched(dynamics_.model(), deep);
+    Workspace<double> scratch;
+    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
+    evaluate_touched(dynamics_, state, t, deep, work);
+    ContactProblem parting(dynamics_.model(), state, work, deep);
+    parting.part_bodies(left);
+    move_by(parting, dynamics_.model(), work, state);
+    reconcile(parts, state, t, work, counters);
+    state.work[static_cast<int>(Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,98 @@
+#include "pushed_parts.h"
+
+#include <algorithm>
+#include <set>
+
+#include <pliant/integrate/advance.h>
+
+namespace pliant {
+
+namespace {
+
+std::size_t at(int i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
+template <class F>
+void for_each_part(const std::vector<Mover>& movers, F&& act) {
+  for (const Mover& mover : movers) {
+    if (mover.node >= 0) continue;
+    if (mover.island == nullptr) {
+      act(mover, mover.part, 0);
+      continue;
+    }
+    for (std::size_t i = 0; i < mover.island->parts.size(); ++i)
+      act(mover, mover.island->parts[i], mover.island->first[i]);
+  }
+  for (const Mover& mover : movers)
+    if (mover.node >= 0) act(mover, mover.part, 0);
+}
+
+/// Adds to the displacements, or rates, of a node.
+void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Eigen::Ref<VecX<double>> q_d) {
+  const Eigen::Index n = model.parts()[at(mover.part)].local->mesh().X.rows();
+  for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
+}
+
+}  // namespace
+
+std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts) {
+  std::set<int> touched;
+  for (const Contact& contact : contacts)
+    for (const int part : {contact.a.part, contact.b.part}) {
+      if (part < 0 || model.parts()[at(part)].q0 < 0) continue;
+      const int island = model.parts()[at(part)].island;
+      if (island < 0)
+        touched.insert(part);
+      else
+        touched.insert(model.islands()[at(island)].parts.begin(), model.islands()[at(island)].parts.end());
+    }
+  return std::vector<int>(touched.begin(), touched.end());
+}
+
+bool are_driven(const Model& model, const std::vector<int>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](int part) {
+    const int island = model.parts()[at(part)].island;
+    if (island < 0) return false;
+    const std::vector<int>& joints = model.islands()[at(island)].joints;
+    return std::any_of(joints.begin(), joints.end(), [&](int j) { return model.joints()[at(j)].driven; });
+  });
+}
+
+void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
+                      const std::vector<Contact>& contacts, Workspace<double>& work) {
+  const Model& model = dynamics.model();
+  std::set<int> alone, islands;
+  for (const Contact& contact : contacts)
+    for (const ContactSide& side : {contact.a, contact.b}) {
+      if (side.part < 0 || side.at_nodes() || model.parts()[at(side.part)].q0 < 0) continue;
+      const int island = model.parts()[at(side.part)].island;
+      if (island < 0)
+        alone.insert(side.part);
+      else
+        islands.insert(island);
+    }
+  dynamics.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
+  for (const int i : islands)
+    dynamics.factor_joints(t, state.q, state.v, state.joints, model.islands()[at(i)], work);
+}
+
+void move_by(const ContactProblem& problem, const Model& model, const Workspace<double>& work, State& state) {
+  for_each_part(problem.movers(), [&](const Mover& mover, int part, int first) {
+    const PartModel& m = model.parts()[at(part)];
+    if (mover.node < 0) {
+      give_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);
+    }
+    const Eigen::Quaterniond to_body = model.orientation(state, part).conjugate();
+    const Vec3<double> shift = to_body * problem.shift(mover).head<3>(),
+                       change = to_body * (problem.after(mover) - problem.before(mover)).head<3>(),
+                       omega = state.v.segment<3>(m.v0 + 3);
+    move_node(model, mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    // Its velocity is omega x p + d_dot, and p has moved.
+    move_node(model, mover, change - omega.cross(shift), state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+  });
+}
+
+}  // namespace pliant
