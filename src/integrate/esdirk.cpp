@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 
+#include "linear_growth.h"
 #include "stage_solver.h"
 
 namespace pliant {
@@ -92,21 +91,16 @@ void Esdirk::step(const Dynamics& dynamics, State& state, Workspace<double>& wor
 }
 
 double Esdirk::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  const Eigen::Index n = K.rows();
-  MatX<double> A(2 * n, 2 * n);
-  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
-  double worst = 0;
-  for (const std::complex<double>& lambda : A.eigenvalues()) {
-    std::complex<double> rate[kStages] = {h * lambda}, y = 1;
+  return linear_growth(K, D, h, [](const std::complex<double>& z) {
+    std::complex<double> rate[kStages] = {z}, y = 1;
     for (int stage = 1; stage < kStages; ++stage) {
       y = 1;
       for (int k = 0; k < stage; ++k) y += kA[stage][k] * rate[k];
-      y /= 1. - kGamma * h * lambda;
-      rate[stage] = h * lambda * y;
+      y /= 1. - kGamma * z;
+      rate[stage] = z * y;
     }
-    worst = std::max(worst, std::abs(y));
-  }
-  return worst;
+    return y;
+  });
 }
 
 }  // namespace pliant

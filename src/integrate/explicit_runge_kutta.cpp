@@ -4,10 +4,10 @@
 #include <cmath>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+
+#include "linear_growth.h"
 
 namespace pliant {
 
@@ -76,11 +76,11 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     combine(state.v, v_rates_, a, stage, h, v_);
     take_rates(dynamics, t + of.c[stage] * h, stage, RankRule::keep, state, work, counters);
   }
-  const VecX<double> v_before = scale() != nullptr ? state.v : VecX<double>();
   for (int k = 0; k < n; ++k)
     if (of.b[k] != 0) state.work += (h * of.b[k]) * powers_.col(k);
   combine(state.q, q_rates_, of.b, n, h, q_);
   combine(state.v, v_rates_, of.b, n, h, v_);
+  if (scale() != nullptr) v_start_ = state.v;
   state.q.swap(q_);
   state.v.swap(v_);
   hold_inertialess(dynamics.model(), work, state.v);
@@ -95,7 +95,7 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     last_ = state;
     last_t_ = t + h;
   }
-  note_error(error_of(h, v_before));
+  note_error(error_of(h, v_start_));
 }
 
 double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {
@@ -112,23 +112,18 @@ double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {
 }
 
 double ExplicitRungeKutta::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  const Eigen::Index n = K.rows();
-  MatX<double> A(2 * n, 2 * n);
-  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
-  std::vector<std::complex<double>> k(static_cast<std::size_t>(of_->stages));
-  double worst = 0;
-  for (const std::complex<double>& lambda : A.eigenvalues()) {
+  std::vector<std::complex<double>> rate(static_cast<std::size_t>(of_->stages));
+  return linear_growth(K, D, h, [&](const std::complex<double>& z) {
     const double* a = of_->a;
     std::complex<double> end = 1;
     for (int stage = 0; stage < of_->stages; a += stage, ++stage) {
       std::complex<double> y = 1;
-      for (int j = 0; j < stage; ++j) y += a[j] * k[static_cast<std::size_t>(j)];
-      k[static_cast<std::size_t>(stage)] = h * lambda * y;
-      end += of_->b[stage] * k[static_cast<std::size_t>(stage)];
+      for (int j = 0; j < stage; ++j) y += a[j] * rate[static_cast<std::size_t>(j)];
+      rate[static_cast<std::size_t>(stage)] = z * y;
+      end += of_->b[stage] * rate[static_cast<std::size_t>(stage)];
     }
-    worst = std::max(worst, std::abs(end));
-  }
-  return worst;
+    return end;
+  });
 }
 
 }  // namespace pliant

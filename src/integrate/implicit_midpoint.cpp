@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 
+#include "linear_growth.h"
 #include "stage_solver.h"
 
 namespace pliant {
@@ -47,15 +46,8 @@ void ImplicitMidpoint::step(const Dynamics& dynamics, State& state, Workspace<do
 }
 
 double ImplicitMidpoint::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  const Eigen::Index n = K.rows();
-  MatX<double> A(2 * n, 2 * n);
-  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
-  double worst = 0;
-  for (const std::complex<double>& lambda : A.eigenvalues()) {
-    const std::complex<double> z = 0.5 * h * lambda;
-    worst = std::max(worst, std::abs((1. + z) / (1. - z)));
-  }
-  return worst;
+  return linear_growth(K, D, h,
+                       [](const std::complex<double>& z) { return (1. + 0.5 * z) / (1. - 0.5 * z); });
 }
 
 }  // namespace pliant

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+
+#include "linear_growth.h"
 
 namespace pliant {
 
@@ -67,15 +67,9 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
 }
 
 double Rk4::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  const Eigen::Index n = K.rows();
-  MatX<double> A(2 * n, 2 * n);
-  A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
-  double worst = 0;
-  for (const std::complex<double>& lambda : A.eigenvalues()) {
-    const std::complex<double> z = h * lambda;
-    worst = std::max(worst, std::abs(1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.)))));
-  }
-  return worst;
+  return linear_growth(K, D, h, [](const std::complex<double>& z) {
+    return 1. + z * (1. + z / 2. * (1. + z / 3. * (1. + z / 4.)));
+  });
 }
 
 }  // namespace pliant

@@ -41,7 +41,7 @@ class ExplicitRungeKutta : public Integrator {
   const ButcherTableau* of_;
   // Kept between steps: no heap in a step.
   MatX<double> q_rates_, v_rates_, powers_;  ///< a column a stage, and one of the rates at the end
-  VecX<double> q_, v_, q_dot_, q_error_, v_error_;
+  VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;
   // Where the rates at the end were taken, which are those at the start of the next step.
   State last_;
   double last_t_ = 0;
