@@ -12,6 +12,8 @@ namespace {
 /// step.
 constexpr double kGap = 1e-13, kTime = 1e-15;
 constexpr int kMostTrials = 60;
+/// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
+constexpr int kMostHalvings = 20;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -43,8 +45,12 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
       least = std::min(least, finder.least_gap(state, t + tau, contact, 4 * largest));
     return least;
   };
+  const bool apart = std::all_of(impacts.begin(), impacts.end(), [&](const Contact& contact) {
+    return finder.least_gap(before, t, contact, 4 * largest) > 0;
+  });
   double high = h, f_high = gap_at(h), low = h, f_low = f_high;
-  for (int i = 0; i < kMostTrials && !(f_low > 0); ++i) {  // they were apart after some part of the step
+  // They were apart after some part of the step.
+  for (int i = 0; i < (apart ? kMostTrials : kMostHalvings) && !(f_low > 0); ++i) {
     low *= 0.5;
     f_low = gap_at(low);
     if (!(f_low > 0)) {
