@@ -6,27 +6,13 @@
 
 #include <pliant/body/one_sided_rows.h>
 #include <pliant/local/inverted_element.h>
+#include <pliant/math/rotation.h>
+
+#include "loads.h"
 
 namespace pliant {
 
 namespace {
-
-/// R of a quaternion (w, x, y, z), of any length.
-template <class S>
-Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
-  const S two = S(2.0) / (w * w + x * x + y * y + z * z);
-  Mat3<S> R;
-  R(0, 0) = S(1.0) - two * (y * y + z * z);
-  R(1, 1) = S(1.0) - two * (x * x + z * z);
-  R(2, 2) = S(1.0) - two * (x * x + y * y);
-  R(0, 1) = two * (x * y - w * z);
-  R(1, 0) = two * (x * y + w * z);
-  R(0, 2) = two * (x * z + w * y);
-  R(2, 0) = two * (x * z - w * y);
-  R(1, 2) = two * (y * z - w * x);
-  R(2, 1) = two * (y * z + w * x);
-  return R;
-}
 
 /// Adds the local deformation at the ports to their positions and velocities.
 void displace_ports(const PartModel& m, PartWorkspace<double>& w) {
@@ -276,16 +262,24 @@ void hold_pressed(const Model& model, int part, const std::vector<int>& pressed,
   for (int i = 0; i < n; ++i) a_r += responses[static_cast<std::size_t>(i)] * lambda[i];
 }
 
-template <class S>
-struct WorldPoint {
-  Vec3<S> x, x_dot;
-};
-
 }  // namespace
 
 template <class S>
+void Dynamics::choose_rigid_islands(const State* modes, Workspace<S>& work) const {
+  const auto& islands = model_->rigid_islands();
+  work.rigid.resize(islands.size());
+  for (std::size_t k = 0; k < islands.size(); ++k) {
+    const Island& island = model_->islands()[static_cast<std::size_t>(islands[k].island())];
+    work.rigid[k].used = modes != nullptr && hold_.projected &&
+                         std::all_of(island.joints.begin(), island.joints.end(), [&](int j) {
+                           return modes->joints[static_cast<std::size_t>(j)] == JointMode::closed;
+                         });
+  }
+}
+
+template <class S>
 void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const State* modes,
-                        const Workspace<double>* fixed_modes, Workspace<S>& work) const {
+                        const Workspace<double>* fixed_modes, bool rates_only, Workspace<S>& work) const {
   const Model& model = *model_;
   const auto& parts = model.parts();
   work.parts.resize(parts.size());
@@ -299,10 +293,27 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
       for (int i = 0; i < n_parts; ++i) task(i);
   };
 
+  choose_rigid_islands(rates_only ? modes : nullptr, work);
+  // Whether a part is evaluated with its rigid island, and none but its loads here.
+  auto apart = [&](const PartModel& m) {
+    return m.rigid_island >= 0 && work.rigid[static_cast<std::size_t>(m.rigid_island)].used;
+  };
   const Vec3<double> gravity = model.body().gravity_at(t);
   each_part([&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
+    if constexpr (std::is_same_v<S, double>)
+      if (apart(m)) {
+        const bool known = w.rigid == &m;  // and with it what is constant
+        if (known && !m.loaded) return;
+        positions<S>(m, t, q, v, w);
+        if (!known) {
+          masses<S>(m, w);
+          take_factor(m, w);
+        }
+        w.f.setZero(6);
+        return;
+      }
     positions<S>(m, t, q, v, w);
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
@@ -315,78 +326,15 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     }
   });
 
-  // forces between parts, in a fixed order
-  auto at_port = [&](const PortRef& ref, const Point& point) -> WorldPoint<S> {
-    if (ref.part >= 0) {
-      const PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(ref.part)];
-      return {w.port_x[static_cast<std::size_t>(ref.port)], w.port_x_dot[static_cast<std::size_t>(ref.port)]};
-    }
-    const Vec3<Taylor2<double>> x = point.world.at(t);
-    return {Vec3<S>(S(x[0].v), S(x[1].v), S(x[2].v)), Vec3<S>(S(x[0].d), S(x[1].d), S(x[2].d))};
-  };
-  auto push = [&](const PortRef& ref, const Vec3<S>& force, double sign) {
-    if (ref.part < 0) return;
-    work.parts[static_cast<std::size_t>(ref.part)].port_force[static_cast<std::size_t>(ref.port)] +=
-        force * S(sign);
-  };
-  auto moves = [&](const PortRef& ref) {
-    return ref.part >= 0 && parts[static_cast<std::size_t>(ref.part)].q0 >= 0;
-  };
-  for (const SpringModel& s : model.springs()) {
-    const WorldPoint<S> a = at_port(s.a, s.spring->a), b = at_port(s.b, s.spring->b);
-    const Vec3<S> d = b.x - a.x, d_dot = b.x_dot - a.x_dot;
-    Vec3<S> pull, damping;  // on a, towards b
-    if (s.spring->rest_length == 0) {
-      pull = d * S(s.spring->stiffness);
-      damping = d_dot * S(s.spring->damping);
-    } else {
-      const S length2 = d.dot(d);
-      if (plain(length2) == 0) continue;  // no direction; what is not a number goes on to be found
-      const S length = math::sqrt(length2);
-      const Vec3<S> along = d / length;
-      pull = along * S((length - s.spring->rest_length) * s.spring->stiffness);
-      damping = along * S(along.dot(d_dot) * s.spring->damping);
-    }
-    const Vec3<S> force = pull + damping;
-    push(s.a, force, 1);
-    push(s.b, force, -1);
-    work.power[static_cast<int>(Work::spring_damping)] -= damping.dot(d_dot);
-    // The hand that moves an anchor exerts the opposite of the spring's pull on it.
-    if (!moves(s.a)) work.power[static_cast<int>(Work::anchors)] -= force.dot(a.x_dot);
-    if (!moves(s.b)) work.power[static_cast<int>(Work::anchors)] += force.dot(b.x_dot);
-  }
-  for (const ForceModel& f : model.forces()) {
-    const WorldPoint<S> at = at_port(f.at, f.force->at);
-    Vec3<S> force;
-    if (f.force->custom) {
-      Vec3<double> x, x_dot;
-      for (int r = 0; r < 3; ++r) {
-        x[r] = plain(at.x[r]);
-        x_dot[r] = plain(at.x_dot[r]);
-      }
-      force = f.force->custom(t, x, x_dot).template cast<S>();
-    } else {
-      force = f.force->force.value(t).template cast<S>();
-      if (f.force->frame == Frame::body)
-        force = (work.parts[static_cast<std::size_t>(f.at.part)].R * force).eval();
-    }
-    push(f.at, force, 1);
-    if (moves(f.at)) work.power[static_cast<int>(Work::forces)] += force.dot(at.x_dot);
-  }
-  for (const TorqueModel& m : model.torques()) {
-    PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(m.part)];
-    if (parts[static_cast<std::size_t>(m.part)].q0 < 0) continue;
-    Vec3<S> torque = m.torque->torque.value(t).template cast<S>();
-    if (m.torque->frame == Frame::world) torque = (w.R.transpose() * torque).eval();
-    w.f.template segment<3>(3) += torque;
-    work.power[static_cast<int>(Work::forces)] += torque.dot(w.v_r.template segment<3>(3));
-  }
+  apply_loads<S>(model, t, work);
 
   each_part([&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     if (m.q0 < 0) return;
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
+    if (apart(m) && !m.loaded) return;
     gather_port_forces<S>(m, w);
+    if (apart(m)) return;
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
       take_factor(m, w);
@@ -402,11 +350,16 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
         hold_pressed<S>(model, i, fixed_modes->parts[static_cast<std::size_t>(i)].pressed, work);
     }
   });
-  for (const PartWorkspace<S>& w : work.parts) work.power += w.power;
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (!apart(parts[i])) work.power += work.parts[i].power;
   if (!model.joints().empty()) join<S>(t, modes, fixed_modes, work);
+  if constexpr (std::is_same_v<S, double>)
+    for (std::size_t k = 0; k < work.rigid.size(); ++k)
+      if (work.rigid[k].used)
+        model.rigid_islands()[k].accelerate(model, q, v, gravity, work.joints.rank, work, work.rigid[k]);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PartModel& m = parts[i];
-    if (m.q0 < 0) continue;
+    if (m.q0 < 0 || apart(m)) continue;
     const PartWorkspace<S>& w = work.parts[i];
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
@@ -466,6 +419,7 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   joints.stabilise_closed = !hold_.projected;
   auto solve = [&](int i) {
     const Island& island = model.islands()[static_cast<std::size_t>(i)];
+    if (island.rigid >= 0 && work.rigid[static_cast<std::size_t>(island.rigid)].used) return;
     pliant::evaluate_joints<S>(model, island, t, work.parts, joints);
     pliant::factor_joints<S>(model, island, work.parts, joints);
     if constexpr (std::is_same_v<S, double>) {
@@ -518,7 +472,13 @@ void Dynamics::factor_joints(double t, const VecX<double>& q, const VecX<double>
 void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                              Workspace<double>& work, RankRule rank) const {
   work.joints.rank = rank;
-  evaluate<double>(t, q, v, &modes, nullptr, work);
+  evaluate<double>(t, q, v, &modes, nullptr, false, work);
+}
+
+void Dynamics::rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+                     Workspace<double>& work, RankRule rank) const {
+  work.joints.rank = rank;
+  evaluate<double>(t, q, v, &modes, nullptr, true, work);
 }
 
 VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
@@ -537,7 +497,7 @@ VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& 
     }
     return r;
   };
-  evaluate<D>(t, dual(q, along.q), dual(v, along.v), nullptr, &work, dual_work);
+  evaluate<D>(t, dual(q, along.q), dual(v, along.v), nullptr, &work, false, dual_work);
   VecX<double> d(dual_work.v_dot.size());
   for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = dual_work.v_dot[i].d[0];
   return d;

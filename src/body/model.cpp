@@ -75,6 +75,22 @@ Model::Model(MultiBody& body) : body_(&body) {
   for (PartModel& m : parts_)
     if (m.n_s == 0 && !m.ports.empty())
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
+  lay_rigid_islands();
+}
+
+void Model::lay_rigid_islands() {
+  if (body_->changing_gravity) return;  // its power needs to know where all parts are
+  for (const SpringModel& spring : springs_)
+    for (const PortRef& ref : {spring.a, spring.b})
+      if (ref.part >= 0) parts_[static_cast<std::size_t>(ref.part)].loaded = true;
+  for (const ForceModel& force : forces_) parts_[static_cast<std::size_t>(force.at.part)].loaded = true;
+  for (const TorqueModel& torque : torques_) parts_[static_cast<std::size_t>(torque.part)].loaded = true;
+  for (Island& island : islands_) {
+    if (!RigidIsland::takes(*this, island)) continue;
+    island.rigid = static_cast<int>(rigid_islands_.size());
+    for (const int i : island.parts) parts_[static_cast<std::size_t>(i)].rigid_island = island.rigid;
+    rigid_islands_.emplace_back(*this, island);
+  }
 }
 
 NodeWeights Model::node_weights(const Point& point) {

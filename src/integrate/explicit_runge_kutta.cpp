@@ -39,7 +39,7 @@ void sum(const MatX<double>& columns, const double* weights, int count, double h
 
 void ExplicitRungeKutta::take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank,
                                     const State& modes, Workspace<double>& work, StepCounters& counters) {
-  dynamics.accelerations(t, q_, v_, modes, work, rank);
+  dynamics.rates(t, q_, v_, modes, work, rank);
   ++counters.evaluations;
   hold_inertialess(dynamics.model(), work, v_);
   dynamics.coordinate_rates(q_, v_, q_dot_);

@@ -39,8 +39,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   free_.prepare(dynamics.model(), 0.5 * h);
   constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
   for (int stage = 0; stage < 4; ++stage) {
-    dynamics.accelerations(t + node[stage] * h, q_, v_, state, work,
-                           stage == 0 ? RankRule::decide : RankRule::keep);
+    dynamics.rates(t + node[stage] * h, q_, v_, state, work, stage == 0 ? RankRule::decide : RankRule::keep);
     ++counters.evaluations;
     hold_inertialess(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);

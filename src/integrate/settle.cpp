@@ -123,6 +123,7 @@ void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& 
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
   if (pushed) keep_momenta(group, scratch, work, state);
+  settling.forget();
   counters.limit_impulses += settling.velocities(joints, rows);
   state.work[static_cast<int>(pushed ? Work::limits : Work::projection)] +=
       dynamics.energy(t, state.q, state.v, parts, scratch) - energy;
@@ -219,6 +220,15 @@ void note_strings(const Model& model, const Island& island, const Workspace<doub
   }
 }
 
+/// Closes the joints of an island whose last evaluation was a rigid island's, if that is all there is to do.
+bool closed_apart(const Model& model, const Island& island, Workspace<double>& work, State& state) {
+  if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return false;
+  const auto number = static_cast<std::size_t>(&island - model.islands().data());
+  return model.rigid_islands()[at(island.rigid)].close({kLeft, kRounding, model.body().stabilization.rate},
+                                                       work.joints.W_c[number].blocks(),
+                                                       work.rigid[at(island.rigid)], state.q, state.v);
+}
+
 }  // namespace
 
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
@@ -239,6 +249,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
   const Model& model = dynamics.model();
   if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
   for (const Island& island : model.islands()) {
+    if (closed_apart(model, island, work, state)) continue;
     fail_if_stuck(dynamics, t, island, state, work);
     auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
     bool closed = false;

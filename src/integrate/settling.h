@@ -138,6 +138,7 @@ class Settling {
       if (!open && (rank == RankRule::keep || !moved_far())) return pushed;
       if (open && rank != RankRule::rounding) failure = std::move(open);
       for_each_coordinates([](auto&& kept, auto&& now) { now = kept; });
+      evaluated_ = false;
     }
     if (entry_ <= kWidest) throw *failure;
     std::ostringstream message;
@@ -146,6 +147,9 @@ class Settling {
             << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
     throw NumericalFailure(message.str(), t_);
   }
+
+  /// What was evaluated is of another state.
+  void forget() { evaluated_ = false; }
 
   /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
   /// on one-sided rows. joints, rows: work of the impulses of each, J.
@@ -159,7 +163,9 @@ class Settling {
         double& q = state_.q[m.q0 + 7 + k];
         const int mode = q <= range.min ? -1 : (q >= range.max ? 1 : 0);
         limit_mode(state_, m, k) = static_cast<std::int8_t>(mode);
-        if (mode != 0) q = mode < 0 ? range.min : range.max;
+        if (mode == 0) continue;
+        q = mode < 0 ? range.min : range.max;
+        evaluated_ = false;
       }
     }
     for (int i = 0; i < kMostIterations; ++i) {
@@ -175,6 +181,7 @@ class Settling {
       one_sided += kinetic_change(group_, joined, x);
       for (int p = 0; p < group_.parts(); ++p)
         give_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
+      evaluated_ = false;
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) { impulses += stays(row) ? 0 : 1; });
       if (island_ == nullptr) break;
@@ -228,6 +235,7 @@ class Settling {
       if (!open && rows.empty()) return pushed;
       for (int p = 0; p < group_.parts(); ++p)
         advance_with(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
+      evaluated_ = false;
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
           pushed = pushed || !stays(row);
@@ -283,7 +291,7 @@ class Settling {
   /// left to do: they are there, or as near as rounding lets them come.
   bool correct_joints(Rows what, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
-    dynamics_.evaluate_joints(t_, state_.q, state_.v, state_.joints, *island_, work_);
+    evaluate(what, iteration, x);
     if (!dynamics_.hold().projected) return false;
     const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
     double now = 0;
@@ -292,22 +300,39 @@ class Settling {
     for (const int j : island_->joints) {
       const JointModel& joint = model_.joints()[at(j)];
       if (state_.joints[at(j)] != JointMode::closed) continue;
-      const auto row = rows.segment(joint.row, joint.rows);
+      auto row = error.segment(joint.island_row, joint.rows);
+      row = rows.segment(joint.row, joint.rows);
+      if (moved_on_) row += kept_.gained.segment(joint.island_row, joint.rows);
       if (iteration == 0 && rank_ == RankRule::keep && !(row.norm() <= entry_ * joint.length)) {
         entry_ = row.norm() / joint.length;
         widest_ = j;
       }
-      error.segment(joint.island_row, joint.rows) = row;
       now = wider(row.norm() / left(joint, what), now);
     }
     if (!(now > 1)) return false;
     const bool slow = iteration > 0 && now > kSlow * before_;
     if (slow && fresh_ && now > kStalled * before_) return false;
     fresh_ = slow || (iteration == 0 && what == Rows::coordinates && rank_ != RankRule::keep);
-    if (fresh_) dynamics_.factor_joints(t_, state_.q, state_.v, state_.joints, *island_, work_, rank_);
+    if (fresh_) {
+      dynamics_.factor_joints(t_, state_.q, state_.v, state_.joints, *island_, work_, rank_);
+      kept_.start = x;
+    }
     before_ = now;
     group_.correct(error, x);
     return true;
+  }
+
+  /// The joints as they are now. What new velocities add to C_dot, C_q tells.
+  void evaluate(Rows what, int iteration, const Vector& x) {
+    moved_on_ = what == Rows::velocities && iteration > 0 && island_->strings.empty();
+    if (moved_on_) {
+      kept_.gain = x - kept_.start;
+      group_.joint_rows(kept_.gain, kept_.gained);
+      return;
+    }
+    if (!evaluated_) dynamics_.evaluate_joints(t_, state_.q, state_.v, state_.joints, *island_, work_);
+    evaluated_ = true;
+    if (what == Rows::velocities) kept_.start = x;
   }
 
   /// The failure of a closed joint that is further open than rounding explains: it is named with those that
@@ -414,9 +439,11 @@ class Settling {
   GroupVectors<double, Max>& kept_;
   double before_ = 0;
   RankRule rank_ = RankRule::keep;
-  double entry_ = 0;    ///< widest gap of the closed joints before the projection, in lengths of the joint,
-  int widest_ = -1;     ///< and whose it is
-  bool fresh_ = false;  ///< whether the factor was that of the iteration before
+  double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint,
+  int widest_ = -1;   ///< and whose it is
+  bool evaluated_ = false;      ///< whether the joints were evaluated at the state as it is,
+  bool moved_on_ = false;       ///< or at its coordinates and velocities of before
+  bool fresh_ = false;          ///< whether the factor was that of the iteration before
   std::vector<int> tightened_;  ///< see tighten()
 };
 

@@ -6,7 +6,9 @@
 namespace pliant {
 
 namespace {
-constexpr double kSafety = 0.9, kMostGrowth = 6, kMostCut = 0.2;
+constexpr double kSafety = 0.8, kMostGrowth = 6, kMostCut = 0.2;
+/// Of order 0 is what is known beforehand, not estimated.
+constexpr double kSafetyOfKnown = 0.99;
 /// The share of the integral part.
 constexpr double kIntegral = 0.2;
 /// Errors below this part of the tolerance count as that: what is zero once says little.
@@ -15,10 +17,11 @@ constexpr double kLeastError = 1e-6;
 
 double next_step(double h, double error, double last_error, int order, bool rejected) {
   if (!std::isfinite(error)) return kMostCut * h;
+  const double safety = order > 0 ? kSafety : kSafetyOfKnown;
   const double power = 1.0 / (order + 1), now = std::max(error, kLeastError);
-  double factor = kSafety * std::pow(now, -power);
+  double factor = safety * std::pow(now, -power);
   if (!rejected && last_error > 0)
-    factor = kSafety * std::pow(now, -power * (1 - 0.75 * kIntegral)) *
+    factor = safety * std::pow(now, -power * (1 - 0.75 * kIntegral)) *
              std::pow(std::max(last_error, kLeastError), power * kIntegral);
   return h * std::clamp(factor, kMostCut, rejected ? 1 : kMostGrowth);
 }

@@ -35,6 +35,8 @@ class JointFactor {
   /// Factors it for the joints that act, or the closed ones alone.
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
               const ConstraintWorkspace<S>& work, bool closed_only);
+  /// The blocks of W_c, to be filled in and factored by others.
+  BlockFactor<S>& blocks() { return blocks_; }
   /// That of the values, for a derivative of the augmented matrix.
   void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
 
@@ -62,6 +64,8 @@ struct GroupVectors {
   VecMax<S, Max> before, joined, x;  ///< accelerations or velocities: without joints, with them, with all
   VecX<S> rows, lambda;              ///< of the joints
   VecX<S> correction, change;        ///< of lambda and of x, by Group::correct
+  VecMax<S, Max> start, gain;        ///< velocities at which joints were evaluated, and what came to them,
+  VecX<S> gained;                    ///< and to their rows
   VecX<S> q, v;                      ///< coordinates and velocities of a state
 };
 

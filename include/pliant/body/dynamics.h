@@ -7,6 +7,7 @@
 
 #include <pliant/body/constraints.h>
 #include <pliant/body/model.h>
+#include <pliant/body/rigid_island.h>
 #include <pliant/math/thread_pool.h>
 
 namespace pliant {
@@ -74,6 +75,7 @@ struct Workspace {
   std::vector<PartWorkspace<S>> parts;
   ConstraintWorkspace<S> joints;
   GroupVectors<S, kMaxVelocities> alone;  ///< of a part alone that a limit pushes
+  std::vector<RigidWorkspace> rigid;      ///< of each rigid island
   VecX<S> v_dot;                          ///< accelerations: c_ddot in the world, omega_dot, q_s_ddot
   Vec<S, kWorks> power;                   ///< rates of the works of the ledger, W
 };
@@ -107,6 +109,10 @@ class Dynamics {
   /// the integrator's to stop.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
+  /// work.v_dot and work.power of the same, for a stage of a method, and the factors of W_c: rigid islands
+  /// whose joints are closed leave no more.
+  void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
+             Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Frames and points of the parts of an island, and its joints' C, C_dot and C_q, at (t, q, v); nothing
   /// else of work changes.
   void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
@@ -151,7 +157,10 @@ class Dynamics {
  private:
   template <class S>
   void evaluate(double t, const VecX<S>& q, const VecX<S>& v, const State* modes,
-                const Workspace<double>* fixed_modes, Workspace<S>& work) const;
+                const Workspace<double>* fixed_modes, bool rates_only, Workspace<S>& work) const;
+  /// Which rigid islands an evaluation in these modes uses; nullptr: none.
+  template <class S>
+  void choose_rigid_islands(const State* modes, Workspace<S>& work) const;
   /// Adds the energies of a part that was evaluated, and of a spring.
   void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
   void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;

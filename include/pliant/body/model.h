@@ -7,6 +7,7 @@
 
 #include <pliant/body/ledger.h>
 #include <pliant/body/multibody.h>
+#include <pliant/body/rigid_island.h>
 #include <pliant/body/state.h>
 #include <pliant/solve/block_pattern.h>
 #include <pliant/solve/symmetric_factor.h>
@@ -31,7 +32,9 @@ struct PartModel {
   VecX<double> inertia_floor;                 ///< see SymmetricFactor
   SymmetricFactor<double> rigid_factor;       ///< of a rigid part
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
+  bool loaded = false;                        ///< whether springs, forces or torques act on it
   int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone
+  int rigid_island = -1;                      ///< likewise of those that are rigid_island.h's; -1: none
   Eigen::Matrix3d R0;                         ///< of a fixed part
   Part::Use use;                              ///< keeps the part from being changed
 
@@ -98,6 +101,7 @@ struct Island {
   std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< of joints
+  int rigid = -1;            ///< its number among the rigid islands; -1: it is none
   bool augmented = false;    ///< solved as the augmented matrix, not by blocks
   BlockPattern pattern;      ///< of the blocks of W_c, when they are used
   std::vector<Coupling> couplings;
@@ -116,6 +120,8 @@ class Model {
   const std::vector<TorqueModel>& torques() const { return torques_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
+  /// Of the islands that are rigid parts on ball joints.
+  const std::vector<RigidIsland>& rigid_islands() const { return rigid_islands_; }
   /// Times at which joints begin or cease to act, in order.
   const std::vector<double>& switch_times() const { return switch_times_; }
   int n_rows() const { return n_rows_; }          ///< of all joints
@@ -159,6 +165,7 @@ class Model {
   void add_joint(const Joint& joint);
   void lay_sides();
   void lay_islands();
+  void lay_rigid_islands();
   /// A joint and which of its sides is on a part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
   void choose_solver(Island& island, const SidesOfParts& sides_of);
@@ -172,6 +179,7 @@ class Model {
   std::vector<JointModel> joints_;
   std::vector<Island> islands_;
   std::vector<double> switch_times_;
+  std::vector<RigidIsland> rigid_islands_;
   int n_q_ = 0, n_v_ = 0, n_limits_ = 0, n_rows_ = 0, n_sides_ = 0;
 };
 

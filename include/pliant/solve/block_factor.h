@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 #include <pliant/math/dual.h>
@@ -42,6 +43,7 @@ class BlockFactor {
     smallest_ = 1;
     const auto& columns = pattern_->columns();
     diagonal_.resize(static_cast<std::size_t>(pattern_->rows()));
+    inverse_.resize(static_cast<std::size_t>(pattern_->rows()));
     for (const BlockPattern::Column& c : columns)
       for (int k = 0; k < c.size; ++k)
         diagonal_[static_cast<std::size_t>(c.row + k)] = plain(values_[at(c.diagonal + k * (c.size + 1))]);
@@ -51,45 +53,41 @@ class BlockFactor {
   /// x = A^-1 x, with zeros for held rows. x is in the order of the nodes.
   void solve(VecX<S>& x) const {
     const auto& columns = pattern_->columns();
-    for (const BlockPattern::Column& c : columns) {
-      const S* D = values_.data() + c.diagonal;
-      for (int i = 0; i < c.size; ++i) {
-        for (int k = 0; k < i; ++k) x[c.row + i] -= D[k * c.size + i] * x[c.row + k];
-        if (held_[at(c.row + i)] != 0) x[c.row + i] = S(0.0);
-      }
-      for (int b = c.first; b < c.last; ++b) {
-        const BlockPattern::Block& block = pattern_->blocks()[at(b)];
-        const BlockPattern::Column& below = columns[at(block.place)];
-        const S* L = values_.data() + block.offset;
-        if (c.size == 3 && below.size == 3) {
-          x.template segment<3>(below.row) -=
-              Eigen::Map<const Mat3<S>>(L).lazyProduct(x.template segment<3>(c.row));
-          continue;
+    for (const BlockPattern::Column& c : columns)
+      sized(c.size, [&](auto n) {
+        S* y = x.data() + c.row;
+        const S* D = values_.data() + c.diagonal;
+        for (int k = 0; k < n; ++k)
+          for (int i = k + 1; i < n; ++i) y[i] -= D[k * n + i] * y[k];
+        for (int b = c.first; b < c.last; ++b) {
+          const BlockPattern::Block& block = pattern_->blocks()[at(b)];
+          const BlockPattern::Column& below = columns[at(block.place)];
+          const S* L = values_.data() + block.offset;
+          S* z = x.data() + below.row;
+          sized(below.size, [&](auto rows) {
+            for (int k = 0; k < n; ++k)
+              for (int i = 0; i < rows; ++i) z[i] -= L[k * rows + i] * y[k];
+          });
         }
-        for (int k = 0; k < c.size; ++k)
-          for (int i = 0; i < below.size; ++i) x[below.row + i] -= L[k * below.size + i] * x[c.row + k];
-      }
-      for (int k = 0; k < c.size; ++k) x[c.row + k] = x[c.row + k] / D[k * (c.size + 1)];
-    }
-    for (auto c = columns.rbegin(); c != columns.rend(); ++c) {
-      for (int b = c->first; b < c->last; ++b) {
-        const BlockPattern::Block& block = pattern_->blocks()[at(b)];
-        const BlockPattern::Column& below = columns[at(block.place)];
-        const S* L = values_.data() + block.offset;
-        if (c->size == 3 && below.size == 3) {
-          x.template segment<3>(c->row) -=
-              Eigen::Map<const Mat3<S>>(L).transpose().lazyProduct(x.template segment<3>(below.row));
-          continue;
+        for (int k = 0; k < n; ++k) y[k] = y[k] * inverse_[at(c.row + k)];
+      });
+    for (auto c = columns.rbegin(); c != columns.rend(); ++c)
+      sized(c->size, [&](auto n) {
+        S* y = x.data() + c->row;
+        for (int b = c->first; b < c->last; ++b) {
+          const BlockPattern::Block& block = pattern_->blocks()[at(b)];
+          const BlockPattern::Column& below = columns[at(block.place)];
+          const S* L = values_.data() + block.offset;
+          const S* z = x.data() + below.row;
+          sized(below.size, [&](auto rows) {
+            for (int k = 0; k < n; ++k)
+              for (int i = 0; i < rows; ++i) y[k] -= L[k * rows + i] * z[i];
+          });
         }
-        for (int k = 0; k < c->size; ++k)
-          for (int i = 0; i < below.size; ++i) x[c->row + k] -= L[k * below.size + i] * x[below.row + i];
-      }
-      const S* D = values_.data() + c->diagonal;
-      for (int k = c->size - 1; k >= 0; --k)
-        for (int i = k + 1; i < c->size; ++i) x[c->row + k] -= D[k * c->size + i] * x[c->row + i];
-      for (int k = 0; k < c->size; ++k)
-        if (held_[at(c->row + k)] != 0) x[c->row + k] = S(0.0);
-    }
+        const S* D = values_.data() + c->diagonal;
+        for (int k = n - 1; k >= 0; --k)
+          for (int i = k + 1; i < n; ++i) y[k] -= D[k * n + i] * y[i];
+      });
   }
 
   /// Whether a row, in the order of the nodes, depends on others.
@@ -105,35 +103,45 @@ class BlockFactor {
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  void eliminate(const BlockPattern::Column& c) {
-    if (c.size == 3)
-      eliminate_diagonal<3>(c);
+  /// act(n), with the three rows of a ball joint as a constant, so that loops unroll.
+  template <class F>
+  static void sized(int n, F&& act) {
+    if (n == 3)
+      act(std::integral_constant<int, 3>());
     else
-      eliminate_diagonal<Eigen::Dynamic>(c);
+      act(n);
+  }
+
+  void eliminate(const BlockPattern::Column& c) {
     const auto& columns = pattern_->columns();
     const auto& blocks = pattern_->blocks();
-    int update = c.first_update;
-    // X = L D of the blocks below, while L itself replaces them.
-    scaled_.resize(at(c.last - c.first) * kMaxBlock * kMaxBlock);
-    for (int b = c.first; b < c.last; ++b)
-      divide(c, blocks[at(b)].offset, columns[at(blocks[at(b)].place)].size, scaled(b - c.first));
-    for (int b = c.first; b < c.last; ++b) {
-      const int rows_b = columns[at(blocks[at(b)].place)].size;
-      const S* L = values_.data() + blocks[at(b)].offset;
-      for (int a = b; a < c.last; ++a, ++update) {
-        const int rows_a = columns[at(blocks[at(a)].place)].size;
-        subtract_product(scaled(a - c.first), rows_a, L, rows_b, c.size,
-                         values_.data() + pattern_->updates()[at(update)]);
+    sized(c.size, [&](auto n) {
+      eliminate_diagonal(c, n);
+      // X = L D of the blocks below, while L itself replaces them.
+      scaled_.resize(at(c.last - c.first) * kMaxBlock * kMaxBlock);
+      for (int b = c.first; b < c.last; ++b)
+        sized(columns[at(blocks[at(b)].place)].size,
+              [&](auto rows) { divide(c, n, blocks[at(b)].offset, rows, scaled(b - c.first)); });
+      int update = c.first_update;
+      for (int b = c.first; b < c.last; ++b) {
+        const S* L = values_.data() + blocks[at(b)].offset;
+        for (int a = b; a < c.last; ++a, ++update)
+          sized(columns[at(blocks[at(a)].place)].size, [&](auto rows_a) {
+            sized(columns[at(blocks[at(b)].place)].size, [&](auto rows_b) {
+              subtract_product(scaled(a - c.first), rows_a, L, rows_b, n,
+                               values_.data() + pattern_->updates()[at(update)]);
+            });
+          });
       }
-    }
+    });
   }
 
   S* scaled(int b) { return scaled_.data() + b * kMaxBlock * kMaxBlock; }
 
-  /// The diagonal block into its L and D, in place.
-  template <int Size>
-  void eliminate_diagonal(const BlockPattern::Column& c) {
-    const int n = Size == Eigen::Dynamic ? c.size : Size;
+  /// The diagonal block into its L and D, in place. Held rows have no inverse pivot and a zero column, so
+  /// that they take no part in what follows.
+  template <class Size>
+  void eliminate_diagonal(const BlockPattern::Column& c, Size n) {
     S* A = values_.data() + c.diagonal;
     for (int j = 0; j < n; ++j) {
       S d = A[j * n + j];
@@ -144,52 +152,54 @@ class BlockFactor {
                         (std::isfinite(from) && !(left > (keep_ ? kRounding : vanished_) * from));
       if (gone) {
         held_[at(c.row + j)] = 1;
+        inverse_[at(c.row + j)] = S(0.0);
         A[j * n + j] = S(1.0);
         for (int i = j + 1; i < n; ++i) A[j * n + i] = S(0.0);
         continue;
       }
       smallest_ = left < smallest_ * from ? left / from : smallest_;
+      const S inverse = S(1.0) / d;
+      inverse_[at(c.row + j)] = inverse;
       A[j * n + j] = d;
       for (int i = j + 1; i < n; ++i) {
         S sum = A[j * n + i];
         for (int k = 0; k < j; ++k) sum -= A[k * n + i] * A[k * n + j] * A[k * n + k];
-        A[j * n + i] = sum / d;
+        A[j * n + i] = sum * inverse;
       }
     }
   }
 
   /// A block B below: X from X L^T = B, then B = X D^-1, with zero columns for held rows.
-  void divide(const BlockPattern::Column& c, int offset, int rows, S* X) {
+  template <class Size, class Rows>
+  void divide(const BlockPattern::Column& c, Size n, int offset, Rows rows, S* X) {
     S* B = values_.data() + offset;
     const S* A = values_.data() + c.diagonal;
-    for (int k = 0; k < c.size; ++k) {
+    for (int k = 0; k < n; ++k) {
       S* x = X + k * rows;
       for (int i = 0; i < rows; ++i) x[i] = B[k * rows + i];
       for (int m = 0; m < k; ++m)
-        for (int i = 0; i < rows; ++i) x[i] -= X[m * rows + i] * A[m * c.size + k];
-      if (held_[at(c.row + k)] != 0) {
-        for (int i = 0; i < rows; ++i) x[i] = B[k * rows + i] = S(0.0);
-        continue;
-      }
-      const S inverse = S(1.0) / A[k * (c.size + 1)];
+        for (int i = 0; i < rows; ++i) x[i] -= X[m * rows + i] * A[m * n + k];
+      if (held_[at(c.row + k)] != 0)
+        for (int i = 0; i < rows; ++i) x[i] = S(0.0);
+      const S inverse = inverse_[at(c.row + k)];
       for (int i = 0; i < rows; ++i) B[k * rows + i] = x[i] * inverse;
     }
   }
 
   /// C -= X L^T.
-  static void subtract_product(const S* X, int rows_x, const S* L, int rows_l, int n, S* C) {
-    if (rows_x == 3 && rows_l == 3 && n == 3) {
-      Eigen::Map<Mat3<S>> out(C);
-      out -= Eigen::Map<const Mat3<S>>(X).lazyProduct(Eigen::Map<const Mat3<S>>(L).transpose());
-      return;
-    }
+  template <class RowsX, class RowsL, class Size>
+  static void subtract_product(const S* X, RowsX rows_x, const S* L, RowsL rows_l, Size n, S* C) {
     for (int j = 0; j < rows_l; ++j)
-      for (int k = 0; k < n; ++k)
-        for (int i = 0; i < rows_x; ++i) C[j * rows_x + i] -= X[k * rows_x + i] * L[k * rows_l + j];
+      for (int i = 0; i < rows_x; ++i) {
+        S sum = X[i] * L[j];
+        for (int k = 1; k < n; ++k) sum += X[k * rows_x + i] * L[k * rows_l + j];
+        C[j * rows_x + i] -= sum;
+      }
   }
 
   const BlockPattern* pattern_ = nullptr;
   std::vector<S> values_, scaled_;
+  std::vector<S> inverse_;  ///< 1 / pivot of each row; 0 of held ones
   std::vector<double> diagonal_;
   std::vector<std::uint8_t> held_;
   double smallest_ = 1, vanished_ = kVanished;

@@ -1,0 +1,25 @@
+// The rotation matrix of a quaternion.
+#pragma once
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// R of a quaternion (w, x, y, z), of any length.
+template <class S>
+Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
+  const S two = S(2.0) / (w * w + x * x + y * y + z * z);
+  Mat3<S> R;
+  R(0, 0) = S(1.0) - two * (y * y + z * z);
+  R(1, 1) = S(1.0) - two * (x * x + z * z);
+  R(2, 2) = S(1.0) - two * (x * x + y * y);
+  R(0, 1) = two * (x * y - w * z);
+  R(1, 0) = two * (x * y + w * z);
+  R(0, 2) = two * (x * z + w * y);
+  R(2, 0) = two * (x * z - w * y);
+  R(1, 2) = two * (y * z - w * x);
+  R(2, 1) = two * (y * z + w * x);
+  return R;
+}
+
+}  // namespace pliant
