@@ -35,6 +35,12 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     nodes_ = surface.node;
     triangles_ = surface.triangles;
     p = surface.of(mesh.X);
+    if (m.n_s == 0) {
+      const Eigen::Matrix3Xd all = m.part->s(mesh.nodes, m.part->parameters().rest());
+      rest_.resize(3, static_cast<Eigen::Index>(nodes_.size()));
+      for (Eigen::Index k = 0; k < rest_.cols(); ++k)
+        rest_.col(k) = all.col(nodes_[static_cast<std::size_t>(k)]);
+    }
   } else {
     const Surface surface(*m.part, kResolution);
     material_ = surface.material();
@@ -49,11 +55,37 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
 Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, int number) const {
   if (rigid_.cols() > 0) return rigid_;
   if (part_->local == nullptr) return part_->part->s(material_, model.values(state, number));
-  const Nodes all = model.node_positions(state, number);
+  const bool at_rest = rest_.cols() > 0;
+  const Nodes all = at_rest ? part_->local->displacements(state.q.data() + part_->q0 + 7)
+                            : model.node_positions(state, number);
   Eigen::Matrix3Xd p(3, static_cast<Eigen::Index>(nodes_.size()));
   for (Eigen::Index k = 0; k < p.cols(); ++k)
     p.col(k) = all.row(nodes_[static_cast<std::size_t>(k)]).transpose();
+  if (at_rest) p += rest_;
   return p;
+}
+
+double ContactMesh::speed(const State& state) const {
+  if (part_->q0 < 0) return 0;
+  const PartModel& m = *part_;
+  double speed = 0;
+  if (m.n_s > 0) {
+    VecMax<Dual<1>> q_s(m.n_s), q_s_dot(m.n_s);
+    for (int k = 0; k < m.n_s; ++k) {
+      q_s_dot[k] = state.v[m.v0 + 6 + k];
+      q_s[k].v = state.q[m.q0 + 7 + k];
+      q_s[k].d[0] = state.v[m.v0 + 6 + k];
+    }
+    speed = m.part
+                ->s_along(m.local != nullptr ? m.local->mesh().nodes : material_,
+                          m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
+                .colwise()
+                .norm()
+                .maxCoeff();
+  }
+  if (m.local != nullptr)
+    speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();
+  return speed;
 }
 
 }  // namespace pliant

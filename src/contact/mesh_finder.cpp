@@ -166,18 +166,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
                 mesh.positions(*model_, state, part).colwise().norm().maxCoeff()};
     if (m.q0 >= 0) {
       const auto v = state.v.segment(m.v0, m.n_v());
-      swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm();
-      if (m.n_s > 0) {  // of the points at rest
-        std::vector<PointJet<double>> jets;
-        Counters counters;
-        m.part->points(m.local != nullptr ? m.local->mesh().nodes : mesh.material(),
-                       state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s), jets, counters);
-        double fastest = 0;
-        for (const PointJet<double>& jet : jets) fastest = std::max(fastest, jet.p1.norm());
-        swept.speed += fastest;
-      }
-      if (m.local != nullptr)
-        swept.speed += m.local->displacements(v.data() + 6 + m.n_s).rowwise().norm().maxCoeff();
+      swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(state);
       swept.reach += h * (swept.speed + model_->body().gravity_at(t).norm() * h);
     } else if (m.motion != nullptr) {
       for (const double when : {t, t + h}) {

@@ -41,6 +41,23 @@ Eigen::Matrix3Xd Part::s(const std::vector<Material<double>>& at,
   return out;
 }
 
+Eigen::Matrix3Xd Part::s_along(const std::vector<Material<double>>& at,
+                               const ParameterValues<Dual<1>>& values) const {
+  Eigen::Matrix3Xd out(3, static_cast<Eigen::Index>(at.size()));
+  Jet<Dual<1, Pack>> jet;
+  for (std::size_t first = 0; first < at.size(); first += Pack::kLanes) {
+    std::array<Material<double>, Pack::kLanes> four;
+    for (std::size_t i = 0; i < Pack::kLanes; ++i) four[i] = at[std::min(first + i, at.size() - 1)];
+    const Material<Pack> material = gather(four.data());
+    JetBatch<Dual<1, Pack>> batch{&jet, 1, 0, Level::position};
+    jets(values, &material, batch);
+    for (std::size_t i = first; i < std::min(first + Pack::kLanes, at.size()); ++i)
+      for (int r = 0; r < 3; ++r)
+        out(r, static_cast<Eigen::Index>(i)) = jet.s[r].d[0][static_cast<int>(i - first)];
+  }
+  return out;
+}
+
 std::vector<Mat3<double>> Part::chain_gradient(const Eigen::Matrix3Xd& e,
                                                const ParameterValues<double>& values) const {
   std::vector<Mat3<double>> F(static_cast<std::size_t>(e.cols()));

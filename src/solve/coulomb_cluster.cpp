@@ -21,7 +21,7 @@ constexpr double kExactOfPoints = 1e-6;
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
 /// Most contacts that are solved as one system.
-constexpr int kMostDense = 100, kMostDenseOfPoints = 25;
+constexpr int kMostDense = 100;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.
@@ -148,7 +148,8 @@ void CoulombCluster::set(const VecX<double>& impulses) {
 /// slide. Leaves the best it has seen; returns whether that is exact.
 bool CoulombCluster::relax(int most, int history, int& sweeps) {
   const Eigen::Index n = 3 * size_;
-  auto& [now, next, best, last, r, last_r, weight, dr, dp] = scratch_;
+  auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
+  VecX<double>& best = scratch_.best;
   weight.resize(n);  // impulses as velocities
   for (int i = 0; i < size_; ++i)
     weight.segment<3>(3 * i).setConstant(std::max(point(i).W(0, 0), std::numeric_limits<double>::min()));
@@ -215,14 +216,15 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
 /// Returns whether it found the solution.
 bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
-  const bool dense = size_ <= (points_ ? kMostDenseOfPoints : kMostDense);
+  const bool dense = size_ <= kMostDense;
   const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
   const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
   for (const auto* round = first; round != last; ++round) {
     const auto& [most, history] = *round;
     if (!dense && history == 0) continue;  // it would take too long
     if (relax(most, history, sweeps)) return true;
-    if (dense && newton() && residual() <= exact_) return true;
+    if (points_ && (residual() <= exact_ || (dense && newton_of_points()))) return true;
+    if (!points_ && dense && newton() && residual() <= exact_) return true;
   }
   return false;
 }

@@ -2,14 +2,35 @@
 // extrapolated, and Newton's method on all of them at once.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include <pliant/solve/coulomb_system.h>
+
+#include "mover_system.h"
 
 namespace pliant {
 
+/// The law of a contact, linear about its impulse: F + T du + D dp = 0.
+struct LinearLaw {
+  int contact = 0;
+  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: where it is linear
+  Mat3<double> T = Mat3<double>::Zero(), D = T;
+};
+
 /// What a search works with, kept from cluster to cluster.
 struct CoulombScratch {
-  VecX<double> now, next, best, last, r, last_r, weight;
-  MatX<double> dr, dp;
+  struct Sweeps {
+    VecX<double> now, next, last, r, last_r, weight;
+    MatX<double> dr, dp;
+  } sweeps;
+  struct Linear {
+    std::vector<LinearLaw> open;
+    std::vector<std::pair<int, Vec3<double>>> drop;  ///< contacts and changes of their impulses
+    MoverSystem movers;
+  } linear;
+  VecX<double> best;  ///< impulses
+  Eigen::Matrix3Xd TS;
 };
 
 class CoulombCluster {
@@ -36,7 +57,11 @@ class CoulombCluster {
   void take(VecX<double>& impulses) const;
   void set(const VecX<double>& impulses);
   bool relax(int most, int history, int& sweeps);
+  void linearise(double proximal);
+  void couple_movers();
+  void solve_linear();
   bool newton();
+  bool newton_of_points();
   bool search(int& sweeps);
 
   CoulombSystem& system_;

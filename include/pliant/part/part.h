@@ -157,6 +157,9 @@ class Part {
 
   /// Reference shape of material points, body frame: 3 x n.
   Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
+  /// Its derivative by the direction that the dual parts of the values carry: 3 x n.
+  Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
+                           const ParameterValues<Dual<1>>& values) const;
   /// dF: derivative of the chain of deformations at undeformed points e (3 x n), one 3x3 each.
   std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
                                            const ParameterValues<double>& values) const;
