@@ -74,6 +74,7 @@ void CoulombCluster::solve_linear() {
       movers.add(push.first, Y.lazyProduct(-law.F));
       for (int s = at.first_side; s < at.last_side; ++s) {
         const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+        if (!movers.has(side.first)) continue;
         const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
         if (push.size == 3 && side.size == 3) {
           const Mat3<double> TS = law.T * S.leftCols<3>();
@@ -91,6 +92,7 @@ void CoulombCluster::solve_linear() {
     Vec3<double> du = Vec3<double>::Zero();
     for (int s = at.first_side; s < at.last_side; ++s) {
       const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      if (!movers.has(side.first)) continue;
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       du += S * movers.change(side.first, side.size);
     }
@@ -98,7 +100,7 @@ void CoulombCluster::solve_linear() {
   }
 }
 
-/// Contacts couple what each of them pushes.
+/// Contacts couple what each of them pushes with all at its sides that any contact pushes.
 void CoulombCluster::couple_movers() {
   auto& movers = scratch_.linear.movers;
   auto for_each_push = [&](auto&& act) {
@@ -112,7 +114,8 @@ void CoulombCluster::couple_movers() {
   movers.number();
   for_each_push([&](const Point& at, const CoulombSystem::Term& push) {
     for (int s = at.first_side; s < at.last_side; ++s)
-      movers.couple(push.first, system_.sides_[CoulombSystem::at(s)].first);
+      if (const int side = system_.sides_[CoulombSystem::at(s)].first; movers.has(side))
+        movers.couple(push.first, side);
   });
   movers.order();
 }

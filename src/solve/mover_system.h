@@ -24,6 +24,9 @@ class MoverSystem {
   /// Finds the order of elimination.
   void order();
 
+  /// Whether a velocity is of a mover here.
+  bool has(int x) const { return mover_of_[at(x)] >= 0; }
+
   // Values, as often as wanted.
 
   /// A = 0, b = 0.

@@ -336,6 +336,37 @@ TEST_CASE("N58: a plane that appears and one that is moved push what is in their
   CHECK(std::abs(simulation.ledger().balance) < 1e-6);
 }
 
+TEST_CASE("N58: a plane that swats jointed bodies, and one that appears in them: their joint holds",
+          "[contact][joints]") {
+  const bool moved = GENERATE(true, false);
+  INFO((moved ? "swat" : "appears"));
+  MultiBody body;
+  body.gravity.setZero();
+  Part& a = test::add(body, "a", "box", {}, 800);
+  a.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.05}});
+  Part& b = test::add(body, "b", "box", {}, 500);
+  b.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.05}}).place({0.6, 0, 0});
+  body.ball("joint", point(a, 0, 0), point(b, 0, kPi));
+  // Through the bodies' lower half at 0.05 s; where it is moved, at 2 m/s from below them.
+  ContactPlane& plane =
+      moved ? body.plane("hand", TimeVector(0, 0, TimeFunction::formula("2 * t - 0.3")), {0.1, 0, 1})
+            : body.plane("hand", TimeVector(0, 0, -0.02), {0.1, 0, 1});
+  plane.on = 0.05;
+  Simulation simulation(body, "rk4");
+  double fastest = 0;
+  for (int i = 0; i < 500; ++i) {
+    simulation.step(1e-3);
+    const State& state = simulation.state();
+    fastest = std::max({fastest, state.v.segment<3>(0).norm(), state.v.segment<3>(6).norm()});
+    REQUIRE(simulation.model().gap(state, 0) <= 1e-6 * 0.6);
+  }
+  const Ledger ledger = simulation.ledger();
+  CHECK(ledger.kinetic > 0);
+  CHECK(std::abs(ledger.balance) <= 1e-6 * std::max(1.0, ledger.kinetic));
+  CHECK(fastest < (moved ? 5 : 2));
+  if (moved) CHECK(ledger.momentum[2] > 0.5 * 2 * (a.total_mass() + b.total_mass()));
+}
+
 TEST_CASE("what does not touch is asked nothing, and bits do not depend on the past", "[contact]") {
   MultiBody body;
   body.contact.restitution = 0.5;

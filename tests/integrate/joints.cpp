@@ -408,6 +408,46 @@ TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings
   CHECK((q[0] - q[1]).norm() <= 1e-9);
 }
 
+TEST_CASE("N60: strings that go taut at once, and one whose ends begin in one place", "[joints]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    INFO(method);
+    // Both strings are taut 0.8 m below the line of their anchors.
+    MultiBody body;
+    Part& mass = sphere(body, "mass", {0, 0, -0.1});
+    for (const double side : {-0.6, 0.6})
+      body.join(side < 0 ? "left" : "right", String{1}, {world(side, 0, 0), centre(mass)});
+    Simulation simulation(body, method);
+    Workspace<double> work;
+    for (int i = 0; i < 600; ++i) {
+      simulation.step(1e-3);
+      const State& state = simulation.state();
+      for (const double side : {-0.6, 0.6})
+        REQUIRE((state.q.head<3>() - Vec3<double>(side, 0, 0)).norm() <= 1 + 1e-9);
+      simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
+      REQUIRE(work.joints.lambda.minCoeff() >= 0);
+    }
+    CHECK(simulation.state().q[2] == Approx(-0.8).epsilon(1e-9));
+    CHECK(simulation.state().v.norm() <= 1e-9);
+    CHECK(work.joints.lambda[0] == Approx(mass.total_mass() * 9.81 / 1.6).epsilon(1e-9));
+    CHECK(work.joints.lambda[1] == Approx(mass.total_mass() * 9.81 / 1.6).epsilon(1e-9));
+
+    MultiBody together;
+    Part& other = sphere(together, "mass", {0, 0, 0});
+    together.join("string", String{0.2}, {world(0, 0, 0), centre(other)});
+    Simulation falling(together, method);
+    for (int i = 0; i < 400; ++i) {
+      falling.step(1e-3);
+      REQUIRE(falling.state().q.allFinite());
+      REQUIRE(falling.state().q.head<3>().norm() <= 0.2 * (1 + 1e-9));
+    }
+    CHECK(falling.state().q[2] == Approx(-0.2).epsilon(1e-9));
+  }
+  MultiBody body;
+  Part& mass = sphere(body, "mass", {0, 0, 0});
+  CHECK_THROWS_WITH(body.join("none", String{0}, {world(0, 0, 0), centre(mass)}),
+                    "string 'none' needs a length > 0");
+}
+
 TEST_CASE("N46: joints act through the global parameters, limits and all", "[joints]") {
   // Two points of the world 1.2 m apart hold the tips of an ellipsoid that rests at 1 m: it stretches. Then a
   // limit that does not let it.

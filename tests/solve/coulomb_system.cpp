@@ -103,6 +103,34 @@ TEST_CASE("impulses on points meet Coulomb's law", "[coulomb]") {
   }
 }
 
+TEST_CASE("points that more contacts push than they can move are stopped exactly", "[coulomb]") {
+  Draws draws(11);
+  for (int trial = 0; trial < 20; ++trial) {
+    Line line(2 + trial % 9, 3, 5, 0.4, draws);
+    const CoulombResult result = line.system.solve(line.x);
+    CHECK(result.residual < 1e-5);
+    CHECK(result.fallbacks == 0);
+  }
+}
+
+TEST_CASE("a side that nothing can push is no part of what is solved", "[coulomb]") {
+  CoulombSystem system;
+  const int point = system.add_mover(3), carried = system.add_mover(6), loose = system.add_mover(3);
+  for (const int other : {carried, loose}) {
+    system.add_contact(0.3);
+    system.add_side(point, 0, 3) = (other == carried ? 1 : -1) * Mat3<double>::Identity();
+    system.add_side(other, 0, 3) = (other == carried ? -1 : 1) * Mat3<double>::Identity();
+    system.add_push(point) = (other == carried ? 1 : -1) * Mat3<double>::Identity();
+  }
+  VecX<double> x(12);
+  x << -1, 0.2, 0, 0.5, 0, 0, 0, 0, 0, 3, 0, 0;
+  const CoulombResult result = system.solve(x);
+  CHECK(result.residual < 1e-5);
+  CHECK(x[0] == Approx(0.5).margin(1e-5));
+  CHECK(x[3] == 0.5);
+  CHECK(x[9] == 3);
+}
+
 TEST_CASE("velocities after are those before and what the impulses change", "[coulomb]") {
   Draws draws(9);
   Line line(12, 3, 2, 0.5, draws);
