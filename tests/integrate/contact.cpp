@@ -361,10 +361,12 @@ TEST_CASE("N58: a plane that swats jointed bodies, and one that appears in them:
     REQUIRE(simulation.model().gap(state, 0) <= 1e-6 * 0.6);
   }
   const Ledger ledger = simulation.ledger();
-  CHECK(ledger.kinetic > 0);
   CHECK(std::abs(ledger.balance) <= 1e-6 * std::max(1.0, ledger.kinetic));
   CHECK(fastest < (moved ? 5 : 2));
-  if (moved) CHECK(ledger.momentum[2] > 0.5 * 2 * (a.total_mass() + b.total_mass()));
+  if (moved)
+    CHECK(ledger.momentum[2] > 0.5 * 2 * (a.total_mass() + b.total_mass()));
+  else
+    CHECK(simulation.state().q[2] > 0.01);  // lifted, at a bounded speed
 }
 
 TEST_CASE("what does not touch is asked nothing, and bits do not depend on the past", "[contact]") {
