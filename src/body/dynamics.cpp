@@ -200,6 +200,7 @@ void take_factor(const PartModel& m, PartWorkspace<double>& w) {
     return;
   }
   w.rigid = m.n_s == 0 ? &m : nullptr;
+  if (w.stiffening > 0) w.inertia.M.bottomRightCorner(m.n_s, m.n_s) += w.stiffening * m.part->K_s();
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
 }
 

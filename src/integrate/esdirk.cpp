@@ -8,6 +8,7 @@
 
 #include "linear_growth.h"
 #include "stage_solver.h"
+#include "stiff_pushes.h"
 
 namespace pliant {
 
@@ -87,6 +88,7 @@ void Esdirk::step(const Dynamics& dynamics, State& state, Workspace<double>& wor
   hold_inertialess(model, work, state.v);
   normalise_rotations(model, state.q);
   settle_frames(dynamics, t + h, state, work);
+  const StiffPushes pushes(dynamics, t + h, c, state, work);
   settle(dynamics, t + h, state, work, counters);
 }
 

@@ -8,6 +8,7 @@
 
 #include "linear_growth.h"
 #include "stage_solver.h"
+#include "stiff_pushes.h"
 
 namespace pliant {
 
@@ -42,6 +43,7 @@ void ImplicitMidpoint::step(const Dynamics& dynamics, State& state, Workspace<do
   hold_inertialess(model, work, state.v);
   normalise_rotations(model, state.q);
   settle_frames(dynamics, t + h, state, work);
+  const StiffPushes pushes(dynamics, t + h, 0.5 * h, state, work);
   settle(dynamics, t + h, state, work, counters);
 }
 

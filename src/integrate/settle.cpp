@@ -84,6 +84,7 @@ void keep_momenta(const Group<double, Max>& group, const Workspace<double>& befo
     const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
     momentum.head<3>() = to.R.transpose() * P;
     momentum.segment<3>(3) = to.R.transpose() * L;
+    if (to.stiffening > 0) momentum.tail(m.n_s) += to.stiffening * (m.part->K_s() * from.v_r.tail(m.n_s));
     to.solve_mass(momentum);
     share_of(m, state.v) = world_velocity(to, momentum);
   }

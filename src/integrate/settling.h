@@ -89,6 +89,11 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
     const auto before = group.share(x, i), after = group.share(y, i);
     for (Eigen::Index k = 0; k < M.cols(); ++k)
       sum += 0.5 * (before[k] + after[k]) * M.col(k).dot(after - before);
+    const double stiffening = group.workspace(i).stiffening;
+    if (stiffening == 0) continue;
+    const int n_s = group.model(i).n_s;
+    sum -= 0.5 * stiffening *
+           (before + after).tail(n_s).dot(group.model(i).part->K_s() * (after - before).tail(n_s));
   }
   return sum;
 }

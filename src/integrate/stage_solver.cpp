@@ -6,6 +6,8 @@
 #include <numeric>
 #include <sstream>
 
+#include <Eigen/Geometry>
+
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/step_failure.h>
 
@@ -16,8 +18,10 @@ namespace {
 /// An iteration that leaves more than this part of its change is slow; without the matrix, and with it.
 constexpr double kSlowFree = 0.2, kSlow = 0.9;
 constexpr int kMostIterations = 20;
+/// Matrices that a stage may have of its own.
+constexpr int kMostMatrices = 4;
 /// Changes that no longer fall and are below this, in sizes and radians, are rounding.
-constexpr double kRounding = 1e-13;
+constexpr double kRounding = 1e-12;
 /// Differences, in sizes of what is varied.
 constexpr double kDifference = 1e-7;
 /// Most velocities in a dense matrix.
@@ -40,6 +44,21 @@ void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& c
     const Vec3<double> of = theta.tail<3>(), d = by.tail<3>();
     tangent.segment<3>(m.v0 + 3) = 2 / theta.squaredNorm() * (theta[0] * d - by[0] * of - of.cross(d));
     tangent.segment(m.v0 + 6, m.n_s + m.n_d()) = change.segment(m.q0 + 7, m.n_s + m.n_d());
+  }
+}
+
+/// x <- x with the straight part of each part's share turned by its frame into the world, or back: stiff
+/// directions turn with the parts, and the matrix with them.
+enum class Turn { into_world, into_body };
+void turn(const Model& model, const VecX<double>& q, Turn way, VecX<double>& x) {
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    const auto theta = q.segment<4>(m.q0 + 3);
+    const Mat3<double> R =
+        Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]).normalized().toRotationMatrix();
+    auto straight = x.segment<3>(m.v0);
+    straight =
+        (way == Turn::into_world ? Vec3<double>(R * straight) : Vec3<double>(R.transpose() * straight));
   }
 }
 
@@ -96,10 +115,18 @@ void StageSolver::solve(double t, const VecX<double>& r_q, const VecX<double>& r
   q_guess_ = q;
   v_guess_ = v;
   if (iterate(t, r_q, r_v, q, v, work, counters)) return;
-  if (!linear_) {
-    linearise(work, counters);
-    q = q_guess_;
-    v = v_guess_;
+  // Where the matrix of the start of the step, as of stiff parts that turn on each other, is no longer near,
+  // that of the guess is taken, and then those of what it leads to.
+  for (int i = linear_ ? 1 : 0; i <= kMostMatrices; ++i) {
+    if (i <= 1) {
+      q = q_guess_;
+      v = v_guess_;
+    }
+    if (!q.allFinite() || !v.allFinite()) break;
+    if (i == 0)
+      linearise(state_->time(), state_->q, state_->v, work, counters);
+    else
+      linearise(t, q, v, work, counters);
     if (iterate(t, r_q, r_v, q, v, work, counters)) return;
   }
   std::ostringstream message;
@@ -139,6 +166,8 @@ bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>&
 void StageSolver::correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const {
   if (linear_) {
     to_tangent(model_, q, rho_q, tangent_);
+    turn(model_, q, Turn::into_body, tangent_);
+    turn(model_, q, Turn::into_body, rho_v);
     for (const Cluster& of : clusters_) {
       const auto n = static_cast<Eigen::Index>(of.velocities.size());
       right_.resize(n);
@@ -148,6 +177,7 @@ void StageSolver::correct(const VecX<double>& q, VecX<double>& rho_q, VecX<doubl
       right_ = of.factor.solve(right_).eval();
       for (Eigen::Index i = 0; i < n; ++i) rho_v[of.velocities[static_cast<std::size_t>(i)]] = right_[i];
     }
+    turn(model_, q, Turn::into_world, rho_v);
   }
   dynamics_->coordinate_rates(q, rho_v, tangent_);
   rho_q += c_ * tangent_;
@@ -157,8 +187,8 @@ void StageSolver::damp(VecX<double>& of_q, VecX<double>& of_v) const {
   if (linear_) correct(state_->q, of_q, of_v);
 }
 
-void StageSolver::linearise(Workspace<double>& work, StepCounters& counters) {
-  const double t = state_->time();
+void StageSolver::linearise(double t, const VecX<double>& q0, const VecX<double>& v0, Workspace<double>& work,
+                            StepCounters& counters) {
   Eigen::Index most = 0;
   for (Cluster& of : clusters_) {
     const auto n = static_cast<Eigen::Index>(of.velocities.size());
@@ -173,40 +203,44 @@ void StageSolver::linearise(Workspace<double>& work, StepCounters& counters) {
     of.A_v.setZero(n, n);
     most = std::max(most, n);
   }
-  dynamics_->accelerations(t, state_->q, state_->v, *state_, work, RankRule::decide);
-  const VecX<double> v_dot = work.v_dot;
-  VecX<double> q = state_->q, v = state_->v, turn;
+  dynamics_->accelerations(t, q0, v0, *state_, work, RankRule::keep);
+  VecX<double> v_dot = work.v_dot;
+  turn(model_, q0, Turn::into_body, v_dot);
+  VecX<double> q = q0, v = v0;
   // A parameter that rests at a limit stays there.
   std::vector<bool> rests(static_cast<std::size_t>(model_.n_v()));
   for (const PartModel& m : model_.parts())
     for (int k = 0; m.q0 >= 0 && k < m.n_s; ++k)
       rests[at(m.v0 + 6 + k)] = state_->at_limit[at(m.limit0 + k)] != 0;
   for (Eigen::Index column = 0; column < most; ++column) {
-    VecX<double> change = VecX<double>::Zero(v.size());
+    VecX<double> by = VecX<double>::Zero(v.size());
     for (const Cluster& of : clusters_) {
       if (column >= static_cast<Eigen::Index>(of.velocities.size())) continue;
       const Eigen::Index k = of.velocities[static_cast<std::size_t>(column)];
-      if (!rests[static_cast<std::size_t>(k)]) change[k] = difference_[k];
+      if (!rests[static_cast<std::size_t>(k)]) by[k] = difference_[k];
     }
+    VecX<double> change = by;
+    turn(model_, q0, Turn::into_world, change);
     auto take = [&](MatX<double> Cluster::*A) {
       ++counters.evaluations;
+      turn(model_, q0, Turn::into_body, work.v_dot);
       for (Cluster& of : clusters_) {
         const auto n = static_cast<Eigen::Index>(of.velocities.size());
         if (column >= n) continue;
-        const double by = change[of.velocities[static_cast<std::size_t>(column)]];
-        if (by == 0) continue;
+        const double step = by[of.velocities[static_cast<std::size_t>(column)]];
+        if (step == 0) continue;
         for (Eigen::Index i = 0; i < n; ++i) {
           const Eigen::Index k = of.velocities[static_cast<std::size_t>(i)];
-          (of.*A)(i, column) = (work.v_dot[k] - v_dot[k]) / by;
+          (of.*A)(i, column) = (work.v_dot[k] - v_dot[k]) / step;
         }
       }
     };
-    q = state_->q;
+    q = q0;
     advance_coordinates(model_, q, change, 1);
-    dynamics_->accelerations(t, q, state_->v, *state_, work, RankRule::keep);
+    dynamics_->accelerations(t, q, v0, *state_, work, RankRule::keep);
     take(&Cluster::A_q);
-    v = state_->v + change;
-    dynamics_->accelerations(t, state_->q, v, *state_, work, RankRule::keep);
+    v = v0 + change;
+    dynamics_->accelerations(t, q0, v, *state_, work, RankRule::keep);
     take(&Cluster::A_v);
   }
   for (Cluster& of : clusters_) {

@@ -1,8 +1,9 @@
 // The equations of an implicit stage,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
 // by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, of the derivatives A_q and A_v of v_dot, is
-// only formed where the iteration without it is slow, once a step, by differences; parts that neither joints
-// nor springs tie together have one each.
+// only formed where the iteration without it is slow, by differences, once a step, and again where stiff
+// parts turn so far on each other in it that it no longer helps; parts that neither joints nor springs tie
+// together have one each. It stands in the frames of the parts, with which stiff directions turn.
 #pragma once
 
 #include <string>
@@ -38,7 +39,9 @@ class StageSolver {
   };
   bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v,
                Workspace<double>& work, StepCounters& counters);
-  void linearise(Workspace<double>& work, StepCounters& counters);
+  /// Takes the matrices at (t, q, v).
+  void linearise(double t, const VecX<double>& q, const VecX<double>& v, Workspace<double>& work,
+                 StepCounters& counters);
   /// (rho_q, rho_v) <- the change of (q, v) that takes these off the equations.
   void correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,8 @@
 #include <pliant/io/number_text.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/state_row.h>
+
+#include "step_between.h"
 
 namespace pliant {
 namespace {
@@ -218,6 +221,9 @@ State Recording::at(double t) const {
   if (t - low.time() <= tolerance) return low;
   const double x = (t - low.time()) / span;
   const bool long_step = high.error > 0;
+  if (long_step)
+    if (std::optional<State> there = step_between(*model_, low, high, x, quintic(*model_, low, high, 0.5)))
+      return *there;
   low.q = long_step ? quintic(*model_, low, high, x) : cubic(*model_, low, high, x);
   for (const PartModel& part : model_->parts())
     if (part.q0 >= 0) low.q.segment<4>(part.q0 + 3).normalize();

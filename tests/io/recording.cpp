@@ -12,6 +12,8 @@
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/run_files.h>
+#include <pliant/part/primitive.h>
+#include <pliant/shape/ellipsoid.h>
 
 using namespace pliant;
 namespace fs = std::filesystem;
@@ -154,6 +156,60 @@ TEST_CASE("pictures between two steps lie on the motion to fourth order") {
     last = worst;
   }
   CHECK(last < 1e-6);
+}
+
+TEST_CASE("pictures between two steps to a tolerance are as near to the motion as the steps are") {
+  auto errors = [](const char* method, double tolerance, double stiffness) {
+    struct {
+      double at_steps = 0, between = 0;
+    } worst;
+    auto build = [&](MultiBody& body) {
+      Part& part = body.add<Primitive<Ellipsoid>>("body");
+      part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {0.01, 5, 0.01});
+      if (stiffness > 0)
+        part.stiffness({{"a1", stiffness}, {"a2", stiffness}, {"a3", stiffness}}).damping(0, 1e-3);
+      else
+        part.freeze({"a1", "a2", "a3"});
+      body.ball("joint", world(0.3, 0, 0), point(part, 0, 0));
+    };
+    const NewFolder folder;
+    MultiBody body, fine;
+    build(body);
+    build(fine);
+    Simulation simulation(body, method, 1, tolerance);
+    Simulation exact(fine, stiffness > 0 ? "esdirk" : "dop853", 1, stiffness > 0 ? 1e-7 : 1e-12);
+    {
+      write_layout(folder.path, simulation.model(), FrameSchedule::with_free_steps(2, 50), {});
+      RecordingWriter writer = RecordingWriter::create(folder.path, simulation.model());
+      for (writer.append(simulation.state()); simulation.time() < 2; writer.append(simulation.state()))
+        simulation.step_up_to(2);
+      writer.flush();
+    }
+    const Recording recording(folder.path, simulation.model());
+    auto error_at = [&](double t) {
+      while (exact.time() < t) exact.step_up_to(t);
+      const State state = recording.at(t);
+      CHECK(state.time() == Approx(t).epsilon(1e-14));
+      return (state.q - exact.state().q).norm();
+    };
+    for (std::int64_t row = 1; row < recording.rows(); ++row) {
+      const double from = recording.time(row - 1), to = recording.time(row);
+      for (const double x : {0.2, 0.5, 0.8})
+        worst.between = std::max(worst.between, error_at(from + x * (to - from)));
+      worst.at_steps = std::max(worst.at_steps, error_at(to));
+    }
+    return worst;
+  };
+  for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+    CAPTURE(tolerance);
+    const auto worst = errors("dop853", tolerance, 0);
+    CAPTURE(worst.at_steps, worst.between);
+    CHECK(worst.between < 1.5 * worst.at_steps);
+  }
+  // Where no explicit step follows it is interpolated.
+  const auto worst = errors("esdirk", 1e-5, 1e10);
+  CAPTURE(worst.at_steps, worst.between);
+  CHECK(worst.between < 3 * worst.at_steps);
 }
 
 TEST_CASE("a recorded time gives the recorded state itself") {

@@ -33,6 +33,7 @@ struct PartWorkspace {
   SymmetricFactor<S> factor;         ///< of M
   const PartModel* rigid = nullptr;  ///< instead of factor: a part whose M^-1 is constant
   VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), and the d_ddot at its joints
+  double stiffening = 0;             ///< this times K of q_s is added to M: what pushes move is stiff
   std::vector<int> pressed;          ///< dynamic parameters that their limit holds back
   Counters counters;
 

@@ -60,10 +60,10 @@ class Recording {
   /// fit.
   State state(std::int64_t row) const;
   /// The state at a time (s): the recorded one where there is one, else q by cubic Hermite interpolation from
-  /// q and v of the states around it, of steps to a tolerance by quintic from the accelerations too, v
-  /// linearly; for pictures and meshes, not
-  /// to go on from. Times outside the recording give its first or last state. Throws RecordingMismatch,
-  /// std::out_of_range when it is empty.
+  /// q and v of the states around it, v linearly. Of steps to a tolerance it is that of a step of order 8
+  /// from the state before, where such a step leads to the state after it, else q is quintic, from the
+  /// accelerations too. For pictures and meshes, not to go on from. Times outside the recording give its
+  /// first or last state. Throws RecordingMismatch, std::out_of_range when it is empty.
   State at(double time) const;
 
  private:
