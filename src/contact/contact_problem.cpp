@@ -199,7 +199,7 @@ void ContactProblem::bound_shifts(double since, double most) {
   }
 }
 
-void ContactProblem::part_bodies(double most) {
+void ContactProblem::part_bodies(double most, double enough) {
   for (int k = 0; k < system_.size(); ++k) {
     system_.set_friction(k, 0);
     system_.impulse(k).setZero();
@@ -208,7 +208,7 @@ void ContactProblem::part_bodies(double most) {
       system_.constant(k)[0] = std::max(contacts_[at(k)].gap + system_.velocity(k, shift_)[0], -most);
   }
   VecX<double> parted = VecX<double>::Zero(movers_.n_x());
-  system_.solve(parted);
+  system_.solve(parted, enough);
   shift_ += parted;
 }
 

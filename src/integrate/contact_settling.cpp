@@ -1,6 +1,7 @@
 #include <pliant/integrate/contact_settling.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include <pliant/integrate/settle.h>
@@ -20,8 +21,8 @@ constexpr int kMostPartings = 8;
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kRounding = 1e-8;
-/// Meshes may overlap by this, in sizes, without being parted.
-constexpr double kMeshOverlap = 2e-4;
+/// Meshes may overlap by this, in sizes, without being parted; and parted ones by this share of it.
+constexpr double kMeshOverlap = 2e-4, kMeshLeft = 0.03;
 
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
@@ -83,6 +84,7 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
   bool smooth = false, deep = false;
+  double overlap = std::numeric_limits<double>::infinity();  // that the smallest of the meshes may have
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
@@ -95,11 +97,13 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
       smooth = true;
       continue;
     }
-    deep = deep || c.gap + moved < -kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
+    const double may = kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
+    deep = deep || c.gap + moved < -may;
+    overlap = std::min(overlap, may);
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(since_of_limits, h);
-  if (deep) problem.part_bodies(most);
+  if (deep) problem.part_bodies(most, smooth ? 0 : kMeshLeft * overlap);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
   // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
   // that of hands that move joints, on which impulses push back, and of impulses at one moment.

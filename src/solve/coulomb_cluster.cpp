@@ -35,8 +35,13 @@ constexpr double kBounded = 2;
 
 }  // namespace
 
-CoulombCluster::CoulombCluster(CoulombSystem& system, const int* contacts, int size, CoulombScratch& scratch)
-    : system_(system), contacts_(contacts), size_(size), scratch_(scratch) {
+CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch)
+    : system_(system),
+      number_(number),
+      contacts_(system.order_.data() + system.clusters_[CoulombSystem::at(number)]),
+      size_(system.clusters_[CoulombSystem::at(number) + 1] - system.clusters_[CoulombSystem::at(number)]),
+      enough_(enough),
+      scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
     for (int s = point(i).first_side; s < point(i).last_side; ++s)
       points_ = points_ || system_.sides_[CoulombSystem::at(s)].size == 3;
@@ -54,8 +59,8 @@ void CoulombCluster::set_scale() {
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
     }
   }
-  exact_ = std::max((points_ ? kExactOfPoints : kExact) * scale,
-                    kUlps * std::numeric_limits<double>::epsilon() * terms);
+  exact_ = std::max({(points_ ? kExactOfPoints : kExact) * scale,
+                     kUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
   allowed_ = std::max(exact_, (points_ || size_ > kMostDense ? kLeftOfMany : kLeft) * scale);
 }
 

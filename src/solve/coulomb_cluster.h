@@ -18,6 +18,16 @@ struct LinearLaw {
   Mat3<double> T = Mat3<double>::Zero(), D = T;
 };
 
+/// What Newton's method solves for each cluster of points, and where what contacts push and their sides are
+/// in it.
+struct Coupling {
+  std::vector<MoverSystem> clusters;
+  std::vector<int> numbers;                ///< of movers in theirs; -1 of those that no contact pushes
+  std::vector<int> push_rows, side_rows;   ///< of each push and side; -1 of those of no mover there
+  std::vector<std::size_t> first_block;    ///< of each contact
+  std::vector<MoverSystem::Block> blocks;  ///< of each side in a mover and each push
+};
+
 /// What a search works with, kept from cluster to cluster.
 struct CoulombScratch {
   struct Sweeps {
@@ -27,16 +37,16 @@ struct CoulombScratch {
   struct Linear {
     std::vector<LinearLaw> open;
     std::vector<std::pair<int, Vec3<double>>> drop;  ///< contacts and changes of their impulses
-    MoverSystem movers;
   } linear;
+  Coupling coupling;
   VecX<double> best;  ///< impulses
   Eigen::Matrix3Xd TS;
 };
 
 class CoulombCluster {
  public:
-  /// Of so many contacts. system: its velocities are those by its impulses.
-  CoulombCluster(CoulombSystem& system, const int* contacts, int size, CoulombScratch& scratch);
+  /// Of a number. system: its velocities are those by its impulses; enough: see there.
+  CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
   /// Leaves the impulses in the system.
   void solve(CoulombResult& result);
 
@@ -58,15 +68,17 @@ class CoulombCluster {
   void set(const VecX<double>& impulses);
   bool relax(int most, int history, int& sweeps);
   void linearise(double proximal);
-  void couple_movers();
-  void solve_linear();
+  MoverSystem& couple_movers();
+  void solve_linear(MoverSystem& movers);
   bool newton();
   bool newton_of_points();
   bool search(int& sweeps);
 
   CoulombSystem& system_;
+  int number_;
   const int* contacts_;
   int size_;
+  double enough_;
   CoulombScratch& scratch_;
   bool points_ = false;  // whether points are among the movers
   double exact_ = 0;     // velocities below this are rounding

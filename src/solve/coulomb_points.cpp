@@ -21,7 +21,7 @@ constexpr double kProximal = 0.003, kProximalFactor = 0.7, kLeastProximal = 1e-5
 /// The laws of all contacts, linear about the present impulses. What lifts off goes to zero, and so does
 /// friction without a force on it.
 void CoulombCluster::linearise(double proximal) {
-  auto& [open, drop, movers] = scratch_.linear;
+  auto& [open, drop] = scratch_.linear;
   open.clear();
   drop.clear();
   for (int i = 0; i < size_; ++i) {
@@ -58,80 +58,122 @@ void CoulombCluster::linearise(double proximal) {
 }
 
 /// The changes of the impulses of open contacts, by equations for what they push.
-void CoulombCluster::solve_linear() {
-  auto& [open, drop, movers] = scratch_.linear;
+void CoulombCluster::solve_linear(MoverSystem& movers) {
+  const Coupling& coupling = scratch_.coupling;
   Eigen::Matrix3Xd& TS_of_body = scratch_.TS;
   const double* numbers = system_.numbers_.data();
+  using Y = Eigen::Map<const MatX<double>>;
   movers.clear();
-  for (LinearLaw& law : open) {
+  for (LinearLaw& law : scratch_.linear.open) {
     const Point& at = point(law.contact);
     const Mat3<double> inverse = law.D.inverse();
     law.F = (inverse * law.F).eval();
     law.T = (inverse * law.T).eval();
     for (int r = at.first_push; r < at.last_push; ++r) {
       const CoulombSystem::Term& push = system_.pushes_[CoulombSystem::at(r)];
-      const Eigen::Map<const MatX<double>> Y(numbers + push.numbers, push.size, 3);
-      movers.add(push.first, Y.lazyProduct(-law.F));
-      for (int s = at.first_side; s < at.last_side; ++s) {
-        const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
-        if (!movers.has(side.first)) continue;
-        const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
-        if (push.size == 3 && side.size == 3) {
-          const Mat3<double> TS = law.T * S.leftCols<3>();
-          movers.add(push.first, side.first, Y.topRows<3>().lazyProduct(TS));
-        } else {
-          TS_of_body = law.T.lazyProduct(S);
-          movers.add(push.first, side.first, Y.lazyProduct(TS_of_body));
-        }
+      movers.add(coupling.push_rows[CoulombSystem::at(r)],
+                 Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
+    }
+    const MoverSystem::Block* block =
+        coupling.blocks.data() + coupling.first_block[CoulombSystem::at(contacts_[law.contact])];
+    for (int s = at.first_side; s < at.last_side; ++s) {
+      if (coupling.side_rows[CoulombSystem::at(s)] < 0) continue;
+      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
+      Mat3<double> TS;
+      if (side.size == 3)
+        TS = law.T.lazyProduct(S.leftCols<3>());
+      else
+        TS_of_body = law.T.lazyProduct(S);
+      for (int r = at.first_push; r < at.last_push; ++r, ++block) {
+        const CoulombSystem::Term& push = system_.pushes_[CoulombSystem::at(r)];
+        if (side.size == 3 && push.size == 3)
+          movers.add(*block, Eigen::Map<const Mat3<double>>(numbers + push.numbers).lazyProduct(TS));
+        else if (side.size == 3)
+          movers.add(*block, Y(numbers + push.numbers, push.size, 3).lazyProduct(TS));
+        else
+          movers.add(*block, Y(numbers + push.numbers, push.size, 3).lazyProduct(TS_of_body));
       }
     }
   }
   movers.solve();
-  for (LinearLaw& law : open) {
+  for (LinearLaw& law : scratch_.linear.open) {
     const Point& at = point(law.contact);
     Vec3<double> du = Vec3<double>::Zero();
     for (int s = at.first_side; s < at.last_side; ++s) {
+      const int row = coupling.side_rows[CoulombSystem::at(s)];
+      if (row < 0) continue;
       const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
-      if (!movers.has(side.first)) continue;
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
-      du += S * movers.change(side.first, side.size);
+      du += S.lazyProduct(movers.change(row, side.size));
     }
     law.dp = -law.F - law.T * du;
   }
 }
 
-/// Contacts couple what each of them pushes with all at its sides that any contact pushes.
-void CoulombCluster::couple_movers() {
-  auto& movers = scratch_.linear.movers;
-  auto for_each_push = [&](auto&& act) {
-    for (int i = 0; i < size_; ++i)
+/// Contacts couple what each of them pushes with all at its sides that any contact pushes. That is found
+/// once for each cluster.
+MoverSystem& CoulombCluster::couple_movers() {
+  auto& [clusters, numbers, push_rows, side_rows, first_block, blocks] = scratch_.coupling;
+  if (clusters.empty()) {
+    clusters.resize(system_.clusters_.size() - 1);
+    numbers.resize(CoulombSystem::at(system_.movers()), -1);
+    push_rows.resize(system_.pushes_.size(), -1);
+    side_rows.resize(system_.sides_.size(), -1);
+    first_block.resize(system_.contacts_.size(), 0);
+  }
+  MoverSystem& movers = clusters[CoulombSystem::at(number_)];
+  if (!movers.empty()) return movers;
+  for (int i = 0; i < size_; ++i)
+    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+      const int mover = system_.pushes_[CoulombSystem::at(r)].mover;
+      int& number = numbers[CoulombSystem::at(mover)];
+      if (number < 0) number = movers.add_mover(system_.mover_size(mover));
+    }
+  auto number_at = [&](const CoulombSystem::Term& term) { return numbers[CoulombSystem::at(term.mover)]; };
+  auto for_each_pair = [&](int i, auto&& act) {
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const int column = number_at(side);
+      if (column < 0) continue;
       for (int r = point(i).first_push; r < point(i).last_push; ++r)
-        act(point(i), system_.pushes_[CoulombSystem::at(r)]);
+        act(number_at(system_.pushes_[CoulombSystem::at(r)]), column, side);
+    }
   };
-  movers.begin(system_.n_x());
-  for_each_push(
-      [&](const Point&, const CoulombSystem::Term& push) { movers.add_mover(push.first, push.size); });
-  movers.number();
-  for_each_push([&](const Point& at, const CoulombSystem::Term& push) {
-    for (int s = at.first_side; s < at.last_side; ++s)
-      if (const int side = system_.sides_[CoulombSystem::at(s)].first; movers.has(side))
-        movers.couple(push.first, side);
-  });
+  for (int i = 0; i < size_; ++i)
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
   movers.order();
+  auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
+  for (int i = 0; i < size_; ++i) {
+    first_block[CoulombSystem::at(contacts_[i])] = blocks.size();
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
+      MoverSystem::Block block = movers.block(row, column);
+      block.first += CoulombSystem::at(in_mover(side) * block.stride);
+      blocks.push_back(block);
+    });
+    for (int r = point(i).first_push; r < point(i).last_push; ++r)
+      push_rows[CoulombSystem::at(r)] = movers.row(number_at(system_.pushes_[CoulombSystem::at(r)]));
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      if (const int number = number_at(side); number >= 0)
+        side_rows[CoulombSystem::at(s)] = movers.row(number) + in_mover(side);
+    }
+  }
+  return movers;
 }
 
 /// Leaves the best it has seen; returns whether that is exact.
 bool CoulombCluster::newton_of_points() {
-  auto& [open, drop, movers] = scratch_.linear;
+  auto& [open, drop] = scratch_.linear;
   VecX<double>& best = scratch_.best;
   take(best);
   double best_left = residual(), proximal = kProximal;
-  couple_movers();
+  MoverSystem& movers = couple_movers();
   for (int step = 0; step < kMostNewton && best_left > exact_; ++step) {
     linearise(proximal);
     for (const auto& [i, dp] : drop) push(i, dp);
     for (LinearLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
-    solve_linear();
+    solve_linear(movers);
     if (!std::all_of(open.begin(), open.end(), [](const LinearLaw& law) { return law.dp.allFinite(); }))
       break;
     for (const LinearLaw& law : open) push(law.contact, law.dp);

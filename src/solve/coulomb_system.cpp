@@ -12,6 +12,9 @@ namespace {
 constexpr double kSoft = 1e-12;
 }  // namespace
 
+CoulombSystem::CoulombSystem() : scratch_(std::make_unique<CoulombScratch>()) {}
+CoulombSystem::~CoulombSystem() = default;
+
 int CoulombSystem::add_mover(int size) {
   movers_.push_back(movers_.back() + size);
   return static_cast<int>(movers_.size()) - 2;
@@ -35,20 +38,20 @@ void CoulombSystem::add_row() {
   begin_contact(1, 0);
 }
 
-CoulombSystem::Term CoulombSystem::term(int first, int size) {
-  const Term term{first, size, numbers_.size()};
+CoulombSystem::Term CoulombSystem::term(int mover, int first, int size) {
+  const Term term{mover, this->first(mover) + first, size, numbers_.size()};
   numbers_.resize(numbers_.size() + at(3 * size), 0.0);
   return term;
 }
 
 CoulombSystem::Side CoulombSystem::add_side(int mover, int first, int size) {
-  sides_.push_back(term(this->first(mover) + first, size));
+  sides_.push_back(term(mover, first, size));
   ++contacts_.back().last_side;
   return Side(numbers_.data() + sides_.back().numbers, 3, size);
 }
 
 CoulombSystem::Push CoulombSystem::add_push(int mover) {
-  pushes_.push_back(term(first(mover), mover_size(mover)));
+  pushes_.push_back(term(mover, 0, mover_size(mover)));
   ++contacts_.back().last_push;
   return push(size() - 1, pushes(size() - 1) - 1);
 }
@@ -56,11 +59,6 @@ CoulombSystem::Push CoulombSystem::add_push(int mover) {
 CoulombSystem::Push CoulombSystem::push(int k, int i) {
   const Term& term = pushes_[at(contacts_[at(k)].first_push + i)];
   return Push(numbers_.data() + term.numbers, term.size, 3);
-}
-
-/// The mover that a velocity is of.
-int CoulombSystem::mover_at(int x) const {
-  return static_cast<int>(std::upper_bound(movers_.begin(), movers_.end(), x) - movers_.begin()) - 1;
 }
 
 void CoulombSystem::drop_pushes() {
@@ -128,9 +126,9 @@ void CoulombSystem::find_clusters() {
   for (int k = 0; k < size(); ++k) {
     const Point& point = contacts_[at(k)];
     if (sides(k) == 0) continue;
-    mover[at(k)] = mover_at(sides_[at(point.first_side)].first);
+    mover[at(k)] = sides_[at(point.first_side)].mover;
     for (int s = point.first_side + 1; s < point.last_side; ++s) {
-      const int one = leader_of(mover[at(k)]), other = leader_of(mover_at(sides_[at(s)].first));
+      const int one = leader_of(mover[at(k)]), other = leader_of(sides_[at(s)].mover);
       leader[at(std::max(one, other))] = std::min(one, other);
     }
   }
@@ -147,7 +145,7 @@ void CoulombSystem::find_clusters() {
   clusters_.push_back(static_cast<int>(order_.size()));
 }
 
-CoulombResult CoulombSystem::solve(VecX<double>& x) {
+CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
   if (!complete_) complete();
   CoulombResult result;
   x0_ = x;
@@ -156,10 +154,8 @@ CoulombResult CoulombSystem::solve(VecX<double>& x) {
     add_change(k, 1, x_);
     if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x_)[0]);
   }
-  CoulombScratch scratch;
-  for (std::size_t i = 0; i + 1 < clusters_.size(); ++i)
-    CoulombCluster(*this, order_.data() + clusters_[i], clusters_[i + 1] - clusters_[i], scratch)
-        .solve(result);
+  for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)
+    CoulombCluster(*this, i, enough, *scratch_).solve(result);
   // Rounding has grown on the way: what is pushed moves as its impulses say.
   for (int k = 0; k < size(); ++k) add_change(k, 1, x);
   return result;

@@ -13,62 +13,64 @@ class MoverSystem {
  public:
   // The pattern, in this order.
 
-  /// Of no movers yet, whose velocities are among n_x.
-  void begin(int n_x);
-  /// A mover whose velocities begin at `first`; it may be added again. One of three is a point.
-  void add_mover(int first, int size);
-  /// No more movers.
-  void number();
-  /// Two that A couples, told by a velocity of each.
-  void couple(int x, int y);
-  /// Finds the order of elimination.
+  /// Returns the number of the mover. One of three velocities is a point.
+  int add_mover(int size);
+  /// Two that A couples.
+  void couple(int i, int j);
+  /// Finds the order of elimination, and where all numbers go.
   void order();
 
-  /// Whether a velocity is of a mover here.
-  bool has(int x) const { return mover_of_[at(x)] >= 0; }
+  bool empty() const { return movers_.empty(); }
 
   // Values, as often as wanted.
 
+  /// Where the velocities of a mover begin in x and b.
+  int row(int mover) const { return movers_[at(mover)].row; }
+  /// A block of A among its numbers.
+  struct Block {
+    std::size_t first;
+    int stride;  ///< from column to column
+  };
+  /// That of two movers that are coupled.
+  Block block(int i, int j) const;
+
   /// A = 0, b = 0.
   void clear();
-  /// Adds to b from `first` on, in a mover.
+  /// Adds to b from a row on.
   template <class Vector>
-  void add(int first, const Eigen::MatrixBase<Vector>& b) {
-    b_.segment<Vector::RowsAtCompileTime>(row_of_[at(first)], b.rows()) += b;
+  void add(int row, const Eigen::MatrixBase<Vector>& b) {
+    b_.segment<Vector::RowsAtCompileTime>(row, b.rows()) += b;
   }
-  /// Adds to the block of A from `row` and `column` on, in movers that are coupled.
+  /// Adds to A where a block, or columns of one, begin.
   template <class Matrix>
-  void add(int row, int column, const Eigen::MatrixBase<Matrix>& A) {
-    A_.block<Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>(row_of_[at(row)], row_of_[at(column)],
-                                                                   A.rows(), A.cols()) += A;
+  void add(const Block& block, const Eigen::MatrixBase<Matrix>& A) {
+    using Numbers = Eigen::Matrix<double, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>;
+    Eigen::Map<Numbers, 0, Eigen::OuterStride<>>(numbers_.data() + block.first, A.rows(), A.cols(),
+                                                 Eigen::OuterStride<>(block.stride)) += A;
   }
   /// Leaves numbers that are not finite where it is singular.
   void solve();
-  /// x from `first` on, in a mover.
-  auto change(int first, int size) const { return b_.segment(row_of_[at(first)], size); }
+  /// x from a row on.
+  auto change(int row, int size) const { return b_.segment(row, size); }
 
  private:
   struct Mover {
-    int first, size;
-    Eigen::Index row = 0;
-    int neighbours = 0;      ///< that are not eliminated yet
-    bool done = false;       ///< whether it is
-    std::vector<int> after;  ///< neighbours when it was, in ascending order
+    int size = 3, row = 0, turn = 0;  ///< turn: when it is eliminated, -1 of those that are not
+    std::vector<int> near;            ///< neighbours that are left then, in ascending order
+    std::size_t numbers = 0;          ///< where those of its block begin, then of those above and left of it
+    std::size_t targets = 0;          ///< where those begin that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-  bool coupled(int i, int j) const { return coupled_[at(i) * at(n_movers_) + at(j)] != 0; }
-  void set_coupled(int i, int j) { coupled_[at(i) * at(n_movers_) + at(j)] = 1; }
+  bool is_point(int i) const { return movers_[at(i)].size == 3; }
   void eliminate(const Mover& k);
   void solve_others();
 
-  std::vector<Mover> movers_;  // as they came; more than there are, to be used again
-  int n_movers_ = 0;
-  std::vector<int> mover_of_;  // of each velocity; -1 of those of no mover here
-  std::vector<Eigen::Index> row_of_;
-  std::vector<char> coupled_;         // of each pair of movers, also by what is eliminated
-  std::vector<int> points_, others_;  // movers, points in the order of elimination
-  MatX<double> A_, A_others_;
-  VecX<double> b_, b_others_;
+  std::vector<Mover> movers_;
+  std::vector<int> points_;           // in the order of elimination
+  int n_others_ = 0;                  // velocities of the others, whose rows are the first
+  std::vector<std::size_t> targets_;  // blocks of pairs of neighbours, columns first
+  VecX<double> numbers_;              // of A: of the others, then as points are eliminated
+  VecX<double> b_;
 };
 
 }  // namespace pliant

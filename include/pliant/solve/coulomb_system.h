@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include <pliant/solve/coulomb.h>
@@ -18,8 +19,13 @@ struct CoulombResult {
   int fallbacks = 0;    ///< clusters that were left with more than rounding of it
 };
 
+struct CoulombScratch;
+
 class CoulombSystem {
  public:
+  CoulombSystem();
+  ~CoulombSystem();
+
   using Side = Eigen::Map<Eigen::Matrix3Xd>;
   using Push = Eigen::Map<MatX<double>>;
 
@@ -46,7 +52,7 @@ class CoulombSystem {
   int pushes(int k) const { return contacts_[at(k)].last_push - contacts_[at(k)].first_push; }
   /// Y of a contact that was added, and the mover it is of.
   Push push(int k, int i);
-  int pushed(int k, int i) const { return mover_at(pushes_[at(contacts_[at(k)].first_push + i)].first); }
+  int pushed(int k, int i) const { return pushes_[at(contacts_[at(k)].first_push + i)].mover; }
   /// c and p of a contact; p is where the search begins.
   Vec3<double>& constant(int k) { return contacts_[at(k)].c; }
   const Vec3<double>& constant(int k) const { return contacts_[at(k)].c; }
@@ -65,15 +71,15 @@ class CoulombSystem {
   /// Adds the changes of x by the impulse of contact k, `factor` times.
   void add_change(int k, double factor, VecX<double>& x) const;
 
-  /// Finds the impulses; x: velocities of all movers, before them and after. Once this is called, no more is
-  /// added.
-  CoulombResult solve(VecX<double>& x);
+  /// Finds the impulses; x: velocities of all movers, before them and after. enough: what the law may miss
+  /// anyhow. Once this is called, no more is added.
+  CoulombResult solve(VecX<double>& x, double enough = 0);
 
  private:
   friend class CoulombCluster;
-  /// 3 by size or size by 3 numbers for x from `first` on.
+  /// 3 by size or size by 3 numbers for x from `first` on, which is of a mover.
   struct Term {
-    int first, size;
+    int mover, first, size;
     std::size_t numbers;
   };
   struct Point {
@@ -85,8 +91,7 @@ class CoulombSystem {
   };
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void begin_contact(int rows, double mu);
-  int mover_at(int x) const;
-  Term term(int first, int size);
+  Term term(int mover, int first, int size);
   void complete();
   void find_clusters();
 
@@ -98,6 +103,7 @@ class CoulombSystem {
   VecX<double> x0_, x_;
   std::vector<int> order_, clusters_;  // contacts, cluster after cluster; where each begins in it
   bool complete_ = false;
+  std::unique_ptr<CoulombScratch> scratch_;
 };
 
 }  // namespace pliant
