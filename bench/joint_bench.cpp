@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/math/flush_subnormals.h>
 #include <pliant/pliant.h>
 
 #include "exponent.h"
@@ -97,6 +98,7 @@ Cost measure(const System& system, int size) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  const FlushSubnormals flushed;  // as in a step
   const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
   auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
   const double peak = bench::multiply_add_peak(), triad = bench::triad_bandwidth();

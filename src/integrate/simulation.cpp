@@ -11,6 +11,7 @@
 #include <pliant/integrate/step_length.h>
 #include <pliant/local/inverted_element.h>
 #include <pliant/math/finite.h>
+#include <pliant/math/flush_subnormals.h>
 
 namespace pliant {
 
@@ -108,6 +109,7 @@ void Simulation::take_method(std::unique_ptr<Integrator> method) {
 }
 
 void Simulation::step(double h) {
+  const FlushSubnormals flushed;
   if (!(h > 0) || !std::isfinite(h)) {
     std::ostringstream message;
     message << "a step of " << h << " s is not a positive time";
@@ -157,6 +159,7 @@ void Simulation::guarded(double h, const std::function<void()>& step) {
 }
 
 void Simulation::step_up_to(double until) {
+  const FlushSubnormals flushed;
   if (!scale_) throw std::logic_error("a simulation without a tolerance has no step of its own");
   const double now = time();
   if (!(until > now) || !std::isfinite(until)) {

@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include <pliant/math/flush_subnormals.h>
+
 namespace pliant {
 
 namespace {
@@ -20,6 +22,7 @@ struct ThreadPool::Impl {
   std::condition_variable wake, done;
   const std::function<void(int)>* task = nullptr;
   int n = 0;
+  bool flush = false;  ///< as in the thread that asks: what is computed does not depend on who does it
   std::atomic<int> next{0};
   int busy = 0;
   long round = 0;
@@ -28,6 +31,7 @@ struct ThreadPool::Impl {
   std::exception_ptr failure;
 
   void work() {
+    const FlushSubnormals flushed(flush);
     in_task = true;
     for (int i = next.fetch_add(1); i < n; i = next.fetch_add(1)) {
       try {
@@ -84,6 +88,7 @@ void ThreadPool::run(int n, const std::function<void(int)>& task) {
     const std::lock_guard<std::mutex> lock(pool.mutex);
     pool.task = &task;
     pool.n = n;
+    pool.flush = FlushSubnormals::active();
     pool.next = 0;
     pool.busy = static_cast<int>(pool.threads.size());
     pool.failed = -1;
