@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include <Eigen/Cholesky>
@@ -139,6 +140,7 @@ void RigidIsland::add_four(const Model& model, const Island& island, const std::
 void RigidIsland::add_joints(const Model& model, const Island& island,
                              const std::vector<std::array<End, 2>>& ends) {
   rows_ = island.rows;
+  parts_ = static_cast<int>(island.parts.size());
   const auto& joints = model.joints();
   for (const int j : island.joints)
     ties_.push_back({ends[at(joints[at(j)].node)], fixed_end(model, joints[at(j)]), joints[at(j)].island_row,
@@ -191,13 +193,17 @@ void RigidIsland::place(const Four& of, const VecX<double>& q, const VecX<double
   four.omega = gather3(v, of.v0, 3);
   four.a = gravity;
   four.beta = -of.L.transpose().lazyProduct(four.omega.cross(of.inertia.lazyProduct(four.omega)));
-  auto pair = now.mobility.begin() + of.first_pair;
   for (int i = 0; i < of.arms; ++i) {
     const Arm& arm = arms_[at(of.first_arm + i)];
     RigidWorkspace::Arm& moved = now.arms[at(of.first_arm + i)];
     moved.B = four.R.lazyProduct(arm.lever);
     moved.swing = four.R.lazyProduct(four.omega.cross(four.omega.cross(arm.r)));
   }
+  couple(of, now);
+}
+
+void RigidIsland::couple(const Four& of, RigidWorkspace& now) {
+  auto pair = now.mobility.begin() + of.first_pair;
   for (int i = 0; i < of.arms; ++i)
     for (int j = i; j < of.arms; ++j, ++pair) {
       *pair = now.arms[at(of.first_arm + i)].B.lazyProduct(now.arms[at(of.first_arm + j)].B.transpose());
@@ -219,7 +225,7 @@ void RigidIsland::add_loads(const Workspace<double>& work, RigidWorkspace& now) 
   }
 }
 
-void RigidIsland::factor(const Island& island, RankRule rank, RigidWorkspace& now,
+void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspace& now,
                          BlockFactor<double>& W_c) const {
   W_c.clear(island.pattern, rank);
   for (const Coupling& c : couplings_) {
@@ -291,106 +297,159 @@ double RigidIsland::widest(const Rounding& most, bool positions, const VecX<doub
   return widest;
 }
 
-namespace {
-/// Iterations that close joints, and what each is to leave of the gaps at most.
-constexpr int kMostIterations = 4;
-constexpr double kSlow = 0.1;
+template <bool turned>
+void RigidIsland::place_arms(const VecX<double>& q, RigidWorkspace& now) const {
+  for (std::size_t i = 0; i < fours_.size(); ++i) {
+    const Four& of = fours_[i];
+    const Mat3<Pack> R =
+        rotation(gather(q, of.q0, 3), gather(q, of.q0, 4), gather(q, of.q0, 5), gather(q, of.q0, 6));
+    if constexpr (turned) now.fours[i].R = R;
+    const Vec3<Pack> c = gather3(q, of.q0, 0);
+    for (int k = 0; k < of.arms; ++k) {
+      const Arm& arm = arms_[at(of.first_arm + k)];
+      RigidWorkspace::Arm& placed = now.arms[at(of.first_arm + k)];
+      if constexpr (turned) placed.B = R.lazyProduct(arm.lever);
+      placed.x = c + R.lazyProduct(arm.r + of.centre);
+    }
+  }
+}
 
-/// measure(): the widest gap, in what it may be; correct(): one iteration.
+void RigidIsland::move_arms(const VecX<double>& v, RigidWorkspace& now) const {
+  for (std::size_t i = 0; i < fours_.size(); ++i) {
+    const Four& of = fours_[i];
+    const Vec3<Pack> c_dot = gather3(v, of.v0, 0), omega = gather3(v, of.v0, 3);
+    for (int k = 0; k < of.arms; ++k) {
+      const Vec3<Pack> p = arms_[at(of.first_arm + k)].r + of.centre;
+      now.arms[at(of.first_arm + k)].x = c_dot + now.fours[i].R.lazyProduct(omega.cross(p));
+    }
+  }
+}
+
+void RigidIsland::shift(const RigidWorkspace& now, VecX<double>& q) const {
+  for (std::size_t i = 0; i < fours_.size(); ++i) {
+    const Four& of = fours_[i];
+    const auto [shift, beta] = response(of, now);
+    const Vec3<Pack> turn = of.L.lazyProduct(beta);
+    const Vec3<Pack> c = gather3(q, of.q0, 0) + shift - now.fours[i].R.lazyProduct(turn.cross(of.centre));
+    for (int lane = 0; lane < of.count; ++lane) {
+      auto theta = q.segment<4>(of.q0[at(lane)] + 3);
+      const Eigen::Quaterniond half(1, 0.5 * turn[0][lane], 0.5 * turn[1][lane], 0.5 * turn[2][lane]);
+      const Eigen::Quaterniond turned =
+          (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * half).normalized();
+      theta << turned.w(), turned.x(), turned.y(), turned.z();
+      for (int r = 0; r < 3; ++r) q[of.q0[at(lane)] + r] = c[r][lane];
+    }
+  }
+}
+
+void RigidIsland::push(const RigidWorkspace& now, double time, VecX<double>& v) const {
+  for (std::size_t i = 0; i < fours_.size(); ++i) {
+    const Four& of = fours_[i];
+    const auto [push, beta] = response(of, now);
+    const Vec3<Pack> spin = of.L.lazyProduct(beta);
+    const Vec3<Pack> shift = push - now.fours[i].R.lazyProduct(spin.cross(of.centre));
+    for (int lane = 0; lane < of.count; ++lane)
+      for (int r = 0; r < 3; ++r) {
+        v[of.v0[at(lane)] + r] += time * shift[r][lane];
+        v[of.v0[at(lane)] + 3 + r] += time * spin[r][lane];
+      }
+  }
+}
+
+template <class F>
+void RigidIsland::for_each_part(F&& act) const {
+  Eigen::Index part = 0;
+  for (const Four& of : fours_)
+    for (std::size_t lane = 0; lane < at(of.count); ++lane, ++part) act(part, of.q0[lane], of.v0[lane]);
+}
+
+namespace {
+
+/// Most iterations that close joints, and what each is to leave of the gaps at most.
+constexpr int kMostIterations = 8;
+constexpr double kSlow = 0.5;
+/// Iterations that cost as much as a new factor.
+constexpr int kFactor = 2;
+
+/// measure(): the widest gap, in what it may be; correct(gap, share): one iteration, where the one before has
+/// left that share of the gap (0: the first). correct is false where it gives up.
 template <class Measure, class Correct>
 bool iterate(Measure&& measure, Correct&& correct) {
-  double before = 0;
+  double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kMostIterations; ++i) {
     const double now = measure();
     if (now <= 1) return true;
-    if (!std::isfinite(now) || (i > 0 && now > kSlow * before)) return false;
-    correct();
+    if (!std::isfinite(now) || !correct(now, now / before)) return false;
     before = now;
   }
   return false;
 }
+
 }  // namespace
 
-bool RigidIsland::close_places(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now,
-                               VecX<double>& q) const {
-  auto measure = [&] {
-    for (std::size_t i = 0; i < fours_.size(); ++i) {
-      const Four& of = fours_[i];
-      Mat3<Pack>& R = now.fours[i].R;
-      R = rotation(gather(q, of.q0, 3), gather(q, of.q0, 4), gather(q, of.q0, 5), gather(q, of.q0, 6));
-      const Vec3<Pack> c = gather3(q, of.q0, 0);
-      for (int k = 0; k < of.arms; ++k) {
-        const Arm& arm = arms_[at(of.first_arm + k)];
-        now.arms[at(of.first_arm + k)].B = R.lazyProduct(arm.lever);
-        now.arms[at(of.first_arm + k)].x = c + R.lazyProduct(arm.r + of.centre);
-      }
+bool RigidIsland::close(const Island& island, const Rounding& most, BlockFactor<double>& W_c,
+                        RigidWorkspace& now, VecX<double>& q, VecX<double>& v) const {
+  now.q_before.resize(7, parts_);
+  now.v_before.resize(6, parts_);
+  for_each_part([&](Eigen::Index k, int q0, int v0) {
+    now.q_before.col(k) = q.segment<7>(q0);
+    now.v_before.col(k) = v.segment<6>(v0);
+  });
+  bool fresh = false;
+  auto find_forces = [&](double gap, double share) {
+    if (share > kSlow && fresh) return false;
+    if (!fresh && gap * std::pow(share, kFactor) > 1) {
+      for (const Four& of : fours_) couple(of, now);
+      factor(island, RankRule::keep, now, W_c);
+      fresh = true;
     }
+    take_forces(W_c, now);
+    return true;
+  };
+  auto gap = [&] {
+    place_arms<true>(q, now);
     return widest(most, true, q, now);
   };
-  return iterate(measure, [&] {
-    take_forces(W_c, now);
-    for (std::size_t i = 0; i < fours_.size(); ++i) {
-      const Four& of = fours_[i];
-      const auto [shift, beta] = response(of, now);
-      const Vec3<Pack> turn = of.L.lazyProduct(beta);
-      const Vec3<Pack> c = gather3(q, of.q0, 0) + shift - now.fours[i].R.lazyProduct(turn.cross(of.centre));
-      for (int lane = 0; lane < of.count; ++lane) {
-        auto theta = q.segment<4>(of.q0[at(lane)] + 3);
-        const Eigen::Quaterniond half(1, 0.5 * turn[0][lane], 0.5 * turn[1][lane], 0.5 * turn[2][lane]);
-        const Eigen::Quaterniond turned =
-            (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * half).normalized();
-        theta << turned.w(), turned.x(), turned.y(), turned.z();
-        for (int r = 0; r < 3; ++r) q[of.q0[at(lane)] + r] = c[r][lane];
-      }
-    }
-  });
-}
-
-bool RigidIsland::close_rates(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now,
-                              VecX<double>& v) const {
-  auto measure = [&] {
-    for (std::size_t i = 0; i < fours_.size(); ++i) {
-      const Four& of = fours_[i];
-      const Vec3<Pack> c_dot = gather3(v, of.v0, 0), omega = gather3(v, of.v0, 3);
-      for (int k = 0; k < of.arms; ++k) {
-        const Vec3<Pack> p = arms_[at(of.first_arm + k)].r + of.centre;
-        now.arms[at(of.first_arm + k)].x = c_dot + now.fours[i].R.lazyProduct(omega.cross(p));
-      }
-    }
+  auto correct = [&](double left, double share) {
+    if (!find_forces(left, share)) return false;
+    shift(now, q);
+    return true;
+  };
+  auto rate = [&] {
+    move_arms(v, now);
     return widest(most, false, v, now);
   };
-  return iterate(measure, [&] {
-    take_forces(W_c, now);
-    for (std::size_t i = 0; i < fours_.size(); ++i) {
-      const Four& of = fours_[i];
-      const auto [push, beta] = response(of, now);
-      const Vec3<Pack> spin = of.L.lazyProduct(beta);
-      const Vec3<Pack> shift = push - now.fours[i].R.lazyProduct(spin.cross(of.centre));
-      for (int lane = 0; lane < of.count; ++lane)
-        for (int r = 0; r < 3; ++r) {
-          v[of.v0[at(lane)] + r] += shift[r][lane];
-          v[of.v0[at(lane)] + 3 + r] += spin[r][lane];
-        }
-    }
+  auto correct_rates = [&](double left, double share) {
+    if (!find_forces(left, share)) return false;
+    push(now, 1, v);
+    return true;
+  };
+  if (iterate(gap, correct) && iterate(rate, correct_rates)) return true;
+  for_each_part([&](Eigen::Index k, int q0, int v0) {
+    q.segment<7>(q0) = now.q_before.col(k);
+    v.segment<6>(v0) = now.v_before.col(k);
   });
+  return false;
 }
 
-bool RigidIsland::close(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now,
-                        VecX<double>& q, VecX<double>& v) const {
-  now.before.resize(13, static_cast<Eigen::Index>(fours_.size()) * Pack::kLanes);
-  auto for_each_part = [&](auto&& act) {
-    Eigen::Index part = 0;
-    for (const Four& of : fours_)
-      for (std::size_t lane = 0; lane < at(of.count); ++lane, ++part)
-        act(q.segment<7>(of.q0[lane]), v.segment<6>(of.v0[lane]), now.before.col(part));
+bool RigidIsland::close_ahead(const Rounding& most, double h, const BlockFactor<double>& W_c,
+                              RigidWorkspace& now, VecX<double>& v,
+                              const std::function<const VecX<double>&()>& q_end) const {
+  now.v_before.resize(6, parts_);
+  for_each_part([&](Eigen::Index k, int, int v0) { now.v_before.col(k) = v.segment<6>(v0); });
+  auto gap = [&] {
+    const VecX<double>& q = q_end();
+    place_arms<false>(q, now);
+    return widest(most, true, q, now);
   };
-  for_each_part(
-      [](auto&& coordinates, auto&& velocities, auto&& before) { before << coordinates, velocities; });
-  if (close_places(most, W_c, now, q) && close_rates(most, W_c, now, v)) return true;
-  for_each_part([](auto&& coordinates, auto&& velocities, auto&& before) {
-    coordinates = before.template head<7>();
-    velocities = before.template tail<6>();
-  });
+  auto correct = [&](double, double share) {
+    if (share > kSlow) return false;
+    take_forces(W_c, now);
+    push(now, 1 / h, v);
+    return true;
+  };
+  if (iterate(gap, correct)) return true;
+  for_each_part([&](Eigen::Index k, int, int v0) { v.segment<6>(v0) = now.v_before.col(k); });
   return false;
 }
 

@@ -10,7 +10,7 @@ namespace pliant {
 void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
                              StepCounters& counters) {
   const double h = state.h;
-  dynamics.accelerations(state.time(), state.q, state.v, state, work);
+  dynamics.rates(state.time(), state.q, state.v, state, work);
   ++counters.evaluations;
   free_.prepare(dynamics.model(), h);
   free_.take_off(state.q, state.v, work.v_dot);

@@ -223,11 +223,10 @@ void note_strings(const Model& model, const Island& island, const Workspace<doub
 
 /// Closes the joints of an island whose last evaluation was a rigid island's, if that is all there is to do.
 bool closed_apart(const Model& model, const Island& island, Workspace<double>& work, State& state) {
-  if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return false;
-  const auto number = static_cast<std::size_t>(&island - model.islands().data());
-  return model.rigid_islands()[at(island.rigid)].close({kLeft, kRounding, model.body().stabilization.rate},
-                                                       work.joints.W_c[number].blocks(),
-                                                       work.rigid[at(island.rigid)], state.q, state.v);
+  RigidWorkspace* rigid = rigid_workspace(island, work);
+  if (rigid == nullptr) return false;
+  return model.rigid_islands()[at(island.rigid)].close(
+      island, rounding(model), work.joints.W_c[number_of(model, island)].blocks(), *rigid, state.q, state.v);
 }
 
 }  // namespace

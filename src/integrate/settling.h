@@ -55,6 +55,19 @@ inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   return kLeft * joint.length + kRounding * size;
 }
 
+/// The same of the joints of rigid islands.
+inline RigidIsland::Rounding rounding(const Model& model) {
+  return {kLeft, kRounding, model.body().stabilization.rate};
+}
+inline std::size_t number_of(const Model& model, const Island& island) {
+  return static_cast<std::size_t>(&island - model.islands().data());
+}
+/// That of an island whose last evaluation was a rigid island's; of others none.
+inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& work) {
+  if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return nullptr;
+  return &work.rigid[at(island.rigid)];
+}
+
 inline Range limits_of(const PartModel& m, int k) {
   return m.part->parameters().moving(k).limits;
 }
@@ -382,7 +395,7 @@ class Settling {
   bool stays(const OneSidedRow& row) const {
     if (island_ == nullptr) return false;
     if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
-    const auto& pushed = work_.joints.pushed[static_cast<std::size_t>(island_ - model_.islands().data())];
+    const auto& pushed = work_.joints.pushed[number_of(model_, *island_)];
     return std::any_of(pushed.begin(), pushed.end(),
                        [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
   }

@@ -38,6 +38,28 @@ bool close_ahead(const Model& model, const Island& island, const Group<double, M
   return true;
 }
 
+/// The same of an island whose last evaluation was a rigid island's, as often as it takes. An island that it
+/// does not close is evaluated the general way.
+bool closed_ahead_apart(const Dynamics& dynamics, const Island& island, Workspace<double>& work, State& state,
+                        double h, VecX<double>& q_end) {
+  RigidWorkspace* rigid = rigid_workspace(island, work);
+  if (rigid == nullptr) return false;
+  const Model& model = dynamics.model();
+  auto move_on = [&]() -> const VecX<double>& {
+    for (const int i : island.parts) {
+      const PartModel& m = model.parts()[at(i)];
+      q_end.segment<7>(m.q0) = state.q.segment<7>(m.q0);
+      advance_part(m, q_end, state.v.segment<6>(m.v0), h);
+    }
+    return q_end;
+  };
+  if (model.rigid_islands()[at(island.rigid)].close_ahead(
+          rounding(model), h, work.joints.W_c[number_of(model, island)].blocks(), *rigid, state.v, move_on))
+    return true;
+  dynamics.factor_joints(state.time(), state.q, state.v, state.joints, island, work);
+  return false;
+}
+
 /// Whether a parameter passes a limit when it moves on for a time h.
 template <int Max>
 bool crosses(const Group<double, Max>& group, double h, const State& state) {
@@ -74,6 +96,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
     constexpr int kMax = std::decay_t<decltype(group)>::kMax;
     const Island* island = group.island();
     if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
+    if (island != nullptr && closed_ahead_apart(dynamics, *island, work, state, h, q_end)) return;
     GroupVectors<double, kMax>& kept = kept_vectors(group, work);
     auto &x = kept.x, &now = kept.before, &joined = kept.joined;
     take_velocities(group, state.v, x);

@@ -136,6 +136,7 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
   simulation.step(0.01);
   const State& state = simulation.state();
   const RigidIsland& rigid = simulation.model().rigid_islands()[0];
+  const Island& island = simulation.model().islands()[0];
   Workspace<double> work;
   simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
   simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
@@ -147,7 +148,8 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
     return to;
   };
   State near = shaken(1e-6);
-  REQUIRE(rigid.close({1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], near.q, near.v));
+  REQUIRE(
+      rigid.close(island, {1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], near.q, near.v));
   double widest = 0;
   for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
     widest = std::max(widest, simulation.model().gap(near, j));
@@ -157,9 +159,31 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
 
   const State far = shaken(0.5);
   State kept = far;
-  CHECK_FALSE(rigid.close({1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], kept.q, kept.v));
+  CHECK_FALSE(
+      rigid.close(island, {1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], kept.q, kept.v));
   CHECK(kept.q == far.q);
   CHECK(kept.v == far.v);
+}
+
+TEST_CASE("semi-implicit Euler closes joints of rigid parts at the end of its step as the general way does",
+          "[rigid_islands]") {
+  const int n = GENERATE(1, 6, 13);
+  const auto after = [&](bool own) {
+    MultiBody body;
+    hang(body, n, 0, static_cast<std::uint64_t>(n));
+    // A string that stays slack leaves the island to the general way.
+    if (!own)
+      body.join("slack", String{100},
+                {point(*body.parts().front(), 0, 0), point(*body.parts().back(), 0, 0)});
+    Simulation simulation(body, "semi_implicit_euler");
+    REQUIRE(simulation.model().rigid_islands().size() == (own ? 1 : 0));
+    for (int i = 0; i < 200; ++i) simulation.step(0.002);
+    CHECK(gap(simulation) <= 1e-12);
+    return simulation.state();
+  };
+  const State own = after(true), general = after(false);
+  CHECK((own.q - general.q).norm() <= 1e-9 * general.q.norm());
+  CHECK((own.v - general.v).norm() <= 1e-9 * general.v.norm());
 }
 
 TEST_CASE("what is more than rigid parts on ball joints is evaluated the general way", "[rigid_islands]") {

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,8 @@ struct RigidWorkspace {
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T, of the pairs i <= j of arms of four parts
   VecX<double> lambda;               ///< rows, then forces of the joints
-  Eigen::Matrix<double, 13, Eigen::Dynamic>
-      before;  ///< coordinates and velocities of parts whose joints are closed
+  Eigen::Matrix<double, 7, Eigen::Dynamic> q_before;  ///< of the parts, before their joints are closed
+  Eigen::Matrix<double, 6, Eigen::Dynamic> v_before;
 };
 
 class RigidIsland {
@@ -70,10 +71,17 @@ class RigidIsland {
   struct Rounding {
     double of_length, of_size, rate;
   };
-  /// Coordinates and velocities onto C = 0 and C_dot = 0, by the factor that the last evaluation left. False,
-  /// with both as they were, where that does not take them there fast.
-  bool close(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now, VecX<double>& q,
-             VecX<double>& v) const;
+  /// Coordinates and velocities onto C = 0 and C_dot = 0, by the factor of W_c that the last evaluation left,
+  /// or a new one where that takes fewer iterations. False, with both as they were, where neither takes them
+  /// there fast.
+  bool close(const Island& island, const Rounding& most, BlockFactor<double>& W_c, RigidWorkspace& now,
+             VecX<double>& q, VecX<double>& v) const;
+
+  /// Impulses at the place of the last evaluation, by the factor it left, that close the joints at the end of
+  /// a step of h (s). q_end(): the coordinates there, with the velocities v as they are. False, with v as it
+  /// was, where these do not close them fast.
+  bool close_ahead(const Rounding& most, double h, const BlockFactor<double>& W_c, RigidWorkspace& now,
+                   VecX<double>& v, const std::function<const VecX<double>&()>& q_end) const;
 
  private:
   struct Arm {
@@ -124,7 +132,9 @@ class RigidIsland {
   void place(const Four& of, const VecX<double>& q, const VecX<double>& v, const Vec3<Pack>& gravity,
              RigidWorkspace& now, RigidWorkspace::Four& four) const;
   void add_loads(const Workspace<double>& work, RigidWorkspace& now) const;
-  void factor(const Island& island, RankRule rank, RigidWorkspace& now, BlockFactor<double>& W_c) const;
+  /// What forces at the arms of a part do to each other, from their levers.
+  static void couple(const Four& of, RigidWorkspace& now);
+  void factor(const Island& island, RankRule rank, const RigidWorkspace& now, BlockFactor<double>& W_c) const;
   /// The forces of the joints, and what they add to the accelerations.
   void hold(const BlockFactor<double>& W_c, RigidWorkspace& now) const;
   /// Forces into the arms that take the rows in now.lambda away.
@@ -134,10 +144,17 @@ class RigidIsland {
   /// How wide the joints are, in what they may be, by positions of their points in the arms, of coordinates
   /// q, or by velocities, of v. Leaves the rows in now.lambda.
   double widest(const Rounding& most, bool positions, const VecX<double>& x, RigidWorkspace& now) const;
-  bool close_places(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now,
-                    VecX<double>& q) const;
-  bool close_rates(const Rounding& most, const BlockFactor<double>& W_c, RigidWorkspace& now,
-                   VecX<double>& v) const;
+  /// Positions of the points in the arms, at q. turned: R and the levers too.
+  template <bool turned>
+  void place_arms(const VecX<double>& q, RigidWorkspace& now) const;
+  /// Velocities of the points in the arms.
+  void move_arms(const VecX<double>& v, RigidWorkspace& now) const;
+  /// The responses to the forces in the arms, for a time (s), onto coordinates or velocities.
+  void shift(const RigidWorkspace& now, VecX<double>& q) const;
+  void push(const RigidWorkspace& now, double time, VecX<double>& v) const;
+  /// act(k, where its coordinates begin in q, and its velocities in v) of each part.
+  template <class F>
+  void for_each_part(F&& act) const;
 
   int island_;
   std::vector<Four> fours_;
@@ -145,7 +162,7 @@ class RigidIsland {
   std::vector<Load> loads_;
   std::vector<Tie> ties_;
   std::vector<Coupling> couplings_;
-  int pairs_ = 0, rows_ = 0;
+  int parts_ = 0, pairs_ = 0, rows_ = 0;
 };
 
 }  // namespace pliant
