@@ -179,8 +179,7 @@ void print_joints(const pliant::Simulation& simulation) {
   if (islands > augmented) std::cout << ", " << islands - augmented << " solved by blocks of C_q M^-1 C_q^T";
   if (augmented > 0) std::cout << ", " << augmented << " as the augmented matrix";
   std::cout << ", " << pliant::count_text(numbers, "number") << " in the factor\n";
-  const std::string note = pliant::redundancy_note(simulation);
-  if (!note.empty()) std::cout << "  " << note << "\n";
+  for (const std::string& note : pliant::redundancy_notes(simulation)) std::cout << "  " << note << "\n";
 }
 
 int info(const SceneOptions& options) {

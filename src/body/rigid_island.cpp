@@ -168,6 +168,7 @@ void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const Ve
   now.mobility.resize(at(pairs_));
   for (std::size_t i = 0; i < fours_.size(); ++i)
     place(fours_[i], q, v, gravity.cast<Pack>(), now, now.fours[i]);
+  now.counters.inertial_forces += parts_;
   add_loads(work, now);
   JointFactor<double>& W_c = work.joints.W_c[at(island_)];
   factor(model.islands()[at(island_)], rank, now, W_c.blocks());

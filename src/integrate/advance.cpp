@@ -1,19 +1,15 @@
 #include <pliant/integrate/advance.h>
 
-#include <pliant/math/sinc.h>
+#include <pliant/math/rotation.h>
 
 namespace pliant {
 
 void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const VecX<double>>& v, double h) {
   q.segment<3>(m.q0) += h * v.head<3>();
-  const Vec3<double> half = 0.5 * h * v.segment<3>(3);
-  const double angle = half.norm();
-  const math::SinCos<double> of_angle = math::sin_cos(angle);
-  const Vec3<double> axis = sinc(angle, of_angle) * half;
-  const Eigen::Quaterniond turn(of_angle.cos, axis[0], axis[1], axis[2]);
   auto theta = q.segment<4>(m.q0 + 3);
   const Eigen::Quaterniond now =
-      (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * turn).normalized();
+      (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * quaternion(h * v.segment<3>(3)))
+          .normalized();
   theta << now.w(), now.x(), now.y(), now.z();
   q.segment(m.q0 + 7, m.n_s) += h * v.tail(m.n_s);
 }

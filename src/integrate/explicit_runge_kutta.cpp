@@ -59,8 +59,13 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     v_rates_.resize(state.v.size(), n + 1);
     powers_.resize(kWorks, n + 1);
   }
-  const bool known = last_t_ == t && last_.q.size() == state.q.size() && last_.q == state.q &&
-                     last_.v == state.v && last_.at_limit == state.at_limit && last_.joints == state.joints;
+  // Baumgarte's terms may follow the length of the step, and the rates with them.
+  auto gains = [&](double step) {
+    return dynamics.model().body().stabilization.gains(step, dynamics.hold().step_consistent);
+  };
+  const bool known = last_t_ == t && gains(last_.h) == gains(h) && last_.q.size() == state.q.size() &&
+                     last_.q == state.q && last_.v == state.v && last_.at_limit == state.at_limit &&
+                     last_.joints == state.joints;
   if (known) {
     q_rates_.col(0) = q_rates_.col(n);
     v_rates_.col(0) = v_rates_.col(n);

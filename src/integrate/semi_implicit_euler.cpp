@@ -5,6 +5,8 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 
+#include "carry_momenta.h"
+
 namespace pliant {
 
 void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
@@ -14,7 +16,9 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   ++counters.evaluations;
   free_.prepare(dynamics.model(), h);
   free_.take_off(state.q, state.v, work.v_dot);
+  v_before_ = state.v;
   state.v += h * work.v_dot;
+  carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
   stop_ahead(dynamics, work, state, h, q_end_, ahead_, counters);

@@ -13,6 +13,8 @@
 #include <pliant/math/finite.h>
 #include <pliant/math/flush_subnormals.h>
 
+#include "contradiction_ahead.h"
+
 namespace pliant {
 
 namespace {
@@ -41,6 +43,19 @@ std::string burst(const Model& model, const State& state) {
                "smaller one, or a stiffer law), or the steps are too long for it; ";
   }
   return message.str();
+}
+
+/// The first joint whose gap is not a finite number, as told in a message; empty: none. Rigid islands
+/// evaluate no gaps of their own.
+std::string endless_gap(const Model& model, const Workspace<double>& work) {
+  if (work.joints.C.allFinite()) return {};
+  for (const JointModel& joint : model.joints()) {
+    const int rigid = model.islands()[static_cast<std::size_t>(joint.island)].rigid;
+    const bool known = rigid < 0 || !work.rigid[static_cast<std::size_t>(rigid)].used;
+    if (known && !work.joints.C.segment(joint.row, joint.rows).allFinite())
+      return "the gap of joint '" + joint.joint->name() + "'";
+  }
+  return {};
 }
 
 void require_tolerance(double tolerance) {
@@ -139,7 +154,7 @@ void Simulation::guarded(double h, const std::function<void()>& step) {
   try {
     step();
   } catch (const UnsatisfiableModel& failure) {
-    const bool shorter = shorter_steps_pass(h);
+    const bool shorter = !scale_ && shorter_steps_pass(h);
     give_up_step();
     if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
     std::ostringstream message;
@@ -151,6 +166,7 @@ void Simulation::guarded(double h, const std::function<void()>& step) {
     throw NumericalFailure(burst(model_, state_) + failure.what(), state_.time());
   } catch (const NumericalFailure& failure) {
     give_up_step();
+    fail_by_contradiction_ahead(dynamics_, state_, h);
     throw NumericalFailure(burst(model_, state_) + failure.what(), failure.time);
   } catch (...) {
     give_up_step();
@@ -296,12 +312,8 @@ void Simulation::switch_joints(double t, double near) {
 }
 
 void Simulation::check(const State& before) {
-  const bool joints = work_.joints.C.allFinite();
-  if (joints && all_finite(state_.q) && all_finite(state_.v) && all_finite(state_.work)) return;
-  std::string where;
-  for (const JointModel& joint : model_.joints())
-    if (!joints && where.empty() && !work_.joints.C.segment(joint.row, joint.rows).allFinite())
-      where = "the gap of joint '" + joint.joint->name() + "'";
+  std::string where = endless_gap(model_, work_);
+  if (where.empty() && all_finite(state_.q) && all_finite(state_.v) && all_finite(state_.work)) return;
   for (Eigen::Index i = 0; i < state_.v.size() && where.empty(); ++i)
     if (!std::isfinite(state_.v[i])) where = model_.velocity_name(static_cast<int>(i));
   for (Eigen::Index i = 0; i < state_.q.size() && where.empty(); ++i)
@@ -322,6 +334,7 @@ void Simulation::check(const State& before) {
     give_up_step();
     return largest_stable_step(*this);
   }();
+  fail_by_contradiction_ahead(dynamics_, before, before.h);
   message.precision(3);
   if (std::isfinite(stable)) message << "; the largest stable step here is about " << stable << " s";
   throw NumericalFailure(message.str(), before.time());
@@ -366,6 +379,7 @@ Ledger Simulation::ledger() {
 Counters Simulation::counters() const {
   Counters sum;
   for (const PartWorkspace<double>& w : work_.parts) sum += w.counters;
+  for (const RigidWorkspace& w : work_.rigid) sum += w.counters;
   return sum;
 }
 

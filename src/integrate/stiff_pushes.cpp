@@ -15,12 +15,17 @@ StiffPushes::StiffPushes(const Dynamics& dynamics, double t, double c, const Sta
       work.parts[i].stiffening = c * (m.part->beta() + c);
   }
   auto stiff = [&](int i) { return work.parts[static_cast<std::size_t>(i)].stiffening > 0; };
-  for (const Island& island : model.islands())
-    if (std::any_of(island.parts.begin(), island.parts.end(), stiff))
-      dynamics.factor_joints(t, state.q, state.v, state.joints, island, work, RankRule::keep);
+  try {
+    for (const Island& island : model.islands())
+      if (std::any_of(island.parts.begin(), island.parts.end(), stiff))
+        dynamics.factor_joints(t, state.q, state.v, state.joints, island, work, RankRule::keep);
+  } catch (...) {
+    end();
+    throw;
+  }
 }
 
-StiffPushes::~StiffPushes() {
+void StiffPushes::end() {
   for (PartWorkspace<double>& w : work_.parts) w.stiffening = 0;
 }
 

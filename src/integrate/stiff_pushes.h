@@ -14,11 +14,13 @@ class StiffPushes {
  public:
   /// work: of the last stage, which ends at the state, at time t (s).
   StiffPushes(const Dynamics& dynamics, double t, double c, const State& state, Workspace<double>& work);
-  ~StiffPushes();
+  ~StiffPushes() { end(); }
   StiffPushes(const StiffPushes&) = delete;
   StiffPushes& operator=(const StiffPushes&) = delete;
 
  private:
+  void end();
+
   Workspace<double>& work_;
 };
 

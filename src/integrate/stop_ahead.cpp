@@ -16,6 +16,8 @@ namespace {
 
 /// An iteration that leaves more than this part of the gaps has come to the rounding of the rows.
 constexpr double kIdle = 0.9;
+/// Most turn of a part in a step while a joint closes, rad.
+constexpr double kMostTurn = 0.2;
 
 /// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
 /// closed joints. False when they are closed there, or as near as rounding lets them come. widest: that of
@@ -60,6 +62,32 @@ bool closed_ahead_apart(const Dynamics& dynamics, const Island& island, Workspac
   return false;
 }
 
+bool any_closing(const Island& island, const Workspace<double>& work) {
+  return std::any_of(island.joints.begin(), island.joints.end(),
+                     [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
+}
+
+/// Parts of an island that closes turn by at most kMostTurn in a step of h: what a gap pulls may swing about
+/// it for long, and gains energy by each step. The centres of mass go on as they were. Returns the work of
+/// it.
+template <int Max>
+double cap_turns(const Group<double, Max>& group, double h, VecMax<double, Max>& x,
+                 VecMax<double, Max>& capped) {
+  capped = x;
+  for (int i = 0; i < group.parts(); ++i) {
+    auto v_r = group.share(capped, i);
+    const double turn = h * v_r.template segment<3>(3).norm();
+    if (!(turn > kMostTurn)) continue;
+    const Inertia<double>& inertia = group.workspace(i).inertia;
+    const Vec3<double> change = (kMostTurn / turn - 1) * v_r.template segment<3>(3);
+    v_r.template head<3>() -= change.cross(Vec3<double>(inertia.moment / inertia.mass));
+    v_r.template segment<3>(3) += change;
+  }
+  const double work = kinetic_change(group, x, capped);
+  x = capped;
+  return work;
+}
+
 /// Whether a parameter passes a limit when it moves on for a time h.
 template <int Max>
 bool crosses(const Group<double, Max>& group, double h, const State& state) {
@@ -100,6 +128,11 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
     GroupVectors<double, kMax>& kept = kept_vectors(group, work);
     auto &x = kept.x, &now = kept.before, &joined = kept.joined;
     take_velocities(group, state.v, x);
+    if (island != nullptr && any_closing(*island, work)) {
+      state.work[static_cast<int>(Work::baumgarte)] += cap_turns(group, h, x, now);
+      for (int i = 0; i < group.parts(); ++i)
+        give_velocity(group.model(i), group.workspace(i), group.share(x, i), state.v);
+    }
     // The velocity that just reaches a limit, or the length of a string, at the end of the step.
     now = x;
     auto bound = [&](const OneSidedRow& row) {

@@ -6,26 +6,108 @@
 
 namespace pliant {
 
-std::string redundancy_note(const Simulation& simulation) {
-  constexpr int kShown = 6;  // names of joints
+namespace {
+
+/// Rows of joints, and names of the first of these.
+class NamedRows {
+ public:
+  void add(const JointModel& joint, int rows) {
+    if (rows == 0) return;
+    constexpr int kShown = 6;
+    rows_ += rows;
+    if (++joints_ <= kShown)
+      names_ += (joints_ == 1 ? " '" : ", '") + joint.joint->name() + "'";
+    else if (joints_ == kShown + 1)
+      names_ += " and others";
+  }
+  /// "<what>: N rows of M joints, <names>"; empty without rows.
+  std::string text(const std::string& what) const {
+    if (rows_ == 0) return {};
+    return what + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
+  }
+
+ private:
+  int rows_ = 0, joints_ = 0;
+  std::string names_;
+};
+
+/// Rows of a joint that no motion changes, such as the length of a rod whose ends coincide.
+int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
+  int count = 0;
+  for (int r = 0; r < joint.rows; ++r) {
+    bool any = false;
+    for (const JointSide& side : joint.sides) {
+      const Eigen::Index n = work.parts[static_cast<std::size_t>(side.part)].a_r.size();
+      any = any || !work.joints.Cq.segment(side.offset + r * n, n).isZero(0);
+    }
+    count += any ? 0 : 1;
+  }
+  return count;
+}
+
+}  // namespace
+
+std::vector<std::string> redundancy_notes(const Simulation& simulation) {
+  // Rows that follow from others agree with them to this part of what closes gaps of a length.
+  constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();
   if (model.joints().empty()) return {};
   Workspace<double> work;
   simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
   const std::vector<int> redundant = redundant_rows(model, work.joints);
-  int rows = 0, joints = 0;
-  std::string names;
+  const double rate = model.body().stabilization.rate;
+  auto disagrees = [&](int j) {
+    if (!acts(state.joints[static_cast<std::size_t>(j)])) return false;
+    const JointModel& joint = model.joints()[static_cast<std::size_t>(j)];
+    const double size = rate * rate * joint.length + wanted(model, work.joints, j).norm();
+    return disagreement(model, work, j) > kAgrees * size;
+  };
+  auto share_part = [](const JointModel& a, const JointModel& b) {
+    return std::any_of(a.sides.begin(), a.sides.end(), [&](const JointSide& side) {
+      return std::any_of(b.sides.begin(), b.sides.end(),
+                         [&](const JointSide& other) { return other.part == side.part; });
+    });
+  };
+  NamedRows follow, disagree, directionless;
+  std::vector<int> apart;
   for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
-    if (redundant[static_cast<std::size_t>(j)] == 0) continue;
-    rows += redundant[static_cast<std::size_t>(j)];
-    if (++joints <= kShown)
-      names += (joints == 1 ? " '" : ", '") + model.joints()[static_cast<std::size_t>(j)].joint->name() + "'";
+    if (!disagrees(j)) continue;
+    apart.push_back(j);
+    disagree.add(model.joints()[static_cast<std::size_t>(j)],
+                 model.joints()[static_cast<std::size_t>(j)].rows);
   }
-  if (rows == 0) return {};
-  if (joints > kShown) names += " and others";
-  return count_text(rows, "row") + " of " + count_text(joints, "joint") +
-         " follow from those of others and are left to them:" + names;
+  for (std::size_t j = 0; j < model.joints().size(); ++j) {
+    const JointModel& joint = model.joints()[j];
+    const int without = redundant[j] > 0 ? std::min(redundant[j], rows_without_direction(joint, work)) : 0;
+    directionless.add(joint, without);
+    const bool open = std::any_of(apart.begin(), apart.end(), [&](int other) {
+      return share_part(joint, model.joints()[static_cast<std::size_t>(other)]);
+    });
+    if (!open) follow.add(joint, redundant[j] - without);
+  }
+  std::vector<std::string> notes;
+  for (const std::string& text :
+       {follow.text("redundant, and left to the rows of others from which they follow"),
+        disagree.text("in contradiction to others that they depend on, and may never close"),
+        directionless.text("without direction where they are")})
+    if (!text.empty()) notes.push_back(text);
+  return notes;
+}
+
+std::string open_joints_note(const Simulation& simulation) {
+  const Model& model = simulation.model();
+  int widest = -1, open = 0;
+  for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
+    if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) continue;
+    ++open;
+    if (widest < 0 || model.gap(simulation.state(), j) > model.gap(simulation.state(), widest)) widest = j;
+  }
+  if (open == 0) return {};
+  const Joint& joint = *model.joints()[static_cast<std::size_t>(widest)].joint;
+  return "at t = " + rounded_text(simulation.time()) + " s " + count_text(open, "joint") +
+         (open == 1 ? " is" : " are") + " still open: " + (open == 1 ? "" : "the widest, ") + joint.type() +
+         " '" + joint.name() + "', by " + rounded_text(model.gap(simulation.state(), widest)) + " m";
 }
 
 std::string solver_note(const Model& model) {
@@ -35,10 +117,10 @@ std::string solver_note(const Model& model) {
   return blocks ? "blocks" : (augmented ? "augmented" : "");
 }
 
-double widest_closed_gap(const Simulation& simulation) {
+double widest_gap(const Simulation& simulation, JointMode mode) {
   double widest = 0;
   for (std::size_t j = 0; j < simulation.state().joints.size(); ++j)
-    if (simulation.state().joints[j] == JointMode::closed)
+    if (simulation.state().joints[j] == mode)
       widest = std::max(widest, simulation.model().gap(simulation.state(), static_cast<int>(j)));
   return widest;
 }

@@ -115,8 +115,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   if (assembly.iterations > 0)
     note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
          count_text(assembly.iterations, "iteration"));
-  const std::string redundant = redundancy_note(*simulation_);
-  if (!redundant.empty()) note(redundant);
+  note_redundancy();
   write_layout(folder_->path(), simulation_->model(), schedule_,
                TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
   for (const char* file :
@@ -223,13 +222,24 @@ void Run::note(const std::string& text) {
   progress_->note(text);
 }
 
+/// Tells of rows that depend on others when other joints act than were told of last.
+void Run::note_redundancy() {
+  std::vector<bool> acting;
+  for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
+  if (acting == told_acting_) return;
+  told_acting_ = std::move(acting);
+  for (const std::string& text : redundancy_notes(*simulation_)) note(text);
+}
+
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
   recorded_time_ = simulation_->time();
   writer_->append(simulation_->state());
   if (contacts_) contacts_->append(*simulation_);
   const Ledger ledger = simulation_->ledger();
-  record_.max_gap = std::max(record_.max_gap, widest_closed_gap(*simulation_));
+  record_.max_gap = std::max(record_.max_gap, widest_gap(*simulation_, JointMode::closed));
+  record_.open_gap = widest_gap(*simulation_, JointMode::closing);
+  note_redundancy();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
@@ -338,6 +348,8 @@ bool Run::simulate() {
     if (record_.step_counters.uncontrolled > 0)
       note("bodies lay on each other in " + count_text(record_.step_counters.uncontrolled, "step") +
            ", whose error is not controlled; they are of at most 0.002 s, and --estimate-error tells it");
+    const std::string open = open_joints_note(*simulation_);
+    if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });
   } catch (const std::exception& failure) {
     fail(failure.what());

@@ -113,6 +113,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"max_energy", r.max_energy},
                       {"max_kinetic", r.max_kinetic},
                       {"max_gap", r.max_gap},
+                      {"open_gap", r.open_gap},
                       {"max_contact_residual", r.step_counters.contact_residual},
                       {"largest_stable_step", bound(r.stable_step)}};
   if (r.error) {
@@ -197,6 +198,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     monitors.at("max_energy").get_to(r.max_energy);
     monitors.at("max_kinetic").get_to(r.max_kinetic);
     monitors.at("max_gap").get_to(r.max_gap);
+    monitors.at("open_gap").get_to(r.open_gap);
     r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
     if (!monitors.at("largest_stable_step").is_null())
       monitors.at("largest_stable_step").get_to(r.stable_step);

@@ -96,6 +96,32 @@ TEST_CASE("a state to a tolerance goes on to the same bits elsewhere", "[error]"
   }
 }
 
+TEST_CASE("so does a state whose joints close as the length of each step tells", "[error]") {
+  const char* method = GENERATE("dormand_prince", "dop853");
+  MultiBody body;
+  body.stabilization.rule = BaumgarteRule::step_consistent;
+  const Part* before = nullptr;
+  for (int i = 0; i < 3; ++i) {
+    Part& link = test::add(body, "link" + std::to_string(i), "box", {}, 1000);
+    link.rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.5}}).place({0.3 * i, 0.1 * i, -1.2 * i - 0.8});
+    body.ball("joint" + std::to_string(i), point(link, kPi / 2, 0),
+              before == nullptr ? world(0, 0, 0) : point(*before, -kPi / 2, 0));
+    before = &link;
+  }
+  Simulation simulation(body, method, 1, 1e-6);
+  bool closing = false;
+  for (int i = 0; i < 100; ++i) {
+    Simulation other(body, method, 1, 1e-6);
+    other.set_state(simulation.state());
+    simulation.step_up_to(100);
+    other.step_up_to(100);
+    closing = closing || simulation.state().joints[0] == JointMode::closing;
+    REQUIRE(other.state().q == simulation.state().q);
+    REQUIRE(other.state().v == simulation.state().v);
+  }
+  CHECK(closing);
+}
+
 TEST_CASE("N25: what no step can follow is told, with the last good state kept", "[error]") {
   MultiBody body;
   shaken(body);

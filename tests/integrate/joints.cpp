@@ -10,6 +10,7 @@
 #include <pliant/body/joints/rod.h>
 #include <pliant/body/joints/string.h>
 
+#include "draws.h"
 #include "motion.h"
 
 using namespace pliant;
@@ -516,6 +517,53 @@ TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "
     }
 }
 
+TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever they spin up to", "[joints]") {
+  const char* method = GENERATE("rk4", "semi_implicit_euler");
+  const int joints = GENERATE(1, 4, 12);
+  const double apart = GENERATE(3, 10, 30, 100), h = 2e-3;
+  if (joints * apart > 130) return;  // CPU time
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    test::Draws draws(100 * seed + static_cast<std::uint64_t>(joints));
+    MultiBody body;
+    body.gravity.setZero();
+    std::vector<Part*> parts;
+    for (int i = 0; i < joints; ++i) {
+      Part& part = test::add(body, "part" + std::to_string(i), "ellipsoid", {}, 1000);
+      part.rest({{"a1", 0.1}, {"a2", 0.2}, {"a3", 0.5}});
+      part.place(apart * draws.vector(1), Eigen::Quaterniond(draws.uniform(0.1, 1), draws.uniform(-1, 1),
+                                                             draws.uniform(-1, 1), draws.uniform(-1, 1))
+                                              .normalized());
+      auto any = [&](Part& of) { return point(of, draws.uniform(-1.5, 1.5), draws.uniform(-3, 3)); };
+      const Point from = any(part);
+      body.ball("joint" + std::to_string(i),
+                i == 0 ? world(0, 0, 0) : any(*parts[static_cast<std::size_t>(draws.integer(0, i - 1))]),
+                from);
+      parts.push_back(&part);
+    }
+    Simulation simulation(body, method);
+    INFO(method << ", " << joints << " joints from " << apart << ", seed " << seed);
+    auto all_closed = [&] {
+      return std::all_of(simulation.state().joints.begin(), simulation.state().joints.end(),
+                         [](JointMode mode) { return mode == JointMode::closed; });
+    };
+    double most_turn = 0, most_speed = 0;
+    while (simulation.time() < 60 && !all_closed()) {
+      simulation.step(h);
+      for (int i = 0; i < joints; ++i) {
+        most_speed = std::max(most_speed, simulation.state().v.segment<3>(6 * i).norm());
+        most_turn = std::max(most_turn, h * simulation.state().v.segment<3>(6 * i + 3).norm());
+      }
+    }
+    CHECK(all_closed());
+    CHECK(most_turn <= 1);
+    const double cap = 0.1 * body.stabilization.rate * body.stabilization.speed;
+    CHECK(most_speed <= 20 * cap * joints);
+    double widest = 0;
+    for (int j = 0; j < joints; ++j) widest = std::max(widest, gap(simulation, j).norm());
+    CHECK(widest <= 1e-10 * 0.1);
+  }
+}
+
 TEST_CASE("joints to a fixed part hold as joints to the world do", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     VecX<double> q[2];
@@ -656,8 +704,21 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
+/// Every method with fixed steps, and those that are held to a tolerance.
+const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
+                                                              {"semi_implicit_euler", 0},
+                                                              {"linearly_implicit", 0},
+                                                              {"implicit_midpoint", 0},
+                                                              {"esdirk", 0},
+                                                              {"dormand_prince", 0},
+                                                              {"dop853", 0},
+                                                              {"dormand_prince", 1e-6},
+                                                              {"dop853", 1e-6},
+                                                              {"esdirk", 1e-6},
+                                                              {"auto", 1e-6}};
+
 TEST_CASE("N42: joints that contradict each other from afar stop the run, projected or not", "[joints]") {
-  for (const char* method : {"rk4", "semi_implicit_euler"})
+  for (const auto& [method, tolerance] : kMethods)
     for (const bool projected : {true, false})
       for (const double on : {0., 0.1003}) {
         MultiBody body;
@@ -666,8 +727,8 @@ TEST_CASE("N42: joints that contradict each other from afar stop the run, projec
         body.ball("here", world(0, 0, 0), centre(mass));
         body.ball("there", world(1, 0, 0), centre(mass)).during(on);
         body.ball("else", point(mass, 0, 0), centre(sphere(body, "other", {0.2, 0, 0})));
-        INFO(method << " " << projected << " " << on);
-        Simulation simulation(body, method);
+        INFO(method << " " << tolerance << " " << projected << " " << on);
+        Simulation simulation(body, method, 1, tolerance);
         try {
           for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
           FAIL_CHECK("went on");
@@ -683,12 +744,13 @@ TEST_CASE("N42: joints that contradict each other from afar stop the run, projec
 }
 
 TEST_CASE("N42: a string too short to reach between what holds its ends stops the run", "[joints]") {
-  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+  for (const auto& [method, tolerance] : kMethods) {
     MultiBody body;
     Part& mass = sphere(body, "mass", {0, 0, 0});
     body.ball("here", world(0, 0, 0), centre(mass));
     body.join("string", String{0.5}, {world(1, 0, 0), centre(mass)});
-    Simulation simulation(body, method);
+    INFO(method << " " << tolerance);
+    Simulation simulation(body, method, 1, tolerance);
     try {
       for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
       FAIL("went on");
@@ -698,6 +760,32 @@ TEST_CASE("N42: a string too short to reach between what holds its ends stops th
       CHECK(what.find("'string' stays open by 0.5 m") != std::string::npos);
       CHECK(what.find("'here'") != std::string::npos);
       CHECK(simulation.time() == Approx(1).margin(0.01));
+    }
+  }
+}
+
+TEST_CASE("N42: an arm that is drawn beyond its reach stops the run, and names what draws it", "[joints]") {
+  for (const auto& [method, tolerance] : kMethods) {
+    MultiBody body;
+    const Point shoulder = world(0, 0, 0),
+                hand = world({TimeFunction::formula("1.2 + t"), TimeFunction(0), TimeFunction(0)});
+    Part &upper = test::add(body, "upper", "box", {}, 1000),
+         &lower = test::add(body, "lower", "box", {}, 1000);
+    for (Part* arm : {&upper, &lower}) arm->rest({{"a1", 0.02}, {"a2", 0.02}, {"a3", 0.5}});
+    const Eigen::Vector3d y(0, 1, 0);
+    upper.place({0.3, 0, -0.4}, Eigen::Quaterniond(Eigen::AngleAxisd(kPi - std::asin(0.6), y)));
+    lower.place({0.9, 0, -0.4}, Eigen::Quaterniond(Eigen::AngleAxisd(std::asin(0.6), y)));
+    body.ball("shoulder", point(upper, -kPi / 2, 0), shoulder);
+    body.ball("elbow", point(upper, kPi / 2, 0), point(lower, -kPi / 2, 0));
+    body.ball("hand", point(lower, kPi / 2, 0), hand);
+    Simulation simulation(body, method, 1, tolerance);
+    INFO(method << " " << tolerance);
+    try {
+      for (int i = 0; i < 2000; ++i) simulation.step(1e-3);
+      FAIL_CHECK("went on");
+    } catch (const UnsatisfiableModel& failure) {
+      CHECK_THAT(failure.what(), test::has_text("'hand'"));
+      CHECK(simulation.time() == Approx(0.8).margin(0.01));
     }
   }
 }

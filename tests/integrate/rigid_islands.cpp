@@ -186,6 +186,31 @@ TEST_CASE("semi-implicit Euler closes joints of rigid parts at the end of its st
   CHECK((own.v - general.v).norm() <= 1e-9 * general.v.norm());
 }
 
+TEST_CASE("a trial step that is not finite leaves nothing behind that stops the steps after it",
+          "[rigid_islands]") {
+  for (double size = 1e130; size < 1e165; size *= 1e5) {
+    MultiBody body;
+    body.gravity.setZero();
+    for (int i = 0; i < 4; ++i) {
+      Part& link = test::add(body, "link" + std::to_string(i), "box", {}, 1000);
+      link.rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.5}}).place({0, 0, -1.0 * i - 0.5});
+      body.ball("joint" + std::to_string(i), point(link, kPi / 2, 0),
+                i == 0 ? world(0, 0, 0) : point(*body.parts()[static_cast<std::size_t>(i - 1)], -kPi / 2, 0));
+    }
+    // Only trials of far too long steps come to where it is enormous.
+    body.force("push", point(*body.parts()[3], -kPi / 2, 0),
+               [&](double t, const Vec3<double>& x, const Vec3<double>&) {
+                 double push = t > 1 ? 1000 * std::sin(50 * (t - 1)) : 0;
+                 if (std::abs(x[0]) > 3.9) push += size;
+                 return Vec3<double>(push, 0.3 * push, 0);
+               });
+    Simulation simulation(body, "dop853", 1, 1e-6);
+    REQUIRE(simulation.model().rigid_islands().size() == 1);
+    INFO(size);
+    CHECK_NOTHROW(simulation.step(1.5));
+  }
+}
+
 TEST_CASE("what is more than rigid parts on ball joints is evaluated the general way", "[rigid_islands]") {
   MultiBody body;
   Part& ball = test::add(body, "ball", "sphere", {}, 1000);

@@ -68,6 +68,26 @@ TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix", "[skip]
   }
 }
 
+TEST_CASE("rigid parts on ball joints: inertial forces alone, by their island", "[skip]") {
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    for (int i = 0; i < 6; ++i)
+      test::add(body, "link" + std::to_string(i), "superellipsoid", {"taper", "bend"}, 1000)
+          .place({2.0 * i, 0, 0});
+    for (std::size_t i = 0; i < 6; ++i)
+      body.ball("joint" + std::to_string(i), i == 0 ? world(-1, 0, 0) : point(*body.parts()[i - 1], 0, 0),
+                point(*body.parts()[i], 0, kPi));
+    Simulation simulation(body, method);
+    REQUIRE(simulation.model().rigid_islands().size() == 1);
+    const Counters counters = after_steps(simulation, 10);
+    CHECK(counters.jacobian_points == 0);
+    CHECK(counters.rate_points == 0);
+    CHECK(counters.mass_matrices == 0);
+    CHECK(counters.point_jets == 0);
+    CHECK(counters.inertial_forces == 6 * simulation.step_counters().evaluations);
+  }
+}
+
 TEST_CASE("a part that does not move has no coordinates and costs nothing", "[skip]") {
   MultiBody body;
   test::add(body, "post", "box", {"taper"}, 1000).fix();

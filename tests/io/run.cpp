@@ -2,6 +2,8 @@
 // shared or mixed, and run.json tells the truth about every ending.
 #include <pliant/io/run.h>
 
+#include <algorithm>
+#include <functional>
 #include <sstream>
 
 #include <sys/wait.h>
@@ -12,6 +14,7 @@
 #include "new_folder.h"
 #include "test_scenes.h"
 
+#include <pliant/body/joints/rod.h>
 #include <pliant/io/run_files.h>
 
 using namespace pliant;
@@ -414,4 +417,57 @@ TEST_CASE("run.json tells what was done and what was not needed") {
   CHECK(record.stable_step == Approx(0.5 / std::sqrt(5.01)));  // nothing stiff: half a radian of its spin
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
+}
+
+TEST_CASE("run.json tells once which rows of joints follow from others, and what stays open") {
+  const NewFolder folder;
+  auto notes_of = [&](const char* name, const std::function<void(MultiBody&, Part&)>& join) {
+    const auto scene = free_top();
+    scene->end = 0.4;
+    join(scene->body, *scene->body.parts().front());
+    REQUIRE(run(*scene, folder / name));
+    return read_run_record(folder / name / kRunFile);
+  };
+  auto count = [](const RunRecord& record, const std::string& text) {
+    return std::count_if(record.notes.begin(), record.notes.end(),
+                         [&](const std::string& note) { return note.find(text) != std::string::npos; });
+  };
+  SECTION("a joint twice") {
+    const RunRecord record = notes_of("twice", [](MultiBody& body, Part& top) {
+      const Point at = point(top, 0, 0, 0);
+      for (const char* name : {"once", "again"})
+        body.ball(name, world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
+    });
+    CHECK(count(record, "left to the rows of others from which they follow: 3 rows of 1 joint, 'once'") == 1);
+    CHECK(count(record, "redundant") == 1);
+    CHECK(record.open_gap == 0);
+  }
+  SECTION("a joint twice, from a time on") {
+    const RunRecord record = notes_of("later", [](MultiBody& body, Part& top) {
+      const Point at = point(top, 0, 0, 0);
+      body.ball("once", world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
+      body.ball("again", world(top.c0()[0], top.c0()[1], top.c0()[2]), at).during(0.2);
+    });
+    CHECK(count(record,
+                "redundant, and left to the rows of others from which they follow: 3 rows of 1 joint") == 1);
+  }
+  SECTION("a point at two places") {
+    const RunRecord record = notes_of("apart", [](MultiBody& body, Part& top) {
+      const Point at = point(top, 0, 0, 0);
+      body.ball("here", world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
+      body.ball("there", world(top.c0()[0] + 1, top.c0()[1], top.c0()[2]), at);
+    });
+    CHECK(count(record, "may never close: 3 rows of 1 joint, 'there'") == 1);
+    CHECK(count(record, "redundant") == 0);
+    CHECK(count(record, "at t = 0.4 s 1 joint is still open: ball 'there', by 1 m") == 1);
+    CHECK(record.open_gap == Approx(1));
+    CHECK(record.max_gap <= 1e-12);
+  }
+  SECTION("a rod without direction") {
+    const RunRecord record = notes_of("rod", [](MultiBody& body, Part& top) {
+      body.join("rod", Rod{0.5}, {world(top.c0()[0], top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)});
+    });
+    CHECK(count(record, "without direction where they are: 1 row of 1 joint, 'rod'") == 1);
+    CHECK(count(record, "redundant") == 0);
+  }
 }

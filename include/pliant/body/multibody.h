@@ -42,7 +42,7 @@ struct PointForce {
   TimeVector force;  ///< N
   Frame frame = Frame::world;
   /// Library users: a force of their own instead (t, position and velocity in the world -> N in the world).
-  /// Directional derivatives (jvp) take it as constant.
+  /// Directional derivatives (jvp) take it as constant. Within steps numbers below 2e-308 are zero.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 

@@ -14,6 +14,7 @@
 
 #include <pliant/math/pack.h>
 #include <pliant/math/types.h>
+#include <pliant/part/part.h>
 #include <pliant/solve/block_factor.h>
 
 namespace pliant {
@@ -41,6 +42,7 @@ struct RigidWorkspace {
     Vec3<Pack> push;   ///< force of the joint, world
   };
   bool used = false;  ///< whether the last evaluation was by it
+  Counters counters;
   std::vector<Four> fours;
   std::vector<Arm> arms;
   std::vector<Mat3<Pack>> mobility;  ///< 1/m + B_i B_j^T, of the pairs i <= j of arms of four parts

@@ -20,6 +20,7 @@ enum class BaumgarteRule {
 
 struct Gains {
   double alpha = 0, beta = 0;  ///< 1/s
+  bool operator==(const Gains& other) const { return alpha == other.alpha && beta == other.beta; }
 };
 
 struct Stabilization {

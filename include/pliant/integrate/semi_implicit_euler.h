@@ -1,6 +1,8 @@
 // Semi-implicit Euler, the paper's method (section 4), first order:
 //   v <- v + h vdot(q, v),   q <- q (+) h v
-// What oscillates freely does so exactly after the kick by the rest of vdot.
+// What oscillates freely does so exactly after the kick by the rest of vdot, and angular momenta turn with
+// the parts by what they turn, not by its first order, which would let parts that tumble gain energy without
+// end.
 #pragma once
 
 #include <pliant/integrate/free_oscillation.h>
@@ -18,8 +20,8 @@ class SemiImplicitEuler final : public Integrator {
 
  private:
   FreeOscillation free_;
-  // Coordinates at the end of a step and their joints, kept between steps: no heap in a step.
-  VecX<double> q_end_;
+  // Velocities at the start of a step, coordinates at its end and their joints: kept, for no heap in a step.
+  VecX<double> v_before_, q_end_;
   Workspace<double> ahead_;
 };
 

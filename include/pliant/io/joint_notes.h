@@ -1,20 +1,25 @@
-// What is to be said of a system of joints before a run.
+// What is to be said of a system of joints, before a run and at its end.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <pliant/integrate/simulation.h>
 
 namespace pliant {
 
-/// Which joints have rows that follow from those of others at the state of the simulation, in words; empty
-/// when none has. Such rows change no motion, and the forces are shared out as if they were not there.
-std::string redundancy_note(const Simulation& simulation);
+/// Which joints have rows that follow from those of others at the state of the simulation, in words, and
+/// which such rows disagree with those others, or have no direction; nothing where none has. Rows that follow
+/// change no motion, and the forces are shared out as if they were not there.
+std::vector<std::string> redundancy_notes(const Simulation& simulation);
+
+/// How many joints have yet to close, and the widest of them, in words; empty when none has.
+std::string open_joints_note(const Simulation& simulation);
 
 /// How the systems of the joints are solved: "blocks", "augmented", "blocks and augmented", or nothing.
 std::string solver_note(const Model& model);
 
-/// The widest gap of a joint that is closed, m.
-double widest_closed_gap(const Simulation& simulation);
+/// The widest gap of the joints that are in a mode, m; 0 where none is.
+double widest_gap(const Simulation& simulation, JointMode mode);
 
 }  // namespace pliant

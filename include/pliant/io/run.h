@@ -78,6 +78,7 @@ class Run {
   void write_record();
   void fail(const std::string& message) noexcept;
   void note(const std::string& text);
+  void note_redundancy();
 
   Scene* scene_;
   RunOptions options_;
@@ -88,8 +89,9 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;   // of the last recorded state
-  StepCounters counted_steps_;  // of the sessions before
+  double recorded_time_ = -1;      // of the last recorded state
+  std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
+  StepCounters counted_steps_;     // of the sessions before
   Counters counted_work_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;

@@ -57,11 +57,12 @@ struct RunRecord {
   double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
   double max_kinetic = 0;                                        ///< J
   double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
-  std::optional<ErrorEstimate> error;                            ///< where it was asked for
-  std::vector<std::string> held;     ///< parameters that had no inertia and were held
-  std::vector<std::string> skipped;  ///< what the scene did not need
-  std::vector<std::string> notes;    ///< warnings and choices
-  std::vector<std::string> files;    ///< written, relative to the folder; series as "meshes/frame_*.obj"
+  double open_gap = 0;                 ///< m, widest of the joints that have yet to close at the last state
+  std::optional<ErrorEstimate> error;  ///< where it was asked for
+  std::vector<std::string> held;       ///< parameters that had no inertia and were held
+  std::vector<std::string> skipped;    ///< what the scene did not need
+  std::vector<std::string> notes;      ///< warnings and choices
+  std::vector<std::string> files;      ///< written, relative to the folder; series as "meshes/frame_*.obj"
 
   /// Adds to the wall time of a stage.
   void add_seconds(const std::string& stage, double seconds);

@@ -16,7 +16,7 @@ class FlushSubnormals {
   explicit FlushSubnormals(bool on = true) : before_(mode()) {
     if (on) set_mode(before_ | kFlush);
   }
-  ~FlushSubnormals() { set_mode(before_); }
+  ~FlushSubnormals() { set_mode((mode() & ~kFlush) | (before_ & kFlush)); }
   FlushSubnormals(const FlushSubnormals&) = delete;
   FlushSubnormals& operator=(const FlushSubnormals&) = delete;
 

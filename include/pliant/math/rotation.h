@@ -1,6 +1,9 @@
-// The rotation matrix of a quaternion.
+// Rotations: matrices of quaternions, and quaternions of rotation vectors.
 #pragma once
 
+#include <Eigen/Geometry>
+
+#include <pliant/math/sinc.h>
 #include <pliant/math/types.h>
 
 namespace pliant {
@@ -20,6 +23,15 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
   R(1, 2) = two * (y * z - w * x);
   R(2, 1) = two * (y * z + w * x);
   return R;
+}
+
+/// The unit quaternion of a turn about an axis, by an angle (rad) that is its length.
+inline Eigen::Quaterniond quaternion(const Vec3<double>& turn) {
+  const Vec3<double> half = 0.5 * turn;
+  const double angle = half.norm();
+  const math::SinCos<double> of_angle = math::sin_cos(angle);
+  const Vec3<double> axis = sinc(angle, of_angle) * half;
+  return {of_angle.cos, axis[0], axis[1], axis[2]};
 }
 
 }  // namespace pliant
