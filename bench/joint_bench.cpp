@@ -6,8 +6,9 @@
 //
 // Of one evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T, W_c and
 // its factor), solve (lambda and what it adds), rest (the joints' points, powers). A stage asks for rates
-// alone, which rigid islands give faster. Projection is a step less its stages or evaluations. Parts of an
-// evaluation are timed one by one, in loops of their own, so that their caches are warm.
+// alone, which rigid islands give faster. Both solvers are timed beside the one that "auto" takes. Projection
+// is a step less its stages or evaluations. Parts of an evaluation are timed one by one, in loops of their
+// own, so that their caches are warm.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -41,6 +42,8 @@ struct Cost {
   int links, joints;
   double evaluation, stage, rk4_step, euler_step;
   double parts, rows, factor, solve;
+  double blocks, augmented;  ///< an evaluation by either solver
+  bool takes_augmented;      ///< what solver "auto" takes
 
   double rest() const { return evaluation - parts - rows - factor - solve; }
   double rk4_projection() const { return rk4_step - 4 * stage; }
@@ -56,6 +59,18 @@ double step_seconds(Simulation& simulation, const State& start) {
         simulation.step(kStep);
       },
       0.02, 5);
+}
+
+/// Seconds of an evaluation at a state, by a solver.
+double evaluation_by(JointSolver::Choice choice, const System& system, int size, const State& at) {
+  MultiBody body;
+  body.joint_solver.choice = choice;
+  Linkage linkage(body, system.soft);
+  system.build(linkage, size);
+  const Simulation simulation(body, "rk4");
+  Workspace<double> work;
+  return bench::seconds_per_call(
+      [&] { simulation.dynamics().accelerations(at.time(), at.q, at.v, at, work); });
 }
 
 Cost measure(const System& system, int size) {
@@ -90,6 +105,9 @@ Cost measure(const System& system, int size) {
   cost.factor = per_link(each_island(
       [&](const Island& island) { factor_joints<double>(model, island, work.parts, work.joints); }));
   cost.solve = per_link(each_island([&](const Island& island) { solve_joints(model, island, {}, work); }));
+  cost.blocks = evaluation_by(JointSolver::Choice::blocks, system, size, start) * 1e6 / links;
+  cost.augmented = evaluation_by(JointSolver::Choice::augmented, system, size, start) * 1e6 / links;
+  cost.takes_augmented = model.islands().front().augmented;
   cost.rk4_step = step_seconds(rk4, start) * 1e6 / links;
   cost.euler_step = step_seconds(euler, start) * 1e6 / links;
   return cost;
@@ -112,7 +130,7 @@ int main(int argc, char** argv) try {
           "system,links,joints,evaluation_us_per_link,stage_us_per_link,rk4_step_us_per_link,euler_step_us_"
           "per_link,"
           "parts_us,rows_us,factor_us,solve_us,rest_us,rk4_projection_us,euler_projection_us,"
-          "evaluation_multiply_adds_per_link\n");
+          "evaluation_multiply_adds_per_link,by_blocks_us,by_augmented_us,auto\n");
   bench::TableFile exponents_file(in_folder("joint_exponents.csv"),
                                   std::string(calibration) + "system,evaluation,stage,rk4_step,euler_step\n");
 
@@ -126,22 +144,27 @@ int main(int argc, char** argv) try {
       {"net", false, bench::net, {4, 8, 16, 32}},
       {"star", false, bench::star, {8, 32, 128, 256}},
   };
-  std::printf("microseconds per link\n%-20s %6s %6s | %8s %8s %8s %8s | %7s %7s %7s %7s %7s | %7s %7s\n",
-              "system", "links", "joints", "evaluate", "stage", "rk4", "euler", "parts", "rows", "factor",
-              "solve", "rest", "pr.rk4", "pr.eul");
+  std::printf(
+      "microseconds per link\n%-20s %6s %6s | %8s %8s %8s %8s | %7s %7s %7s %7s %7s | %7s %7s | %8s %9s\n",
+      "system", "links", "joints", "evaluate", "stage", "rk4", "euler", "parts", "rows", "factor", "solve",
+      "rest", "pr.rk4", "pr.eul", "blocks", "augmented");
   for (const System& system : systems) {
     std::vector<Cost> costs;
     for (const int size : system.sizes) {
       const Cost c = measure(system, size);
       costs.push_back(c);
-      std::printf("%-20s %6d %6d | %8.3f %8.3f %8.3f %8.3f | %7.3f %7.3f %7.3f %7.3f %7.3f | %7.3f %7.3f\n",
-                  c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step,
-                  c.parts, c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection());
+      std::printf(
+          "%-20s %6d %6d | %8.3f %8.3f %8.3f %8.3f | %7.3f %7.3f %7.3f %7.3f %7.3f | %7.3f %7.3f | %8.3f "
+          "%9.3f, takes %s\n",
+          c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step, c.parts,
+          c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(), c.blocks,
+          c.augmented, c.takes_augmented ? "augmented" : "blocks");
       std::fflush(stdout);
-      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.0f\n",
-                     c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step,
-                     c.parts, c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(),
-                     c.evaluation * 1e-6 * peak);
+      costs_file.row(
+          "\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.0f,%.4f,%.4f,%s\n",
+          c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step, c.parts,
+          c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(),
+          c.evaluation * 1e-6 * peak, c.blocks, c.augmented, c.takes_augmented ? "augmented" : "blocks");
     }
     const double e = bench::exponent(costs, &Cost::links, &Cost::evaluation),
                  g = bench::exponent(costs, &Cost::links, &Cost::stage),

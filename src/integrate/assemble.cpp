@@ -31,6 +31,8 @@ constexpr int kMostIterations = 400;
 /// Without a gap smaller by this factor in so many iterations it cannot be closed.
 constexpr double kProgress = 0.9;
 constexpr int kPatience = 40, kMostHalvings = 5, kMostAttempts = 10;
+/// Most joints beside the widest that a message names.
+constexpr int kMostNamed = 8;
 /// Steps of more than kTooFar times what is allowed make rigid motion dearer, once all gaps are below kNear
 /// lengths; good ones make it cheaper again.
 constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
@@ -323,6 +325,13 @@ class Assembly {
     std::ostringstream message;
     message << "assembly: " << joint.type() << " '" << joint.name() << "' cannot close: after " << iterations
             << " iterations it is still open by " << widest * model_.joints()[at(open)].length << " m";
+    int others = 0;
+    for_each_gap([&](int j, double gap, const JointModel& other) {
+      if (j == open || gap <= kClosedGap * other.length || ++others > kMostNamed) return;
+      message << (others == 1 ? ", and with it " : ", ") << other.joint->type() << " '" << other.joint->name()
+              << "' by " << gap << " m";
+    });
+    if (others > kMostNamed) message << " and others";
     throw UnsatisfiableModel(message.str(), state_.time());
   }
 

@@ -163,6 +163,7 @@ class Settling {
     message << "a step of " << state_.h << " s is too long for the motion: it opens "
             << model_.joints()[at(widest_)].joint->type() << " '"
             << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
+    if (model_.joints()[at(widest_)].driven) message << ", unless its anchor, which is moved in time, jumps";
     throw NumericalFailure(message.str(), t_);
   }
 
