@@ -296,7 +296,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
 
   choose_rigid_islands(rates_only ? modes : nullptr, work);
   // Whether a part is evaluated with its rigid island, and none but its loads here.
-  auto apart = [&](const PartModel& m) {
+  auto by_rigid_island = [&](const PartModel& m) {
     return m.rigid_island >= 0 && work.rigid[static_cast<std::size_t>(m.rigid_island)].used;
   };
   const Vec3<double> gravity = model.body().gravity_at(t);
@@ -304,7 +304,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
     if constexpr (std::is_same_v<S, double>)
-      if (apart(m)) {
+      if (by_rigid_island(m)) {
         const bool known = w.rigid == &m;  // and with it what is constant
         if (known && !m.loaded) return;
         positions<S>(m, t, q, v, w);
@@ -333,9 +333,9 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     if (m.q0 < 0) return;
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
-    if (apart(m) && !m.loaded) return;
+    if (by_rigid_island(m) && !m.loaded) return;
     gather_port_forces<S>(m, w);
-    if (apart(m)) return;
+    if (by_rigid_island(m)) return;
     w.a_r = w.f;
     if constexpr (std::is_same_v<S, double>) {
       take_factor(m, w);
@@ -352,7 +352,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     }
   });
   for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!apart(parts[i])) work.power += work.parts[i].power;
+    if (!by_rigid_island(parts[i])) work.power += work.parts[i].power;
   if (!model.joints().empty()) join<S>(t, modes, fixed_modes, work);
   if constexpr (std::is_same_v<S, double>)
     for (std::size_t k = 0; k < work.rigid.size(); ++k)
@@ -360,7 +360,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
         model.rigid_islands()[k].accelerate(model, q, v, gravity, work.joints.rank, work, work.rigid[k]);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const PartModel& m = parts[i];
-    if (m.q0 < 0 || apart(m)) continue;
+    if (m.q0 < 0 || by_rigid_island(m)) continue;
     const PartWorkspace<S>& w = work.parts[i];
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
@@ -391,7 +391,7 @@ void Dynamics::size_joints(Workspace<S>& work) const {
   joints.vectors.resize(model.islands().size());
 }
 
-// joints: rows, W_c and its factor, forces; each island apart
+// joints: rows, W_c and its factor, forces; each island on its own
 template <class S>
 void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed_modes,
                     Workspace<S>& work) const {

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Throws UnsatisfiableModel where closed joints, as the parts are at a state, could not be closed a step of h
-/// (s) later, or a little later still. Does nothing where that cannot be told.
+/// Throws UnsatisfiableModel where closed joints, as the parts are at a state, could not be closed a step of
+/// h (s) later, or a little later still. Does nothing where that cannot be told.
 void fail_by_contradiction_ahead(const Dynamics& dynamics, const State& state, double h);
 
 }  // namespace pliant

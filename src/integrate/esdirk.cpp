@@ -85,9 +85,7 @@ void Esdirk::step(const Dynamics& dynamics, State& state, Workspace<double>& wor
   state.q = q_;  // the last stage is the end
   state.v = v_;
   state.work += h * power;
-  hold_inertialess(model, work, state.v);
-  normalise_rotations(model, state.q);
-  settle_frames(dynamics, t + h, state, work);
+  end_motion(dynamics, t + h, state, work);
   const StiffPushes pushes(dynamics, t + h, c, state, work);
   settle(dynamics, t + h, state, work, counters);
 }

@@ -88,9 +88,7 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
   if (scale() != nullptr) v_start_ = state.v;
   state.q.swap(q_);
   state.v.swap(v_);
-  hold_inertialess(dynamics.model(), work, state.v);
-  normalise_rotations(dynamics.model(), state.q);
-  settle_frames(dynamics, t + h, state, work);
+  end_motion(dynamics, t + h, state, work);
   settle(dynamics, t + h, state, work, counters);
   if (scale() == nullptr || !state.q.allFinite() || !state.v.allFinite()) return;
   if (of.rates_at_end) {

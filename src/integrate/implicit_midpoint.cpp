@@ -40,9 +40,7 @@ void ImplicitMidpoint::step(const Dynamics& dynamics, State& state, Workspace<do
   state.q = 2 * q_ - state.q;
   state.v = 2 * v_ - state.v;
   state.work += h * work.power;
-  hold_inertialess(model, work, state.v);
-  normalise_rotations(model, state.q);
-  settle_frames(dynamics, t + h, state, work);
+  end_motion(dynamics, t + h, state, work);
   const StiffPushes pushes(dynamics, t + h, 0.5 * h, state, work);
   settle(dynamics, t + h, state, work, counters);
 }

@@ -119,9 +119,7 @@ void LinearlyImplicit::step(const Dynamics& dynamics, State& state, Workspace<do
   state.q += h * (1.5 * q_rate1_ + 0.5 * q_rate2_);
   state.v += h * (1.5 * v_rate1_ + 0.5 * v_rate2_);
   state.work += 0.5 * h * power;
-  hold_inertialess(model, work, state.v);
-  normalise_rotations(model, state.q);
-  settle_frames(dynamics, t + h, state, work);
+  end_motion(dynamics, t + h, state, work);
   const StepResponse response(model, soft_, work);
   settle(dynamics, t + h, state, work, counters);
 }

@@ -59,9 +59,7 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   state.q += h * (q_sum_ + weight[3] * q_dot_);
   state.v += h * (v_sum_ + weight[3] * work.v_dot);
   state.work += h * work_sum;
-  hold_inertialess(dynamics.model(), work, state.v);
-  normalise_rotations(dynamics.model(), state.q);
-  settle_frames(dynamics, t + h, state, work);
+  end_motion(dynamics, t + h, state, work);
   settle(dynamics, t + h, state, work, counters);
 }
 

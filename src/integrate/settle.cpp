@@ -222,7 +222,7 @@ void note_strings(const Model& model, const Island& island, const Workspace<doub
 }
 
 /// Closes the joints of an island whose last evaluation was a rigid island's, if that is all there is to do.
-bool closed_apart(const Model& model, const Island& island, Workspace<double>& work, State& state) {
+bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<double>& work, State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);
   if (rigid == nullptr) return false;
   return model.rigid_islands()[at(island.rigid)].close(
@@ -249,7 +249,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
   const Model& model = dynamics.model();
   if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
   for (const Island& island : model.islands()) {
-    if (closed_apart(model, island, work, state)) continue;
+    if (closed_by_rigid_island(model, island, work, state)) continue;
     fail_if_stuck(dynamics, t, island, state, work);
     auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
     bool closed = false;

@@ -73,6 +73,12 @@ void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& stat
 
 }  // namespace
 
+void end_motion(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
+  hold_inertialess(dynamics.model(), work, state.v);
+  normalise_rotations(dynamics.model(), state.q);
+  settle_frames(dynamics, t, state, work);
+}
+
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
   if (!all_finite(state.q) || !all_finite(state.v)) return;
   for (std::size_t i = 0; i < dynamics.model().parts().size(); ++i) settle_frame(dynamics, t, i, state, work);

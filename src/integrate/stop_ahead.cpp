@@ -42,8 +42,8 @@ bool close_ahead(const Model& model, const Island& island, const Group<double, M
 
 /// The same of an island whose last evaluation was a rigid island's, as often as it takes. An island that it
 /// does not close is evaluated the general way.
-bool closed_ahead_apart(const Dynamics& dynamics, const Island& island, Workspace<double>& work, State& state,
-                        double h, VecX<double>& q_end) {
+bool closed_ahead_by_rigid_island(const Dynamics& dynamics, const Island& island, Workspace<double>& work,
+                                  State& state, double h, VecX<double>& q_end) {
   RigidWorkspace* rigid = rigid_workspace(island, work);
   if (rigid == nullptr) return false;
   const Model& model = dynamics.model();
@@ -124,7 +124,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
     constexpr int kMax = std::decay_t<decltype(group)>::kMax;
     const Island* island = group.island();
     if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
-    if (island != nullptr && closed_ahead_apart(dynamics, *island, work, state, h, q_end)) return;
+    if (island != nullptr && closed_ahead_by_rigid_island(dynamics, *island, work, state, h, q_end)) return;
     GroupVectors<double, kMax>& kept = kept_vectors(group, work);
     auto &x = kept.x, &now = kept.before, &joined = kept.joined;
     take_velocities(group, state.v, x);

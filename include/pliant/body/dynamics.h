@@ -110,8 +110,9 @@ class Dynamics {
   /// the integrator's to stop.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// work.v_dot and work.power of the same, for a stage of a method, and the factors of W_c: rigid islands
-  /// whose joints are closed leave no more.
+  /// work.v_dot and work.power of the same, for a stage of a method, and the factors of W_c. Rigid islands
+  /// whose joints are closed leave no more: frames, velocities, points and accelerations of their parts, and
+  /// rows and forces of their joints, are as they were or zero.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
              Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Frames and points of the parts of an island, and its joints' C, C_dot and C_q, at (t, q, v); nothing

@@ -26,6 +26,10 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
 /// After the coordinates moved: parameters that came to a limit are on it to the last bit.
 void settle_on_limits(const Model& model, State& state);
 
+/// What ends the motion of a step, at time t (s): velocities that had no inertia rest, quaternions are of
+/// unit length, and reference conditions are met, as settle_frames says.
+void end_motion(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
+
 /// Parts that deform locally meet their reference conditions again, at time t (s); no node moves by it.
 /// Throws NumericalFailure where the conditions no longer tell the coordinates apart.
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
