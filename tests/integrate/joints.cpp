@@ -580,6 +580,70 @@ TEST_CASE("N46: joints act through the global parameters, limits and all", "[joi
   }
 }
 
+TEST_CASE("N46: a joint that only a bend lets close", "[joints]") {
+  // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two points of the world hold them at
+  // 0.9 m.
+  double b = 0.8;
+  for (int i = 0; i < 50; ++i) b -= (std::sin(b) / b - 0.9) / ((b * std::cos(b) - std::sin(b)) / (b * b));
+  const double k = 50, rest = 0.4, push = k * (b - rest) * b * b / (std::sin(b) - b * std::cos(b));
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {"bend"}, 1000);
+    part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}, {"bend.angle", rest}})
+        .stiffness({{"bend.angle", k}})
+        .damping(20, 0);
+    body.ball("up", world(0, 0, 0.45), point(part, kPi / 2, 0));
+    body.ball("down", world(0, 0, -0.45), point(part, -kPi / 2, 0));
+    Simulation simulation(body, method);
+    CHECK(simulation.state().joints[0] == JointMode::closing);
+    test::run(simulation, 3, 3000);
+    INFO(method);
+    CHECK(simulation.state().q[7] == Approx(b).epsilon(1e-12));
+    CHECK(gap(simulation, 0).norm() <= 1e-12);
+    CHECK(gap(simulation, 1).norm() <= 1e-12);
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    for (const int j : {0, 1})
+      CHECK((work.joints.lambda.segment<3>(3 * j) - Vec3<double>(0, 0, j == 0 ? push : -push)).norm() <=
+            1e-9 * push);
+  }
+}
+
+TEST_CASE("N46: lambda C_q v is the power that joints give a part that stretches and bends", "[joints]") {
+  MultiBody body;
+  Part& part = test::add(body, "part", "ellipsoid", {"bend"}, 1000);
+  part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}, {"bend.angle", 0.4}})
+      .stiffness({{"a3", 2000}, {"bend.angle", 50}})
+      .damping(1, 1e-3);
+  body.ball("up", world({test::wave(0, 0.1, 5), 0, test::wave(0.5, 0.1, 7)}), point(part, kPi / 2, 0));
+  body.ball("down", world(0, 0, -0.45), point(part, -kPi / 2, 0));
+  Simulation simulation(body, "rk4");
+  bool closing = false;
+  for (int i = 0; i < 1000; ++i) {
+    simulation.step(2e-3);
+    const State& s = simulation.state();
+    closing = closing || s.joints[0] == JointMode::closing;
+    Workspace<double> held, free;
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, held);
+    State loose = s;
+    loose.joints.assign(2, JointMode::off);
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, loose, free);
+    const PartWorkspace<double>& w = held.parts[0];
+    const double given = (mass_matrix(w) * (w.a_r - free.parts[0].a_r)).dot(w.v_r);
+    // C_q v is C_dot without the motion of the hand.
+    VecX<double> rates = held.joints.C_dot;
+    rates.head<3>() -= Vec3<double>(0.5 * std::cos(5 * s.time()), 0, 0.7 * std::cos(7 * s.time()));
+    const VecX<double>& lambda = held.joints.lambda;
+    REQUIRE(lambda.norm() > 1);
+    REQUIRE(std::abs(given - lambda.dot(rates)) <= 1e-11 * lambda.norm() * s.v.norm());
+  }
+  CHECK(closing);
+  CHECK(simulation.state().joints[0] == JointMode::closed);
+  CHECK(simulation.state().v.tail<2>().norm() > 1e-3);
+}
+
 TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double apart : {3, 10, 100}) {
