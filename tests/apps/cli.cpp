@@ -136,6 +136,44 @@ TEST_CASE("commands that tell") {
   CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
 }
 
+TEST_CASE("info tells of joints: rows, rank, islands, and the numbers of the factor") {
+  const Place place;
+  const auto info = [&](const std::string& arguments) {
+    const Result result = place.pliant("info " + arguments);
+    CHECK(result.code == 0);
+    INFO(arguments);
+    CHECK(result.err.empty());
+    return result.out;
+  };
+  // Four hinges in a loop: blocks of 5 rows, four on the diagonal and three below, for no fill-in is needed.
+  const std::string scenes = PLIANT_SCENES;
+  const std::string linkage = info("'" + scenes + "/four_bar.json'");
+  CHECK(has(linkage,
+            "constraints: 20 rows of rank 17, 1 island, 1 solved by blocks of C_q M^-1 C_q^T, "
+            "175 numbers in the factor\n"));
+  CHECK(has(linkage, "3 rows of 1 joint follow from those of others"));
+  const std::string augmented = info("'" + scenes + "/four_bar.json' --set /time/solver=augmented");
+  CHECK(has(augmented, "constraints: 20 rows of rank 17, 1 island, 1 as the augmented matrix, "));
+  CHECK(has(info("'" + scenes + "/n_four_bar.json'"), "constraints: 35 rows of rank 29, 1 island, "));
+  // A pendulum, and beside it one that hangs from another.
+  set_bytes(place.folder / "two.json", R"({
+    "parts": [{"name": "a", "shape": "sphere", "position": [0, 0, -1]},
+              {"name": "b", "shape": "sphere", "position": [5, 0, -1]},
+              {"name": "c", "shape": "sphere", "position": [5, 0, -3]}],
+    "joints": [{"type": "ball", "from": {"world": [0, 0, 0]},
+                "to": {"part": "a", "at": {"u": 1.5707963267948966, "v": 0}}},
+               {"type": "ball", "from": {"world": [5, 0, 0]},
+                "to": {"part": "b", "at": {"u": 1.5707963267948966, "v": 0}}},
+               {"type": "ball", "from": {"part": "b", "at": {"u": -1.5707963267948966, "v": 0}},
+                "to": {"part": "c", "at": {"u": 1.5707963267948966, "v": 0}}}]
+  })");
+  const std::string two = info("two.json");
+  CHECK(has(two,
+            "constraints: 9 rows of rank 9, 2 islands, 2 solved by blocks of C_q M^-1 C_q^T, 36 numbers "
+            "in the factor\n"));
+  CHECK_FALSE(has(two, "follow from those of others"));
+}
+
 TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
   const Place place;
   const auto mistake = [&](const std::string& arguments, const std::string& words) {

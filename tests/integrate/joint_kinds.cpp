@@ -320,6 +320,52 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     CHECK(simulation.state().work[static_cast<int>(Work::projection)] == Approx(-m / 4).epsilon(1e-12));
     CHECK(std::abs(simulation.ledger().balance) <= 1e-12 * m);
   }
+  SECTION("a joint that is added off the centres: its impulse, and the work of it") {
+    // Two spheres that turn about their own axes meet at one point of each at 0.3 s.
+    const double r = 0.2, on = 0.3, m[] = {1, 0.4};
+    const Vec3<double> meet(0.1, 0.2, -0.3), v[] = {{1, 0.2, 0}, {-0.3, 0, 0.1}},
+                                             w[] = {{0, 0, 2}, {1, 0, 0}};
+    const double at[2][2] = {{0.3, 1}, {-0.5, 2}};  // u, v
+    MultiBody body;
+    body.gravity.setZero();
+    Vec3<double> arm[2];
+    for (const int i : {0, 1}) {
+      const double u = at[i][0], along = at[i][1];
+      arm[i] =
+          turn(w[i], on * w[i].norm()) *
+          Vec3<double>(r * std::cos(u) * std::cos(along), r * std::cos(u) * std::sin(along), r * std::sin(u));
+      Part& part = test::add(body, i == 0 ? "a" : "b", "sphere", {}, 1000);
+      part.rest({{"r", r}}).mass(m[i]).place(meet - arm[i] - on * v[i]).move(v[i], w[i]);
+    }
+    body.ball("catch", point(*body.find("a"), at[0][0], at[0][1]), point(*body.find("b"), at[1][0], at[1][1]))
+        .during(on);
+    Simulation simulation(body, "rk4");
+    for (int i = 0; i < 700; ++i) simulation.step(on / 700);
+    simulation.step(1e-12);
+    REQUIRE(simulation.state().joints[0] == JointMode::closed);
+    // Impulse J on a: W J = -C_dot.
+    auto cross = [](const Vec3<double>& x) {
+      Mat3<double> X;
+      X << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
+      return X;
+    };
+    Mat3<double> W = Mat3<double>::Zero();
+    for (const int i : {0, 1})
+      W += Mat3<double>::Identity() / m[i] - cross(arm[i]) * cross(arm[i]) / (0.4 * m[i] * r * r);
+    const Vec3<double> C_dot = v[0] + w[0].cross(arm[0]) - v[1] - w[1].cross(arm[1]);
+    const Vec3<double> J = -W.inverse() * C_dot;
+    const State& s = simulation.state();
+    for (const int i : {0, 1}) {
+      const Vec3<double> push = i == 0 ? J : Vec3<double>(-J);
+      const auto theta = s.q.segment<4>(7 * i + 3);
+      const Eigen::Quaterniond R(theta[0], theta[1], theta[2], theta[3]);
+      CHECK((m[i] * (s.v.segment<3>(6 * i) - v[i]) - push).norm() <= 1e-11 * J.norm());
+      CHECK((0.4 * m[i] * r * r * (R * Vec3<double>(s.v.segment<3>(6 * i + 3)) - w[i]) - arm[i].cross(push))
+                .norm() <= 1e-11 * r * J.norm());
+    }
+    CHECK(s.work[static_cast<int>(Work::projection)] == Approx(J.dot(C_dot) / 2).epsilon(1e-12));
+    CHECK(std::abs(simulation.ledger().balance) <= 1e-14);
+  }
   SECTION("a run goes on from a state before the switch to the same bits") {
     auto make = [](MultiBody& body) {
       Part& bob = ellipsoid(body, "bob", {0.1, 0, 0});

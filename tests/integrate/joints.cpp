@@ -3,6 +3,8 @@
 #include "catch.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -57,29 +59,40 @@ void chain(MultiBody& body, int links, double turn = 0) {
   }
 }
 
+/// What is taken for order p between the two finest steps.
+double least_order(int p) {
+  return p <= 5 ? p - 0.1 : p - 0.5;
+}
+
 }  // namespace
 
 TEST_CASE(
     "N37: from rest, translation only, a gap closes as C0 (1 + alpha t) e^(-alpha t), at the method's order",
     "[joints]") {
-  std::vector<double> errors;
-  for (const int steps : {20, 40, 80, 160}) {
-    MultiBody body;
-    open_pair(body);
-    body.stabilization.rate = 4;
-    body.stabilization.projection = false;
-    Simulation simulation(body, "rk4");
-    double error = 0;
-    for (int i = 0; i < steps; ++i) {
-      simulation.step(1.0 / steps);
-      const double t = simulation.time();
-      error = std::max(
-          error, (gap(simulation) - Vec3<double>(-0.3, -0.1, 0.2) * (1 + 4 * t) * std::exp(-4 * t)).norm());
+  for (const IntegratorInfo& method : all_integrators()) {
+    const int coarse = method.order == 1 ? 2000 : method.order == 2 ? 400 : method.order < 8 ? 80 : 10;
+    std::vector<double> errors;
+    for (const int steps : {coarse, 2 * coarse}) {
+      MultiBody body;
+      open_pair(body);
+      body.stabilization.rule = BaumgarteRule::critical;
+      body.stabilization.rate = 4;
+      body.stabilization.projection = false;
+      Simulation simulation(body, method.name);
+      double error = 0;
+      for (int i = 0; i < steps; ++i) {
+        simulation.step(1.0 / steps);
+        const double t = simulation.time();
+        error = std::max(
+            error, (gap(simulation) - Vec3<double>(-0.3, -0.1, 0.2) * (1 + 4 * t) * std::exp(-4 * t)).norm());
+      }
+      errors.push_back(error);
+      CHECK(simulation.ledger().momentum.norm() <= 1e-12);
     }
-    errors.push_back(error);
-    CHECK(simulation.ledger().momentum.norm() <= 1e-12);
+    INFO(method.name << ": " << errors.front() << " to " << errors.back() << " m, order "
+                     << test::observed_order(errors));
+    CHECK(test::observed_order(errors) >= least_order(method.order));
   }
-  CHECK(test::observed_order(errors) >= 3.9);
 }
 
 TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding and for any step",
@@ -100,66 +113,114 @@ TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding a
   }
 }
 
-TEST_CASE("N34: the edges of stability of Baumgarte's equation", "[joints]") {
-  struct Case {
-    const char* method;
-    double edge;
-  };
-  for (const Case& c : {Case{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)}, Case{"rk4", 2.785}}) {
-    for (const double part : {0.99, 1.01}) {
-      MultiBody body;
-      open_pair(body);
-      body.stabilization.rule = BaumgarteRule::critical;
-      body.stabilization.rate = 10;
-      body.stabilization.speed = 1e9;
-      body.stabilization.projection = false;
-      Simulation simulation(body, c.method);
-      for (int i = 0; i < 3000; ++i) {
-        simulation.step(part * c.edge / 10);
-        if (gap(simulation).norm() > 1e3) break;
-      }
-      INFO(c.method << " at " << part);
-      CHECK((gap(simulation).norm() < 0.3) == (part < 1));
+namespace {
+
+/// Whether a gap goes away under critically damped Baumgarte terms with alpha h = x.
+bool decays(const char* method, double x) {
+  MultiBody body;
+  open_pair(body);
+  body.stabilization.rule = BaumgarteRule::critical;
+  body.stabilization.rate = 10;
+  body.stabilization.speed = 1e9;
+  body.stabilization.projection = false;
+  Simulation simulation(body, method);
+  const double h = x / 10, open = gap(simulation).norm();
+  for (int i = 0; i < 5000; ++i) {
+    simulation.step(h);
+    // A gap may pass 0 at any speed.
+    const Vec3<double> rate = simulation.state().v.head<3>() - simulation.state().v.segment<3>(6);
+    const double size = gap(simulation).norm() + h * rate.norm();
+    if (size <= 1e-6 * open) return true;
+    if (!(size <= 1e6 * open)) return false;
+  }
+  FAIL("neither decays nor grows");
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("N34: the edges of stability of Baumgarte's equation, over alpha h from 0.01 to 4 and beyond",
+          "[joints]") {
+  // |R(-x)| = 1 of explicit methods; the linearly implicit one takes no joint implicitly. 0: no edge.
+  const std::map<std::string, double> edges{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
+                                            {"rk4", 2.785294},
+                                            {"linearly_implicit", 0.960432},
+                                            {"implicit_midpoint", 0},
+                                            {"esdirk", 0},
+                                            {"dormand_prince", 3.306568},
+                                            {"dop853", 6.393651}};
+  const MatX<double> K = MatX<double>::Ones(1, 1), D = 2 * K;
+  for (const IntegratorInfo& info : all_integrators()) {
+    const std::unique_ptr<Integrator> method = info.make();
+    const double edge = edges.at(info.name);
+    std::vector<double> sweep;
+    for (int k = 0; k <= 24; ++k) sweep.push_back(0.01 * std::pow(400, k / 24.0));
+    sweep.insert(sweep.end(), {10, 100});
+    if (edge > 0) sweep.insert(sweep.end(), {0.99 * edge, 1.01 * edge});
+    for (const double x : sweep) {
+      if (edge > 0 && std::abs(x / edge - 1) < 0.0099) continue;  // within 1 %
+      INFO(info.name << " at " << x);
+      CHECK(decays(info.name, x) == (edge == 0 || x < edge));
+      CHECK((method->growth(K, D, x) <= 1) == (edge == 0 || x < edge));
     }
   }
 }
 
+namespace {
+
+/// Two spheres that move and turn, joined off their centres, far open.
+void open_and_turning(MultiBody& body) {
+  body.gravity.setZero();
+  Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {1, 0.5, 0.3}, 400);
+  a.move({0, 0.3, 0}, {1, 2, 0});
+  b.move({0, 0, 0.4}, {0, -1, 3});
+  body.ball("ab", point(a, 0.3, 1), point(b, -0.5, 2));
+  body.stabilization.rate = 3;
+  body.stabilization.projection = false;
+}
+
+/// C x lambda of the first joint.
+Vec3<double> torque(const Simulation& simulation) {
+  Workspace<double> work;
+  const State& s = simulation.state();
+  simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+  return Vec3<double>(work.joints.C.head<3>()).cross(Vec3<double>(work.joints.lambda.head<3>()));
+}
+
+}  // namespace
+
 TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its two forces", "[joints]") {
-  std::vector<double> errors;
-  for (const int steps : {50, 100, 200}) {
-    MultiBody body;
-    body.gravity.setZero();
-    Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {1, 0.5, 0.3}, 400);
-    a.move({0, 0.3, 0}, {1, 2, 0});
-    b.move({0, 0, 0.4}, {0, -1, 3});
-    body.ball("ab", point(a, 0.3, 1), point(b, -0.5, 2));
-    body.stabilization.rate = 3;
-    body.stabilization.projection = false;
-    Simulation simulation(body, "rk4");
-    const Vec3<double> P = simulation.ledger().momentum, L = simulation.ledger().angular_momentum;
-    // The torque integrated by Simpson's rule over pairs of steps.
-    Vec3<double> turned = Vec3<double>::Zero();
-    auto torque = [&] {
-      Workspace<double> work;
-      const State& s = simulation.state();
-      simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
-      return Vec3<double>(Vec3<double>(work.joints.C).cross(Vec3<double>(work.joints.lambda)));
-    };
-    const double h = 1.0 / steps;
-    Vec3<double> start = torque();
-    for (int i = 0; i < steps; i += 2) {
-      simulation.step(h);
-      const Vec3<double> middle = torque();
-      simulation.step(h);
-      const Vec3<double> end = torque();
-      turned += h / 3 * (start + 4 * middle + end);
-      start = end;
+  struct Case {
+    const char* method;
+    std::vector<int> steps;
+    double error;
+  };
+  for (const Case& c : {Case{"rk4", {50, 100, 200}, 1e-6}, Case{"dop853", {2000}, 1e-10}}) {
+    std::vector<double> errors;
+    for (const int steps : c.steps) {
+      MultiBody body;
+      open_and_turning(body);
+      Simulation simulation(body, c.method);
+      const Vec3<double> P = simulation.ledger().momentum, L = simulation.ledger().angular_momentum;
+      // The torque integrated by Simpson's rule over pairs of steps.
+      Vec3<double> turned = Vec3<double>::Zero();
+      const double h = 1.0 / steps;
+      Vec3<double> start = torque(simulation);
+      for (int i = 0; i < steps; i += 2) {
+        simulation.step(h);
+        const Vec3<double> middle = torque(simulation);
+        simulation.step(h);
+        const Vec3<double> end = torque(simulation);
+        turned += h / 3 * (start + 4 * middle + end);
+        start = end;
+      }
+      CHECK((simulation.ledger().momentum - P).norm() <= 1e-13 * P.norm());
+      errors.push_back((simulation.ledger().angular_momentum - L - turned).norm() / L.norm());
     }
-    CHECK((simulation.ledger().momentum - P).norm() <= 1e-12 * P.norm());
-    errors.push_back((simulation.ledger().angular_momentum - L - turned).norm() / L.norm());
+    INFO(c.method << " " << errors.back());
+    CHECK(errors.back() <= c.error);
+    if (errors.size() > 1) CHECK(test::observed_order(errors) >= 3.8);
   }
-  CHECK(errors.back() <= 1e-6);
-  CHECK(test::observed_order(errors) >= 3.8);
 }
 
 TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]") {
@@ -183,12 +244,8 @@ TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]")
   }
 }
 
-TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and forces", "[joints]") {
-  struct Case {
-    const char* method;
-    std::vector<int> steps;
-    double order;
-  };
+TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and forces, by every method",
+          "[joints]") {
   auto at_end = [](const char* method, int steps) {
     MultiBody body;
     chain(body, 8, 0.7);
@@ -199,26 +256,30 @@ TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and 
     simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
     return std::array<VecX<double>, 3>{s.q, s.v, work.joints.lambda};
   };
-  const auto reference = at_end("rk4", 4000);
-  for (const Case& c :
-       {Case{"rk4", {125, 250, 500}, 3.9}, Case{"semi_implicit_euler", {1000, 2000, 4000}, 0.9}}) {
+  const auto reference = at_end("dop853", 500);
+  const std::array names{"q", "v", "lambda"};
+  for (const IntegratorInfo& method : all_integrators()) {
+    const int coarse = method.order == 1 ? 2000 : method.order == 2 ? 400 : method.order < 8 ? 200 : 24;
     std::array<std::vector<double>, 3> errors;
-    for (const int steps : c.steps) {
-      const auto end = at_end(c.method, steps);
+    for (const int steps : {coarse, 2 * coarse}) {
+      const auto end = at_end(method.name, steps);
       for (std::size_t i = 0; i < 3; ++i)
         errors[i].push_back((end[i] - reference[i]).norm() / reference[i].norm());
     }
     for (std::size_t i = 0; i < 3; ++i) {
-      INFO(c.method << " " << i << ": " << errors[i].front() << " to " << errors[i].back());
-      CHECK(test::observed_order(errors[i]) >= c.order);
+      INFO(method.name << " " << names[i] << ": " << errors[i].front() << " to " << errors[i].back()
+                       << ", order " << test::observed_order(errors[i]));
+      CHECK(test::observed_order(errors[i]) >= least_order(method.order));
     }
   }
 }
 
 TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomial", "[joints]") {
   // Spheres of no size hardly turn: joints at their centres, rods of 1 m between them.
-  for (const auto& [n, roots] : {std::pair<int, std::vector<double>>{2, {0.585786437627, 3.414213562373}},
-                                 {3, {0.415774556783, 2.294280360279, 6.289945082937}}}) {
+  for (const auto& [n, roots] :
+       {std::pair<int, std::vector<double>>{2, {0.585786437627, 3.414213562373}},
+        {3, {0.415774556783, 2.294280360279, 6.289945082937}},
+        {5, {0.263560319718, 1.413403059107, 3.596425771041, 7.085810005859, 12.640800844276}}}) {
     MultiBody body;
     body.gravity = {0, 0, -1};
     for (int i = 0; i < n; ++i) {
@@ -318,38 +379,66 @@ TEST_CASE("N38: heavy on light and light on heavy", "[joints]") {
     Workspace<double> work;
     const State& s = simulation.state();
     simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
-    CHECK(std::abs(work.joints.lambda[1]) == Approx(b.total_mass() * 9.81).epsilon(1e-4));
+    // The tensions of two point masses on rods of 1 m, whose second derivatives are 0.
+    const double m_a = a.total_mass(), m_b = b.total_mass();
+    const Vec3<double> g(0, 0, -9.81), up = s.q.head<3>().normalized(),
+                                       down = (s.q.segment<3>(7) - s.q.head<3>()).normalized();
+    const double cosine = up.dot(down), pull_a = up.dot(g) + s.v.head<3>().squaredNorm(),
+                 pull_ab = (s.v.segment<3>(6) - s.v.head<3>()).squaredNorm();
+    const double give = up.cross(down).squaredNorm() / m_a + 1 / m_b;
+    const double tension[] = {((1 + m_a / m_b) * pull_a + cosine * pull_ab) / give,
+                              (cosine * pull_a + pull_ab) / give};
+    for (const int i : {0, 1}) {
+      INFO(ratio << ", joint " << i << ": " << std::abs(work.joints.lambda[i]) / tension[i] - 1);
+      CHECK(std::abs(work.joints.lambda[i]) == Approx(tension[i]).epsilon(1e-12));
+    }
     CHECK(std::abs(simulation.ledger().balance) <= 1e-9 * (a.total_mass() + b.total_mass()));
   }
 }
 
 TEST_CASE("N35: a spinning rod, by Baumgarte alone and projected", "[joints]") {
-  for (const bool projected : {false, true}) {
-    MultiBody body;
-    body.gravity.setZero();
-    Part& mass = sphere(body, "mass", {1, 0, 0});
-    mass.move({0, 2, 0}, {0, 0, 0});  // kappa = 4 m/s^2
-    body.join("rod", Rod{1}, {world(0, 0, 0), centre(mass)});
-    body.stabilization.rule = BaumgarteRule::critical;
-    body.stabilization.rate = 10;
-    body.stabilization.projection = projected;
-    Simulation simulation(body, "semi_implicit_euler");
-    const double h = 0.01;
-    for (int i = 0; i < 1000; ++i) simulation.step(h);
-    const double offset = gap(simulation).norm() - 1;
-    if (projected)
-      CHECK(std::abs(offset) <= 1e-13);
-    else {
-      const double kappa = simulation.state().v.head<3>().squaredNorm();
-      CHECK(std::abs(offset) == Approx(h * kappa / 10).epsilon(0.03));
+  const double h = 0.01, r = std::exp(-10 * h);
+  struct Case {
+    const char* name;
+    Stabilization gains;
+    double offset;  // of 1 m/s^2: h alpha / beta^2
+  };
+  auto gains = [](BaumgarteRule rule, double rate) {
+    Stabilization made;
+    made.rule = rule;
+    made.rate = rate;
+    return made;
+  };
+  Stabilization dead_beat = gains(BaumgarteRule::free, 10);
+  dead_beat.stab_alpha = 1 / (2 * h);
+  dead_beat.stab_beta = 1 / h;
+  for (const Case& c :
+       {Case{"alpha = 10", gains(BaumgarteRule::critical, 10), h / 10},
+        Case{"alpha = 0.5 / h", gains(BaumgarteRule::critical, 0.5 / h), h / (0.5 / h)},
+        Case{"dead beat", dead_beat, h * h / 2},
+        Case{"step-consistent", gains(BaumgarteRule::step_consistent, 10), h * h * (1 + r) / (2 * (1 - r))}})
+    for (const bool projected : {false, true}) {
+      MultiBody body;
+      body.gravity.setZero();
+      Part& mass = sphere(body, "mass", {1, 0, 0});
+      mass.move({0, 2, 0}, {0, 0, 0});  // kappa = 4 m/s^2
+      body.join("rod", Rod{1}, {world(0, 0, 0), centre(mass)});
+      body.stabilization = c.gains;
+      body.stabilization.projection = projected;
+      Simulation simulation(body, "semi_implicit_euler");
+      for (int i = 0; i < 1000; ++i) simulation.step(h);
+      const double offset = std::abs(gap(simulation).norm() - 1);
+      INFO(c.name << ": " << offset << " m");
+      if (projected)
+        CHECK(offset <= 1e-13);
+      else
+        CHECK(offset == Approx(4 * c.offset).epsilon(0.02));
     }
-  }
 }
 
 TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order", "[joints]") {
-  std::vector<double> errors;
-  VecX<double> reference;
-  for (const int steps : {3200, 100, 200, 400}) {
+  double widest = 0, balance = 0;
+  auto at_end = [&](const char* method, int steps) -> VecX<double> {
     MultiBody body;
     Part& part = test::tumbling_solid(body);
     body.gravity = {0, 0, -9.81};
@@ -357,16 +446,31 @@ TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order"
     body.ball("hand",
               world({test::wave(x0[0], 0.3, 4), test::wave(x0[1], 0.2, 5), test::wave(x0[2], 0.1, 3)}),
               point(part, 0.4, 1.0));
-    Simulation simulation(body, "rk4");
-    test::run(simulation, 0.4, steps);
-    CHECK(gap(simulation).norm() <= 1e-12);
-    if (steps == 3200)
-      reference = simulation.state().q;
-    else
-      errors.push_back((simulation.state().q - reference).norm());
-    if (steps == 400) CHECK(std::abs(simulation.ledger().balance) <= 1e-5 * simulation.ledger().energy());
+    Simulation simulation(body, method);
+    widest = 0;
+    for (int i = 0; i < steps; ++i) {
+      simulation.step(0.4 / steps);
+      widest = std::max(widest, gap(simulation).norm());
+    }
+    balance = std::abs(simulation.ledger().balance) / simulation.ledger().energy();
+    return simulation.state().q;
+  };
+  const VecX<double> reference = at_end("dop853", 800);
+  for (const IntegratorInfo& method : all_integrators()) {
+    const int coarse = method.order == 1 ? 2000 : method.order == 2 ? 400 : method.order < 8 ? 200 : 50;
+    std::vector<double> errors, balances;
+    for (const int steps : {coarse, 2 * coarse}) {
+      errors.push_back((at_end(method.name, steps) - reference).norm());
+      balances.push_back(balance);
+      CHECK(widest <= 1e-12);
+    }
+    INFO(method.name << ": " << errors.front() << " to " << errors.back() << ", order "
+                     << test::observed_order(errors) << ", of the balance " << balances.front() << " to "
+                     << balances.back() << " order " << test::observed_order(balances));
+    CHECK(test::observed_order(errors) >= least_order(method.order));
+    CHECK(test::observed_order(balances) >= least_order(method.order));
+    CHECK(balances.back() <= 1e-4);
   }
-  CHECK(test::observed_order(errors) >= 3.9);
 }
 
 TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings as a rod does", "[joints]") {
@@ -489,6 +593,70 @@ TEST_CASE("N46: joints act through the global parameters, limits and all", "[joi
     CHECK(pulled.state().v.norm() <= 1e-9);
     CHECK(pulled.step_counters().limit_impulses <= 5);
   }
+}
+
+TEST_CASE("N46: a joint that only a bend lets close", "[joints]") {
+  // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two points of the world hold them at
+  // 0.9 m.
+  double b = 0.8;
+  for (int i = 0; i < 50; ++i) b -= (std::sin(b) / b - 0.9) / ((b * std::cos(b) - std::sin(b)) / (b * b));
+  const double k = 50, rest = 0.4, push = k * (b - rest) * b * b / (std::sin(b) - b * std::cos(b));
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    MultiBody body;
+    body.gravity.setZero();
+    Part& part = test::add(body, "part", "ellipsoid", {"bend"}, 1000);
+    part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}, {"bend.angle", rest}})
+        .stiffness({{"bend.angle", k}})
+        .damping(20, 0);
+    body.ball("up", world(0, 0, 0.45), point(part, kPi / 2, 0));
+    body.ball("down", world(0, 0, -0.45), point(part, -kPi / 2, 0));
+    Simulation simulation(body, method);
+    CHECK(simulation.state().joints[0] == JointMode::closing);
+    test::run(simulation, 3, 3000);
+    INFO(method);
+    CHECK(simulation.state().q[7] == Approx(b).epsilon(1e-12));
+    CHECK(gap(simulation, 0).norm() <= 1e-12);
+    CHECK(gap(simulation, 1).norm() <= 1e-12);
+    Workspace<double> work;
+    const State& s = simulation.state();
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
+    for (const int j : {0, 1})
+      CHECK((work.joints.lambda.segment<3>(3 * j) - Vec3<double>(0, 0, j == 0 ? push : -push)).norm() <=
+            1e-9 * push);
+  }
+}
+
+TEST_CASE("N46: lambda C_q v is the power that joints give a part that stretches and bends", "[joints]") {
+  MultiBody body;
+  Part& part = test::add(body, "part", "ellipsoid", {"bend"}, 1000);
+  part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}, {"bend.angle", 0.4}})
+      .stiffness({{"a3", 2000}, {"bend.angle", 50}})
+      .damping(1, 1e-3);
+  body.ball("up", world({test::wave(0, 0.1, 5), 0, test::wave(0.5, 0.1, 7)}), point(part, kPi / 2, 0));
+  body.ball("down", world(0, 0, -0.45), point(part, -kPi / 2, 0));
+  Simulation simulation(body, "rk4");
+  bool closing = false;
+  for (int i = 0; i < 1000; ++i) {
+    simulation.step(2e-3);
+    const State& s = simulation.state();
+    closing = closing || s.joints[0] == JointMode::closing;
+    Workspace<double> held, free;
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, held);
+    State loose = s;
+    loose.joints.assign(2, JointMode::off);
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, loose, free);
+    const PartWorkspace<double>& w = held.parts[0];
+    const double given = (mass_matrix(w) * (w.a_r - free.parts[0].a_r)).dot(w.v_r);
+    // C_q v is C_dot without the motion of the hand.
+    VecX<double> rates = held.joints.C_dot;
+    rates.head<3>() -= Vec3<double>(0.5 * std::cos(5 * s.time()), 0, 0.7 * std::cos(7 * s.time()));
+    const VecX<double>& lambda = held.joints.lambda;
+    REQUIRE(lambda.norm() > 1);
+    REQUIRE(std::abs(given - lambda.dot(rates)) <= 1e-11 * lambda.norm() * s.v.norm());
+  }
+  CHECK(closing);
+  CHECK(simulation.state().joints[0] == JointMode::closed);
+  CHECK(simulation.state().v.tail<2>().norm() > 1e-3);
 }
 
 TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "[joints]") {

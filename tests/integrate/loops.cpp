@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ctime>
 #include <functional>
 #include <numeric>
 
@@ -397,6 +398,7 @@ TEST_CASE("N44: a straight arm between two walls: finite forces, and a stop that
       REQUIRE(widest_gap(simulation) <= 1e-10);
       good = simulation.state();
     }
+    FAIL("went on");
   } catch (const UnsatisfiableModel& failure) {
     const std::string what = failure.what();
     CHECK(what.find("'elbow'") != std::string::npos);
@@ -430,19 +432,22 @@ TEST_CASE("N44: a hand that goes beyond the reach of an arm stops the run when t
 
 namespace {
 
-/// Gap, in lengths of a body, that a run never exceeds, by either method.
+/// Gap, in lengths of a body, that a run never exceeds, by every method; but large islands by those alone
+/// that solve no dense equations for all of their velocities.
 void check_gaps(const std::string& name, const std::function<void(MultiBody&)>& make, double length, double h,
                 int steps) {
-  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+  for (const IntegratorInfo& info : all_integrators()) {
+    const std::string method = info.name;
     MultiBody body;
     make(body);
+    if (body.parts().size() > 10 && (method == "implicit_midpoint" || method == "esdirk")) continue;
     Simulation simulation(body, method);
     double widest = 0;
     for (int i = 0; i < steps; ++i) {
       simulation.step(h);
       widest = std::max(widest, widest_gap(simulation));
     }
-    INFO(name << " of " << body.parts().size() << " by " << method);
+    INFO(name << " of " << body.parts().size() << " by " << method << ": " << widest / length);
     CHECK(widest <= 1e-10 * length);
   }
 }
@@ -483,6 +488,32 @@ TEST_CASE("a thousand links stay joined, with an end of 1 kg and of 1e6 kg", "[l
         mass > 1 ? 1e-4 : 2e-3, 200);
 }
 
+TEST_CASE("N39: a step of 1000 links takes at most 12 times that of 100", "[loops][long]") {
+  // Processor time, the least of several rounds: what else the machine does only adds to it.
+  for (const char* method : {"rk4", "semi_implicit_euler"})
+    for (const double mass : {1., 1e6}) {
+      auto hanging = [&](MultiBody& body, int links) -> MultiBody& {
+        chain(body, links, 0, end_of_mass(links, mass));
+        return body;
+      };
+      MultiBody short_one, long_one;
+      Simulation small(hanging(short_one, 100), method), large(hanging(long_one, 1000), method);
+      auto time = [](Simulation& simulation, int steps) {
+        const std::clock_t start = std::clock();
+        for (int i = 0; i < steps; ++i) simulation.step(1e-4);
+        return static_cast<double>(std::clock() - start) / steps;
+      };
+      double of_100 = 1e300, of_1000 = 1e300;
+      for (int round = 0; round < 100 && (round < 10 || of_1000 > 12 * of_100); ++round) {
+        of_100 = std::min(of_100, time(small, 100));
+        of_1000 = std::min(of_1000, time(large, 10));
+      }
+      INFO(method << ", " << mass << " kg: " << of_100 << " and " << of_1000 << " ticks, ratio "
+                  << of_1000 / of_100);
+      CHECK(of_1000 <= 12 * of_100);
+    }
+}
+
 TEST_CASE("N40: 1000 links of 1 kg and 1e6 kg by turns sway for a minute without drift", "[loops][long]") {
   MultiBody body;
   body.gravity = {0, 0, -1};  // the links under this load swing at up to some 100 rad/s
@@ -496,7 +527,7 @@ TEST_CASE("N40: 1000 links of 1 kg and 1e6 kg by turns sway for a minute without
     widest = std::max(widest, widest_gap(simulation));
   }
   INFO(early << " m in the first half, " << late << " m in the second");
-  CHECK(early <= 1e-9);
-  CHECK(late <= 1e-9);
-  CHECK(std::abs(simulation.ledger().energy() - energy) <= 1e-9 * std::abs(energy));
+  CHECK(early <= 2e-11);
+  CHECK(late <= 2e-11);
+  CHECK(std::abs(simulation.ledger().energy() - energy) <= 1e-12 * std::abs(energy));  // 0.25 J
 }

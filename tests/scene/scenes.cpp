@@ -93,6 +93,43 @@ TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, 
   CHECK(longest > 1.2 * 0.32);
 }
 
+TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has closed stays closed") {
+  struct Case {
+    const char* name;
+    std::size_t joints;
+    double until;  // s; what tells of the assembled body in the scene begins about then
+  };
+  for (const Case& c : {Case{"dragonfly.json", 4, 3.3}, Case{"snowman.json", 12, 3.1}}) {
+    INFO(c.name);
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + c.name, {}, diagnostics);
+    pliant::Simulation simulation(scene->body, scene->integrator);
+    const pliant::Model& model = simulation.model();
+    std::vector<std::size_t> assembled;  // joints that act from the start
+    for (std::size_t j = 0; j < model.joints().size(); ++j) {
+      if (simulation.state().joints[j] == pliant::JointMode::off) continue;
+      assembled.push_back(j);
+      CHECK(simulation.state().joints[j] == pliant::JointMode::closing);
+      CHECK(model.gap(simulation.state(), static_cast<int>(j)) > 0.5);
+    }
+    CHECK(assembled.size() == c.joints);
+    std::vector<bool> closed(model.joints().size());
+    while (simulation.time() < c.until) {
+      simulation.step(scene->step);
+      for (const std::size_t j : assembled) {
+        if (simulation.state().joints[j] == pliant::JointMode::closed) closed[j] = true;
+        if (!closed[j]) continue;
+        REQUIRE(simulation.state().joints[j] == pliant::JointMode::closed);
+        REQUIRE(model.gap(simulation.state(), static_cast<int>(j)) <= 1e-12);
+      }
+    }
+    for (const std::size_t j : assembled) {
+      INFO(model.joints()[j].joint->name());
+      CHECK(closed[j]);
+    }
+  }
+}
+
 TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
   for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
     pliant::Diagnostics diagnostics;
