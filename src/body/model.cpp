@@ -15,6 +15,8 @@ namespace pliant {
 namespace {
 /// Multiplications below which blocks are always the faster way.
 constexpr long kCheapBlocks = 10000;
+/// Parts below this share of the mass of another of their island are light among heavy ones.
+constexpr double kUneven = 1e-4;
 }  // namespace
 
 Model::Model(MultiBody& body) : body_(&body) {
@@ -218,6 +220,13 @@ void Model::lay_islands() {
     island.n_v += parts_[i].n_x();
   }
   for (Island& island : islands_) {
+    double lightest = std::numeric_limits<double>::infinity(), heaviest = 0;
+    for (const int i : island.parts) {
+      const double mass = parts_[static_cast<std::size_t>(i)].part->rest_inertia().mass;
+      lightest = std::min(lightest, mass);
+      heaviest = std::max(heaviest, mass);
+    }
+    island.uneven = lightest < kUneven * heaviest;
     choose_solver(island, sides_of);
     if (!island.augmented) lay_couplings(island, sides_of);
   }

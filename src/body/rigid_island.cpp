@@ -172,7 +172,7 @@ void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const Ve
   add_loads(work, now);
   JointFactor<double>& W_c = work.joints.W_c[at(island_)];
   factor(model.islands()[at(island_)], rank, now, W_c.blocks());
-  const int refinements = W_c.is_rough() ? 2 : 0;
+  const int refinements = W_c.is_rough() || model.islands()[at(island_)].uneven ? 2 : 0;
   for (int pass = 0; pass <= refinements; ++pass) hold(W_c.blocks(), now);
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const Four& of = fours_[i];

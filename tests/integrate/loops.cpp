@@ -440,7 +440,7 @@ void check_gaps(const std::string& name, const std::function<void(MultiBody&)>& 
     const std::string method = info.name;
     MultiBody body;
     make(body);
-    if (body.parts().size() > 10 && (method == "implicit_midpoint" || method == "esdirk")) continue;
+    if (body.parts().size() > 100 && (method == "implicit_midpoint" || method == "esdirk")) continue;
     Simulation simulation(body, method);
     double widest = 0;
     for (int i = 0; i < steps; ++i) {

@@ -103,7 +103,7 @@ class Group {
     });
   }
   /// Whether what correct() gives is to be refined.
-  bool is_rough() const { return factor().is_rough(); }
+  bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
   /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
   /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by

@@ -103,7 +103,8 @@ struct Island {
   int rows = 0;              ///< of joints
   int rigid = -1;            ///< its number among the rigid islands; -1: it is none
   bool augmented = false;    ///< solved as the augmented matrix, not by blocks
-  BlockPattern pattern;      ///< of the blocks of W_c, when they are used
+  bool uneven = false;   ///< parts so light among heavy ones that what is left of forces on them is refined
+  BlockPattern pattern;  ///< of the blocks of W_c, when they are used
   std::vector<Coupling> couplings;
   long numbers = 0;  ///< in the factor
 };

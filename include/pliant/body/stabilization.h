@@ -34,12 +34,13 @@ struct Stabilization {
   /// Whether closed joints are projected after each step; by default they are.
   std::optional<bool> projection;
 
-  /// Throws std::invalid_argument unless every number is finite and not negative.
+  /// Throws std::invalid_argument unless every number is finite and not negative, and the rate is positive.
   void check() const {
-    for (const double number : {rate, stab_alpha, stab_beta, speed})
+    if (!(rate > 0) || !std::isfinite(rate))
+      throw std::invalid_argument("stabilization: rate must be a number > 0");
+    for (const double number : {stab_alpha, stab_beta, speed})
       if (!(number >= 0) || !std::isfinite(number))
-        throw std::invalid_argument(
-            "stabilization: rate, stab_alpha, stab_beta and speed must be numbers >= 0");
+        throw std::invalid_argument("stabilization: stab_alpha, stab_beta and speed must be numbers >= 0");
   }
   /// Whether the gains go with the step, so that any step is stable; consistent: what automatic means.
   bool follows_step(bool consistent) const {
