@@ -62,94 +62,157 @@ void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, int r
   }
 }
 
+template <class S>
+void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
+                    ConstraintWorkspace<S>& work) {
+  const JointModel& joint = model.joints()[at(j)];
+  for (const JointSide& side : joint.sides)
+    work.Cq.segment(side.offset, velocities(model.parts()[at(side.part)]) * joint.rows).setConstant(S(0.0));
+  if (!acts(work.modes[at(j)]) && !(joint.joint->one_sided() && work.modes[at(j)] == JointMode::slack))
+    return;
+  std::array<PointMotion<S>, kMaxJointPoints> motion;
+  JointRows<S> rows;
+  const int n_points = joint.joint->n_points();
+  for (int k = 0; k < n_points; ++k) {
+    const PortRef& ref = joint.at[at(k)];
+    if (ref.part >= 0) {
+      motion[at(k)] = port_motion(model.parts()[at(ref.part)], t, parts[at(ref.part)], ref.port);
+      continue;
+    }
+    const Vec3<Taylor2<double>> x = joint.joint->points()[at(k)].world.at(t);
+    for (int i = 0; i < 3; ++i) {
+      motion[at(k)].x[i] = S(x[i].v);
+      motion[at(k)].x_dot[i] = S(x[i].d);
+      motion[at(k)].x_ddot[i] = S(x[i].dd);
+    }
+  }
+  joint.joint->evaluate(t, motion.data(), rows);
+  work.C.segment(joint.row, joint.rows) = rows.C;
+  work.C_dot.segment(joint.row, joint.rows) = rows.C_dot;
+  work.bias.segment(joint.row, joint.rows) = rows.bias;
+  for (int k = 0; k < n_points; ++k) {
+    const PortRef& ref = joint.at[at(k)];
+    for (const JointSide& side : joint.sides) {
+      if (side.part != ref.part) continue;
+      const PartModel& part = model.parts()[at(side.part)];
+      add_point(part, parts[at(side.part)], ref.port, joint.rows, rows.C_x.data() + 3 * k * joint.rows,
+                work.Cq.data() + side.offset);
+    }
+  }
+}
+
+/// M^-1 C_q^T of the sides of a joint.
+template <class S>
+void respond(const Model& model, int j, const std::vector<PartWorkspace<S>>& parts,
+             ConstraintWorkspace<S>& work) {
+  const JointModel& joint = model.joints()[at(j)];
+  for (const JointSide& side : joint.sides) {
+    const PartModel& part = model.parts()[at(side.part)];
+    const int n = velocities(part);
+    const S* Cq = work.Cq.data() + side.offset;
+    S* Y = work.Y.data() + side.offset;
+    if constexpr (std::is_same_v<S, double>) {
+      const PartModel* rigid = parts[at(side.part)].rigid;
+      if (rigid != nullptr && joint.rows == 3) {
+        FixedSide<S, 6, 3>(Y).noalias() = rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
+        continue;
+      }
+    }
+    if constexpr (std::is_same_v<S, double>)
+      if (part.local != nullptr) {
+        Eigen::Map<MatX<S>>(Y, n, joint.rows).noalias() =
+            parts[at(side.part)].local->A * Eigen::Map<const MatX<S>>(Cq, n, joint.rows);
+        continue;
+      }
+    std::copy_n(Cq, joint.rows * n, Y);
+    const PartWorkspace<S>& w = parts[at(side.part)];
+    if (joint.rows == 3 && w.rigid == nullptr)
+      w.factor.template solve_columns<3>(Y);
+    else
+      for (int r = 0; r < joint.rows; ++r) w.solve_mass(Eigen::Map<VecX<S>>(Y + r * n, n));
+  }
+}
+
+/// The parts of an island in their order, each placed no sooner than a joint asks for it.
+class PartsInTurn {
+ public:
+  PartsInTurn(const Island& island, const PlacePart& place) : island_(island), place_(place) {
+    if (!place) next_ = island.parts.size();
+  }
+  void place_for(const JointModel& joint) {
+    for (const JointSide& side : joint.sides) place_to(at(side.place) + 1);
+  }
+  void place_rest() { place_to(island_.parts.size()); }
+
+ private:
+  void place_to(std::size_t end) {
+    for (; next_ < end; ++next_) place_(island_.parts[next_]);
+  }
+
+  const Island& island_;
+  const PlacePart& place_;
+  std::size_t next_ = 0;
+};
+
 }  // namespace
 
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
-                     const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work) {
-  std::array<PointMotion<S>, kMaxJointPoints> motion;
-  JointRows<S> rows;
-  auto evaluate = [&](int j) {
-    const JointModel& joint = model.joints()[at(j)];
-    for (const JointSide& side : joint.sides)
-      work.Cq.segment(side.offset, velocities(model.parts()[at(side.part)]) * joint.rows).setConstant(S(0.0));
-    if (!acts(work.modes[at(j)]) && !(joint.joint->one_sided() && work.modes[at(j)] == JointMode::slack))
-      return;
-    const int n_points = joint.joint->n_points();
-    for (int k = 0; k < n_points; ++k) {
-      const PortRef& ref = joint.at[at(k)];
-      if (ref.part >= 0) {
-        motion[at(k)] = port_motion(model.parts()[at(ref.part)], t, parts[at(ref.part)], ref.port);
-        continue;
-      }
-      const Vec3<Taylor2<double>> x = joint.joint->points()[at(k)].world.at(t);
-      for (int i = 0; i < 3; ++i) {
-        motion[at(k)].x[i] = S(x[i].v);
-        motion[at(k)].x_dot[i] = S(x[i].d);
-        motion[at(k)].x_ddot[i] = S(x[i].dd);
-      }
-    }
-    joint.joint->evaluate(t, motion.data(), rows);
-    work.C.segment(joint.row, joint.rows) = rows.C;
-    work.C_dot.segment(joint.row, joint.rows) = rows.C_dot;
-    work.bias.segment(joint.row, joint.rows) = rows.bias;
-    for (int k = 0; k < n_points; ++k) {
-      const PortRef& ref = joint.at[at(k)];
-      for (const JointSide& side : joint.sides) {
-        if (side.part != ref.part) continue;
-        const PartModel& part = model.parts()[at(side.part)];
-        add_point(part, parts[at(side.part)], ref.port, joint.rows, rows.C_x.data() + 3 * k * joint.rows,
-                  work.Cq.data() + side.offset);
-      }
-    }
-  };
-  for (const int j : island.joints) evaluate(j);
-  for (const int j : island.strings) evaluate(j);
+                     const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
+                     const PlacePart& place) {
+  PartsInTurn in_turn(island, place);
+  for (const int j : island.joints) {
+    in_turn.place_for(model.joints()[at(j)]);
+    evaluate_joint(model, j, t, parts, work);
+  }
+  in_turn.place_rest();
+  for (const int j : island.strings) evaluate_joint(model, j, t, parts, work);
 }
+
+namespace {
+
+/// The factors of an island; first act(j) is called for each of its joints.
+template <class S, class F>
+void factor_after(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
+                  ConstraintWorkspace<S>& work, F&& act) {
+  const auto number = static_cast<std::size_t>(&island - model.islands().data());
+  work.W_c[number].factor(model, island, parts, work, false, [&](int j) {
+    act(j);
+    respond(model, j, parts, work);
+  });
+  const bool open = std::any_of(island.joints.begin(), island.joints.end(),
+                                [&](int j) { return work.modes[at(j)] == JointMode::closing; });
+  if (open) work.W_closed[number].factor(model, island, parts, work, true, [](int) {});
+}
+
+}  // namespace
 
 template <class S>
 void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                    ConstraintWorkspace<S>& work) {
-  for (const int j : island.joints) {
-    const JointModel& joint = model.joints()[at(j)];
-    for (const JointSide& side : joint.sides) {
-      const PartModel& part = model.parts()[at(side.part)];
-      const int n = velocities(part);
-      const S* Cq = work.Cq.data() + side.offset;
-      S* Y = work.Y.data() + side.offset;
-      if constexpr (std::is_same_v<S, double>) {
-        const PartModel* rigid = parts[at(side.part)].rigid;
-        if (rigid != nullptr && joint.rows == 3) {
-          FixedSide<S, 6, 3>(Y).noalias() = rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
-          continue;
-        }
-      }
-      if constexpr (std::is_same_v<S, double>)
-        if (part.local != nullptr) {
-          Eigen::Map<MatX<S>>(Y, n, joint.rows).noalias() =
-              parts[at(side.part)].local->A * Eigen::Map<const MatX<S>>(Cq, n, joint.rows);
-          continue;
-        }
-      for (int r = 0; r < joint.rows; ++r) {
-        VecMax<S> column(n);
-        for (int i = 0; i < n; ++i) column[i] = Cq[r * n + i];
-        parts[at(side.part)].solve_mass(column);
-        for (int i = 0; i < n; ++i) Y[r * n + i] = column[i];
-      }
-    }
-  }
-  const auto number = static_cast<std::size_t>(&island - model.islands().data());
-  work.W_c[number].factor(model, island, parts, work, false);
-  const bool open = std::any_of(island.joints.begin(), island.joints.end(),
-                                [&](int j) { return work.modes[at(j)] == JointMode::closing; });
-  if (open) work.W_closed[number].factor(model, island, parts, work, true);
+  factor_after(model, island, parts, work, [](int) {});
 }
 
 template <class S>
+void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
+                                const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
+                                const PlacePart& place) {
+  PartsInTurn in_turn(island, place);
+  factor_after(model, island, parts, work, [&](int j) {
+    in_turn.place_for(model.joints()[at(j)]);
+    evaluate_joint(model, j, t, parts, work);
+  });
+  in_turn.place_rest();
+  for (const int j : island.strings) evaluate_joint(model, j, t, parts, work);
+}
+
+template <class S>
+template <class F>
 void JointFactor<S>::factor(const Model& model, const Island& island,
                             const std::vector<PartWorkspace<S>>& parts, const ConstraintWorkspace<S>& work,
-                            bool closed_only) {
+                            bool closed_only, F&& prepare) {
   if (island.augmented) {
+    for (const int j : island.joints) prepare(j);
     if constexpr (std::is_same_v<S, double>) {
       if (!augmented_) augmented_ = std::make_unique<AugmentedFactor>(model, island);
       augmented_->factor(parts, work, closed_only);
@@ -157,25 +220,33 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     return;
   }
   blocks_.clear(island.pattern, work.rank);
-  for (const Coupling& c : island.couplings) {
-    if (!counts(work.modes[at(c.row_joint)], closed_only) ||
-        !counts(work.modes[at(c.column_joint)], closed_only))
-      continue;
-    const int n = velocities(model.parts()[at(c.part)]);
-    const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
-    S* block = blocks_.block(c.target);
-    if (n == 6 && c.rows == 3 && c.columns == 3) {
-      FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
-      continue;
-    }
-    for (int k = 0; k < c.columns; ++k)
-      for (int r = 0; r < c.rows; ++r) {
-        S sum(0.0);
-        for (int i = 0; i < n; ++i) sum += Cq[r * n + i] * Y[k * n + i];
-        block[k * c.rows + r] += sum;
-      }
+  // Joint by joint, while the caches hold it and those before it that it shares parts with.
+  auto coupling = island.couplings.begin();
+  for (const int j : island.joints) {
+    prepare(j);
+    for (; coupling != island.couplings.end() && coupling->later_joint() == j; ++coupling)
+      if (counts(work.modes[at(coupling->row_joint)], closed_only) &&
+          counts(work.modes[at(coupling->column_joint)], closed_only))
+        couple(model, *coupling, work);
   }
   blocks_.factor();
+}
+
+template <class S>
+void JointFactor<S>::couple(const Model& model, const Coupling& c, const ConstraintWorkspace<S>& work) {
+  const int n = velocities(model.parts()[at(c.part)]);
+  const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
+  S* block = blocks_.block(c.target);
+  if (n == 6 && c.rows == 3 && c.columns == 3) {
+    FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
+    return;
+  }
+  for (int k = 0; k < c.columns; ++k)
+    for (int r = 0; r < c.rows; ++r) {
+      S sum(0.0);
+      for (int i = 0; i < n; ++i) sum += Cq[r * n + i] * Y[k * n + i];
+      block[k * c.rows + r] += sum;
+    }
 }
 
 template <class S>
@@ -306,10 +377,13 @@ std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<do
 
 #define PLIANT_INSTANCES(S)                                                                                \
   template void evaluate_joints(const Model&, const Island&, double, const std::vector<PartWorkspace<S>>&, \
-                                ConstraintWorkspace<S>&);                                                  \
+                                ConstraintWorkspace<S>&, const PlacePart&);                                \
   template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
                               ConstraintWorkspace<S>&);                                                    \
   template VecMax<S, kMaxJointRows> wanted(const Model&, const ConstraintWorkspace<S>&, int);              \
+  template void evaluate_and_factor_joints(const Model&, const Island&, double,                            \
+                                           const std::vector<PartWorkspace<S>>&, ConstraintWorkspace<S>&,  \
+                                           const PlacePart&);                                              \
   template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);                                  \
   template class JointFactor<S>;
 PLIANT_INSTANCES(double)

@@ -10,8 +10,7 @@ namespace {
 /// Which of the forces of a part alone is not finite.
 std::string own_term(double t, const PartModel& m, const PartWorkspace<double>& w) {
   const Part& part = *m.part;
-  VecMax<double> stretch = w.q_s;
-  for (int k = 0; k < m.n_s; ++k) stretch[k] -= part.parameters().moving(k).rest.value(t);
+  const VecMax<double> stretch = w.q_s - m.rest_at(t);
   const VecMax<double> elastic = part.K_s() * stretch, momentum = mass_matrix(w) * w.v_r;
   const VecMax<double> damping =
       (part.alpha() * mass_matrix(w).bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.K_s()) * w.q_s_dot;

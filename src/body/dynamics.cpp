@@ -75,7 +75,7 @@ void positions(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v,
     if (m.local != nullptr) displace_ports(m, w);
   w.port_x.resize(n_ports);
   w.port_x_dot.resize(n_ports);
-  w.port_force.assign(n_ports, Vec3<S>::Constant(S(0.0)));
+  if (m.loaded) w.port_force.assign(n_ports, Vec3<S>::Constant(S(0.0)));
   for (std::size_t k = 0; k < n_ports; ++k) {
     w.port_x[k] = w.c + w.R * w.ports[k].p;  // Eq. (1)
     if (prescribed) {
@@ -114,11 +114,9 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
   const int n = m.n_s;
   const MatX<S>& M = mass_matrix(w);
   const bool damped = part.alpha() > 0 || part.beta() > 0;
+  const VecMax<double> rest = m.rest_at(t);
   VecMax<S> stretch(n);
-  for (int k = 0; k < n; ++k) {
-    const Parameter& p = part.parameters().moving(k);
-    stretch[k] = w.q_s[k] - p.rest.value(t);
-  }
+  for (int k = 0; k < n; ++k) stretch[k] = w.q_s[k] - rest[k];
   const auto& K = part.K_s();
   for (int i = 0; i < n; ++i) {
     S elastic(0.0), damping(0.0);
@@ -128,8 +126,8 @@ void elastic_forces(const PartModel& m, double t, PartWorkspace<S>& w) {
     }
     w.f[6 + i] -= elastic + damping;  // Eq. (11): -K (q - rest) - D qdot
     w.power[static_cast<int>(Work::damping)] -= damping * w.q_s_dot[i];
-    const Parameter& p = part.parameters().moving(i);
-    if (!p.rest.is_constant()) w.power[static_cast<int>(Work::actuation)] -= elastic * p.rest.at(t).d;
+    if (m.actuated)
+      w.power[static_cast<int>(Work::actuation)] -= elastic * part.parameters().moving(i).rest.at(t).d;
   }
   if (part.continuum() != nullptr)
     w.power[static_cast<int>(Work::damping)] +=
@@ -192,7 +190,12 @@ void gather_port_forces(const PartModel& m, PartWorkspace<S>& w) {
   }
 }
 
-void take_factor(const PartModel& m, PartWorkspace<double>& w) {
+bool any_held(const PartWorkspace<double>& w) {
+  if (w.local) return w.local->held.any();
+  return w.rigid != nullptr ? w.rigid->rigid_factor.any_held() : w.factor.any_held();
+}
+
+void factor_mass(const PartModel& m, PartWorkspace<double>& w) {
   if (m.local != nullptr) {
     if (m.island < 0 && m.n_s == 0) return;  // nothing can push on it at once
     m.local->compliance(m.shared, *w.local);
@@ -202,6 +205,12 @@ void take_factor(const PartModel& m, PartWorkspace<double>& w) {
   w.rigid = m.n_s == 0 ? &m : nullptr;
   if (w.stiffening > 0) w.inertia.M.bottomRightCorner(m.n_s, m.n_s) += w.stiffening * m.part->K_s();
   if (w.rigid == nullptr) w.factor.compute(w.inertia.M, m.inertia_floor);
+}
+
+void take_factor(const Model& model, int i, Workspace<double>& work) {
+  PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
+  factor_mass(model.parts()[static_cast<std::size_t>(i)], w);
+  work.held[static_cast<std::size_t>(i)] = any_held(w) ? 1 : 0;
 }
 
 /// a_r of a part that deforms locally, with the d_ddot at its joints, and the d_ddot of all of it.
@@ -263,6 +272,48 @@ void hold_pressed(const Model& model, int part, const std::vector<int>& pressed,
   for (int i = 0; i < n; ++i) a_r += responses[static_cast<std::size_t>(i)] * lambda[i];
 }
 
+/// Accelerations of a part by its forces, as if there were no joints.
+template <class S>
+void accelerate(const Model& model, int i, const State* modes, const Workspace<double>* fixed_modes,
+                Workspace<S>& work) {
+  const PartModel& m = model.parts()[static_cast<std::size_t>(i)];
+  PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
+  w.a_r = w.f;
+  if constexpr (std::is_same_v<S, double>) {
+    take_factor(model, i, work);
+    if (m.local != nullptr)
+      accelerate_locally(m, w);
+    else
+      w.solve_mass(w.a_r);
+    if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
+  } else {
+    w.factor.compute(w.inertia.M, m.inertia_floor);
+    w.factor.solve(w.a_r);
+    if (fixed_modes != nullptr && m.island < 0)
+      hold_pressed<S>(model, i, fixed_modes->parts[static_cast<std::size_t>(i)].pressed, work);
+  }
+}
+
+/// Of a part that is evaluated with its rigid island: what its loads need, and what is constant.
+void prepare_loads(const Model& model, int i, double t, const VecX<double>& q, const VecX<double>& v,
+                   Workspace<double>& work) {
+  const PartModel& m = model.parts()[static_cast<std::size_t>(i)];
+  PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
+  const bool known = w.rigid == &m;
+  positions<double>(m, t, q, v, w);
+  if (!known) {
+    masses<double>(m, w);
+    take_factor(model, i, work);
+  }
+  w.f.setZero(6);
+}
+
+/// Whether an evaluation leaves an island to rigid_island.h.
+template <class S>
+bool is_rigid(const Island& island, const Workspace<S>& work) {
+  return island.rigid >= 0 && work.rigid[static_cast<std::size_t>(island.rigid)].used;
+}
+
 }  // namespace
 
 template <class S>
@@ -276,6 +327,24 @@ void Dynamics::choose_rigid_islands(const State* modes, Workspace<S>& work) cons
                            return modes->joints[static_cast<std::size_t>(j)] == JointMode::closed;
                          });
   }
+  work.one_by_one = model_->lone_parts();
+  for (const Island& island : model_->islands()) {
+    const bool left_to_rigid =
+        is_rigid(island, work) && work.rigid[static_cast<std::size_t>(island.rigid)].prepared;
+    if (!left_to_rigid && !with_joints(island, work))
+      work.one_by_one.insert(work.one_by_one.end(), island.parts.begin(), island.parts.end());
+  }
+  for (const int i : model_->loaded_parts()) {
+    const int k = model_->parts()[static_cast<std::size_t>(i)].rigid_island;
+    if (k < 0) continue;
+    const RigidWorkspace& rigid = work.rigid[static_cast<std::size_t>(k)];
+    if (rigid.used && rigid.prepared) work.one_by_one.push_back(i);
+  }
+}
+
+template <class S>
+bool Dynamics::with_joints(const Island& island, const Workspace<S>& work) const {
+  return pool_ == nullptr && !island.loaded && !is_rigid(island, work);
 }
 
 template <class S>
@@ -284,14 +353,14 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
   const Model& model = *model_;
   const auto& parts = model.parts();
   work.parts.resize(parts.size());
+  work.held.resize(parts.size());
   work.v_dot.resize(model.n_v());
   work.power.setConstant(S(0.0));
-  const int n_parts = static_cast<int>(parts.size());
-  auto each_part = [&](auto&& task) {
+  auto each = [&](std::size_t n, auto&& task) {
     if (pool_ != nullptr)
-      pool_->run(n_parts, std::ref(task));
+      pool_->run(static_cast<int>(n), std::ref(task));
     else
-      for (int i = 0; i < n_parts; ++i) task(i);
+      for (std::size_t i = 0; i < n; ++i) task(static_cast<int>(i));
   };
 
   choose_rigid_islands(rates_only ? modes : nullptr, work);
@@ -300,21 +369,12 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     return m.rigid_island >= 0 && work.rigid[static_cast<std::size_t>(m.rigid_island)].used;
   };
   const Vec3<double> gravity = model.body().gravity_at(t);
-  each_part([&](int i) {
+  // A part that no load acts on is done in one go, while the caches hold it.
+  auto evaluate_part = [&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
     if constexpr (std::is_same_v<S, double>)
-      if (by_rigid_island(m)) {
-        const bool known = w.rigid == &m;  // and with it what is constant
-        if (known && !m.loaded) return;
-        positions<S>(m, t, q, v, w);
-        if (!known) {
-          masses<S>(m, w);
-          take_factor(m, w);
-        }
-        w.f.setZero(6);
-        return;
-      }
+      if (by_rigid_island(m)) return prepare_loads(model, i, t, q, v, work);
     positions<S>(m, t, q, v, w);
     w.power.setConstant(S(0.0));
     if (m.q0 < 0) return;
@@ -325,43 +385,30 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     } catch (const InvertedElement& failure) {
       throw InvertedElement("part '" + m.part->name() + "': " + failure.what());
     }
-  });
-
-  apply_loads<S>(model, t, work);
-
-  each_part([&](int i) {
-    const PartModel& m = parts[static_cast<std::size_t>(i)];
-    if (m.q0 < 0) return;
-    PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
-    if (by_rigid_island(m) && !m.loaded) return;
-    gather_port_forces<S>(m, w);
-    if (by_rigid_island(m)) return;
-    w.a_r = w.f;
-    if constexpr (std::is_same_v<S, double>) {
-      take_factor(m, w);
-      if (m.local != nullptr)
-        accelerate_locally(m, w);
-      else
-        w.solve_mass(w.a_r);
-      if (modes != nullptr && m.island < 0) press(model, i, *modes, work);
-    } else {
-      w.factor.compute(w.inertia.M, m.inertia_floor);
-      w.factor.solve(w.a_r);
-      if (fixed_modes != nullptr && m.island < 0)
-        hold_pressed<S>(model, i, fixed_modes->parts[static_cast<std::size_t>(i)].pressed, work);
-    }
-  });
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (!by_rigid_island(parts[i])) work.power += work.parts[i].power;
-  if (!model.joints().empty()) join<S>(t, modes, fixed_modes, work);
+    if (!m.loaded) accelerate<S>(model, i, modes, fixed_modes, work);
+  };
+  each(work.one_by_one.size(), [&](int k) { evaluate_part(work.one_by_one[static_cast<std::size_t>(k)]); });
+  for (RigidWorkspace& rigid : work.rigid) rigid.prepared = rigid.prepared || rigid.used;
+  if (!model.loaded_parts().empty()) {
+    apply_loads<S>(model, t, work);
+    each(model.loaded_parts().size(), [&](int k) {
+      const int i = model.loaded_parts()[static_cast<std::size_t>(k)];
+      const PartModel& m = parts[static_cast<std::size_t>(i)];
+      if (m.q0 < 0) return;
+      gather_port_forces<S>(m, work.parts[static_cast<std::size_t>(i)]);
+      if (!by_rigid_island(m)) accelerate<S>(model, i, modes, fixed_modes, work);
+    });
+  }
+  if (!model.joints().empty()) join<S>(t, modes, fixed_modes, std::ref(evaluate_part), work);
   if constexpr (std::is_same_v<S, double>)
     for (std::size_t k = 0; k < work.rigid.size(); ++k)
       if (work.rigid[k].used)
         model.rigid_islands()[k].accelerate(model, q, v, gravity, work.joints.rank, work, work.rigid[k]);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PartModel& m = parts[i];
-    if (m.q0 < 0 || by_rigid_island(m)) continue;
-    const PartWorkspace<S>& w = work.parts[i];
+  auto finish = [&](int i) {
+    const PartModel& m = parts[static_cast<std::size_t>(i)];
+    if (m.q0 < 0) return;
+    const PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
+    work.power += w.power;
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
     if constexpr (std::is_same_v<S, double>)
@@ -372,7 +419,11 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
         if (w.a_r != w.local->a_free)
           m.local->push_all(m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local, d_ddot);
       }
-  }
+  };
+  for (const int i : model.lone_parts()) finish(i);
+  for (const Island& island : model.islands())
+    if (!is_rigid(island, work))
+      for (const int i : island.parts) finish(i);
 }
 
 template <class S>
@@ -394,7 +445,7 @@ void Dynamics::size_joints(Workspace<S>& work) const {
 // joints: rows, W_c and its factor, forces; each island on its own
 template <class S>
 void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed_modes,
-                    Workspace<S>& work) const {
+                    const PlacePart& evaluate_part, Workspace<S>& work) const {
   const Model& model = *model_;
   ConstraintWorkspace<S>& joints = work.joints;
   size_joints(work);
@@ -420,9 +471,9 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   joints.stabilise_closed = !hold_.projected;
   auto solve = [&](int i) {
     const Island& island = model.islands()[static_cast<std::size_t>(i)];
-    if (island.rigid >= 0 && work.rigid[static_cast<std::size_t>(island.rigid)].used) return;
-    pliant::evaluate_joints<S>(model, island, t, work.parts, joints);
-    pliant::factor_joints<S>(model, island, work.parts, joints);
+    if (is_rigid(island, work)) return;
+    evaluate_and_factor_joints<S>(model, island, t, work.parts, joints,
+                                  with_joints(island, work) ? evaluate_part : PlacePart());
     if constexpr (std::is_same_v<S, double>) {
       std::vector<OneSidedRow> limits;
       for (std::size_t k = 0; k < island.parts.size() && modes != nullptr; ++k) {
@@ -443,9 +494,9 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   work.power += joint_power<S>(model, work);
 }
 
-void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
-                               const std::vector<JointMode>& modes, const Island& island,
-                               Workspace<double>& work) const {
+void Dynamics::place_anchors(double t, const VecX<double>& q, const VecX<double>& v,
+                             const std::vector<JointMode>& modes, const Island& island,
+                             Workspace<double>& work) const {
   size_joints(work);
   for (const std::vector<int>* joints : {&island.joints, &island.strings})
     for (const int j : *joints)
@@ -455,19 +506,32 @@ void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<doubl
     PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(i)];
     if (m.motion != nullptr || w.port_x.empty()) positions<double>(m, t, q, v, w);
   }
-  for (const int i : island.parts)
-    positions<double>(model_->parts()[static_cast<std::size_t>(i)], t, q, v,
-                      work.parts[static_cast<std::size_t>(i)]);
-  pliant::evaluate_joints<double>(*model_, island, t, work.parts, work.joints);
+}
+
+void Dynamics::evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
+                               const std::vector<JointMode>& modes, const Island& island,
+                               Workspace<double>& work) const {
+  place_anchors(t, q, v, modes, island, work);
+  auto place = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    positions<double>(model_->parts()[k], t, q, v, work.parts[k]);
+  };
+  pliant::evaluate_joints<double>(*model_, island, t, work.parts, work.joints, std::ref(place));
 }
 
 void Dynamics::factor_joints(double t, const VecX<double>& q, const VecX<double>& v,
                              const std::vector<JointMode>& modes, const Island& island,
                              Workspace<double>& work, RankRule rank) const {
   work.joints.rank = rank;
-  evaluate_masses(q, v, island.parts, work);
-  evaluate_joints(t, q, v, modes, island, work);
-  pliant::factor_joints<double>(*model_, island, work.parts, work.joints);
+  place_anchors(t, q, v, modes, island, work);
+  work.held.resize(work.parts.size());
+  auto place = [&](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    positions<double>(model_->parts()[k], t, q, v, work.parts[k]);
+    masses<double>(model_->parts()[k], work.parts[k]);
+    take_factor(*model_, i, work);
+  };
+  evaluate_and_factor_joints<double>(*model_, island, t, work.parts, work.joints, std::ref(place));
 }
 
 void Dynamics::accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
@@ -514,6 +578,7 @@ VecX<double> Dynamics::jvp(const State& state, const StateDirection& along) cons
 void Dynamics::evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part,
                               Workspace<double>& work) const {
   work.parts.resize(model_->parts().size());
+  work.held.resize(model_->parts().size());
   const PartModel& m = model_->parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
   positions<double>(m, 0, q, v, w);  // of a part that has coordinates, which tell them at any time
@@ -524,7 +589,7 @@ void Dynamics::evaluate_masses(const VecX<double>& q, const VecX<double>& v, con
                                Workspace<double>& work) const {
   for (const int i : parts) {
     evaluate_frame(q, v, i, work);
-    take_factor(model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)]);
+    take_factor(*model_, i, work);
   }
 }
 

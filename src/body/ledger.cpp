@@ -15,8 +15,7 @@ void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<doub
     ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
     ledger.gravity -= g.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
   }
-  VecMax<double> stretch(m.n_s);
-  for (int k = 0; k < m.n_s; ++k) stretch[k] = w.q_s[k] - m.part->parameters().moving(k).rest.value(t);
+  const VecMax<double> stretch = w.q_s - m.rest_at(t);
   ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
   if (m.part->continuum() != nullptr) ledger.elastic += m.part->continuum()->energy(*m.part, w.q_s);
 }

@@ -33,6 +33,13 @@ Model::Model(MultiBody& body) : body_(&body) {
     m.q0 = part->fixed() ? -1 : n_q_;
     m.v0 = part->fixed() ? -1 : n_v_;
     m.limit0 = n_limits_;
+    m.rest.resize(m.n_s);
+    for (int k = 0; k < m.n_s; ++k) {
+      const Parameter& p = part->parameters().moving(k);
+      m.limits.push_back(p.limits);
+      m.rest[k] = p.rest_value();
+      m.actuated = m.actuated || !p.rest.is_constant();
+    }
     m.R0 = part->R0().toRotationMatrix();
     n_q_ += part->n_q();
     n_v_ += part->n_v();
@@ -77,16 +84,27 @@ Model::Model(MultiBody& body) : body_(&body) {
   for (PartModel& m : parts_)
     if (m.n_s == 0 && !m.ports.empty())
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
+  note_loaded_parts();
   lay_rigid_islands();
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i].island < 0) lone_parts_.push_back(static_cast<int>(i));
 }
 
-void Model::lay_rigid_islands() {
-  if (body_->changing_gravity) return;  // its power needs to know where all parts are
+void Model::note_loaded_parts() {
   for (const SpringModel& spring : springs_)
     for (const PortRef& ref : {spring.a, spring.b})
       if (ref.part >= 0) parts_[static_cast<std::size_t>(ref.part)].loaded = true;
   for (const ForceModel& force : forces_) parts_[static_cast<std::size_t>(force.at.part)].loaded = true;
   for (const TorqueModel& torque : torques_) parts_[static_cast<std::size_t>(torque.part)].loaded = true;
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    if (parts_[i].loaded) {
+      loaded_parts_.push_back(static_cast<int>(i));
+      if (parts_[i].island >= 0) islands_[static_cast<std::size_t>(parts_[i].island)].loaded = true;
+    }
+}
+
+void Model::lay_rigid_islands() {
+  if (body_->changing_gravity) return;  // its power needs to know where all parts are
   for (Island& island : islands_) {
     if (!RigidIsland::takes(*this, island)) continue;
     island.rigid = static_cast<int>(rigid_islands_.size());
@@ -301,6 +319,8 @@ void Model::lay_couplings(Island& island, const SidesOfParts& sides_of) {
                                     of_column.sides[static_cast<std::size_t>(column_side)].offset,
                                     of_row.rows, of_column.rows, row, column, place.offset});
       }
+  std::stable_sort(island.couplings.begin(), island.couplings.end(),
+                   [](const Coupling& x, const Coupling& y) { return x.later_joint() < y.later_joint(); });
 }
 
 namespace {
@@ -353,7 +373,7 @@ State Model::initial_state() const {
 void Model::note_limits(State& state) const {
   for (const PartModel& m : parts_)
     for (int k = 0; k < m.n_s; ++k) {
-      const Range range = m.part->parameters().moving(k).limits;
+      const Range range = m.limits[static_cast<std::size_t>(k)];
       const double q = state.q[m.q0 + 7 + k];
       state.at_limit[static_cast<std::size_t>(m.limit0 + k)] =
           static_cast<std::int8_t>(q <= range.min ? -1 : (q >= range.max ? 1 : 0));

@@ -96,7 +96,7 @@ class Holding {
         else
           rows.setConstant(S(0.0));
       }
-      lambda += group.correct(kept_.rows, x);
+      lambda += group.correct(kept_.rows, x, !group.is_rough());
     }
   }
 

@@ -61,9 +61,9 @@ void normalise_rotations(const Model& model, VecX<double>& q) {
 }
 
 void hold_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v) {
-  for (std::size_t i = 0; i < model.parts().size(); ++i) {
+  for (std::size_t i = 0; i < work.held.size(); ++i) {
+    if (work.held[i] == 0) continue;
     const PartModel& m = model.parts()[i];
-    if (m.q0 < 0 || !work.parts[i].any_held()) continue;
     for (int k = 0; k < 6 + m.n_s; ++k)
       if (work.parts[i].held(k)) v[m.v0 + k] = 0;
   }

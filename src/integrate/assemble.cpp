@@ -255,11 +255,7 @@ class Assembly {
   }
 
   VecMax<double> q_s(const PartModel& m) const { return state_.q.segment(m.q0 + 7, m.n_s); }
-  VecMax<double> stretch(const PartModel& m) const {
-    VecMax<double> s = q_s(m);
-    for (int k = 0; k < m.n_s; ++k) s[k] -= m.part->parameters().moving(k).rest.value(state_.time());
-    return s;
-  }
+  VecMax<double> stretch(const PartModel& m) const { return q_s(m) - m.rest_at(state_.time()); }
 
   /// What takes the parameters of a part alone to rest.
   VecX<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
@@ -281,7 +277,7 @@ class Assembly {
       return -work_.joints.C[model_.joints()[at(j)].row];
     }
     const PartModel& m = group.model(row.part);
-    const Range range = m.part->parameters().moving(row.k).limits;
+    const Range range = m.limits[at(row.k)];
     return row.sign * ((row.sign > 0 ? range.min : range.max) - state_.q[m.q0 + 7 + row.k]);
   }
 
@@ -307,7 +303,7 @@ class Assembly {
       advance_part(m, state_.q, world_velocity(group.workspace(p), group.share(x, p).head(6 + m.n_s)), share);
       for (int k = 0; k < m.n_s; ++k) {
         double& q = state_.q[m.q0 + 7 + k];
-        const Range range = m.part->parameters().moving(k).limits;
+        const Range range = m.limits[at(k)];
         q = std::clamp(q, range.min, range.max);
       }
     }

@@ -10,7 +10,7 @@ void carry_momenta(const Model& model, const Workspace<double>& work, const VecX
                    State& state) {
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
-    if (m.q0 < 0 || m.local != nullptr || work.parts[i].any_held()) continue;
+    if (m.q0 < 0 || m.local != nullptr || work.held[i] != 0) continue;
     const PartWorkspace<double>& w = work.parts[i];
     const MatX<double>& M = w.inertia.M;
     const Vec3<double> r = w.inertia.moment / w.inertia.mass;

@@ -98,13 +98,15 @@ const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
 }
 
 /// Brings a group onto its joints and within its limits. closed: some joints have closed just now. work:
-/// evaluated for the group.
+/// evaluated for the group. impulses: if given, those that close joints are added to them, N s.
 template <int Max>
 void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& group, bool closed,
-                  State& state, Workspace<double>& work, StepCounters& counters) {
+                  State& state, Workspace<double>& work, StepCounters& counters,
+                  VecX<double>* impulses = nullptr) {
   GroupVectors<double, Max>& kept = kept_vectors(group, work);
   Snapshot<Max> before(group, state, kept);
   Settling<Max> settling(dynamics, t, group, state, work, kept);
+  if (impulses != nullptr) settling.add_impulses_to(*impulses);
   const bool pushed = settling.coordinates();
   // The impulses that close a joint do work; those that put right the error of a step are an error too, and
   // show in the balance.
@@ -134,7 +136,7 @@ void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& 
 bool passes(const PartModel& m, State& state) {
   for (int k = 0; k < m.n_s; ++k)
     if ((limit_mode(state, m, k) != 0 && state.v[m.v0 + 6 + k] != 0) ||
-        !limits_of(m, k).contains(state.q[m.q0 + 7 + k]))
+        !m.limits[at(k)].contains(state.q[m.q0 + 7 + k]))
       return true;
   return false;
 }
@@ -232,14 +234,15 @@ bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<
 }  // namespace
 
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
-               Workspace<double>& work, StepCounters& counters) {
+               Workspace<double>& work, StepCounters& counters, VecX<double>& impulses) {
   const Model& model = dynamics.model();
+  impulses.setZero(model.n_rows());
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   if (dynamics.hold().projected) close_joints(model, island, true, work, state);
   close_strings(model, island, work, state);
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), true, state, work,
-               counters);
+               counters, &impulses);
   dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
   note_strings(model, island, work, state);
 }

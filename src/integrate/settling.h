@@ -68,9 +68,6 @@ inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& 
   return &work.rigid[at(island.rigid)];
 }
 
-inline Range limits_of(const PartModel& m, int k) {
-  return m.part->parameters().moving(k).limits;
-}
 inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
@@ -169,6 +166,8 @@ class Settling {
 
   /// What was evaluated is of another state.
   void forget() { evaluated_ = false; }
+  /// From now on the impulses of velocities(), on the rows of all joints, are added to these.
+  void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
   /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
   /// on one-sided rows. joints, rows: work of the impulses of each, J.
@@ -178,7 +177,7 @@ class Settling {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
       for (int k = 0; k < m.n_s; ++k) {
-        const Range range = limits_of(m, k);
+        const Range range = m.limits[at(k)];
         double& q = state_.q[m.q0 + 7 + k];
         const int mode = q <= range.min ? -1 : (q >= range.max ? 1 : 0);
         limit_mode(state_, m, k) = static_cast<std::int8_t>(mode);
@@ -202,7 +201,11 @@ class Settling {
         give_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
       evaluated_ = false;
       if (!rows.empty())
-        rows.for_each_pushed([&](const OneSidedRow& row, double) { impulses += stays(row) ? 0 : 1; });
+        rows.for_each_pushed([&](const OneSidedRow& row, double push) {
+          impulses += stays(row) ? 0 : 1;
+          if (impulses_ != nullptr && row.part < 0)
+            (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
+        });
       if (island_ == nullptr) break;
     }
     for (int i = 0; i < group_.parts(); ++i) {
@@ -264,7 +267,7 @@ class Settling {
           }
           const PartModel& m = group_.model(row.part);
           double& q = state_.q[m.q0 + 7 + row.k];
-          const Range range = limits_of(m, row.k);
+          const Range range = m.limits[at(row.k)];
           q = std::abs(q - range.min) < std::abs(q - range.max) ? range.min : range.max;
         });
       if (island_ == nullptr) return pushed;
@@ -337,7 +340,12 @@ class Settling {
       kept_.start = x;
     }
     before_ = now;
-    group_.correct(error, x);
+    const VecX<double>& lambda = group_.correct(error, x);
+    if (impulses_ != nullptr && what == Rows::velocities)
+      for (const int j : island_->joints) {
+        const JointModel& joint = model_.joints()[at(j)];
+        impulses_->segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
+      }
     return true;
   }
 
@@ -425,7 +433,7 @@ class Settling {
     }
     const PartModel& m = group_.model(row.part);
     const double q = state_.q[m.q0 + 7 + row.k];
-    const Range range = limits_of(m, row.k);
+    const Range range = m.limits[at(row.k)];
     if (stays(row) && limit_mode(state_, m, row.k) != 0)
       return row.sign * ((limit_mode(state_, m, row.k) < 0 ? range.min : range.max) - q);
     return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
@@ -456,6 +464,7 @@ class Settling {
   State& state_;
   Workspace<double>& work_;
   GroupVectors<double, Max>& kept_;
+  VecX<double>* impulses_ = nullptr;
   double before_ = 0;
   RankRule rank_ = RankRule::keep;
   double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint,

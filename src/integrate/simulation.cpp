@@ -97,8 +97,7 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     settle_frames(dynamics_, 0, state_, output_work_);
     if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
-    for (const Island& island : model_.islands())
-      take_hold(dynamics_, 0, island, state_, output_work_, step_counters_);
+    for (const Island& island : model_.islands()) take_hold_of(island, 0, output_work_);
     if (automatic) {
       choice_ = choose_integrator(dynamics_, *scale_, state_);
       take_method(make_integrator(choice_.integrator));
@@ -308,7 +307,27 @@ void Simulation::switch_joints(double t, double near) {
     if (on) more[static_cast<std::size_t>(joint.island)] = true;
   }
   for (std::size_t i = 0; i < more.size(); ++i)
-    if (more[i]) take_hold(dynamics_, t, model_.islands()[i], state_, work_, step_counters_);
+    if (more[i]) take_hold_of(model_.islands()[i], t, work_);
+}
+
+void Simulation::take_hold_of(const Island& island, double t, Workspace<double>& work) {
+  VecX<double> impulses;
+  take_hold(dynamics_, t, island, state_, work, step_counters_, impulses);
+  // Steps that were given up, and their impulses, did not happen.
+  const auto given_up = [&](const HoldImpulse& of) {
+    return of.time > t ||
+           (of.time == t && &island == &model_.islands()[static_cast<std::size_t>(
+                                           model_.joints()[static_cast<std::size_t>(of.joint)].island)]);
+  };
+  hold_impulses_.erase(std::remove_if(hold_impulses_.begin(), hold_impulses_.end(), given_up),
+                       hold_impulses_.end());
+  auto note = [&](int j) {
+    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
+    if (!impulses.segment(joint.row, joint.rows).isZero(0))
+      hold_impulses_.push_back({t, j, dynamics_.joint_wrench(t, j, work, impulses)});
+  };
+  std::for_each(island.joints.begin(), island.joints.end(), note);
+  std::for_each(island.strings.begin(), island.strings.end(), note);
 }
 
 void Simulation::check(const State& before) {
@@ -341,9 +360,9 @@ void Simulation::check(const State& before) {
 }
 
 void Simulation::note_held() {
-  for (std::size_t i = 0; i < work_.parts.size(); ++i) {
+  for (std::size_t i = 0; i < work_.held.size(); ++i) {
+    if (work_.held[i] == 0) continue;
     const PartModel& m = model_.parts()[i];
-    if (m.q0 < 0 || !work_.parts[i].any_held()) continue;
     for (int k = 0; k < 6 + m.n_s; ++k)
       if (work_.parts[i].held(k)) held_[static_cast<std::size_t>(m.v0 + k)] = true;
   }

@@ -94,7 +94,7 @@ bool crosses(const Group<double, Max>& group, double h, const State& state) {
   for (int i = 0; i < group.parts(); ++i) {
     const PartModel& m = group.model(i);
     for (int k = 0; k < m.n_s; ++k)
-      if (!limits_of(m, k).contains(state.q[m.q0 + 7 + k] + h * state.v[m.v0 + 6 + k])) return true;
+      if (!m.limits[at(k)].contains(state.q[m.q0 + 7 + k] + h * state.v[m.v0 + 6 + k])) return true;
   }
   return false;
 }
@@ -106,7 +106,7 @@ void note_limits(const Group<double, Max>& group, double h, State& state) {
     const PartModel& m = group.model(i);
     for (int k = 0; k < m.n_s; ++k) {
       const double q = state.q[m.q0 + 7 + k], then = q + h * state.v[m.v0 + 6 + k];
-      const Range range = limits_of(m, k);
+      const Range range = m.limits[at(k)];
       limit_mode(state, m, k) = then <= range.min ? -1 : (then >= range.max ? 1 : 0);
       // A rate too small to leave the limit is rounding of the impulses of others: it rests.
       if (limit_mode(state, m, k) != 0 && then == q) state.v[m.v0 + 6 + k] = 0;
@@ -145,7 +145,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
           return -std::numeric_limits<double>::infinity();
         return group.value(row, now) - C / h;
       }
-      const Range range = limits_of(group.model(row.part), row.k);
+      const Range range = group.model(row.part).limits[at(row.k)];
       const double q = state.q[group.model(row.part).q0 + 7 + row.k];
       return row.sign * ((row.sign > 0 ? range.min : range.max) - q) / h;
     };
@@ -191,7 +191,7 @@ void settle_on_limits(const Model& model, State& state) {
   for (const PartModel& m : model.parts())
     for (int k = 0; k < m.n_s; ++k) {
       const std::int8_t mode = limit_mode(state, m, k);
-      if (mode != 0) state.q[m.q0 + 7 + k] = mode < 0 ? limits_of(m, k).min : limits_of(m, k).max;
+      if (mode != 0) state.q[m.q0 + 7 + k] = mode < 0 ? m.limits[at(k)].min : m.limits[at(k)].max;
     }
 }
 

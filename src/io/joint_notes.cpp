@@ -110,6 +110,23 @@ std::string open_joints_note(const Simulation& simulation) {
          " '" + joint.name() + "', by " + rounded_text(model.gap(simulation.state(), widest)) + " m";
 }
 
+std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first) {
+  const std::vector<HoldImpulse>& all = simulation.hold_impulses();
+  std::vector<std::string> notes;
+  for (std::size_t i = first; i < all.size();) {
+    std::size_t end = i, largest = i;
+    for (; end < all.size() && all[end].time == all[i].time; ++end)
+      if (all[end].impulse.force.norm() > all[largest].impulse.force.norm()) largest = end;
+    const Joint& joint = *simulation.model().joints()[static_cast<std::size_t>(all[largest].joint)].joint;
+    const auto more = static_cast<int>(end - i) - 1;
+    notes.push_back("at t = " + rounded_text(all[i].time) + " s " + joint.type() + " '" + joint.name() +
+                    "' takes hold with an impulse of " + rounded_text(all[largest].impulse.force.norm()) +
+                    " N s" + (more > 0 ? ", the largest of " + count_text(more + 1, "joint") : ""));
+    i = end;
+  }
+  return notes;
+}
+
 std::string solver_note(const Model& model) {
   bool blocks = false, augmented = false;
   for (const Island& island : model.islands()) (island.augmented ? augmented : blocks) = true;

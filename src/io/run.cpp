@@ -231,6 +231,11 @@ void Run::note_redundancy() {
   for (const std::string& text : redundancy_notes(*simulation_)) note(text);
 }
 
+void Run::note_holds() {
+  for (const std::string& text : hold_notes(*simulation_, told_holds_)) note(text);
+  told_holds_ = simulation_->hold_impulses().size();
+}
+
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
   recorded_time_ = simulation_->time();
@@ -240,6 +245,7 @@ void Run::record_state() {
   record_.max_gap = std::max(record_.max_gap, widest_gap(*simulation_, JointMode::closed));
   record_.open_gap = widest_gap(*simulation_, JointMode::closing);
   note_redundancy();
+  note_holds();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);

@@ -96,6 +96,7 @@ class SceneReader {
       faults_.value(output.given("frame_rate") ? output.at("frame_rate") : time.at("end"),
                     "it makes " + brief(scene_->end * scene_->frame_rate) + " frames to the end at " +
                         brief(scene_->end) + " s; expected at most 1e12");
+    if (output.given("every_part")) scene_->every_part = output.boolean("every_part");
     scene_->contacts = output.boolean("contacts");
     if (scene_->contacts && !root_.given("contact"))
       faults_.warn(output.at("contacts"), "it has no effect, because nothing touches without \"contact\"");

@@ -203,6 +203,10 @@ Record make_scene_record() {
        optional("size", array(integer(between(16, 8192)), 2, 2), "Width and height of frames, pixels.",
                 "[640, 480]"),
        optional(
+           "every_part", boolean(),
+           "Whether trajectory.csv has columns of every part and joint, beside those of tracks and totals; "
+           "when not given it has in scenes of at most 100 parts."),
+       optional(
            "contacts", boolean(),
            "Whether contacts.csv and joint_impulses.csv tell of the last step before each recorded state "
            "what touched, with which impulse, and what joints took up of it.",

@@ -319,6 +319,11 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     CHECK(simulation.state().v[6] == Approx(0.5).epsilon(1e-12));
     CHECK(simulation.state().work[static_cast<int>(Work::projection)] == Approx(-m / 4).epsilon(1e-12));
     CHECK(std::abs(simulation.ledger().balance) <= 1e-12 * m);
+    REQUIRE(simulation.hold_impulses().size() == 1);
+    const HoldImpulse& taken = simulation.hold_impulses().front();
+    CHECK(taken.time == Approx(0.3).epsilon(1e-14));
+    CHECK(taken.joint == 0);
+    CHECK((taken.impulse.force - Vec3<double>(-m / 2, 0, 0)).norm() <= 1e-12 * m);
   }
   SECTION("a joint that is added off the centres: its impulse, and the work of it") {
     // Two spheres that turn about their own axes meet at one point of each at 0.3 s.
@@ -354,6 +359,8 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
       W += Mat3<double>::Identity() / m[i] - cross(arm[i]) * cross(arm[i]) / (0.4 * m[i] * r * r);
     const Vec3<double> C_dot = v[0] + w[0].cross(arm[0]) - v[1] - w[1].cross(arm[1]);
     const Vec3<double> J = -W.inverse() * C_dot;
+    REQUIRE(simulation.hold_impulses().size() == 1);
+    CHECK((simulation.hold_impulses().front().impulse.force - J).norm() <= 1e-11 * J.norm());
     const State& s = simulation.state();
     for (const int i : {0, 1}) {
       const Vec3<double> push = i == 0 ? J : Vec3<double>(-J);

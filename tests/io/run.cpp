@@ -463,6 +463,15 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(record.open_gap == Approx(1));
     CHECK(record.max_gap <= 1e-12);
   }
+  SECTION("a joint that takes hold of what moves") {
+    const RunRecord record = notes_of("hold", [](MultiBody& body, Part& top) {
+      body.gravity.setZero();
+      top.move({0.5, 0, 0}, {0, 0, 0});
+      body.ball("hook", world(top.c0()[0] + 0.1, top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)).during(0.2);
+    });
+    CHECK(count(record, "at t = 0.2 s ball 'hook' takes hold with an impulse of ") == 1);
+    CHECK(count(record, "takes hold") == 1);
+  }
   SECTION("a rod without direction") {
     const RunRecord record = notes_of("rod", [](MultiBody& body, Part& top) {
       body.join("rod", Rod{0.5}, {world(top.c0()[0], top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)});

@@ -154,7 +154,7 @@ TEST_CASE("a joint's force is that on its first side, in the world's frame, and 
     }
 }
 
-TEST_CASE("above a hundred parts only totals are written") {
+TEST_CASE("above a hundred parts only totals are written, unless the scene asks for every part") {
   Scene scene;
   for (int i = 0; i < 101; ++i) scene.body.add(make_part("p" + std::to_string(i), "sphere", {}, 1));
   scene.appearance.resize(101);
@@ -164,4 +164,11 @@ TEST_CASE("above a hundred parts only totals are written") {
   std::vector<double> numbers;
   table.row(simulation.state(), numbers);
   CHECK(numbers.size() == table.columns().size());
+
+  scene.every_part = true;
+  TrajectoryTable whole(scene, simulation);
+  CHECK(whole.columns().size() == 1 + 101 * 13 + 5 + kWorks + 1 + 6);
+  numbers.clear();
+  whole.row(simulation.state(), numbers);
+  CHECK(numbers.size() == whole.columns().size());
 }

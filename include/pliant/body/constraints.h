@@ -3,6 +3,7 @@
 // a being the accelerations without joints. What is found is added to them: a + M^-1 C_q^T lambda.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -32,9 +33,11 @@ struct OneSidedRow {
 template <class S>
 class JointFactor {
  public:
-  /// Factors it for the joints that act, or the closed ones alone.
+  /// Factors it for the joints that act, or the closed ones alone. prepare(j), of each joint in turn, lays
+  /// its C_q and M^-1 C_q^T.
+  template <class F>
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
-              const ConstraintWorkspace<S>& work, bool closed_only);
+              const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
   /// The blocks of W_c, to be filled in and factored by others.
   BlockFactor<S>& blocks() { return blocks_; }
   /// That of the values, for a derivative of the augmented matrix.
@@ -51,6 +54,9 @@ class JointFactor {
   bool is_rough() const;
 
  private:
+  /// Adds what two joints do to each other, through a part, to its block.
+  void couple(const Model& model, const Coupling& coupling, const ConstraintWorkspace<S>& work);
+
   friend class JointFactor<Dual<1>>;
   BlockFactor<S> blocks_;
   std::unique_ptr<AugmentedFactor> augmented_;
@@ -88,15 +94,26 @@ struct ConstraintWorkspace {
   std::vector<GroupVectors<S, Eigen::Dynamic>> vectors;  ///< of each island
 };
 
-/// Rows of the joints: C, C_dot, bias, C_q.
+/// Brings a part of an island to where its joints can be evaluated.
+using PlacePart = std::function<void(int)>;
+
+/// Rows of the joints: C, C_dot, bias, C_q. place(i), if given, is called for each part of the island, before
+/// the first of its joints is evaluated; so the caches hold it still.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
-                     const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work);
+                     const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
+                     const PlacePart& place = {});
 
 /// M^-1 C_q^T and the factors of W_c; rows of joints that do not act are held.
 template <class S>
 void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                    ConstraintWorkspace<S>& work);
+
+/// Both, a joint at a time.
+template <class S>
+void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
+                                const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
+                                const PlacePart& place = {});
 
 /// Finds lambda and adds M^-1 C_q^T lambda to the accelerations of the parts. One-sided rows that could push
 /// are those of the strings that act and of `limits`; which of them do is told in work.joints.pushed.

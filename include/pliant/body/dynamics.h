@@ -57,10 +57,6 @@ struct PartWorkspace {
     if (local) return local->held.test(static_cast<std::size_t>(k));
     return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k);
   }
-  bool any_held() const {
-    if (local) return local->held.any();
-    return rigid != nullptr ? rigid->rigid_factor.any_held() : factor.any_held();
-  }
 };
 
 /// M over (c, theta, q_s) of a part.
@@ -74,6 +70,8 @@ inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
+  std::vector<int> one_by_one;     ///< parts that are evaluated before any joint
+  std::vector<std::uint8_t> held;  ///< of each part, whether a velocity of it has no inertia, and is held
   ConstraintWorkspace<S> joints;
   GroupVectors<S, kMaxVelocities> alone;  ///< of a part alone that a limit pushes
   std::vector<RigidWorkspace> rigid;      ///< of each rigid island
@@ -160,17 +158,26 @@ class Dynamics {
   template <class S>
   void evaluate(double t, const VecX<S>& q, const VecX<S>& v, const State* modes,
                 const Workspace<double>* fixed_modes, bool rates_only, Workspace<S>& work) const;
-  /// Which rigid islands an evaluation in these modes uses; nullptr: none.
+  /// Which rigid islands an evaluation in these modes uses (nullptr: none), and what is left to do.
   template <class S>
   void choose_rigid_islands(const State* modes, Workspace<S>& work) const;
   /// Adds the energies of a part that was evaluated, and of a spring.
   void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
   void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;
+  /// Modes of the joints of an island, and frames and points of what moves as prescribed.
+  void place_anchors(double t, const VecX<double>& q, const VecX<double>& v,
+                     const std::vector<JointMode>& modes, const Island& island,
+                     Workspace<double>& work) const;
   /// Gives the workspace of the joints its sizes.
   template <class S>
   void size_joints(Workspace<S>& work) const;
   template <class S>
-  void join(double t, const State* modes, const Workspace<double>* fixed_modes, Workspace<S>& work) const;
+  void join(double t, const State* modes, const Workspace<double>* fixed_modes,
+            const PlacePart& evaluate_part, Workspace<S>& work) const;
+  /// Whether the parts of an island are evaluated with its joints, each just before the first that asks for
+  /// it: by one thread, and where no load has to know first where they all are.
+  template <class S>
+  bool with_joints(const Island& island, const Workspace<S>& work) const;
 
   const Model* model_;
   ThreadPool* pool_;

@@ -93,7 +93,7 @@ class Group {
   template <class V>
   void joint_rows(const V& x, VecX<S>& rows) const {
     rows.setConstant(island_->rows, S(0.0));
-    for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
+    for_each_side(work_->joints.Cq, [&](int row, int n_rows, int start, int n, const S* Cq) {
       if (n == 6 && n_rows == 3) {
         rows.template segment<3>(row) += BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
         return;
@@ -107,21 +107,21 @@ class Group {
   /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
   /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
   /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by
-  /// opposite forces.
-  const VecX<S>& correct(const VecX<S>& rows, Vector& x) const {
+  /// opposite forces. as_factored: nothing was evaluated since, and M^-1 C_q^T is known.
+  const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const {
     const JointFactor<S>& factor = this->factor();
     GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
     VecX<S>&lambda = kept.correction, &change = kept.change;
     lambda = -rows;
     factor.solve(lambda);
-    moved_by(lambda, change);
+    moved_by(lambda, as_factored, change);
     if (!factor.exact()) {
       VecX<S> more;
       joint_rows(change, more);
       more = -(rows + more);
       factor.solve(more);
       lambda += more;
-      moved_by(lambda, change);
+      moved_by(lambda, as_factored, change);
     }
     x += change;
     return lambda;
@@ -135,27 +135,31 @@ class Group {
   const JointFactor<S>& factor() const {
     return (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
   }
-  /// act(first row, rows, first velocity, velocities, C_q^T) for each side of each joint of the island.
+  /// act(first row, rows, first velocity, velocities, its share) for each side of each joint of the island;
+  /// shares: C_q^T or M^-1 C_q^T of all sides.
   template <class F>
-  void for_each_side(F&& act) const {
+  void for_each_side(const VecX<S>& shares, F&& act) const {
     for (const int j : island_->joints) {
       const JointModel& joint = model_->joints()[at(j)];
       for (const JointSide& side : joint.sides)
         act(joint.island_row, joint.rows, island_->first[at(side.place)], velocities(side.part),
-            work_->joints.Cq.data() + side.offset);
+            shares.data() + side.offset);
     }
   }
   /// x = M^-1 C_q^T lambda.
-  void moved_by(const VecX<S>& lambda, VecX<S>& x) const {
+  void moved_by(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const {
     x.setConstant(size_, S(0.0));
-    for_each_side([&](int row, int n_rows, int start, int n, const S* Cq) {
-      if (n == 6 && n_rows == 3) {
-        x.template segment<6>(start) += BallSide(Cq).lazyProduct(lambda.template segment<3>(row));
-        return;
-      }
-      for (int r = 0; r < n_rows; ++r)
-        for (int i = 0; i < n; ++i) x[start + i] += Cq[r * n + i] * lambda[row + r];
-    });
+    const ConstraintWorkspace<S>& joints = work_->joints;
+    for_each_side(
+        as_factored ? joints.Y : joints.Cq, [&](int row, int n_rows, int start, int n, const S* of) {
+          if (n == 6 && n_rows == 3) {
+            x.template segment<6>(start) += BallSide(of).lazyProduct(lambda.template segment<3>(row));
+            return;
+          }
+          for (int r = 0; r < n_rows; ++r)
+            for (int i = 0; i < n; ++i) x[start + i] += of[r * n + i] * lambda[row + r];
+        });
+    if (as_factored) return;
     for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));
   }
   int velocities(int part) const { return model_->parts()[at(part)].n_x(); }

@@ -2,6 +2,7 @@
 // it const.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -16,28 +17,37 @@ namespace pliant {
 
 /// A part's place in the flat vectors, its attachment points, its constants.
 struct PartModel {
+  // What every stage reads comes first, and lies close together.
   const Part* part;
   int q0, v0;  ///< first entries in q and v; -1 for a part that is fixed or moves as prescribed
   int n_s;
-  const PrescribedMotion* motion;             ///< nullptr of a part that has none
-  const LocalDeformation* local;              ///< likewise
-  int limit0;                                 ///< first entry in State::at_limit
-  double drag;                                ///< nu, 1/s
-  std::vector<Material<double>> ports;        ///< material points that forces act on
-  std::vector<PointJet<double>> rigid_ports;  ///< their constants, of a rigid part
-  // Of a part that deforms locally:
-  std::vector<NodeWeights> node_weights;      ///< of each port
-  std::vector<int> port_place;                ///< of each port among `shared`; -1: no joint is there
-  std::vector<NodeWeights> shared;            ///< points at which joints hold, each once
-  VecX<double> inertia_floor;                 ///< see SymmetricFactor
-  SymmetricFactor<double> rigid_factor;       ///< of a rigid part
-  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
-  bool loaded = false;                        ///< whether springs, forces or torques act on it
   int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone
   int rigid_island = -1;                      ///< likewise of those that are rigid_island.h's; -1: none
+  int limit0;                                 ///< first entry in State::at_limit
+  bool loaded = false;                        ///< whether springs, forces or torques act on it
+  bool actuated = false;                      ///< whether a rest value of a dynamic parameter changes in time
+  const LocalDeformation* local;              ///< nullptr of a part that has none
+  const PrescribedMotion* motion;             ///< likewise
+  std::vector<NodeWeights> shared;            ///< of one that deforms locally: its joints' points, each once
+  std::vector<Material<double>> ports;        ///< material points that forces act on
+  double drag;                                ///< nu, 1/s
+  VecX<double> rest;                          ///< rest values of the dynamic parameters, at time 0
+  VecX<double> inertia_floor;                 ///< see SymmetricFactor
+  std::vector<Range> limits;                  ///< of each dynamic parameter
+  std::vector<PointJet<double>> rigid_ports;  ///< constants of the ports of a rigid part
+  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
+  SymmetricFactor<double> rigid_factor;       ///< likewise
+  std::vector<NodeWeights> node_weights;      ///< of each port of a part that deforms locally
+  std::vector<int> port_place;                ///< of each of them among `shared`; -1: no joint is there
   Eigen::Matrix3d R0;                         ///< of a fixed part
   Part::Use use;                              ///< keeps the part from being changed
 
+  /// Rest values of the dynamic parameters at time t (s).
+  VecMax<double> rest_at(double t) const {
+    VecMax<double> values = rest;
+    for (int k = 0; k < n_s && actuated; ++k) values[k] = part->parameters().moving(k).rest.value(t);
+    return values;
+  }
   int n_d() const { return local == nullptr ? 0 : static_cast<int>(local->n_d()); }
   int n_q() const { return 7 + n_s + n_d(); }  ///< coordinates in q
   int n_v() const { return 6 + n_s + n_d(); }  ///< velocities in v
@@ -90,6 +100,8 @@ struct Coupling {
   int rows, columns;
   int row_joint, column_joint;
   int target;  ///< offset of the block
+
+  int later_joint() const { return std::max(row_joint, column_joint); }
 };
 
 /// Parts that joints tie together, and the system of their joints.
@@ -98,6 +110,7 @@ struct Island {
   std::vector<int> anchors;  ///< parts without coordinates that its joints hold on to
   std::vector<int> joints;   ///< those that are equations
   std::vector<int> strings;  ///< those that are one-sided
+  bool loaded = false;       ///< whether springs, forces or torques act on any of its parts
   std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< of joints
@@ -105,8 +118,8 @@ struct Island {
   bool augmented = false;    ///< solved as the augmented matrix, not by blocks
   bool uneven = false;   ///< parts so light among heavy ones that what is left of forces on them is refined
   BlockPattern pattern;  ///< of the blocks of W_c, when they are used
-  std::vector<Coupling> couplings;
-  long numbers = 0;  ///< in the factor
+  std::vector<Coupling> couplings;  ///< in the order of their later joints
+  long numbers = 0;                 ///< in the factor
 };
 
 class Model {
@@ -119,10 +132,14 @@ class Model {
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
   const std::vector<TorqueModel>& torques() const { return torques_; }
+  /// Parts that springs, forces or torques act on.
+  const std::vector<int>& loaded_parts() const { return loaded_parts_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
   /// Of the islands that are rigid parts on ball joints.
   const std::vector<RigidIsland>& rigid_islands() const { return rigid_islands_; }
+  /// Parts that are in no island.
+  const std::vector<int>& lone_parts() const { return lone_parts_; }
   /// Times at which joints begin or cease to act, in order.
   const std::vector<double>& switch_times() const { return switch_times_; }
   int n_rows() const { return n_rows_; }          ///< of all joints
@@ -166,6 +183,7 @@ class Model {
   void add_joint(const Joint& joint);
   void lay_sides();
   void lay_islands();
+  void note_loaded_parts();
   void lay_rigid_islands();
   /// A joint and which of its sides is on a part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
@@ -177,6 +195,7 @@ class Model {
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
   std::vector<TorqueModel> torques_;
+  std::vector<int> loaded_parts_, lone_parts_;
   std::vector<JointModel> joints_;
   std::vector<Island> islands_;
   std::vector<double> switch_times_;

@@ -41,7 +41,8 @@ struct RigidWorkspace {
     Vec3<Pack> x;      ///< position, velocity or acceleration of the point, world
     Vec3<Pack> push;   ///< force of the joint, world
   };
-  bool used = false;  ///< whether the last evaluation was by it
+  bool used = false;      ///< whether the last evaluation was by it
+  bool prepared = false;  ///< whether what is constant of its parts is in their workspaces
   Counters counters;
   std::vector<Four> fours;
   std::vector<Arm> arms;

@@ -13,9 +13,10 @@ namespace pliant {
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
 /// Where joints begin to act in an island: those with a small enough gap are closed, and the velocities are
-/// made to agree with them by impulses. work: of an evaluation at the state.
+/// made to agree with them by impulses. work: of an evaluation at the state; afterwards of its joints there.
+/// impulses: becomes those on the rows of all joints, N s.
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
-               Workspace<double>& work, StepCounters& counters);
+               Workspace<double>& work, StepCounters& counters, VecX<double>& impulses);
 
 /// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
 /// within its length and every closed joint closed at the end of the step. work: of the evaluation at the

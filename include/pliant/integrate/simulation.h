@@ -18,6 +18,14 @@
 
 namespace pliant {
 
+/// What a joint does to the part of its first side when it, or another of its island, begins to act on parts
+/// whose velocities do not agree with it.
+struct HoldImpulse {
+  double time;     ///< s
+  int joint;       ///< its number in the model
+  Wrench impulse;  ///< N s and N m s
+};
+
 class Simulation {
  public:
   /// Prepares the body (which must outlive the simulation) and starts at time 0: joints with a small gap are
@@ -61,6 +69,8 @@ class Simulation {
   /// What touches; nullptr where nothing can.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
+  /// The impulses of joints that took hold of moving parts, in the order of time.
+  const std::vector<HoldImpulse>& hold_impulses() const { return hold_impulses_; }
   /// Work of the kernels, summed over parts.
   Counters counters() const;
   /// Parameters that once had no inertia and were held: "part.parameter".
@@ -75,6 +85,7 @@ class Simulation {
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
   void switch_joints(double t, double near);
+  void take_hold_of(const Island& island, double t, Workspace<double>& work);
   void give_up_step();
   void check(const State& before);
   void note_held();
@@ -90,6 +101,7 @@ class Simulation {
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
+  std::vector<HoldImpulse> hold_impulses_;
   std::vector<bool> held_;  ///< by velocity
   double start_energy_ = 0;
 };

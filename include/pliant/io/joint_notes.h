@@ -16,6 +16,10 @@ std::vector<std::string> redundancy_notes(const Simulation& simulation);
 /// How many joints have yet to close, and the widest of them, in words; empty when none has.
 std::string open_joints_note(const Simulation& simulation);
 
+/// The impulses of joints that took hold of moving parts, from number `first` of simulation.hold_impulses()
+/// on, in words: of each moment the largest.
+std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first);
+
 /// How the systems of the joints are solved: "blocks", "augmented", "blocks and augmented", or nothing.
 std::string solver_note(const Model& model);
 

@@ -79,6 +79,7 @@ class Run {
   void fail(const std::string& message) noexcept;
   void note(const std::string& text);
   void note_redundancy();
+  void note_holds();
 
   Scene* scene_;
   RunOptions options_;
@@ -90,6 +91,7 @@ class Run {
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
   double recorded_time_ = -1;      // of the last recorded state
+  std::size_t told_holds_ = 0;     ///< of the impulses of joints that took hold
   std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
   StepCounters counted_steps_;     // of the sessions before
   Counters counted_work_;

@@ -2,14 +2,14 @@
 // is whole or absent. One header line, one line a recorded state, numbers in the shortest form that reads
 // back exactly. Columns:
 //   t                                        s
-//   of every moving part, by its name (up to kMostParts parts; above, only totals are written):
+//   of every moving part, by its name (of up to kMostParts parts, or as the scene asks; else totals alone):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s in the world, rad/s in the body frame
 //     NAME.PARAMETER_dot                     rates
 //     NAME.com.x y z                         true centre of mass (m, world), where not the frame's origin
 //   track.NAME.x y z                         points that the scene tracks, m
-//   joint.NAME.force.x y z, joint.NAME.gap   N in the world, on its first side; m (of up to kMostParts parts)
+//   joint.NAME.force.x y z, joint.NAME.gap   N in the world, on its first side; m (likewise)
 //   joint.NAME.torque.x y z                  N m, about the joint, of hinges, sliders and welds
 //   energy.kinetic gravity elastic springs total, work.KIND   J
 //   balance                                  J: energy.total - its value at time 0 - all works

@@ -66,9 +66,10 @@ struct Scene {
   double step = 1e-3;    ///< s; of no meaning with a tolerance
   double tolerance = 0;  ///< of the error of a step, see Simulation; 0: it is not controlled
   std::string integrator = "semi_implicit_euler";
-  double frame_rate = 25;         ///< recorded states and pictures per second
-  bool contacts = false;          ///< whether a run tells what touches
-  int width = 640, height = 480;  ///< of pictures
+  double frame_rate = 25;          ///< recorded states and pictures per second
+  std::optional<bool> every_part;  ///< whether the table of a run tells of every part, be they many or few
+  bool contacts = false;           ///< whether a run tells what touches
+  int width = 640, height = 480;   ///< of pictures
   CameraSetting camera;
   LightSetting light;
   GroundSetting ground;

@@ -3,6 +3,7 @@
 // were not there.
 #pragma once
 
+#include <array>
 #include <bitset>
 
 #include <pliant/math/dual.h>
@@ -21,39 +22,56 @@ class SymmetricFactor {
   void compute(const Matrix& A, const VecX<double>& floor) {
     n_ = static_cast<int>(A.rows());
     held_.reset();
-    L_.resize(n_, n_);
-    D_.resize(n_);
-    for (int j = 0; j < n_; ++j) {
-      S d = A(j, j);
-      for (int k = 0; k < j; ++k) d -= L_(j, k) * L_(j, k) * D_[k];
-      const double diagonal = plain(A(j, j));
-      if (!(diagonal > floor[j]) || !(plain(d) > kVanished * diagonal)) {
-        if (diagonal == diagonal)
-          held_.set(static_cast<std::size_t>(j));  // not a number: leave it to the finite check
-      }
-      D_[j] = d;
-      const bool gone = held_.test(static_cast<std::size_t>(j));
-      if (gone) D_[j] = S(1.0);
-      for (int i = j + 1; i < n_; ++i) {
+    rows_.resize(n_ * (n_ + 1) / 2);
+    S* L = rows_.data();
+    for (int i = 0; i < n_; L += ++i) {
+      const S* of_j = rows_.data();
+      for (int j = 0; j < i; of_j += ++j) {
         S sum = A(i, j);
-        for (int k = 0; k < j; ++k) sum -= L_(i, k) * L_(j, k) * D_[k];
-        L_(i, j) = gone ? S(0.0) : S(sum / D_[j]);
+        for (int k = 0; k < j; ++k) sum -= L[k] * of_j[k];
+        L[j] = held(j) ? S(0.0) : sum;  // L_ij D_j
       }
-      if (gone)
-        for (int k = 0; k < j; ++k) L_(j, k) = S(0.0);
+      S d = A(i, i);
+      const S* diagonal = rows_.data();
+      for (int k = 0; k < i; diagonal += ++k + 1) {
+        const S scaled = L[k] * *diagonal;
+        d -= L[k] * scaled;
+        L[k] = scaled;
+      }
+      const double entry = plain(A(i, i));
+      // What is not a number is left to the finite check.
+      const bool gone = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
+      L[i] = gone ? S(1.0) : S(1.0) / d;
+      if (!gone) continue;
+      held_.set(static_cast<std::size_t>(i));
+      for (int k = 0; k < i; ++k) L[k] = S(0.0);
     }
   }
 
   /// x = A^-1 x, with zeros for held coordinates.
   template <class Vector>
   void solve(Vector&& x) const {
-    for (int i = 0; i < n_; ++i) {
-      if (held_.test(static_cast<std::size_t>(i))) x[i] = S(0.0);
-      for (int k = 0; k < i; ++k) x[i] -= L_(i, k) * x[k];
+    solve_columns<1>(x.data());
+  }
+  /// The same of several columns, which lie one after the other in x.
+  template <int Columns>
+  void solve_columns(S* x) const {
+    const S* L = rows_.data();
+    for (int i = 0; i < n_; L += ++i) {
+      std::array<S, Columns> sum{};
+      for (int c = 0; c < Columns; ++c) sum[c] = held(i) ? S(0.0) : x[c * n_ + i];
+      for (int k = 0; k < i; ++k)
+        for (int c = 0; c < Columns; ++c) sum[c] -= L[k] * x[c * n_ + k];
+      for (int c = 0; c < Columns; ++c) x[c * n_ + i] = sum[c];
     }
-    for (int i = 0; i < n_; ++i) x[i] = x[i] / D_[i];
-    for (int i = n_ - 1; i >= 0; --i)
-      for (int k = i + 1; k < n_; ++k) x[i] -= L_(k, i) * x[k];
+    L = rows_.data();
+    for (int i = 0; i < n_; L += ++i)
+      for (int c = 0; c < Columns; ++c) x[c * n_ + i] = x[c * n_ + i] * L[i];
+    for (int i = n_ - 1; i > 0; --i) {
+      L -= i + 1;
+      for (int c = 0; c < Columns; ++c)
+        for (int k = 0; k < i; ++k) x[c * n_ + k] -= L[k] * x[c * n_ + i];
+    }
   }
 
   bool held(int i) const { return held_.test(static_cast<std::size_t>(i)); }
@@ -61,9 +79,9 @@ class SymmetricFactor {
 
  private:
   int n_ = 0;
-  // On the heap, so that the parts of a chain lie close together.
-  MatX<S> L_;
-  VecX<S> D_;
+  /// L by rows, with 1 / D_i in the place of its unit diagonal. On the heap, so that the parts of a chain lie
+  /// close together.
+  VecX<S> rows_;
   std::bitset<kMaxVelocities> held_;
 };
 
