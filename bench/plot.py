@@ -1,11 +1,14 @@
 #!/usr/bin/env python3
 """Draws the CSV of bench/work_precision as run time against error, one panel a problem.
 
+Failed runs are crosses in the lower left corner, in the colour of their method. Of --of gap_m and balance_J the unit is that
+of the name; the errors are those of positions, of velocities and of the forces of joints, relative.
+
 usage: work_precision FOLDER; bench/plot.py FOLDER/work_precision.csv work_precision.svg   (needs matplotlib)
 """
+import argparse
 import csv
 import math
-import sys
 
 import matplotlib
 
@@ -13,13 +16,49 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 WIDEST = 4  # panels beside each other
+FAR = 10  # an error, in body lengths, from which on a run has failed too
+QUANTITIES = {
+    "error": "error at the end",
+    "error_along": "error along the way",
+    "error_v": "error of velocities",
+    "error_lambda": "error of forces",
+    "gap_m": "widest gap, m",
+    "balance_J": "error of the energy, J",
+}
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("source", help="work_precision.csv")
+    parser.add_argument("target", help="picture to write; its ending tells the format")
+    parser.add_argument("--of", choices=QUANTITIES, default="error", help="what lies across (default: error)")
+    parser.add_argument("--problems", help="their names with commas between them (default: all)")
+    return parser.parse_args()
+
+
+def draw(panel, rows: list, quantity: str, method: str, crosses: int) -> int:
+    """One method's line in a panel, and its failed runs beside as many crosses of others; how many there are then."""
+    done = [
+        (float(r[quantity]), float(r["cpu_ms"])) for r in rows if r["failed"] != "1" and float(r["error"]) < FAR
+    ]
+    points = [(x, y) for x, y in done if x > 0 and math.isfinite(x)]
+    (line,) = panel.loglog([x for x, _ in points], [y for _, y in points], "o-", ms=4, label=method)
+    failed = len(rows) - len(done)
+    places = [0.02 + 0.03 * (crosses + i) for i in range(failed)]
+    panel.plot(places, [0.03] * failed, "x", ms=5, color=line.get_color(), transform=panel.transAxes)
+    return crosses + failed
 
 
 def main() -> None:
-    source, target = sys.argv[1:3]
-    with open(source, newline="") as file:
+    given = arguments()
+    with open(given.source, newline="") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     problems = list(dict.fromkeys(row["problem"] for row in rows))
+    if given.problems:
+        unknown = [name for name in given.problems.split(",") if name not in problems]
+        if unknown:
+            raise SystemExit(f"{given.source} has no problem {', '.join(unknown)}; it has {', '.join(problems)}")
+        problems = given.problems.split(",")
     methods = list(dict.fromkeys(row["method"] for row in rows))
     columns = min(len(problems), WIDEST)
     lines = math.ceil(len(problems) / columns)
@@ -29,17 +68,13 @@ def main() -> None:
         if index >= len(problems):
             panel.set_axis_off()
             continue
+        crosses = 0
         for method in methods:
-            points = [
-                r
-                for r in rows
-                if r["problem"] == problems[index] and r["method"] == method and r["failed"] != "1"
-            ]
-            errors = [float(r["error"]) for r in points]
-            panel.loglog(errors, [float(r["cpu_ms"]) for r in points], "o-", ms=4, label=method)
+            of_method = [r for r in rows if r["problem"] == problems[index] and r["method"] == method]
+            crosses = draw(panel, of_method, given.of, method, crosses)
         panel.set(title=problems[index])
         if index + columns >= len(problems):
-            panel.set(xlabel="error at the end")
+            panel.set(xlabel=QUANTITIES[given.of])
         if index % columns == 0:
             panel.set(ylabel="run time, ms")
         panel.invert_xaxis()
@@ -49,7 +84,7 @@ def main() -> None:
     if lines > 1:
         figure.legend(*panels[0][0].get_legend_handles_labels(), loc="upper center", ncols=min(len(methods), 5))
     figure.tight_layout(rect=(0, 0, 1, 1 if lines == 1 else 0.94))
-    figure.savefig(target)
+    figure.savefig(given.target)
 
 
 if __name__ == "__main__":
