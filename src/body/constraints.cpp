@@ -198,6 +198,7 @@ void evaluate_and_factor_joints(const Model& model, const Island& island, double
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                                 const PlacePart& place) {
   PartsInTurn in_turn(island, place);
+  if (island.augmented) in_turn.place_rest();  // the matrix has the masses of all of them
   factor_after(model, island, parts, work, [&](int j) {
     in_turn.place_for(model.joints()[at(j)]);
     evaluate_joint(model, j, t, parts, work);

@@ -21,7 +21,7 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
-  stop_ahead(dynamics, work, state, h, q_end_, ahead_, counters);
+  stop_ahead(dynamics, work, v_before_, state, h, q_end_, ahead_, counters);
   for (const PartModel& m : dynamics.model().parts()) {
     if (m.q0 < 0) continue;
     if (oscillates_freely(m))

@@ -98,10 +98,10 @@ const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
 }
 
 /// Brings a group onto its joints and within its limits. closed: some joints have closed just now. work:
-/// evaluated for the group. impulses: if given, those that close joints are added to them, N s.
+/// evaluated for the group; scratch: any. impulses: if given, those that close joints are added to them, N s.
 template <int Max>
 void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& group, bool closed,
-                  State& state, Workspace<double>& work, StepCounters& counters,
+                  State& state, Workspace<double>& work, Workspace<double>& scratch, StepCounters& counters,
                   VecX<double>* impulses = nullptr) {
   GroupVectors<double, Max>& kept = kept_vectors(group, work);
   Snapshot<Max> before(group, state, kept);
@@ -116,7 +116,6 @@ void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& 
     state.work[static_cast<int>(Work::limits)] += rows;
     return;
   }
-  Workspace<double> scratch;
   const auto& parts = parts_of(group);
   before.swap(state);
   const double energy = dynamics.energy(t, state.q, state.v, parts, scratch);
@@ -234,15 +233,15 @@ bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<
 }  // namespace
 
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
-               Workspace<double>& work, StepCounters& counters, VecX<double>& impulses) {
+               Workspace<double>& work, Workspace<double>& scratch, StepCounters& counters,
+               VecX<double>& impulses) {
   const Model& model = dynamics.model();
-  impulses.setZero(model.n_rows());
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   if (dynamics.hold().projected) close_joints(model, island, true, work, state);
   close_strings(model, island, work, state);
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), true, state, work,
-               counters, &impulses);
+               scratch, counters, &impulses);
   dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
   note_strings(model, island, work, state);
 }
@@ -251,6 +250,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
                    StepCounters& counters) {
   const Model& model = dynamics.model();
   if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
+  Workspace<double> scratch;
   for (const Island& island : model.islands()) {
     if (closed_by_rigid_island(model, island, work, state)) continue;
     fail_if_stuck(dynamics, t, island, state, work);
@@ -264,7 +264,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
       if (closed) dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
     }
     settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), closed, state, work,
-                 counters);
+                 scratch, counters);
     if (island.strings.empty()) continue;
     dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
     note_strings(model, island, work, state);
@@ -275,10 +275,11 @@ void settle_limits(const Dynamics& dynamics, double t, State& state, Workspace<d
                    StepCounters& counters) {
   const Model& model = dynamics.model();
   if (!all_finite(state.q) || !all_finite(state.v)) return;
+  Workspace<double> scratch;
   for_each_alone(model, work, [&](const Group<double, kMaxVelocities>& group) {
     if (!passes(group.model(0), state)) return;
     dynamics.evaluate_masses(state.q, state.v, parts_of(group), work);
-    settle_group(dynamics, t, group, false, state, work, counters);
+    settle_group(dynamics, t, group, false, state, work, scratch, counters);
   });
 }
 

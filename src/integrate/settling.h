@@ -203,8 +203,7 @@ class Settling {
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double push) {
           impulses += stays(row) ? 0 : 1;
-          if (impulses_ != nullptr && row.part < 0)
-            (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
+          if (impulses_ != nullptr) add_impulses_of(row, push);
         });
       if (island_ == nullptr) break;
     }
@@ -309,6 +308,22 @@ class Settling {
     return kLeft * model_.body().stabilization.rate * joint.length + kRounding * size;
   }
 
+  /// What a push of a row adds to the impulses: its own, if it is a string's, and what the joints take up.
+  void add_impulses_of(const OneSidedRow& row, double push) {
+    if (row.part < 0) (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
+    Vector x = group_.push(row);
+    VecX<double> rows;
+    group_.joint_rows(x, rows);
+    add_impulses(group_.correct(rows, x), push);
+  }
+  /// lambda: of the joints of the island.
+  void add_impulses(const VecX<double>& lambda, double factor) {
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      impulses_->segment(joint.row, joint.rows) += factor * lambda.segment(joint.island_row, joint.rows);
+    }
+  }
+
   /// Evaluates the joints and adds to x what takes the rows of the closed ones to zero. False when nothing is
   /// left to do: they are there, or as near as rounding lets them come.
   bool correct_joints(Rows what, int iteration, Vector& x) {
@@ -341,11 +356,7 @@ class Settling {
     }
     before_ = now;
     const VecX<double>& lambda = group_.correct(error, x);
-    if (impulses_ != nullptr && what == Rows::velocities)
-      for (const int j : island_->joints) {
-        const JointModel& joint = model_.joints()[at(j)];
-        impulses_->segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
-      }
+    if (impulses_ != nullptr && what == Rows::velocities) add_impulses(lambda, 1);
     return true;
   }
 

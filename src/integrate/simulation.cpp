@@ -97,7 +97,7 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     settle_frames(dynamics_, 0, state_, output_work_);
     if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
-    for (const Island& island : model_.islands()) take_hold_of(island, 0, output_work_);
+    take_hold(std::vector<bool>(model_.islands().size(), true), 0, output_work_);
     if (automatic) {
       choice_ = choose_integrator(dynamics_, *scale_, state_);
       take_method(make_integrator(choice_.integrator));
@@ -306,28 +306,34 @@ void Simulation::switch_joints(double t, double near) {
     state_.joints[j] = on ? JointMode::closing : JointMode::off;
     if (on) more[static_cast<std::size_t>(joint.island)] = true;
   }
-  for (std::size_t i = 0; i < more.size(); ++i)
-    if (more[i]) take_hold_of(model_.islands()[i], t, work_);
+  if (std::find(more.begin(), more.end(), true) != more.end()) take_hold(more, t, work_);
 }
 
-void Simulation::take_hold_of(const Island& island, double t, Workspace<double>& work) {
-  VecX<double> impulses;
-  take_hold(dynamics_, t, island, state_, work, step_counters_, impulses);
+/// Joints begin to act in some islands.
+void Simulation::take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work) {
+  auto in_these = [&](int j) {
+    return islands[static_cast<std::size_t>(model_.joints()[static_cast<std::size_t>(j)].island)];
+  };
   // Steps that were given up, and their impulses, did not happen.
   const auto given_up = [&](const HoldImpulse& of) {
-    return of.time > t ||
-           (of.time == t && &island == &model_.islands()[static_cast<std::size_t>(
-                                           model_.joints()[static_cast<std::size_t>(of.joint)].island)]);
+    return of.time > t || (of.time == t && in_these(of.joint));
   };
   hold_impulses_.erase(std::remove_if(hold_impulses_.begin(), hold_impulses_.end(), given_up),
                        hold_impulses_.end());
+  VecX<double> impulses = VecX<double>::Zero(model_.n_rows());
+  Workspace<double> scratch;
   auto note = [&](int j) {
     const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
     if (!impulses.segment(joint.row, joint.rows).isZero(0))
       hold_impulses_.push_back({t, j, dynamics_.joint_wrench(t, j, work, impulses)});
   };
-  std::for_each(island.joints.begin(), island.joints.end(), note);
-  std::for_each(island.strings.begin(), island.strings.end(), note);
+  for (std::size_t i = 0; i < islands.size(); ++i) {
+    if (!islands[i]) continue;
+    const Island& island = model_.islands()[i];
+    pliant::take_hold(dynamics_, t, island, state_, work, scratch, step_counters_, impulses);
+    std::for_each(island.joints.begin(), island.joints.end(), note);
+    std::for_each(island.strings.begin(), island.strings.end(), note);
+  }
 }
 
 void Simulation::check(const State& before) {

@@ -1,4 +1,5 @@
 // Before the coordinates move by h v: impulses that meet limits, strings and joints at the end of the step.
+#include <algorithm>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -67,19 +68,20 @@ bool any_closing(const Island& island, const Workspace<double>& work) {
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// Parts of an island that closes turn by at most kMostTurn in a step of h: what a gap pulls may swing about
-/// it for long, and gains energy by each step. The centres of mass go on as they were. Returns the work of
-/// it.
+/// In a step of h no part of an island that closes comes to turn by more than kMostTurn: what a gap pulls
+/// may swing about it for long, and gains energy by each step. The centres of mass go on as they were.
+/// before: velocities at the start of the step. Returns the work of it.
 template <int Max>
-double cap_turns(const Group<double, Max>& group, double h, VecMax<double, Max>& x,
-                 VecMax<double, Max>& capped) {
+double cap_turns(const Group<double, Max>& group, const VecX<double>& before, double h,
+                 VecMax<double, Max>& x, VecMax<double, Max>& capped) {
   capped = x;
   for (int i = 0; i < group.parts(); ++i) {
     auto v_r = group.share(capped, i);
-    const double turn = h * v_r.template segment<3>(3).norm();
-    if (!(turn > kMostTurn)) continue;
+    const double turn = h * v_r.template segment<3>(3).norm(),
+                 most = std::max(kMostTurn, h * before.segment<3>(group.model(i).v0 + 3).norm());
+    if (!(turn > most)) continue;
     const Inertia<double>& inertia = group.workspace(i).inertia;
-    const Vec3<double> change = (kMostTurn / turn - 1) * v_r.template segment<3>(3);
+    const Vec3<double> change = (most / turn - 1) * v_r.template segment<3>(3);
     v_r.template head<3>() -= change.cross(Vec3<double>(inertia.moment / inertia.mass));
     v_r.template segment<3>(3) += change;
   }
@@ -116,8 +118,8 @@ void note_limits(const Group<double, Max>& group, double h, State& state) {
 
 }  // namespace
 
-void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state, double h,
-                VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters) {
+void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, const VecX<double>& before, State& state,
+                double h, VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters) {
   const Model& model = dynamics.model();
   if (!model.islands().empty()) q_end.resize(state.q.size());
   auto act = [&](const auto& group) {
@@ -129,7 +131,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state,
     auto &x = kept.x, &now = kept.before, &joined = kept.joined;
     take_velocities(group, state.v, x);
     if (island != nullptr && any_closing(*island, work)) {
-      state.work[static_cast<int>(Work::baumgarte)] += cap_turns(group, h, x, now);
+      state.work[static_cast<int>(Work::baumgarte)] += cap_turns(group, before, h, x, now);
       for (int i = 0; i < group.parts(); ++i)
         give_velocity(group.model(i), group.workspace(i), group.share(x, i), state.v);
     }

@@ -20,7 +20,8 @@ using Choice = JointSolver::Choice;
 
 namespace {
 
-/// Deforming and rigid parts in loops, with doubled joints, a hinge, and a parameter at its limit.
+/// Deforming and rigid parts in loops, with doubled joints, a hinge, a parameter at its limit, and a part
+/// that a string alone ties to them.
 void tangle(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
@@ -43,6 +44,9 @@ void tangle(MultiBody& body) {
   body.ball("hand", world({test::wave(0.5, 0.3, 4), 0.2, test::wave(0.1, 0.2, 3, 1)}),
             point(*parts[2], 1.2, -2));
   body.join("string", String{0.2}, {world(0.4, 1, 2), point(*parts[4], kPi / 2, 0)});
+  Part& bob = test::add(body, "bob", "sphere", {}, 700);
+  bob.place({0.5, -0.4, -2}).move({0.1, 0.4, 0}, {1, 0, 2});
+  body.join("cord", String{1.5}, {point(*parts[3], 0, 0), point(bob, kPi / 2, 0)});
   body.hinge("hinge", point(*parts[2], 0, 0, 0), point(*parts[4], 0, 1, 0.5), {1, 0, 0});
 }
 

@@ -227,3 +227,24 @@ TEST_CASE("a joint that cannot close is named with its gap", "[joints]") {
     CHECK(what.find(" m") != std::string::npos);
   }
 }
+
+TEST_CASE("a part that spins on a closed joint keeps its spin while another joint of its island closes",
+          "[assembly][joints]") {
+  for (const char* method : {"semi_implicit_euler", "rk4"}) {
+    CAPTURE(method);
+    MultiBody body;
+    body.gravity.setZero();
+    Part& a = body.add(make_part("a", "sphere", {}, 1000));
+    Part& b = body.add(make_part("b", "sphere", {}, 1000));
+    a.rest({{"r", 0.1}}).move({0, 0, 0}, {0, 0, 30});
+    b.rest({{"r", 0.1}}).place({0.2, 0, 0});
+    body.ball("between", point(a, 0, 0, 0), point(b, 0, kPi, 1)).during(0, 0.005);
+    body.ball("late", point(b, 0, 0, 1), world(0.4, 0, 0)).during(0.1);
+    Simulation simulation(body, method);
+    const double L = simulation.ledger().angular_momentum[2];
+    test::run(simulation, 1, 100);  // 0.3 rad a step
+    CHECK(simulation.state().v[5] == Approx(30).epsilon(1e-9));
+    CHECK(simulation.ledger().work[static_cast<int>(Work::baumgarte)] < 1e-3);
+    CHECK(simulation.ledger().angular_momentum[2] > 0.99 * L);
+  }
+}

@@ -411,3 +411,36 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     CHECK_THROWS_AS(body.ball("joint", point(bob, 0, 0), world(0, 0, 0)).during(2, 1), std::invalid_argument);
   }
 }
+
+TEST_CASE("N48: joints take up what a string that goes taut, or a rod in its place, pulls", "[joints]") {
+  for (const bool string : {false, true}) {
+    CAPTURE(string);
+    MultiBody body;
+    body.gravity.setZero();
+    Part& bar = body.add(make_part("bar", "ellipsoid", {}, 1000));
+    bar.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}}).place({0, 0, -0.5}).move({1, 0, 0}, {0, -2, 0});
+    body.ball("pivot", point(bar, kPi / 2, 0), world(0, 0, 0));
+    // As long as it is from there to where the end of the bar is at 0.2 s.
+    const double turned = 2 * 0.2;
+    const double length =
+        (Vec3<double>(std::sin(turned), 0, -std::cos(turned)) - Vec3<double>(-0.5, 0, -1)).norm();
+    const std::vector<Point> ends{point(bar, -kPi / 2, 0), world(-0.5, 0, -1)};
+    if (string)
+      body.join("rope", String{length}, ends).during(0.2);
+    else
+      body.join("rope", Rod{length}, ends).during(0.2);
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.2, 200);
+    const Vec3<double> before = simulation.ledger().momentum;
+    simulation.step(1e-9);
+    const Vec3<double> gained = simulation.ledger().momentum - before;
+    REQUIRE(gained.norm() > 1);
+    REQUIRE(simulation.hold_impulses().size() == 2);
+    Vec3<double> impulse = Vec3<double>::Zero();
+    for (const HoldImpulse& of : simulation.hold_impulses()) {
+      CHECK(of.impulse.force.norm() > 1);
+      impulse += of.impulse.force;
+    }
+    CHECK((impulse - gained).norm() <= 1e-6 * gained.norm());
+  }
+}

@@ -13,16 +13,17 @@ namespace pliant {
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
 /// Where joints begin to act in an island: those with a small enough gap are closed, and the velocities are
-/// made to agree with them by impulses. work: of an evaluation at the state; afterwards of its joints there.
-/// impulses: becomes those on the rows of all joints, N s.
+/// made to agree with them by impulses. work: of an evaluation at the state; afterwards of its joints there;
+/// scratch: any, kept from island to island. impulses: those on the rows of all joints are added, N s.
 void take_hold(const Dynamics& dynamics, double t, const Island& island, State& state,
-               Workspace<double>& work, StepCounters& counters, VecX<double>& impulses);
+               Workspace<double>& work, Workspace<double>& scratch, StepCounters& counters,
+               VecX<double>& impulses);
 
 /// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
 /// within its length and every closed joint closed at the end of the step. work: of the evaluation at the
-/// start; q_end, ahead: any, kept from step to step.
-void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, State& state, double h,
-                VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters);
+/// start; before: the velocities then; q_end, ahead: any, kept from step to step.
+void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, const VecX<double>& before, State& state,
+                double h, VecX<double>& q_end, Workspace<double>& ahead, StepCounters& counters);
 
 /// After the coordinates moved: parameters that came to a limit are on it to the last bit.
 void settle_on_limits(const Model& model, State& state);

@@ -85,7 +85,7 @@ class Simulation {
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
   void switch_joints(double t, double near);
-  void take_hold_of(const Island& island, double t, Workspace<double>& work);
+  void take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work);
   void give_up_step();
   void check(const State& before);
   void note_held();
