@@ -46,7 +46,7 @@ Run run(const std::string& file, const char* method, double end, long steps) {
     const Ledger ledger = simulation.ledger();
     r.error = std::max(r.error, std::abs(ledger.balance));
     r.kinetic = std::max(r.kinetic, ledger.kinetic);
-    r.gap = std::max(r.gap, widest_gap(simulation, JointMode::closed));
+    r.gap = std::max(r.gap, widest_gaps(simulation).closed);
   }
   return r;
 }

@@ -77,12 +77,7 @@ void AugmentedFactor::factor(const std::vector<PartWorkspace<double>>& parts,
     const JointModel& joint = model_->joints()[at(j)];
     if (!counts(work.modes[at(j)], closed_only)) continue;
     for (int r = 0; r < joint.rows; ++r) {
-      double diagonal = 0;
-      for (const JointSide& side : joint.sides) {
-        const int n = model_->parts()[at(side.part)].n_x();
-        for (int i = 0; i < n; ++i)
-          diagonal += work.Cq[side.offset + r * n + i] * work.Y[side.offset + r * n + i];
-      }
+      const double diagonal = entry_of_ends(*model_, work, j, r);
       if (diagonal > 0) d[at(joint.island_row + r)] = kRegular * diagonal;
     }
   }
@@ -133,12 +128,16 @@ std::vector<bool> dependent_rows(const Model& model, const Island& island,
     const JointModel& joint = model.joints()[at(j)];
     if (!acts(work.modes[at(j)])) continue;
     for (int r = 0; r < joint.rows; ++r) {
-      double square = 0;
+      double square = 0, least = 0;
       for (const JointSide& side : joint.sides) {
         const int n = model.parts()[at(side.part)].n_x();
-        square += work.Cq.segment(side.offset + r * n, n).squaredNorm();
+        const auto Cq = work.Cq.segment(side.offset + r * n, n);
+        square += Cq.squaredNorm();
+        if (joint.first_offset < 0) continue;
+        const auto first = work.Cq.segment(joint.first_offset + r * n, n);
+        least = kDependent * kDependent * (first.squaredNorm() + (Cq - first).squaredNorm());
       }
-      if (!(square > 0)) continue;
+      if (!(square > least)) continue;
       for (const JointSide& side : joint.sides) {
         const int n = model.parts()[at(side.part)].n_x(), first = island.first[at(side.place)];
         for (int i = 0; i < n; ++i)

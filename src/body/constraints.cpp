@@ -66,8 +66,11 @@ template <class S>
 void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
                     ConstraintWorkspace<S>& work) {
   const JointModel& joint = model.joints()[at(j)];
-  for (const JointSide& side : joint.sides)
-    work.Cq.segment(side.offset, velocities(model.parts()[at(side.part)]) * joint.rows).setConstant(S(0.0));
+  for (const JointSide& side : joint.sides) {
+    const int size = velocities(model.parts()[at(side.part)]) * joint.rows;
+    work.Cq.segment(side.offset, size).setConstant(S(0.0));
+    if (joint.first_offset >= 0) work.Cq.segment(joint.first_offset, size).setConstant(S(0.0));
+  }
   if (!acts(work.modes[at(j)]) && !(joint.joint->one_sided() && work.modes[at(j)] == JointMode::slack))
     return;
   std::array<PointMotion<S>, kMaxJointPoints> motion;
@@ -95,41 +98,47 @@ void evaluate_joint(const Model& model, int j, double t, const std::vector<PartW
     for (const JointSide& side : joint.sides) {
       if (side.part != ref.part) continue;
       const PartModel& part = model.parts()[at(side.part)];
-      add_point(part, parts[at(side.part)], ref.port, joint.rows, rows.C_x.data() + 3 * k * joint.rows,
-                work.Cq.data() + side.offset);
+      const S* C_x = rows.C_x.data() + 3 * k * joint.rows;
+      add_point(part, parts[at(side.part)], ref.port, joint.rows, C_x, work.Cq.data() + side.offset);
+      if (joint.first_offset >= 0 && k < joint.joint->n_first())
+        add_point(part, parts[at(side.part)], ref.port, joint.rows, C_x, work.Cq.data() + joint.first_offset);
     }
   }
 }
 
-/// M^-1 C_q^T of the sides of a joint.
+/// M^-1 C_q^T of a side, which is at an offset.
+template <class S>
+void respond(const PartModel& part, const PartWorkspace<S>& w, int rows, int offset,
+             ConstraintWorkspace<S>& work) {
+  const int n = velocities(part);
+  const S* Cq = work.Cq.data() + offset;
+  S* Y = work.Y.data() + offset;
+  if constexpr (std::is_same_v<S, double>) {
+    if (w.rigid != nullptr && rows == 3) {
+      FixedSide<S, 6, 3>(Y).noalias() = w.rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
+      return;
+    }
+    if (part.local != nullptr) {
+      Eigen::Map<MatX<S>>(Y, n, rows).noalias() = w.local->A * Eigen::Map<const MatX<S>>(Cq, n, rows);
+      return;
+    }
+  }
+  std::copy_n(Cq, rows * n, Y);
+  if (rows == 3 && w.rigid == nullptr)
+    w.factor.template solve_columns<3>(Y);
+  else
+    for (int r = 0; r < rows; ++r) w.solve_mass(Eigen::Map<VecX<S>>(Y + r * n, n));
+}
+
+/// The same of the sides of a joint.
 template <class S>
 void respond(const Model& model, int j, const std::vector<PartWorkspace<S>>& parts,
              ConstraintWorkspace<S>& work) {
   const JointModel& joint = model.joints()[at(j)];
   for (const JointSide& side : joint.sides) {
     const PartModel& part = model.parts()[at(side.part)];
-    const int n = velocities(part);
-    const S* Cq = work.Cq.data() + side.offset;
-    S* Y = work.Y.data() + side.offset;
-    if constexpr (std::is_same_v<S, double>) {
-      const PartModel* rigid = parts[at(side.part)].rigid;
-      if (rigid != nullptr && joint.rows == 3) {
-        FixedSide<S, 6, 3>(Y).noalias() = rigid->rigid_inverse.lazyProduct(ConstSide<S, 6, 3>(Cq));
-        continue;
-      }
-    }
-    if constexpr (std::is_same_v<S, double>)
-      if (part.local != nullptr) {
-        Eigen::Map<MatX<S>>(Y, n, joint.rows).noalias() =
-            parts[at(side.part)].local->A * Eigen::Map<const MatX<S>>(Cq, n, joint.rows);
-        continue;
-      }
-    std::copy_n(Cq, joint.rows * n, Y);
-    const PartWorkspace<S>& w = parts[at(side.part)];
-    if (joint.rows == 3 && w.rigid == nullptr)
-      w.factor.template solve_columns<3>(Y);
-    else
-      for (int r = 0; r < joint.rows; ++r) w.solve_mass(Eigen::Map<VecX<S>>(Y + r * n, n));
+    respond(part, parts[at(side.part)], joint.rows, side.offset, work);
+    if (joint.first_offset >= 0) respond(part, parts[at(side.part)], joint.rows, joint.first_offset, work);
   }
 }
 
@@ -208,6 +217,26 @@ void evaluate_and_factor_joints(const Model& model, const Island& island, double
 }
 
 template <class S>
+double entry_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row) {
+  const JointModel& joint = model.joints()[at(j)];
+  double sum = 0;
+  for (const JointSide& side : joint.sides) {
+    const int n = velocities(model.parts()[at(side.part)]), first = joint.first_offset + row * n;
+    for (int i = 0; i < n; ++i) {
+      double Cq = plain(work.Cq[side.offset + row * n + i]), Y = plain(work.Y[side.offset + row * n + i]);
+      if (joint.first_offset >= 0) {
+        const double Cq_first = plain(work.Cq[first + i]), Y_first = plain(work.Y[first + i]);
+        sum += Cq_first * Y_first;
+        Cq -= Cq_first;
+        Y -= Y_first;
+      }
+      sum += Cq * Y;
+    }
+  }
+  return sum;
+}
+
+template <class S>
 template <class F>
 void JointFactor<S>::factor(const Model& model, const Island& island,
                             const std::vector<PartWorkspace<S>>& parts, const ConstraintWorkspace<S>& work,
@@ -225,6 +254,9 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
   auto coupling = island.couplings.begin();
   for (const int j : island.joints) {
     prepare(j);
+    const JointModel& joint = model.joints()[at(j)];
+    for (int r = 0; joint.first_offset >= 0 && r < joint.rows; ++r)
+      blocks_.measure_by(joint.island_row + r, entry_of_ends(model, work, j, r));
     for (; coupling != island.couplings.end() && coupling->later_joint() == j; ++coupling)
       if (counts(work.modes[at(coupling->row_joint)], closed_only) &&
           counts(work.modes[at(coupling->column_joint)], closed_only))
@@ -379,6 +411,7 @@ std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<do
 #define PLIANT_INSTANCES(S)                                                                                \
   template void evaluate_joints(const Model&, const Island&, double, const std::vector<PartWorkspace<S>>&, \
                                 ConstraintWorkspace<S>&, const PlacePart&);                                \
+  template double entry_of_ends(const Model&, const ConstraintWorkspace<S>&, int, int);                    \
   template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
                               ConstraintWorkspace<S>&);                                                    \
   template VecMax<S, kMaxJointRows> wanted(const Model&, const ConstraintWorkspace<S>&, int);              \

@@ -143,16 +143,18 @@ class Holding {
 
 namespace {
 
-/// Softens the strings that close, where one of them pushes out of all proportion; whether one does.
-bool soften_closing(const Model& model, const Island& island, const ConstraintWorkspace<double>& joints,
-                    const Group<double, Eigen::Dynamic>& group, OneSidedRows<Eigen::Dynamic>& rows) {
+/// Softens the strings that close, where one of them pushes out of all proportion to what they lack without
+/// pushes, at x; whether one does.
+bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
+                    const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
+                    OneSidedRows<Eigen::Dynamic>& rows) {
   auto closes = [&](const OneSidedRow& row) {
     return row.part < 0 && joints.modes[at(island.strings[at(row.k)])] == JointMode::closing;
   };
   double asked = 0, most = 0;
   rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
     if (!closes(row)) return;
-    asked = std::max(asked, wanted(model, joints, island.strings[at(row.k)]).norm());
+    asked = std::max(asked, std::abs(row.bound - group.value(row, x)));
     most = std::max(most, lambda * group.value(row, group.response(row)));
   });
   if (!(most > kMostLever * asked)) return false;
@@ -178,7 +180,7 @@ void solve_joints(const Model& model, const Island& island, std::vector<OneSided
     OneSidedRows<Eigen::Dynamic> rows(holding.group());
     for (const OneSidedRow& row : limits) rows.add(row);
     rows.meet(holding.x());
-    if (soften_closing(model, island, work.joints, holding.group(), rows)) rows.meet(holding.x());
+    if (soften_closing(island, work.joints, holding.group(), holding.x(), rows)) rows.meet(holding.x());
     std::vector<double> pushes;
     rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
       pushed.push_back(row);

@@ -75,6 +75,9 @@ class Assembly {
     return widest;
   }
 
+  /// Whether the shape settled within the most iterations.
+  bool settled() const { return settled_; }
+
   /// Returns the iterations.
   int run() {
     double best_gap = kInfinite, best_merit = kInfinite, price = penalty_;
@@ -96,6 +99,7 @@ class Assembly {
       if (closed && moved <= kSettled) return i;
     }
     if (gap() > kClosedGap) fail(kMostIterations);  // the projection at the start closes the rest
+    settled_ = false;
     return kMostIterations;
   }
 
@@ -340,6 +344,7 @@ class Assembly {
   double eps_ = 1, least_eps_ = 1;  ///< cost of rigid motion, 1/s^2
   double penalty_ = 0;              ///< price of a gap, N
   bool stiff_ = false;              ///< whether any parameter has a stiffness
+  bool settled_ = true;             ///< see settled()
 };
 
 }  // namespace
@@ -352,6 +357,7 @@ AssemblyReport assemble(const Dynamics& dynamics, State& state) {
     const bool open = assembly.gap() > kClosedGap;
     report.gap_before = std::max(report.gap_before, assembly.metres());
     if (open) report.iterations = std::max(report.iterations, assembly.run());
+    report.settled = report.settled && assembly.settled();
     assembly.gap();
     report.gap = std::max(report.gap, assembly.metres());
   }

@@ -20,6 +20,8 @@ namespace pliant {
 namespace {
 /// Times that differ by less than this part of a step, or this many units of their last place, are the same.
 constexpr double kNear = 1e-9, kUlps = 8;
+/// Steps end and begin so many units of the last place beside a kink of a path, on the side that is theirs.
+constexpr double kBeside = 2;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
 /// Longest step to a tolerance in which bodies lie on each other, s.
@@ -56,6 +58,29 @@ std::string endless_gap(const Model& model, const Workspace<double>& work) {
       return "the gap of joint '" + joint.joint->name() + "'";
   }
   return {};
+}
+
+double before(double kink) {
+  return kink - kBeside * std::numeric_limits<double>::epsilon() * std::abs(kink);
+}
+double after(double kink) {
+  return kink + kBeside * std::numeric_limits<double>::epsilon() * std::abs(kink);
+}
+
+/// An impulse of a joint that is below this part of the momenta of its lightest part is rounding.
+constexpr double kRounding = 1e-9;
+
+/// The momentum (N s) of the lightest part of a joint if it moved as fast as any of them, or as the joint
+/// closes.
+double momentum(const Model& model, const JointModel& joint, const VecX<double>& v) {
+  double mass = std::numeric_limits<double>::infinity(),
+         speed = model.body().stabilization.rate * joint.length;
+  for (const JointSide& side : joint.sides) {
+    const PartModel& m = model.parts()[static_cast<std::size_t>(side.part)];
+    mass = std::min(mass, m.part->total_mass());
+    speed = std::max(speed, v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm());
+  }
+  return mass * speed;
 }
 
 void require_tolerance(double tolerance) {
@@ -138,13 +163,19 @@ void Simulation::step(double h) {
     state_.step = 0;
     state_.h = h;
   }
-  last_good_ = state_;
+  begin_step();
   if (contact_) contact_->begin_step();
   guarded(h, [&] { advance(h); });
   ++state_.step;
   ++step_counters_.steps;
   check(last_good_);
   note_held();
+}
+
+/// Remembers where the step began.
+void Simulation::begin_step() {
+  last_good_ = state_;
+  last_good_impulses_ = hold_impulses_.size();
 }
 
 /// Does what a step of h seconds does; where it fails, the last good state is back, and the failure says what
@@ -188,13 +219,22 @@ void Simulation::step_up_to(double until) {
   const double end = next == times.end() ? until : std::min(until, *next);
   state_.start = now;
   state_.step = 0;
-  last_good_ = state_;
+  begin_step();
   if (!times.empty()) switch_joints(now, least);
+  state_.start = after_kink(now, least);
   const int order = integrator_->error_order();
   if (!(state_.h > 0)) state_.h = first_step(dynamics_, *scale_, order, state_, work_, step_counters_);
-  const bool done = take_controlled_step(state_, end, least, step_counters_, [&] { return try_step(); });
+  // A step that ends near `end` goes there, which is not further than this many steps.
+  constexpr double further = 1.1;
+  const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
+  const bool bends = std::isfinite(kink.time);
+  const double stop = bends ? before(kink.time) : end;
+  const bool done = take_controlled_step(state_, stop, least, step_counters_, [&] { return try_step(); });
   if (!done) guarded(state_.h, [&] { fail_at_tolerance(); });
-  if (!times.empty()) switch_joints(state_.start, least);
+  const bool at_kink = bends && state_.start >= stop;
+  if (at_kink) state_.start = std::min(kink.time, end);
+  if (!times.empty()) switch_joints(at_kink ? after(kink.time) : state_.start, least);
+  if (at_kink) guarded(state_.h, [&] { follow_paths(kink.time, least, after(kink.time)); });
   ++step_counters_.steps;
   check(last_good_);
   note_held();
@@ -202,6 +242,7 @@ void Simulation::step_up_to(double until) {
 
 void Simulation::give_up_step() {
   state_ = last_good_;
+  hold_impulses_.resize(std::min(hold_impulses_.size(), last_good_impulses_));
   if (contact_) contact_->undo_step();
 }
 
@@ -269,7 +310,7 @@ double Simulation::take_step() {
 /// Moves the state on by h but for the count of its step, stopping where joints switch.
 void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
-  if (times.empty()) {
+  if (times.empty() && model_.driven_joints().empty()) {
     take_step();
     return;
   }
@@ -277,22 +318,34 @@ void Simulation::advance(double h) {
   const double near = std::max(kNear * h, kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;
   const std::int64_t step = state_.step;
-  for (double now = state_.time(); now < end - near;) {
-    switch_joints(now, near);
+  double now = state_.time(), from = after_kink(now, near);
+  if (!times.empty()) switch_joints(from, near);
+  while (now < end - near) {
     const auto next = std::upper_bound(times.begin(), times.end(), now + near);
     const double stop = next == times.end() || *next > end - near ? end : *next;
-    if (now != state_.time() || stop != end) {
-      state_.start = now;
+    const Kink kink = model_.next_kink(now + near, stop + near);
+    const bool bends = std::isfinite(kink.time);
+    const double to = bends ? before(kink.time) : stop;
+    if (from != state_.time() || to != end) {
+      state_.start = from;
       state_.step = 0;
-      state_.h = stop - now;
+      state_.h = to - from;
     }
     take_step();
-    now = stop;
+    now = bends && kink.time < stop - near ? kink.time : stop;
+    from = bends ? after(kink.time) : now;
+    if (!times.empty()) switch_joints(from, near);
+    if (bends) follow_paths(kink.time, near, from);
   }
-  switch_joints(end, near);
   state_.start = start;
   state_.step = step;
   state_.h = h;
+}
+
+/// A time; where a path has a kink there, that just after it.
+double Simulation::after_kink(double t, double near) const {
+  const Kink kink = model_.next_kink(t - near, t + near);
+  return std::isfinite(kink.time) ? std::max(t, after(kink.time)) : t;
 }
 
 /// Joints act or do not, as they are to at a time t; times nearer than `near` are the same.
@@ -311,29 +364,58 @@ void Simulation::switch_joints(double t, double near) {
 
 /// Joints begin to act in some islands.
 void Simulation::take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work) {
-  auto in_these = [&](int j) {
-    return islands[static_cast<std::size_t>(model_.joints()[static_cast<std::size_t>(j)].island)];
-  };
-  // Steps that were given up, and their impulses, did not happen.
-  const auto given_up = [&](const HoldImpulse& of) {
-    return of.time > t || (of.time == t && in_these(of.joint));
-  };
-  hold_impulses_.erase(std::remove_if(hold_impulses_.begin(), hold_impulses_.end(), given_up),
-                       hold_impulses_.end());
+  const VecX<double> v_before = state_.v;
   VecX<double> impulses = VecX<double>::Zero(model_.n_rows());
   Workspace<double> scratch;
-  auto note = [&](int j) {
-    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
-    if (!impulses.segment(joint.row, joint.rows).isZero(0))
-      hold_impulses_.push_back({t, j, dynamics_.joint_wrench(t, j, work, impulses)});
-  };
   for (std::size_t i = 0; i < islands.size(); ++i) {
     if (!islands[i]) continue;
-    const Island& island = model_.islands()[i];
-    pliant::take_hold(dynamics_, t, island, state_, work, scratch, step_counters_, impulses);
-    std::for_each(island.joints.begin(), island.joints.end(), note);
-    std::for_each(island.strings.begin(), island.strings.end(), note);
+    pliant::take_hold(dynamics_, t, model_.islands()[i], state_, work, scratch, step_counters_, impulses);
+    note_impulses(model_.islands()[i], t, false, v_before, impulses, work);
   }
+}
+
+/// Joints follow the paths of their ends, which have a kink at a time or nearer to it than `near`, from a
+/// time t after it on.
+void Simulation::follow_paths(double kink, double near, double t) {
+  if (!state_.q.allFinite() || !state_.v.allFinite()) return;
+  std::vector<bool> moved(model_.islands().size());
+  for (const int j : model_.driven_joints()) {
+    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
+    const JointMode mode = state_.joints[static_cast<std::size_t>(j)];
+    const Kink of_joint = model_.next_kink(joint, kink - near, kink + near);
+    if (mode == JointMode::off || !std::isfinite(of_joint.time)) continue;
+    if (of_joint.jumps && mode == JointMode::closed) {
+      std::ostringstream message;
+      message
+          << "at t = " << kink << " s " << joint.joint->type() << " '" << joint.joint->name()
+          << "' would be torn open: the path of its end jumps in place; expected one whose rate alone may "
+             "jump";
+      throw UnsatisfiableModel(message.str(), kink);
+    }
+    moved[static_cast<std::size_t>(joint.island)] = true;
+  }
+  const VecX<double> v_before = state_.v;
+  VecX<double> impulses = VecX<double>::Zero(model_.n_rows());
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (!moved[i]) continue;
+    pliant::follow_paths(dynamics_, t, model_.islands()[i], state_, work_, step_counters_, impulses);
+    note_impulses(model_.islands()[i], t, true, v_before, impulses, work_);
+  }
+}
+
+/// work: of an evaluation of the island at t.
+void Simulation::note_impulses(const Island& island, double t, bool of_path, const VecX<double>& v_before,
+                               const VecX<double>& impulses, Workspace<double>& work) {
+  auto note = [&](int j) {
+    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
+    if (impulses.segment(joint.row, joint.rows).isZero(0)) return;
+    const Wrench impulse = dynamics_.joint_wrench(t, j, work, impulses);
+    const double size = impulse.force.norm() + impulse.torque.norm() / joint.length;
+    if (size > kRounding * std::max(momentum(model_, joint, v_before), momentum(model_, joint, state_.v)))
+      hold_impulses_.push_back({t, j, impulse, of_path});
+  };
+  std::for_each(island.joints.begin(), island.joints.end(), note);
+  std::for_each(island.strings.begin(), island.strings.end(), note);
 }
 
 void Simulation::check(const State& before) {
@@ -392,6 +474,10 @@ void Simulation::set_state(State state) {
       state.joints.size() != model_.joints().size())
     throw std::invalid_argument("this state belongs to another model");
   state_ = std::move(state);
+  const double now = time() + kNear * state_.h;
+  const auto later = [&](const HoldImpulse& impulse) { return impulse.time > now; };
+  hold_impulses_.erase(std::remove_if(hold_impulses_.begin(), hold_impulses_.end(), later),
+                       hold_impulses_.end());
   if (contact_) contact_->begin_step();  // nothing has touched yet
 }
 

@@ -1,6 +1,9 @@
 #include <pliant/io/joint_notes.h>
 
 #include <algorithm>
+#include <cstddef>
+
+#include <pliant/integrate/settle.h>
 
 #include <pliant/io/number_text.h>
 
@@ -31,18 +34,47 @@ class NamedRows {
   std::string names_;
 };
 
-/// Rows of a joint that no motion changes, such as the length of a rod whose ends coincide.
+/// Less than this part of what both ends of a joint do is rounding of what cancels.
+constexpr double kCancelled = 1e-9;
+
+/// Rows of a joint that no motion changes, such as the length of a rod whose ends coincide, or lie on one
+/// part that does not change between them.
 int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
   int count = 0;
   for (int r = 0; r < joint.rows; ++r) {
-    bool any = false;
+    double size = 0, ends = 0;
     for (const JointSide& side : joint.sides) {
       const Eigen::Index n = work.parts[static_cast<std::size_t>(side.part)].a_r.size();
-      any = any || !work.joints.Cq.segment(side.offset + r * n, n).isZero(0);
+      const auto Cq = work.joints.Cq.segment(side.offset + r * n, n);
+      size += Cq.norm();
+      if (joint.first_offset < 0) continue;
+      const auto first = work.joints.Cq.segment(joint.first_offset + r * n, n);
+      ends += first.norm() + (Cq - first).norm();
     }
-    count += any ? 0 : 1;
+    count += size > kCancelled * ends ? 0 : 1;
   }
   return count;
+}
+
+/// Whether a joint with a gap (m) has yet to close.
+bool is_open(const Simulation& simulation, int j, double gap) {
+  if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
+  const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];
+  return simulation.dynamics().hold().projected || gap > kClosedGap * joint.length;
+}
+
+/// Size of an impulse of a joint, N s, a torque's as of forces at its smaller part's surface.
+double size_of(const HoldImpulse& impulse, const JointModel& joint) {
+  return impulse.impulse.force.norm() + impulse.impulse.torque.norm() / joint.length;
+}
+
+/// "2 N s", "2 N s and 0.1 N m s", or what of it is no rounding.
+std::string text_of(const HoldImpulse& impulse, const JointModel& joint) {
+  const double size = size_of(impulse, joint), force = impulse.impulse.force.norm(),
+               torque = impulse.impulse.torque.norm();
+  const bool pushes = force > kCancelled * size, turns = torque / joint.length > kCancelled * size;
+  return (pushes ? rounded_text(force) + " N s" : "") + (pushes && turns ? " and " : "") +
+         (turns ? rounded_text(torque) + " N m s" : "");
 }
 
 }  // namespace
@@ -99,9 +131,10 @@ std::string open_joints_note(const Simulation& simulation) {
   const Model& model = simulation.model();
   int widest = -1, open = 0;
   for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
-    if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) continue;
+    const double gap = model.gap(simulation.state(), j);
+    if (!is_open(simulation, j, gap)) continue;
     ++open;
-    if (widest < 0 || model.gap(simulation.state(), j) > model.gap(simulation.state(), widest)) widest = j;
+    if (widest < 0 || gap > model.gap(simulation.state(), widest)) widest = j;
   }
   if (open == 0) return {};
   const Joint& joint = *model.joints()[static_cast<std::size_t>(widest)].joint;
@@ -112,16 +145,27 @@ std::string open_joints_note(const Simulation& simulation) {
 
 std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first) {
   const std::vector<HoldImpulse>& all = simulation.hold_impulses();
+  auto joint_of = [&](const HoldImpulse& impulse) -> const JointModel& {
+    return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];
+  };
+  auto told = [&](std::size_t i) {  // its path is known to have such rates
+    return std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const HoldImpulse& of) { return of.of_path && of.joint == all[i].joint; });
+  };
   std::vector<std::string> notes;
   for (std::size_t i = first; i < all.size();) {
     std::size_t end = i, largest = i;
-    for (; end < all.size() && all[end].time == all[i].time; ++end)
-      if (all[end].impulse.force.norm() > all[largest].impulse.force.norm()) largest = end;
-    const Joint& joint = *simulation.model().joints()[static_cast<std::size_t>(all[largest].joint)].joint;
-    const auto more = static_cast<int>(end - i) - 1;
-    notes.push_back("at t = " + rounded_text(all[i].time) + " s " + joint.type() + " '" + joint.name() +
-                    "' takes hold with an impulse of " + rounded_text(all[largest].impulse.force.norm()) +
-                    " N s" + (more > 0 ? ", the largest of " + count_text(more + 1, "joint") : ""));
+    for (; end < all.size() && all[end].time == all[i].time && all[end].of_path == all[i].of_path; ++end)
+      if (size_of(all[end], joint_of(all[end])) > size_of(all[largest], joint_of(all[largest])))
+        largest = end;
+    const JointModel& joint = joint_of(all[largest]);
+    const auto count = static_cast<int>(end - i);
+    if (!all[i].of_path || !told(largest))
+      notes.push_back("at t = " + rounded_text(all[i].time) + " s " +
+                      (all[i].of_path ? "the rate of a path jumps: " : "") + joint.joint->type() + " '" +
+                      joint.joint->name() + "' " + (all[i].of_path ? "follows" : "takes hold") +
+                      " with an impulse of " + text_of(all[largest], joint) +
+                      (count > 1 ? ", the largest of " + count_text(count, "joint") : ""));
     i = end;
   }
   return notes;
@@ -134,12 +178,16 @@ std::string solver_note(const Model& model) {
   return blocks ? "blocks" : (augmented ? "augmented" : "");
 }
 
-double widest_gap(const Simulation& simulation, JointMode mode) {
-  double widest = 0;
-  for (std::size_t j = 0; j < simulation.state().joints.size(); ++j)
-    if (simulation.state().joints[j] == mode)
-      widest = std::max(widest, simulation.model().gap(simulation.state(), static_cast<int>(j)));
-  return widest;
+Gaps widest_gaps(const Simulation& simulation) {
+  Gaps gaps;
+  for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j) {
+    const JointMode mode = simulation.state().joints[static_cast<std::size_t>(j)];
+    if (!acts(mode)) continue;
+    const double gap = simulation.model().gap(simulation.state(), j);
+    double& widest = is_open(simulation, j, gap) ? gaps.open : gaps.closed;
+    widest = std::max(widest, gap);
+  }
+  return gaps;
 }
 
 }  // namespace pliant

@@ -114,7 +114,8 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const AssemblyReport& assembly = simulation_->assembly();
   if (assembly.iterations > 0)
     note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
-         count_text(assembly.iterations, "iteration"));
+         count_text(assembly.iterations, "iteration") +
+         (assembly.settled ? "" : ", the most that are taken; the shapes have not settled"));
   note_redundancy();
   write_layout(folder_->path(), simulation_->model(), schedule_,
                TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
@@ -228,7 +229,8 @@ void Run::note_redundancy() {
   for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
   if (acting == told_acting_) return;
   told_acting_ = std::move(acting);
-  for (const std::string& text : redundancy_notes(*simulation_)) note(text);
+  for (const std::string& text : redundancy_notes(*simulation_))
+    if (told_redundant_.insert(text).second) note(text);
 }
 
 void Run::note_holds() {
@@ -242,8 +244,9 @@ void Run::record_state() {
   writer_->append(simulation_->state());
   if (contacts_) contacts_->append(*simulation_);
   const Ledger ledger = simulation_->ledger();
-  record_.max_gap = std::max(record_.max_gap, widest_gap(*simulation_, JointMode::closed));
-  record_.open_gap = widest_gap(*simulation_, JointMode::closing);
+  const Gaps gaps = widest_gaps(*simulation_);
+  record_.max_gap = std::max(record_.max_gap, gaps.closed);
+  record_.open_gap = gaps.open;
   note_redundancy();
   note_holds();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));

@@ -139,13 +139,38 @@ Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x
   return 0.0;
 }
 
-template <int Size>
-Taylor run(const std::vector<Instruction>& program, double t) {
+bool has_branches(Code code) {
+  return code == Code::kAbs || code == Code::kMin || code == Code::kMax || code == Code::kStep ||
+         code == Code::kSmoothstep;
+}
+
+/// Which branch an instruction takes on its arguments. Those of a smoothstep join smoothly, unless it is a
+/// step.
+bool branch(const Instruction& instruction, const Taylor* x) {
+  switch (instruction.code) {
+    case Code::kAbs:
+      return sign_ahead(x[0]) < 0;
+    case Code::kMin:
+    case Code::kMax:
+      return sign_ahead(x[0] - x[1]) < 0;
+    case Code::kStep:
+      return x[0].v < 0;
+    case Code::kSmoothstep:
+      return x[0].v == x[1].v && x[2].v < x[0].v;
+    default:
+      return false;
+  }
+}
+
+/// see(instruction, its arguments) is called for each instruction.
+template <int Size, class See>
+Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
   const Taylor time(t, 1.0, 0.0);
   std::array<Taylor, Size> stack;
   Taylor* top = stack.data();
   for (const Instruction& instruction : program) {
     top -= arguments(instruction.code);
+    see(instruction, top);
     *top = apply(instruction, time, top);
     ++top;
   }
@@ -438,12 +463,24 @@ Formula::Formula(const std::string& text) : program_(Parser(text).parse()) {
   for (const Instruction& instruction : program_) {
     height += 1 - arguments(instruction.code);
     stack_ = std::max(stack_, height);
+    has_branches_ = has_branches_ || pliant::has_branches(instruction.code);
   }
   if (stack_ > kLargeStack) throw std::logic_error("a formula needs a larger stack than its depth allows");
 }
 
 Taylor2<double> Formula::at(double t) const {
-  return stack_ <= kSmallStack ? run<kSmallStack>(program_, t) : run<kLargeStack>(program_, t);
+  auto unseen = [](const Instruction&, const Taylor*) {};
+  return stack_ <= kSmallStack ? run<kSmallStack>(program_, t, unseen)
+                               : run<kLargeStack>(program_, t, unseen);
+}
+
+std::uint64_t Formula::branches(double t) const {
+  constexpr std::uint64_t prime = 1099511628211U;  // of the hash FNV-1a
+  std::uint64_t all = 14695981039346656037U;
+  run<kLargeStack>(program_, t, [&](const Instruction& instruction, const Taylor* x) {
+    if (pliant::has_branches(instruction.code)) all = (all ^ (branch(instruction, x) ? 1U : 2U)) * prime;
+  });
+  return all;
 }
 
 bool Formula::is_constant() const {

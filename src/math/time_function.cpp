@@ -16,6 +16,9 @@ namespace pliant {
 
 namespace {
 
+/// Rates that differ by less than this part are the same.
+constexpr double kRounding = 1e-12;
+
 struct EndRates {
   double first, last;
 };
@@ -23,7 +26,13 @@ struct EndRates {
 class Spline final : public TimeFunction::Impl {
  public:
   Spline(std::vector<double> t, std::vector<double> y, const std::optional<EndRates>& rates)
-      : t_(std::move(t)), y_(std::move(y)), m_(second_derivatives(rates)) {}
+      : t_(std::move(t)), y_(std::move(y)), m_(second_derivatives(rates)) {
+    double steepest = 0;
+    for (std::size_t i = 0; i + 1 < t_.size(); ++i)
+      steepest = std::max(steepest, std::abs((y_[i + 1] - y_[i]) / (t_[i + 1] - t_[i])));
+    for (const double end : {t_.front(), t_.back()})
+      if (std::abs(at(end).d) > kRounding * steepest) kinks_.push_back(end);
+  }
 
   Taylor2<double> at(double t) const override {
     if (t < t_.front()) return y_.front();
@@ -36,6 +45,11 @@ class Spline final : public TimeFunction::Impl {
     return {a * y_[i] + b * y_[i + 1] + (a * (a * a - 1) * m0 + b * (b * b - 1) * m1) * (h * h / 6),
             (y_[i + 1] - y_[i]) / h + ((3 * b * b - 1) * m1 - (3 * a * a - 1) * m0) * (h / 6),
             a * m0 + b * m1};
+  }
+
+  Kink first_kink(double after, double until) const override {
+    const auto next = std::upper_bound(kinks_.begin(), kinks_.end(), after);
+    return next == kinks_.end() || *next > until ? Kink() : Kink{*next, false};
   }
 
  private:
@@ -63,7 +77,7 @@ class Spline final : public TimeFunction::Impl {
     return m;
   }
 
-  std::vector<double> t_, y_, m_;
+  std::vector<double> t_, y_, m_, kinks_;
 };
 
 class FormulaFunction final : public TimeFunction::Impl {
@@ -71,7 +85,43 @@ class FormulaFunction final : public TimeFunction::Impl {
   explicit FormulaFunction(Formula formula) : formula_(std::move(formula)) {}
   Taylor2<double> at(double t) const override { return formula_.at(t); }
 
+  Kink first_kink(double after, double until) const override {
+    constexpr int looks = 4, most = 64;  // changes of branches between two looks
+    if (!formula_.has_branches()) return {};
+    double low = after;
+    std::uint64_t branches = formula_.branches(low);
+    for (int i = 1; i <= looks; ++i) {
+      const double end = i == looks ? until : after + (until - after) * i / looks;
+      const std::uint64_t at_end = formula_.branches(end);
+      for (int n = 0; n < most && branches != at_end; ++n) {
+        double high = end;
+        for (double middle = low + (high - low) / 2; middle > low && middle < high;
+             middle = low + (high - low) / 2)
+          (formula_.branches(middle) == branches ? low : high) = middle;
+        const Kink kink = between(low, high);
+        if (kink.time <= until) return kink;
+        low = high;
+        branches = formula_.branches(high);
+      }
+      low = end;
+      branches = at_end;
+    }
+    return {};
+  }
+
  private:
+  /// The kink between two times next to each other, if there is one.
+  Kink between(double low, double high) const {
+    constexpr double smooth = 8;  // times what a smooth function changes by
+    const Taylor2<double> a = at(low), b = at(high);
+    auto apart = [&](double x, double y, double slope) {
+      return std::abs(y - x) > smooth * slope * (high - low) + kRounding * (std::abs(x) + std::abs(y));
+    };
+    const bool jumps = apart(a.v, b.v, std::abs(a.d) + std::abs(b.d));
+    if (!jumps && !apart(a.d, b.d, std::abs(a.dd) + std::abs(b.dd))) return {};
+    return {high, jumps};
+  }
+
   Formula formula_;
 };
 

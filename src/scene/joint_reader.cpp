@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,7 +19,7 @@ JointSolver::Choice joint_solver(const std::string& name) {
   return name == "augmented" ? Choice::augmented : Choice::automatic;
 }
 
-Stabilization read_stabilization(const Reader& r) {
+Stabilization read_stabilization(const Reader& r, SceneFaults& faults) {
   Stabilization rule;
   static constexpr std::array<std::pair<const char*, BaumgarteRule>, 4> rules{
       {{"automatic", BaumgarteRule::automatic},
@@ -33,20 +34,44 @@ Stabilization read_stabilization(const Reader& r) {
   rule.speed = r.number("speed");
   rule.assemble_first = r.text("assembly") == "before_start";
   rule.projection = r.boolean("projection");
+  if (rule.rule == BaumgarteRule::free && rule.stab_beta == 0 && !r.faulty("stab_beta"))
+    faults.place(r.json(),
+                 "the rule \"free\" without \"stab_beta\" closes no gap; expected a number > 0 (1/s)");
   return rule;
 }
 
 namespace {
 
-/// Whether two ends are both of the world or of parts that do not move, or the same point of a part.
+/// Whether two ends are both of the world or of parts that do not move, or of one part between whose points
+/// nothing changes.
 bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
   auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
   if (!moves(from) && !moves(to)) {
     faults.place(r.json(), "neither end is on a part that moves; expected at least one");
     return true;
   }
-  if (from.part != to.part || !same_point(from.material, to.material)) return false;
-  faults.place(r.at("to"), "this is the same point as \"from\"; expected another");
+  if (from.part != to.part) return false;
+  if (same_point(from.material, to.material)) {
+    faults.place(r.at("to"), "this is the same point as \"from\"; expected another");
+    return true;
+  }
+  if (!from.part->rigid()) return false;
+  faults.place(r.json(), "both ends are on part \"" + from.part->name() +
+                             "\", which does not deform; expected two parts, or a part with a dynamic "
+                             "parameter or local deformation");
+  return true;
+}
+
+/// Whether an end is moved in time by a path that jumps in place while the joint acts.
+bool jumps(const Reader& r, const char* key, const Point& end, const PointReader& points,
+           SceneFaults& faults) {
+  const double on = r.given("on") ? r.number("on") : 0;
+  const double off = r.given("off") ? r.number("off") : std::numeric_limits<double>::infinity();
+  const std::optional<double> time = points.jump(end, on, off);
+  if (!time) return false;
+  faults.place(r.at(key), "it jumps in place at t = " + brief(*time) +
+                              " s, which no part can follow; expected a path of which the rate alone jumps, "
+                              "such as key frames");
   return true;
 }
 
@@ -76,6 +101,7 @@ bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneF
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
   if (!from || !to || !r.complete() || ties_nothing(r, *from, *to, faults)) return;
+  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return;
   const auto info = std::find_if(all_joints().begin(), all_joints().end(),
                                  [&](const JointInfo& i) { return i.name == r.name(); });
   JointSetting setting{*from, *to};

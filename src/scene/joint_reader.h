@@ -13,7 +13,7 @@ namespace pliant {
 
 JointSolver::Choice joint_solver(const std::string& name);
 
-Stabilization read_stabilization(const Reader& r);
+Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
 /// Adds a joint to the body, or faults.
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);

@@ -99,6 +99,20 @@ std::optional<Point> PointReader::end(const Reader& r, const char* key) const {
   return anywhere(r.object(key));
 }
 
+std::optional<double> PointReader::jump(const Point& point, double after, double until) const {
+  constexpr int intervals = 256;
+  const double end = std::min(until, times_.end());
+  double low = after;
+  for (int i = 1; i <= intervals; ++i) {
+    const double high = i == intervals ? end : after + (end - after) * i / intervals;
+    for (Kink kink = first_kink(point, low, high); std::isfinite(kink.time);
+         kink = first_kink(point, kink.time, high))
+      if (kink.jumps) return kink.time;
+    low = high;
+  }
+  return {};
+}
+
 /// Resolved at the rest shape.
 std::optional<Material<double>> PointReader::material(const Part& part, const JsonValue& at) const {
   using Form = MaterialPointValue::Form;

@@ -34,6 +34,9 @@ class PointReader {
   std::optional<Point> anywhere(const Reader& r) const;
   /// The same under a key of a spring or joint.
   std::optional<Point> end(const Reader& r, const char* key) const;
+  /// The first time of the run, after one and no later than another (s), at which a point that is moved in
+  /// time jumps in place, as far as many looks tell.
+  std::optional<double> jump(const Point& point, double after, double until) const;
 
  private:
   const NamedPart* named(const Reader& r) const;

@@ -63,7 +63,7 @@ class SceneReader {
     for (const auto& [name, material] : root_.entries("materials")) materials_.emplace(name, material);
     for (const Reader& r : root_.objects("parts")) read_part(r);
     const PointReader points(parts_, scene_->end, faults_);
-    scene_->body.stabilization = read_stabilization(root_.object("stabilization"));
+    scene_->body.stabilization = read_stabilization(root_.object("stabilization"), faults_);
     for (const Reader& r : named("joints")) read_joint(r, points, faults_, scene_->body);
     if (root_.given("contact"))
       read_contact(root_.object("contact"), parts_, times(), folder_, faults_, *scene_);

@@ -19,6 +19,8 @@ class TimeReader {
   /// end: of the run, s.
   TimeReader(double end, SceneFaults& faults) : end_(end), faults_(faults) {}
 
+  /// Of the run, s.
+  double end() const { return end_; }
   /// The function of a sound value; none, with a fault, when it is not finite at one of many times from 0 to
   /// the end.
   std::optional<TimeFunction> function(const JsonValue& value, Needs needs) const;

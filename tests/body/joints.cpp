@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 
+#include <pliant/body/joint_registry.h>
 #include <pliant/body/joints/all_joints.h>
 
 #include "../integrate/motion.h"
@@ -187,4 +188,20 @@ TEST_CASE("bad joints are refused by name", "[joints]") {
   body.stabilization.rate = 10;
   body.ball("dead", point(post, 0, 0), world(0, 0, 0));
   CHECK_THROWS_WITH(Model(body), "ball 'dead' ties no part that moves");
+}
+
+TEST_CASE("joints within a part that does not deform are refused by name, of every type", "[joints]") {
+  for (const JointInfo& info : all_joints()) {
+    MultiBody body;
+    Part& a = test::add(body, "a", "ellipsoid", {}, 500);
+    a.prepare();
+    JointSetting setting{point(a, 0, 0, 0), point(a, 0.3, 1)};
+    setting.length = 0.5;
+    body.join(info.name, "tie", setting);
+    CHECK_THROWS_WITH(Model(body),
+                      std::string(info.name) + " 'tie' ties part 'a', which does not deform, to itself");
+  }
+  MultiBody body;
+  body.stabilization.rule = BaumgarteRule::free;
+  CHECK_THROWS_WITH(Model(body), test::has_text("the rule free needs stab_beta > 0"));
 }

@@ -104,6 +104,7 @@ TEST_CASE("assembly closes loops, hinges and welds, and takes strings in", "[joi
   const Simulation simulation(body, "rk4");
   CHECK(widest_gap(simulation) <= 1e-10);
   CHECK(simulation.assembly().iterations <= 200);
+  CHECK(simulation.assembly().settled);
 }
 
 TEST_CASE("assembly changes parameters only as far as their stiffness says", "[joints]") {

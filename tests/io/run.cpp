@@ -472,6 +472,54 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(count(record, "at t = 0.2 s ball 'hook' takes hold with an impulse of ") == 1);
     CHECK(count(record, "takes hold") == 1);
   }
+  SECTION("a joint that stops a spin, and one beside it that does nothing") {
+    const RunRecord record = notes_of("spin", [](MultiBody& body, Part& top) {
+      body.gravity.setZero();
+      top.move({0, 0, 0}, {0, 0, 5});
+      top.prepare();
+      const Point centre = world(top.c0()[0], top.c0()[1], top.c0()[2]);
+      body.ball("pivot", point(top, 0, 0, 0), centre).during(0.2);
+      JointSetting setting{point(top, 0, 0, 0), centre};
+      setting.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(1, Vec3<double>::UnitZ()));
+      body.join("weld", "stop", setting).during(0.2);
+    });
+    CHECK(count(record, "at t = 0.2 s weld 'stop' takes hold with an impulse of ") == 1);
+    CHECK(count(record, " N m s") == 1);
+    CHECK(count(record, " N s") == 0);
+    CHECK(count(record, "the largest of") == 0);
+  }
+  SECTION("a path whose rate jumps again and again") {
+    const RunRecord record = notes_of("path", [](MultiBody& body, Part& top) {
+      const Vec3<double> c = top.c0();
+      body.ball(
+          "hand", point(top, 0, 0, 0),
+          world({c[0], c[1], TimeFunction::formula(std::to_string(c[2]) + " + 0.1 * abs(sin(30 * t))")}));
+    });
+    CHECK(count(record, "the rate of a path jumps: ball 'hand' follows with an impulse of ") == 1);
+    CHECK(record.max_balance_error <= 1e-2);
+  }
+  SECTION("a string that gravity pulls at while it closes does so") {
+    const RunRecord record = notes_of("string", [](MultiBody& body, Part& top) {
+      body.gravity = {0, 0, -9.81};
+      top.move({0, 0, 0}, {0, 0, 0});
+      const Vec3<double> above = top.c0() + Vec3<double>(0, 0, 0.901);
+      body.join("string", String{0.9}, {world(TimeVector(above)), point(top, 0, 0, 0)});
+    });
+    CHECK(count(record, "may never close") == 0);
+    CHECK(count(record, "still open") == 0);
+  }
+  SECTION("without projection a small gap is no open joint") {
+    const RunRecord record = notes_of("unprojected", [](MultiBody& body, Part& top) {
+      body.stabilization.projection = false;
+      body.gravity = {0, 0, -9.81};
+      top.move({0, 0, 0}, {0, 0, 0});
+      const Vec3<double> at = top.c0() + top.R0() * Vec3<double>(0.3, 0, 0);
+      body.ball("pivot", point(top, 0, 0), world(TimeVector(at)));
+    });
+    CHECK(count(record, "still open") == 0);
+    CHECK(record.max_gap > 0);
+    CHECK(record.open_gap == 0);
+  }
   SECTION("a rod without direction") {
     const RunRecord record = notes_of("rod", [](MultiBody& body, Part& top) {
       body.join("rod", Rod{0.5}, {world(top.c0()[0], top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)});
@@ -479,4 +527,29 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(count(record, "without direction where they are: 1 row of 1 joint, 'rod'") == 1);
     CHECK(count(record, "redundant") == 0);
   }
+}
+
+TEST_CASE("what is told of redundant rows is told once, however often other joints switch") {
+  struct Listener : Progress {
+    int told = 0;
+    void note(const std::string& text) override {
+      if (text.find("redundant") != std::string::npos) ++told;
+    }
+  };
+  const NewFolder folder;
+  const auto scene = free_top();
+  scene->end = 0.4;
+  Part& top = *scene->body.parts().front();
+  const Vec3<double> c = top.c0();
+  for (const char* name : {"once", "again"})
+    scene->body.ball(name, point(top, 0, 0, 0), world(TimeVector(c)));
+  for (const double on : {0.1, 0.2, 0.3})
+    scene->body
+        .join("tether at " + std::to_string(on), String{5}, {point(top, 0, 0, 0), world(TimeVector(c))})
+        .during(on, on + 0.05);
+  Listener listener;
+  RunOptions options;
+  options.folder = (folder / "r").string();
+  Run(*scene, options, listener).simulate();
+  CHECK(listener.told == 1);
 }

@@ -153,3 +153,49 @@ TEST_CASE("formulas are functions of time") {
   CHECK(at[2].v == 1.5);
   CHECK(TimeVector(pliant::Vec3<double>(1, 2, 3)).is_constant());
 }
+
+TEST_CASE("functions of time tell where their rate jumps, and where they jump themselves") {
+  using pliant::Kink;
+  auto times = [](const TimeFunction& f, bool jumps) {
+    std::vector<double> all;
+    for (int i = -50; i < 100; ++i)
+      for (Kink kink = f.first_kink(0.1 * i, 0.1 * (i + 1)); std::isfinite(kink.time);
+           kink = f.first_kink(kink.time, 0.1 * (i + 1))) {
+        CHECK(kink.jumps == jumps);
+        CHECK(std::abs(f.at(kink.time + 1e-14).d - f.at(kink.time - 1e-14).d) + (jumps ? 1 : 0) > 0.1);
+        all.push_back(kink.time);
+      }
+    return all;
+  };
+  auto near = [](const std::vector<double>& all, const std::vector<double>& expected) {
+    REQUIRE(all.size() == expected.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      CHECK(std::abs(all[i] - expected[i]) <= 1e-15 * (1 + std::abs(expected[i])));
+  };
+  near(times(TimeFunction::key_frames({0.2, 0.8}, {0, 0.5}), false), {0.2, 0.8});
+  near(times(TimeFunction::key_frames({0.2, 0.5, 0.8}, {0, 1, 0.5}, 0, 2), false), {0.8});
+  near(times(TimeFunction::key_frames({0.2, 0.5, 0.8}, {0, 1, 0.5}, 0, 0), false), {});
+  near(times(TimeFunction::key_frames({1, 2}, {3, 3}), false), {});
+  near(times(TimeFunction::formula("abs(t - 0.55)"), false), {0.55});
+  near(times(TimeFunction::formula("0.9 * sin(0.45 * max(t - 7.2, 0))"), false), {7.2});
+  near(times(TimeFunction::formula("min(max(t - 1/3, 0), 1) + 3"), false), {1. / 3, 4. / 3});
+  near(times(TimeFunction::formula("abs(sin(pi * (t + 0.05)))"), false),
+       {-4.05, -3.05, -2.05, -1.05, -0.05, 0.95, 1.95, 2.95, 3.95, 4.95, 5.95, 6.95, 7.95, 8.95, 9.95});
+  near(times(TimeFunction::formula("t * step(t - 0.33)"), true), {0.33});
+  near(times(TimeFunction::formula("smoothstep(1, 1, t)"), true), {1});
+  // What joins smoothly has none, whatever it is made of.
+  for (const char* smooth :
+       {"max(t - 7.2, 0)^2", "0.5 * (1 - cos(0.45 * max(t - 7.2, 0)))", "smoothstep(1, 2, t)", "sin(t) + t^3",
+        "abs(t)^3", "max(sin(2 * pi * t), 0)^6", "5"})
+    near(times(TimeFunction::formula(smooth), false), {});
+  // Later than the first time, no later than the second.
+  const TimeFunction keys = TimeFunction::key_frames({0.25, 0.75}, {0, 1});
+  CHECK(keys.first_kink(0, 0.25).time == 0.25);
+  CHECK(keys.first_kink(0.25, 1).time == 0.75);
+  CHECK(keys.first_kink(0.75, 1).time == std::numeric_limits<double>::infinity());
+  const Kink both =
+      TimeVector(TimeFunction::formula("abs(t - 0.5)"), TimeFunction::formula("step(t - 0.5)"), keys)
+          .first_kink(0.3, 1);
+  CHECK(both.time == 0.5);
+  CHECK(both.jumps);
+}

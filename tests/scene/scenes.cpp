@@ -93,6 +93,14 @@ TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, 
   CHECK(longest > 1.2 * 0.32);
 }
 
+TEST_CASE("assembly tells whether shapes settled within the most iterations") {
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/garland.json", {}, diagnostics);
+  const pliant::AssemblyReport report = pliant::Simulation(scene->body, scene->integrator).assembly();
+  CHECK(report.gap <= 1e-3);
+  CHECK(report.settled == (report.iterations < 400));
+}
+
 TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has closed stays closed") {
   struct Case {
     const char* name;
@@ -279,11 +287,13 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "inertia_not_symmetric",
                                         "inertia_of_a_deforming_part",
                                         "initial_outside_limits",
+                                        "joint_end_jumps",
                                         "joint_in_the_world",
                                         "joint_length_zero",
                                         "joint_names_twice",
                                         "joint_to_itself",
                                         "joint_to_unknown_part",
+                                        "joint_within_a_rigid_part",
                                         "key_frames_at_the_same_time",
                                         "key_frames_of_different_number",
                                         "key_frames_out_of_order",
@@ -320,6 +330,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "spring_to_unknown_part",
                                         "spring_without_a_part",
                                         "spring_without_direction",
+                                        "stabilization_free_without_gains",
                                         "stiffness_given_twice",
                                         "stiffness_not_definite",
                                         "stiffness_not_square",

@@ -166,3 +166,22 @@ TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
     }
   }
 }
+
+TEST_CASE("what is left of entries that cancel is measured by these") {
+  const BlockPattern pattern({1, 1}, {}, given_order);
+  for (const bool measured : {false, true}) {
+    BlockFactor<double> factor;
+    factor.clear(pattern);
+    *factor.block(pattern.place(0, 0).offset) = 1e-20;
+    *factor.block(pattern.place(1, 1).offset) = 2;
+    if (measured) factor.measure_by(0, 1);
+    factor.factor();
+    CHECK(factor.held(0) == measured);
+    CHECK_FALSE(factor.held(1));
+    VecX<double> x(2);
+    x << 1, 6;
+    factor.solve(x);
+    CHECK(x[0] == Approx(measured ? 0 : 1e20));
+    CHECK(x[1] == 3);
+  }
+}

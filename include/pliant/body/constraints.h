@@ -33,8 +33,8 @@ struct OneSidedRow {
 template <class S>
 class JointFactor {
  public:
-  /// Factors it for the joints that act, or the closed ones alone. prepare(j), of each joint in turn, lays
-  /// its C_q and M^-1 C_q^T.
+  /// Factors it for the joints that act, or the closed ones alone. prepare(j), called of each joint in turn,
+  /// lays its C_q and M^-1 C_q^T in `work` where they are not there yet.
   template <class F>
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
               const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
@@ -114,6 +114,12 @@ template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                                 const PlacePart& place = {});
+
+/// The diagonal entry of W_c of a row of a joint. Of a joint between points of one part it is that of its two
+/// sides each alone, which cancel where nothing changes between the points: what is left is to be measured
+/// against them.
+template <class S>
+double entry_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
 
 /// Finds lambda and adds M^-1 C_q^T lambda to the accelerations of the parts. One-sided rows that could push
 /// are those of the strings that act and of `limits`; which of them do is told in work.joints.pushed.

@@ -90,6 +90,8 @@ struct JointModel {
   int island_row;    ///< first of its rows there
   double length;     ///< size of the smaller of its parts, m
   bool driven;       ///< whether a point of it moves as prescribed
+  /// Of a joint between points of one part: where C_q^T and M^-1 C_q^T of its first side alone are; else -1.
+  int first_offset = -1;
 };
 
 /// What two sides of joints that share a part add to W_c = C_q M^-1 C_q^T: the block of (row side, column
@@ -142,6 +144,12 @@ class Model {
   const std::vector<int>& lone_parts() const { return lone_parts_; }
   /// Times at which joints begin or cease to act, in order.
   const std::vector<double>& switch_times() const { return switch_times_; }
+  /// Joints that have an end that is moved as prescribed.
+  const std::vector<int>& driven_joints() const { return driven_joints_; }
+  /// The first time, later than one and no later than another (s), at which the rate at which an end of a
+  /// joint is moved jumps while the joint acts; of all joints, or of one.
+  Kink next_kink(double after, double until) const;
+  Kink next_kink(const JointModel& joint, double after, double until) const;
   int n_rows() const { return n_rows_; }          ///< of all joints
   int n_side_values() const { return n_sides_; }  ///< numbers in C_q^T of all joints
   int n_q() const { return n_q_; }
@@ -195,7 +203,7 @@ class Model {
   std::vector<SpringModel> springs_;
   std::vector<ForceModel> forces_;
   std::vector<TorqueModel> torques_;
-  std::vector<int> loaded_parts_, lone_parts_;
+  std::vector<int> loaded_parts_, lone_parts_, driven_joints_;
   std::vector<JointModel> joints_;
   std::vector<Island> islands_;
   std::vector<double> switch_times_;

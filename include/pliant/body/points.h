@@ -16,6 +16,14 @@ struct Point {
   double patch = 0;
 };
 
+/// The first kink, of times later than one and no later than another (s), of how hands move a point: one of
+/// the world, or of a part that moves as prescribed.
+inline Kink first_kink(const Point& point, double after, double until) {
+  if (point.part == nullptr) return point.world.first_kink(after, until);
+  const PrescribedMotion* motion = point.part->motion();
+  return motion == nullptr ? Kink() : motion->first_kink(after, until);
+}
+
 /// A material point by its angles (rad) and radius; w = 1 is the surface.
 inline Point point(const Part& part, double u, double v, double w = 1) {
   return {&part, material_at(u, v, w), {}, 0};

@@ -13,7 +13,7 @@ namespace pliant {
 /// Where alpha and beta come from.
 enum class BaumgarteRule {
   automatic,        ///< step_consistent for semi-implicit Euler, critical for all others
-  free,             ///< stab_alpha and stab_beta as given
+  free,             ///< stab_alpha and stab_beta as given, the latter > 0: without it no gap closes
   critical,         ///< alpha = beta = rate: C decays as (1 + rate t) e^(-rate t) from rest
   step_consistent,  ///< with r = e^(-rate h): beta = (1 - r) / h, alpha = (1 - r^2) / (2 h)
 };
@@ -34,13 +34,16 @@ struct Stabilization {
   /// Whether closed joints are projected after each step; by default they are.
   std::optional<bool> projection;
 
-  /// Throws std::invalid_argument unless every number is finite and not negative, and the rate is positive.
+  /// Throws std::invalid_argument unless every number is finite and not negative, and the rate is positive,
+  /// and stab_beta where it is of use.
   void check() const {
     if (!(rate > 0) || !std::isfinite(rate))
       throw std::invalid_argument("stabilization: rate must be a number > 0");
     for (const double number : {stab_alpha, stab_beta, speed})
       if (!(number >= 0) || !std::isfinite(number))
         throw std::invalid_argument("stabilization: stab_alpha, stab_beta and speed must be numbers >= 0");
+    if (rule == BaumgarteRule::free && stab_beta == 0)
+      throw std::invalid_argument("stabilization: the rule free needs stab_beta > 0; no gap closes without");
   }
   /// Whether the gains go with the step, so that any step is stable; consistent: what automatic means.
   bool follows_step(bool consistent) const {

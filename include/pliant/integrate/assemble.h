@@ -10,7 +10,9 @@
 namespace pliant {
 
 struct AssemblyReport {
-  int iterations = 0;     ///< of the island that took most
+  int iterations = 0;  ///< of the island that took most
+  bool settled =
+      true;  ///< whether shapes settled; else gaps closed, but shapes had not in the most iterations
   double gap_before = 0;  ///< widest, m
   double gap = 0;         ///< widest that is left, m
 };

@@ -19,6 +19,12 @@ void take_hold(const Dynamics& dynamics, double t, const Island& island, State& 
                Workspace<double>& work, Workspace<double>& scratch, StepCounters& counters,
                VecX<double>& impulses);
 
+/// Where the rates at which ends of joints are moved have jumped: impulses give an island the velocities that
+/// agree with those of now, and their work is that of the hands (Work::anchors). work, impulses: as in
+/// take_hold.
+void follow_paths(const Dynamics& dynamics, double t, const Island& island, State& state,
+                  Workspace<double>& work, StepCounters& counters, VecX<double>& impulses);
+
 /// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
 /// within its length and every closed joint closed at the end of the step. work: of the evaluation at the
 /// start; before: the velocities then; q_end, ahead: any, kept from step to step.

@@ -18,12 +18,13 @@
 
 namespace pliant {
 
-/// What a joint does to the part of its first side when it, or another of its island, begins to act on parts
-/// whose velocities do not agree with it.
+/// What a joint does to its first side (a part, or the world) when it, or another of its island, begins to
+/// act on parts whose velocities do not agree with it, or when the rate jumps at which one's ends are moved.
 struct HoldImpulse {
-  double time;     ///< s
-  int joint;       ///< its number in the model
-  Wrench impulse;  ///< N s and N m s
+  double time;           ///< s
+  int joint;             ///< its number in the model
+  Wrench impulse;        ///< N s and N m s, about its first point
+  bool of_path = false;  ///< whether by a path whose rate jumped
 };
 
 class Simulation {
@@ -69,7 +70,8 @@ class Simulation {
   /// What touches; nullptr where nothing can.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// The impulses of joints that took hold of moving parts, in the order of time.
+  /// The impulses of joints that took hold of moving parts, or of which a path's rate jumped, in the order of
+  /// time; those that are mere rounding are left out.
   const std::vector<HoldImpulse>& hold_impulses() const { return hold_impulses_; }
   /// Work of the kernels, summed over parts.
   Counters counters() const;
@@ -84,8 +86,13 @@ class Simulation {
   StepError try_step();
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
+  double after_kink(double t, double near) const;
   void switch_joints(double t, double near);
   void take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work);
+  void follow_paths(double kink, double near, double t);
+  void note_impulses(const Island& island, double t, bool of_path, const VecX<double>& v_before,
+                     const VecX<double>& impulses, Workspace<double>& work);
+  void begin_step();
   void give_up_step();
   void check(const State& before);
   void note_held();
@@ -102,7 +109,8 @@ class Simulation {
   StepCounters step_counters_;
   AssemblyReport assembly_;
   std::vector<HoldImpulse> hold_impulses_;
-  std::vector<bool> held_;  ///< by velocity
+  std::size_t last_good_impulses_ = 0;  ///< how many there were at the last good state
+  std::vector<bool> held_;              ///< by velocity
   double start_energy_ = 0;
 };
 

@@ -17,13 +17,17 @@ std::vector<std::string> redundancy_notes(const Simulation& simulation);
 std::string open_joints_note(const Simulation& simulation);
 
 /// The impulses of joints that took hold of moving parts, from number `first` of simulation.hold_impulses()
-/// on, in words: of each moment the largest.
+/// on, in words: of each moment the largest; and those of paths whose rate jumps, of each joint the first.
 std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first);
 
 /// How the systems of the joints are solved: "blocks", "augmented", "blocks and augmented", or nothing.
 std::string solver_note(const Model& model);
 
-/// The widest gap of the joints that are in a mode, m; 0 where none is.
-double widest_gap(const Simulation& simulation, JointMode mode);
+/// Widest gaps at the state of a simulation, m; 0 where there is no such joint. A joint counts as closed when
+/// it is held so by projection, and without projection when its gap is one that would be (kClosedGap).
+struct Gaps {
+  double closed = 0, open = 0;
+};
+Gaps widest_gaps(const Simulation& simulation);
 
 }  // namespace pliant

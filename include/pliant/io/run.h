@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,8 +91,9 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;      // of the last recorded state
-  std::size_t told_holds_ = 0;     ///< of the impulses of joints that took hold
+  double recorded_time_ = -1;   // of the last recorded state
+  std::size_t told_holds_ = 0;  ///< of the impulses of joints that took hold
+  std::set<std::string> told_redundant_;
   std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
   StepCounters counted_steps_;     // of the sessions before
   Counters counted_work_;

@@ -59,6 +59,10 @@ class Formula {
 
   /// No t in it.
   bool is_constant() const;
+  /// Whether abs, min, max or steps are in it, and a number that tells which of their branches are taken at
+  /// t.
+  bool has_branches() const { return has_branches_; }
+  std::uint64_t branches(double t) const;
 
   enum class Code : std::uint8_t {
     kNumber,
@@ -90,6 +94,7 @@ class Formula {
  private:
   std::vector<Instruction> program_;
   int stack_ = 0;  ///< most numbers the program holds at a time
+  bool has_branches_ = false;
 };
 
 }  // namespace pliant

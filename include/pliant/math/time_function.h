@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,6 +14,18 @@
 #include <pliant/math/types.h>
 
 namespace pliant {
+
+/// A time (s) at which the rate of a function of time jumps, or its value; infinite: there is none.
+struct Kink {
+  double time = std::numeric_limits<double>::infinity();
+  bool jumps = false;  ///< whether its value does
+
+  /// The earlier one, or both where they are at the same time.
+  Kink or_sooner(const Kink& other) const {
+    if (time == other.time) return {time, jumps || other.jumps};
+    return time < other.time ? *this : other;
+  }
+};
 
 /// A scalar function of time t (s). Cheap to copy.
 class TimeFunction {
@@ -34,11 +47,17 @@ class TimeFunction {
   Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(constant_); }
   double value(double t) const { return at(t).v; }
   bool is_constant() const { return impl_ == nullptr; }
+  /// The first kink later than a time and no later than another (s). Of a formula those are found that a few
+  /// looks between these times tell: they are to be near each other, as the ends of a step are.
+  Kink first_kink(double after, double until) const {
+    return impl_ && after < until ? impl_->first_kink(after, until) : Kink();
+  }
 
   /// What stands behind a function that is not constant.
   struct Impl {
     virtual ~Impl() = default;
     virtual Taylor2<double> at(double t) const = 0;
+    virtual Kink first_kink(double /*after*/, double /*until*/) const { return {}; }
   };
   explicit TimeFunction(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
 
@@ -61,6 +80,12 @@ struct TimeVector {
   }
   Vec3<double> value(double t) const {
     return {component[0].value(t), component[1].value(t), component[2].value(t)};
+  }
+  Kink first_kink(double after, double until) const {
+    return component[0]
+        .first_kink(after, until)
+        .or_sooner(component[1].first_kink(after, until))
+        .or_sooner(component[2].first_kink(after, until));
   }
   bool is_constant() const {
     return component[0].is_constant() && component[1].is_constant() && component[2].is_constant();

@@ -27,6 +27,10 @@ struct PrescribedMotion {
   Eigen::Quaterniond orientation = Eigen::Quaterniond(1, 0, 0, 0);  ///< where the angle is 0, body to world
 
   MovingFrame at(double t) const;
+  /// See TimeFunction.
+  Kink first_kink(double after, double until) const {
+    return position.first_kink(after, until).or_sooner(angle.first_kink(after, until));
+  }
   Eigen::Quaterniond orientation_at(double t) const;
 };
 

@@ -3,6 +3,7 @@
 // else is solved as if they were not there. S is double or Dual<1>.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <type_traits>
@@ -34,7 +35,10 @@ class BlockFactor {
     pattern_ = &pattern;
     values_.assign(static_cast<std::size_t>(pattern.values()), S(0.0));
     if (!keep_) held_.assign(static_cast<std::size_t>(pattern.rows()), 0);
+    measures_.clear();
   }
+  /// Pivots of a row, whose diagonal entry is what is left of larger ones, are measured by those.
+  void measure_by(int row, double entry) { measures_.push_back({row, entry}); }
   /// Numbers of the block at an offset that the pattern gave, by columns.
   S* block(int offset) { return values_.data() + offset; }
 
@@ -47,6 +51,7 @@ class BlockFactor {
     for (const BlockPattern::Column& c : columns)
       for (int k = 0; k < c.size; ++k)
         diagonal_[static_cast<std::size_t>(c.row + k)] = plain(values_[at(c.diagonal + k * (c.size + 1))]);
+    for (const Measure& m : measures_) diagonal_[at(m.row)] = std::max(diagonal_[at(m.row)], m.entry);
     for (const BlockPattern::Column& c : columns) eliminate(c);
   }
 
@@ -101,6 +106,10 @@ class BlockFactor {
   double smallest_pivot() const { return smallest_; }
 
  private:
+  struct Measure {
+    int row;
+    double entry;
+  };
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   /// act(n), with the three rows of a ball joint as a constant, so that loops unroll.
@@ -201,6 +210,7 @@ class BlockFactor {
   std::vector<S> values_, scaled_;
   std::vector<S> inverse_;  ///< 1 / pivot of each row; 0 of held ones
   std::vector<double> diagonal_;
+  std::vector<Measure> measures_;
   std::vector<std::uint8_t> held_;
   double smallest_ = 1, vanished_ = kVanished;
   bool keep_ = false;
