@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <pliant/body/group.h>
+#include <pliant/part/modal_deformation.h>
 
 namespace pliant {
 
@@ -27,7 +28,7 @@ Mat3<double> axes(const Contact& contact) {
 
 ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                                const std::vector<Contact>& contacts)
-    : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model) {
+    : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model, work) {
   for (const Contact& contact : contacts) {
     system_.add_contact(contact.friction);
     add_side(contact.a, contact, 1);
@@ -44,25 +45,56 @@ void ContactProblem::add_side(const ContactSide& side, const Contact& contact, d
   const PartModel& m = model_.parts()[at(side.part)];
   if (m.q0 < 0) return;
   const Mat3<double> to_contact = sign * axes(contact).transpose();
-  if (side.at_nodes()) {
+  const PartWorkspace<double>& w = work_.parts[at(side.part)];
+  if (moves_by_nodes(m, w)) {
     for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
-      sides_.push_back({side.part, movers_.of_node(side.part, side.node[k]), 0,
-                        side.weight[static_cast<Eigen::Index>(k)] * to_contact});
+      sides_.push_back({side.part,
+                        movers_.of_node(side.part, side.node[k]),
+                        0,
+                        side.weight[static_cast<Eigen::Index>(k)] * to_contact,
+                        {}});
     return;
   }
-  const PartWorkspace<double>& w = work_.parts[at(side.part)];
-  const int mover = movers_.of_part(side.part);
+  Side s = side_of(side.part);
   const Mat3<double> D = to_contact * w.R;
-  Side s{side.part, mover, Movers::first_in(movers_[mover], side.part), {}};
-  s.J.resize(3, m.n_x());
   s.J.leftCols<3>() = D;
   s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (contact.x - w.c));
   if (m.n_s > 0) {
+    std::vector<Material<double>> points{side.material};
+    for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k) {
+      points.resize(k + 1);
+      points[k] = m.local->mesh().nodes[at(side.node[k])];
+    }
     Counters counters;
-    m.part->points({side.material}, w.q_s, w.q_s_dot, jets_, counters);
-    s.J.rightCols(m.n_s) = D * jets_[0].J;
+    m.part->points(points, w.q_s, w.q_s_dot, jets_, counters);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      s.J.rightCols(m.n_s) += side.weight[static_cast<Eigen::Index>(k)] * D * jets_[k].J;
   }
+  if (m.local != nullptr) add_local(side, D, s);
   sides_.push_back(std::move(s));
+}
+
+/// A side of a part that does not move by nodes: zero.
+ContactProblem::Side ContactProblem::side_of(int part) {
+  const int mover = movers_.of_part(part);
+  Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
+  side.J.setZero(3, 6 + model_.parts()[at(part)].n_s);
+  return side;
+}
+
+/// What local coordinates move a side by. D: from the body frame to the axes of the contact.
+void ContactProblem::add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const {
+  const LocalDeformation& local = *model_.parts()[at(side.part)].local;
+  const int first = movers_.first_local(movers_[to.mover], side.part),
+            n = static_cast<int>(local.mesh().X.rows());
+  for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k) {
+    const Mat3<double> share = side.weight[static_cast<Eigen::Index>(k)] * D;
+    if (local.modal() != nullptr) {
+      to.local.push_back({first, share * local.modal()->modes_of_node(side.node[k])});
+      continue;
+    }
+    for (int r = 0; r < 3; ++r) to.local.push_back({first + side.node[k] + r * n, share.col(r)});
+  }
 }
 
 /// Parameters at their limits do not leave them.
@@ -76,10 +108,10 @@ void ContactProblem::add_limits() {
       const PartModel& m = model_.parts()[at(part)];
       for (int k = 0; k < m.n_s; ++k) {
         const int mode = state_.at_limit[at(m.limit0 + k)];
-        if (m.local != nullptr || mode == 0 || work_.parts[at(part)].held(6 + k)) continue;
+        if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 || work_.parts[at(part)].held(6 + k))
+          continue;
         system_.add_row();
-        Side side{part, i, Movers::first_in(mover, part), {}};
-        side.J.setZero(3, m.n_x());
+        Side side = side_of(part);
         side.J(0, 6 + k) = -mode;
         sides_.push_back(std::move(side));
         complete();
@@ -93,8 +125,11 @@ void ContactProblem::complete() {
   const int contact = system_.size() - 1, rows = system_.rows(contact);
   for (std::size_t i = 0; i < movers_.all().size(); ++i)
     if (static_cast<int>(i) >= system_.movers()) system_.add_mover(movers_.all()[i].size);
-  for (const Side& side : sides_)
+  for (const Side& side : sides_) {
     system_.add_side(side.mover, side.first, static_cast<int>(side.J.cols())) = side.J;
+    for (const Side::Local& local : side.local)
+      system_.add_side(side.mover, local.first, static_cast<int>(local.J.cols())) = local.J;
+  }
   bool jointed = false;
   for (std::size_t i = 0; i < sides_.size(); ++i) {
     const int number = sides_[i].mover;
@@ -123,6 +158,25 @@ void ContactProblem::add_response(const Mover& mover, const Side& side, int rows
     Y += side.J.transpose() / model_.parts()[at(mover.part)].local->mesh().mass[mover.node];
     return;
   }
+  const PartModel& m = model_.parts()[at(side.part)];
+  if (const int n = movers_.n_local(side.part); n > 0) {
+    const LocalWorkspace& w = *work_.parts[at(side.part)].local;
+    const int first = movers_.first_local(mover, side.part);
+    for (int r = 0; r < rows; ++r) {
+      VecX<double> frame = side.J.row(r).transpose(), rates = VecX<double>::Zero(n), buffer;
+      for (const Side::Local& local : side.local)
+        rates.segment(local.first - first, local.J.cols()) += local.J.row(r).transpose();
+      if (w.response != nullptr)
+        w.response->respond(frame, rates);
+      else
+        m.local->modal()->respond(frame, rates, w);
+      Y.col(r).segment(side.first, frame.size()) += frame;
+      Y.col(r).segment(side.first + frame.size(), m.n_x() - frame.size()) +=
+          at_points(m.shared, m.local->at_nodes(rates.data(), buffer));
+      Y.col(r).segment(first, n) += rates;
+    }
+    return;
+  }
   for (int r = 0; r < rows; ++r) {
     VecX<double> force = side.J.row(r).transpose();
     work_.parts[at(side.part)].solve_mass(force);
@@ -133,18 +187,29 @@ void ContactProblem::add_response(const Mover& mover, const Side& side, int rows
 /// Joints of islands hold against the impulses of a contact.
 void ContactProblem::hold_joints(int contact) {
   for (int i = 0; i < system_.pushes(contact); ++i) {
-    const Island* island = movers_[system_.pushed(contact, i)].island;
+    const Mover& mover = movers_[system_.pushed(contact, i)];
+    const Island* island = mover.island;
     if (island == nullptr) continue;
     CoulombSystem::Push Y = system_.push(contact, i);
     const Group<double, Eigen::Dynamic> group(model_, work_, *island, true);
     JointResponse response{contact, island, MatX<double>::Zero(island->rows, system_.rows(contact))};
     for (int r = 0; r < system_.rows(contact); ++r) {
-      VecX<double> x = Y.col(r), rows;
+      const VecX<double> loose = Y.col(r).head(island->n_v);
+      VecX<double> x = loose, rows;
       for (int round = 0; round < (group.is_rough() ? 2 : 1); ++round) {
         group.joint_rows(x, rows);
         response.lambda.col(r) += group.correct(rows, x);
       }
-      Y.col(r) = x;
+      Y.col(r).head(island->n_v) = x;
+      x -= loose;
+      for (std::size_t k = 0; k < island->parts.size(); ++k) {
+        const int part = island->parts[k];
+        const PartModel& m = model_.parts()[at(part)];
+        if (movers_.n_local(part) == 0) continue;
+        const LocalWorkspace& w = *work_.parts[at(part)].local;
+        m.local->push_all(m.shared, w.A_inverse * x.segment(island->first[k], m.n_x()), w,
+                          Y.col(r).segment(movers_.first_local(mover, part), m.n_d()));
+      }
     }
     joints_.push_back(std::move(response));
   }

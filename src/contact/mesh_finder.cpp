@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include <Eigen/Geometry>
 
@@ -32,11 +31,6 @@ MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obst
   auto need = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
   for (int i = 0; i < n; ++i) {
     if (!soft(i)) continue;
-    if (model.parts()[at(i)].local->nodal() == nullptr)
-      throw std::invalid_argument(
-          "part '" + model.parts()[at(i)].part->name() +
-          "' deforms by modes of its whole body, and contact is of parts that deform at "
-          "the nodes of a mesh");
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
       const ContactRule rule = rules.on_plane(i, static_cast<int>(k));
       if (!rule.touch) continue;

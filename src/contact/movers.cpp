@@ -13,8 +13,21 @@ std::size_t at(int i) {
 }
 }  // namespace
 
-Movers::Movers(const Model& model)
-    : model_(&model), of_parts_(model.parts().size(), -1), of_nodes_(model.parts().size()) {}
+bool moves_locally(const PartModel& m, const PartWorkspace<double>& w) {
+  return m.local != nullptr && (m.local->modal() != nullptr || (w.local && w.local->response != nullptr));
+}
+
+bool moves_by_nodes(const PartModel& m, const PartWorkspace<double>& w) {
+  return m.local != nullptr && !moves_locally(m, w);
+}
+
+Movers::Movers(const Model& model, const Workspace<double>& work)
+    : model_(&model), of_parts_(model.parts().size(), -1), of_nodes_(model.parts().size()) {
+  for (std::size_t i = 0; i < model.parts().size(); ++i) {
+    const PartModel& m = model.parts()[i];
+    n_local_.push_back(moves_locally(m, work.parts[i]) ? static_cast<int>(m.n_d()) : 0);
+  }
+}
 
 int Movers::add(Mover mover, int size) {
   mover.first = n_x_;
@@ -28,9 +41,11 @@ int Movers::of_part(int part) {
   int& number = of_parts_[at(part)];
   if (number >= 0) return number;
   const PartModel& m = model_->parts()[at(part)];
-  if (m.island < 0) return number = add({part, -1, nullptr}, m.n_x());
+  if (m.island < 0) return number = add({part, -1, nullptr}, m.n_x() + n_local(part));
   const Island& island = model_->islands()[at(m.island)];
-  const int added = add({-1, -1, &island}, island.n_v);
+  int size = island.n_v;
+  for (const int other : island.parts) size += n_local(other);
+  const int added = add({-1, -1, &island}, size);
   for (const int other : island.parts) of_parts_[at(other)] = added;
   return added;
 }
@@ -50,6 +65,16 @@ int Movers::first_in(const Mover& mover, int part) {
       ->first[at(static_cast<int>(std::find(parts.begin(), parts.end(), part) - parts.begin()))];
 }
 
+int Movers::first_local(const Mover& mover, int part) const {
+  if (mover.island == nullptr) return model_->parts()[at(part)].n_x();
+  int first = mover.island->n_v;
+  for (const int other : mover.island->parts) {
+    if (other == part) break;
+    first += n_local(other);
+  }
+  return first;
+}
+
 VecX<double> Movers::velocities(const State& state, const Workspace<double>& work) const {
   VecX<double> x(n_x_);
   for (const Mover& mover : all_) {
@@ -57,6 +82,8 @@ VecX<double> Movers::velocities(const State& state, const Workspace<double>& wor
     auto take = [&](int part, int first) {
       const PartModel& m = model_->parts()[at(part)];
       take_velocity(m, work.parts[at(part)], state.v, x.segment(mover.first + first, m.n_x()));
+      if (const int n = n_local(part); n > 0)
+        x.segment(mover.first + first_local(mover, part), n) = state.v.segment(m.v0 + 6 + m.n_s, n);
     };
     if (mover.island == nullptr) {
       take(mover.part, 0);

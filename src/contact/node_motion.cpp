@@ -10,9 +10,8 @@ void node_velocities(const Model& model, const State& state, int part, const std
                      Eigen::Matrix3Xd& x_dot) {
   const PartModel& m = model.parts()[static_cast<std::size_t>(part)];
   const LocalMesh& mesh = m.local->mesh();
-  const Eigen::Index n = mesh.X.rows();
-  const auto d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d()),
-             d_dot = state.v.segment(m.v0 + 6 + m.n_s, m.n_d());
+  const Eigen::Matrix3Xd d = m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s, nodes),
+                         d_dot = m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s, nodes);
   std::vector<PointJet<double>> jets;
   if (m.n_s > 0) {
     std::vector<Material<double>> at;
@@ -25,15 +24,15 @@ void node_velocities(const Model& model, const State& state, int part, const std
   const Mat3<double> R = model.orientation(state, part).toRotationMatrix();
   x_dot.resize(3, static_cast<Eigen::Index>(nodes.size()));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const int node = nodes[i];
-    Vec3<double> p = mesh.X.row(node), u = Vec3<double>::Zero();
+    const auto k = static_cast<Eigen::Index>(i);
+    Vec3<double> p = mesh.X.row(nodes[i]), u = Vec3<double>::Zero();
     if (m.n_s > 0) {
       p = jets[i].p;
       u = jets[i].p1;
     }
-    p += Vec3<double>(d[node], d[node + n], d[node + 2 * n]);
-    u += Vec3<double>(d_dot[node], d_dot[node + n], d_dot[node + 2 * n]);
-    x_dot.col(static_cast<Eigen::Index>(i)) = c_dot + R * (omega.cross(p) + u);
+    p += d.col(k);
+    u += d_dot.col(k);
+    x_dot.col(k) = c_dot + R * (omega.cross(p) + u);
   }
 }
 

@@ -68,11 +68,16 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
-  const double reach = method.reach();
   int events = 0;
   for (double now = state.time(); now < end - near;) {
     ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
-    if (!meshes_.empty()) meshes_.approach(state, now, end - now, around);
+    if (!meshes_.empty()) {
+      ContactFinder::Neighbourhood of_meshes{true, around.h};
+      meshes_.approach(state, now, end - now, of_meshes);
+      method.expect_touch(!of_meshes.empty);
+      around = {around.empty && of_meshes.empty, of_meshes.h};
+    }
+    const double reach = method.reach();
     if (!(around.h > (end - now) / kMostParts)) {
       std::ostringstream message;
       message << "parts move so fast past each other that a step of " << h << " s would be " << kMostParts
@@ -119,6 +124,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         ++events;
         ++counters.impacts;
         now += *tau;
+        const StepResponses responses(method, dynamics_.model(), work);
         // What rests has fallen freely until then as what is in flight has: it is held first.
         std::vector<Contact> lying = finder_.find(state, now, resting_.gap());
         lying.erase(std::remove_if(lying.begin(), lying.end(),
@@ -146,8 +152,13 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         break;
       }
     }
+    const StepResponses responses(method, dynamics_.model(), work);
     meshes_.find(state, after, contacts);
     time_impacts(finder_, before, state, reach, length, slow, contacts);
+    // What is stepped implicitly has but one velocity in a step, by which all of it moves.
+    if (method.local_is_implicit())
+      for (Contact& contact : contacts)
+        if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = reach * length;
     settling_.settle(before, reach * length, length, state, after, contacts, work, counters);
     settling_.settle_chain(std::move(contacts), length, slow, state, after, work, counters);
     now = after;

@@ -55,4 +55,9 @@ void ImplicitModes::push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot)
   d_ddot += (P_.transpose() * g.tail(P_.rows())).cwiseQuotient(sigma_);
 }
 
+void ImplicitModes::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const {
+  on_frame = S_r_inverse_ * on_frame;
+  on_d = on_d.cwiseQuotient(sigma_).eval();
+}
+
 }  // namespace pliant

@@ -18,6 +18,7 @@ class ImplicitModes final : public ImplicitPart {
   void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) override;
   MatX<double> compliance() const override;
   void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const override;
+  void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const override;
 
  private:
   const Oscillators* oscillators_;

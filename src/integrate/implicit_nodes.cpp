@@ -128,8 +128,7 @@ int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
     c_ = c;
   }
   if (fresh || frame_in_border()) lay_core(now);
-  if (!frame_in_border() && !part_->shared.empty())
-    H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
+  if (!frame_in_border()) H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
   return factorisations;
 }
 
@@ -281,6 +280,18 @@ void ImplicitNodes::push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot)
   if (n_p > 0) right -= B_Z_ * g.tail(n_p);
   d_ddot -= T_ * core_.solve(right);
   if (n_p > 0) d_ddot += Z_ * g.tail(n_p);
+}
+
+void ImplicitNodes::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const {
+  factor_->solve(on_d);
+  VecX<double> right = -B_.transpose() * on_d;
+  if (frame_in_border()) right.segment(n_r(), n_r()) += on_frame;
+  const VecX<double> z = core_.solve(right);
+  on_d -= T_ * z;
+  if (frame_in_border())
+    on_frame = z.segment(n_r(), n_r());
+  else
+    on_frame = H0_inverse_ * on_frame;
 }
 
 }  // namespace pliant

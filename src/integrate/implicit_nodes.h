@@ -35,6 +35,7 @@ class ImplicitNodes final : public ImplicitPart {
   /// Of pushes on rates: x for S x = push.
   MatX<double> compliance() const override;
   void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const override;
+  void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const override;
 
  private:
   const NodalDeformation& local() const { return *part_->local->nodal(); }

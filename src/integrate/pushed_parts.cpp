@@ -35,6 +35,17 @@ void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Ei
   for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
+/// Gives a part that is moved in all its local coordinates velocities, and moves it. x, shift: of its mover,
+/// in which its v_r begins at `first` and its local coordinates at `local`.
+void move_locally(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& x,
+                  const VecX<double>& shift, int first, int local, State& state) {
+  const Eigen::Index n_r = 6 + m.n_s;
+  share_of(m, state.v) = world_velocity(w, x.segment(first, n_r));
+  state.v.segment(m.v0 + n_r, m.n_d()) = x.segment(local, m.n_d());
+  advance_part(m, state.q, world_velocity(w, shift.segment(first, n_r)), 1);
+  state.q.segment(m.q0 + 1 + n_r, m.n_d()) += shift.segment(local, m.n_d());
+}
+
 }  // namespace
 
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts) {
@@ -66,12 +77,13 @@ void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
   std::set<int> alone, islands;
   for (const Contact& contact : contacts)
     for (const ContactSide& side : {contact.a, contact.b}) {
-      if (side.part < 0 || side.at_nodes() || model.parts()[at(side.part)].q0 < 0) continue;
-      const int island = model.parts()[at(side.part)].island;
-      if (island < 0)
+      if (side.part < 0) continue;
+      const PartModel& m = model.parts()[at(side.part)];
+      if (m.q0 < 0 || moves_by_nodes(m, work.parts[at(side.part)])) continue;
+      if (m.island < 0)
         alone.insert(side.part);
       else
-        islands.insert(island);
+        islands.insert(m.island);
     }
   dynamics.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
   for (const int i : islands)
@@ -79,8 +91,11 @@ void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
 }
 
 void move_by(const ContactProblem& problem, const Model& model, const Workspace<double>& work, State& state) {
-  for_each_part(problem.movers(), [&](const Mover& mover, int part, int first) {
+  for_each_part(problem.movers().all(), [&](const Mover& mover, int part, int first) {
     const PartModel& m = model.parts()[at(part)];
+    if (problem.movers().n_local(part) > 0)
+      return move_locally(m, work.parts[at(part)], problem.after(mover), problem.shift(mover), first,
+                          problem.movers().first_local(mover, part), state);
     if (mover.node < 0) {
       give_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
       return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);

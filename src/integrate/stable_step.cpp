@@ -22,6 +22,9 @@ namespace {
 constexpr int kLargestGroup = 120;
 /// Turn in a step, rad, beyond which no method follows the rotation.
 constexpr double kMostTurn = 0.5;
+/// Phase of a mode that a step goes through, rad, beyond which blows give it energy: they move it as they do
+/// what is free.
+constexpr double kMostPhase = 1;
 
 /// L of a port on v_r of its part: 3 x n_v, world.
 MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
@@ -234,6 +237,10 @@ StableStep stable_step(const Simulation& simulation) {
     const std::string name = "part '" + m.part->name() + "'";
     if (turning > 0) take(kMostTurn / turning, "the spin of " + name);
     if (m.local == nullptr) continue;
+    if (const Oscillators* modes = m.local->oscillators();
+        modes != nullptr && !implicit && model.body().contact.active)
+      take(kMostPhase / std::sqrt(modes->omega2.maxCoeff()),
+           "the modes of " + name + ", which may be struck");
     const LocalDeformation::Bound bound = bound_locally(model, i, work.parts[i], implicit);
     take(one(bound.K, bound.D), (implicit ? "the springs at " : "the local elasticity of ") + name);
   }

@@ -98,6 +98,15 @@ Nodes ModalDeformation::displacements(const double* q_d) const {
   return basis_.shown * at_nodes(q_d, buffer);
 }
 
+Eigen::Matrix3Xd ModalDeformation::displacements(const double* q_d, const std::vector<int>& nodes) const {
+  VecX<double> buffer;
+  const auto d = at_nodes(q_d, buffer);
+  Eigen::Matrix3Xd some(3, static_cast<Eigen::Index>(nodes.size()));
+  for (Eigen::Index k = 0; k < some.cols(); ++k)
+    some.col(k) = (basis_.shown.row(nodes[static_cast<std::size_t>(k)]) * d).transpose();
+  return some;
+}
+
 std::unique_ptr<LocalWorkspace> ModalDeformation::workspace() const {
   return std::make_unique<ModalWorkspace>();
 }
@@ -208,10 +217,23 @@ void ModalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) co
   w.force = w.f_d;
   w.force.noalias() += basis_.B.transpose() * w.F.reshaped();
   f_r += w.own;
-  f_r.noalias() -= w.C * w.force;
-  f_r = w.solve(f_r);
   w.d_ddot = w.force;
-  w.d_ddot.noalias() -= w.C.transpose() * f_r;
+  respond(f_r, w.d_ddot, w);
+}
+
+void ModalDeformation::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes,
+                               const LocalWorkspace& work) const {
+  const ModalWorkspace& w = of(work);
+  on_frame.noalias() -= w.C * on_modes;
+  on_frame = w.solve(on_frame);
+  on_modes.noalias() -= w.C.transpose() * on_frame;
+}
+
+Eigen::Matrix3Xd ModalDeformation::modes_of_node(int node) const {
+  Eigen::Matrix3Xd Phi(3, n_modes());
+  for (int r = 0; r < 3; ++r)
+    Phi.row(r).noalias() = basis_.shown.row(node) * basis_.B.middleRows(r * n_fields(), n_fields());
+  return Phi;
 }
 
 MatX<double> ModalDeformation::modes_at(const NodeWeights& at) const {

@@ -70,6 +70,14 @@ Nodes NodalDeformation::displacements(const double* q_d) const {
   return Eigen::Map<const Nodes>(q_d, n_nodes(), 3);
 }
 
+Eigen::Matrix3Xd NodalDeformation::displacements(const double* q_d, const std::vector<int>& nodes) const {
+  const Eigen::Map<const Nodes> d(q_d, n_nodes(), 3);
+  Eigen::Matrix3Xd some(3, static_cast<Eigen::Index>(nodes.size()));
+  for (Eigen::Index k = 0; k < some.cols(); ++k)
+    some.col(k) = d.row(nodes[static_cast<std::size_t>(k)]).transpose();
+  return some;
+}
+
 std::unique_ptr<LocalWorkspace> NodalDeformation::workspace() const {
   return std::make_unique<NodalWorkspace>();
 }

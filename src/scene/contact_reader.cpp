@@ -121,13 +121,6 @@ void read_pair(const Reader& r, const std::vector<std::string>& names, std::size
 
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
                   const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene) {
-  for (const auto& [name, part] : parts)
-    if (part.part != nullptr && part.prepared && part.part->local() != nullptr &&
-        part.part->local()->nodal() == nullptr)
-      faults.place(contact.json(),
-                   "part \"" + name +
-                       "\" deforms by modes of its whole body; contact is of parts that deform "
-                       "at the nodes of a mesh, and of those that do not deform locally");
   MultiBody& body = scene.body;
   ContactSettings& settings = body.contact;
   settings.active = true;

@@ -12,6 +12,7 @@
 #include "widest_gap.h"
 
 using namespace pliant;
+using Basis = LocalSettings::Basis;
 using test::widest_gap;
 
 using test::bump;
@@ -434,7 +435,7 @@ TEST_CASE("a limit that holds a parameter of a stiff part, alone and on a joint"
 }
 
 TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints]") {
-  for (const double E : {1e5, 1e6}) {  // 1.3 and 4 times the explicit limit
+  for (const double E : {1e5, 1e6, 1e7, 1e8, 1e9}) {  // 1.3, 4, 13, 40 and 130 times the explicit limit
     CAPTURE(E);
     MultiBody body;
     Soft soft = solid("elastic", E);
@@ -452,6 +453,43 @@ TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints]") {
     CHECK(taut >= 100);
     CHECK(simulation.ledger().energy() <= start);
   }
+}
+
+TEST_CASE("a stiff ball dropped on a plane bounces to rest at any step, as it does by explicit ones",
+          "[implicit][contact]") {
+  const double h = 1e-3, radius = 0.1;
+  for (const Basis basis : {Basis::nodes, Basis::polynomial})
+    for (const double E : {1e6, 1e7, 1e9}) {  // 3 to 100 times the explicit limit
+      CAPTURE(basis == Basis::nodes, E);
+      MultiBody body;
+      auto& part = body.add<Primitive<Sphere>>("ball", 1000.0);
+      part.rest({{"r", radius}}).place({0, 0, 0.15});
+      LocalSettings settings;
+      settings.basis = basis;
+      settings.degree = 3;
+      settings.resolution = 3;
+      settings.alpha = 5;
+      settings.energies = {local_law("elastic", {E, 0.3})};
+      part.deform_locally(settings);
+      body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+      Simulation simulation(body, kMethod);
+      const double weight = 9.81 * part.total_mass();
+      double highest = simulation.ledger().energy(), impulse = 0;
+      for (int i = 0; i < 2000; ++i) {
+        simulation.step(h);
+        const double energy = simulation.ledger().energy();
+        REQUIRE(energy <= highest + 1e-6 * weight * radius);
+        if (i % 10 == 0) highest = energy;
+        if (i >= 1500)
+          for (const Vec3<double>& p : simulation.contact()->impulses()) impulse += p[2];
+      }
+      CHECK(impulse / (500 * h) == Approx(weight).epsilon(1e-2));
+      CHECK(simulation.ledger().kinetic < 1e-4 * weight * radius);
+      // It is flattened as its weight asks, not by the steps.
+      const double sag = radius - simulation.state().q[2];
+      CHECK(sag > -3e-4 * radius);
+      CHECK(sag < 30 * weight / (E * radius));
+    }
 }
 
 TEST_CASE("gas in a thin shell is stable beyond the period of its breathing", "[implicit][stable]") {

@@ -7,8 +7,8 @@
 
 namespace pliant {
 
-/// The side of a contact that is on a part: a material point, or of a part that deforms at the nodes of a
-/// mesh a point between up to three of them.
+/// The side of a contact that is on a part: a material point, or of a part that deforms locally a point
+/// between up to three nodes of its mesh.
 struct ContactSide {
   int part = -1;                                ///< number of the part; -1: a plane or an obstacle
   Material<double> material;                    ///< the point of it

@@ -21,8 +21,8 @@ struct ContactSolution {
 
 class ContactProblem {
  public:
-  /// work: evaluated with masses and factors for every part that the contacts touch, but for those that
-  /// deform at nodes. state, contacts, work: must outlive it.
+  /// work: evaluated with masses and factors for every part that the contacts touch, but for those that they
+  /// move by nodes. state, contacts, work: must outlive it.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
@@ -40,7 +40,7 @@ class ContactProblem {
   /// negative, by at most `most` m and but for `enough` m.
   void part_bodies(double most, double enough = 0);
 
-  const std::vector<Mover>& movers() const { return movers_.all(); }
+  const Movers& movers() const { return movers_; }
   /// Velocities of a mover before the impulses and after them, and how far they moved it, see Contact::since.
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
@@ -59,7 +59,15 @@ class ContactProblem {
   struct Side {
     int part, mover, first;  ///< of its velocities in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;
+    /// J of so many local coordinates, likewise.
+    struct Local {
+      int first;
+      Eigen::Matrix3Xd J;
+    };
+    std::vector<Local> local;
   };
+  Side side_of(int part);
+  void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
   void add_side(const ContactSide& side, const Contact& contact, double sign);
   void add_limits();
   void complete();

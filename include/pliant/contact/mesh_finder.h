@@ -17,8 +17,7 @@ namespace pliant {
 
 class MeshFinder {
  public:
-  /// The model and its obstacles must outlive it. Throws std::invalid_argument for parts that deform by
-  /// modes.
+  /// The model and its obstacles must outlive it.
   MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
   bool empty() const { return planes_.empty() && on_obstacles_.empty() && pairs_.empty(); }

@@ -1,4 +1,4 @@
-// Places and velocities of nodes of parts that deform at the nodes of a mesh.
+// Velocities of the nodes of the mesh of a part that deforms locally.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Velocities of some nodes of a part that deforms at them, columns, m/s, world.
+/// Of some nodes of a part, columns, m/s, world.
 void node_velocities(const Model& model, const State& state, int part, const std::vector<int>& nodes,
                      Eigen::Matrix3Xd& x_dot);
 

@@ -39,6 +39,11 @@ class Integrator {
   /// How far a force moves a body in a step that is constant over it, in steps times what it adds to the
   /// velocity.
   virtual double reach() const { return 0.5; }
+  /// In the steps from here on parts that deform locally may touch something, or not.
+  virtual void expect_touch(bool) {}
+  /// Makes what pushes parts do to them what it does over the step taken last, where that is not M^-1
+  /// (LocalResponse), or takes that away; an evaluation needs it away. work: of the end of the step.
+  virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
   /// the step free.
   virtual bool local_is_implicit() const { return false; }
@@ -65,6 +70,23 @@ class Integrator {
   std::vector<JointMode> joints_before_;
   const ErrorScale* scale_ = nullptr;
   double error_ = 0;
+};
+
+/// While it lives, pushes do what they do over a step.
+class StepResponses {
+ public:
+  StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)
+      : method_(method), model_(model), work_(work) {
+    method_.set_responses(model_, true, work_);
+  }
+  ~StepResponses() { method_.set_responses(model_, false, work_); }
+  StepResponses(const StepResponses&) = delete;
+  StepResponses& operator=(const StepResponses&) = delete;
+
+ private:
+  const Integrator& method_;
+  const Model& model_;
+  Workspace<double>& work_;
 };
 
 struct IntegratorInfo {

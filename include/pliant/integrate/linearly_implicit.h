@@ -5,6 +5,11 @@
 // omega < 2.26, and of parts that deform locally the elasticity and damping of their nodes or modes
 // and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit. Its error is
 // estimated by u + h k1, of first order.
+//
+// What strikes something stiff needs velocities that are those by which it moved, and the stiff ones of ROS2
+// are not. Where parts that deform locally may touch, or a string or a limit that was loose stops one of
+// them, a step is of Euler's method instead, gamma = 1 and u+ = u + h k1, of first order: then x+ = x + h v+,
+// pushes change v+ by (I - h A)^-1 M^-1 and x+ by h times that, and work as in any inelastic impact.
 #pragma once
 
 #include <memory>
@@ -28,16 +33,29 @@ class LinearlyImplicit final : public Integrator {
   void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
   bool local_is_implicit() const override { return true; }
+  double reach() const override { return touching_ ? 1 : 0.5; }
+  void expect_touch(bool touching) override { touching_ = touching; }
+  void set_responses(const Model& model, bool on, Workspace<double>& work) const override;
 
  private:
+  /// Of each part; none where nothing is implicit.
+  using Soft = std::vector<std::unique_ptr<ImplicitPart>>;
   void take_soft(const Dynamics& dynamics, double t, double c, const Workspace<double>& work,
                  StepCounters& counters);
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
+  void second_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
+  void first_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
+  void end_step(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                StepCounters& counters);
+  void look_at_strings(const Model& model, const State& state, const Workspace<double>& work);
+  bool was_stopped(const Model& model, const State& now) const;
 
+  bool touching_ = false, first_order_ = false, loose_ = false;
   // Kept between steps: no heap in a step. Factors depend on the model, the step and the state only.
-  std::vector<std::unique_ptr<ImplicitPart>> soft_;  ///< of each part; none where nothing is implicit
-  Workspace<double> filtered_;                       ///< parts by what pushes do to their rates
+  Soft of_second_, of_first_;   ///< by the order of the step
+  State before_;                ///< where a step may have to be taken again
+  Workspace<double> filtered_;  ///< parts by what pushes do to their rates
   VecX<double> q_, v_, q_dot_, q_rate1_, v_rate1_, q_rate2_, v_rate2_;
 };
 

@@ -24,6 +24,7 @@
 
 namespace pliant {
 
+class ModalDeformation;
 class NodalDeformation;
 class Part;
 struct Counters;
@@ -72,6 +73,8 @@ class LocalResponse {
   virtual MatX<double> compliance() const = 0;
   /// Adds to d_dot what pushes g do to the local coordinates.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
+  /// Pushes on v_r and on all local coordinates become what they change the rates by.
+  virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
 };
 
 /// What is recomputed at each evaluation, in the order of the stages; what one choice of S needs beside it is
@@ -141,8 +144,11 @@ class LocalDeformation {
   virtual Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const = 0;
   /// Displacements of the nodes of mesh(), m.
   virtual Nodes displacements(const double* q_d) const = 0;
-  /// The deformation by nodes, if it is one.
+  /// Those of some of them, columns.
+  virtual Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const = 0;
+  /// The deformation by nodes, or by modes, if it is one.
   virtual const NodalDeformation* nodal() const { return nullptr; }
+  virtual const ModalDeformation* modal() const { return nullptr; }
   /// What its coordinates are by themselves, where its elasticity is diagonal.
   virtual const Oscillators* oscillators() const { return nullptr; }
 

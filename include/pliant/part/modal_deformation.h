@@ -55,6 +55,8 @@ class ModalDeformation final : public LocalDeformation {
   NodeWeights weights(const Part& part, const Material<double>& m) const override;
   Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const override;
   Nodes displacements(const double* q_d) const override;
+  Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const override;
+  const ModalDeformation* modal() const override { return this; }
   const Oscillators* oscillators() const override { return &oscillators_; }
 
   std::unique_ptr<LocalWorkspace> workspace() const override;
@@ -70,6 +72,11 @@ class ModalDeformation final : public LocalDeformation {
   LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
+
+  /// What the modes move a node of mesh() by: 3 x n.
+  Eigen::Matrix3Xd modes_of_node(int node) const;
+  /// Pushes on v_r and on the modes become what they change the rates by. work: with its masses.
+  void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes, const LocalWorkspace& work) const;
 
  private:
   MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;

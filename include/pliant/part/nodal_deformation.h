@@ -86,6 +86,7 @@ class NodalDeformation final : public LocalDeformation {
   NodeWeights weights(const Part& part, const Material<double>& m) const override;
   Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const override;
   Nodes displacements(const double* q_d) const override;
+  Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const override;
   const NodalDeformation* nodal() const override { return this; }
 
   std::unique_ptr<LocalWorkspace> workspace() const override;
