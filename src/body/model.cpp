@@ -165,7 +165,8 @@ void Model::add_joint(const Joint& joint) {
   }
   if (m.sides.empty()) throw std::invalid_argument(what + " ties no part that moves");
   const Part& only = *parts_[static_cast<std::size_t>(m.sides.front().part)].part;
-  const bool on_one_part = std::all_of(joint.points().begin(), joint.points().end(),
+  const bool on_one_part = joint.n_points() > joint.n_first() &&
+                           std::all_of(joint.points().begin(), joint.points().end(),
                                        [&](const Point& point) { return point.part == &only; });
   if (on_one_part && only.rigid())
     throw std::invalid_argument(what + " ties part '" + only.name() + "', which does not deform, to itself");

@@ -245,7 +245,7 @@ TEST_CASE("a part that spins on a closed joint keeps its spin while another join
     const double L = simulation.ledger().angular_momentum[2];
     test::run(simulation, 1, 100);  // 0.3 rad a step
     CHECK(simulation.state().v[5] == Approx(30).epsilon(1e-9));
-    CHECK(simulation.ledger().work[static_cast<int>(Work::baumgarte)] < 1e-3);
+    CHECK(std::abs(simulation.ledger().work[static_cast<int>(Work::baumgarte)]) < 0.1);  // of 7.5 J
     CHECK(simulation.ledger().angular_momentum[2] > 0.99 * L);
   }
 }
