@@ -11,10 +11,12 @@
 #include <pliant/contact/mesh_finder.h>
 #include <pliant/part/local_laws.h>
 
+#include "deepest.h"
 #include "motion.h"
 #include "widest_gap.h"
 
 using namespace pliant;
+using test::deepest;
 using test::widest_gap;
 
 namespace {
@@ -34,15 +36,6 @@ Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, do
   settings.energies = {local_law("elastic", {E, 0.3})};
   part.deform_locally(settings);
   return part;
-}
-
-/// How deep surfaces are in each other and behind planes, m.
-double deepest(const Simulation& simulation) {
-  std::vector<Contact> found;
-  MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);
-  double deep = 0;
-  for (const Contact& contact : found) deep = std::max(deep, -contact.gap);
-  return deep;
 }
 
 /// A shell that rings as it falls, with two parameters that move, by the nodes of its mesh or all its modes.

@@ -10,10 +10,12 @@
 #include <pliant/contact/obstacle_mesh.h>
 #include <pliant/part/local_laws.h>
 
+#include "deepest.h"
 #include "motion.h"
 #include "widest_gap.h"
 
 using namespace pliant;
+using test::deepest;
 
 namespace {
 
@@ -41,15 +43,6 @@ double lowest(const Simulation& simulation) {
     least = std::min(least, x.row(2).minCoeff() + simulation.model().position(simulation.state(), i)[2]);
   }
   return least;
-}
-
-/// How deep surfaces are in each other, m.
-double deepest(const Simulation& simulation) {
-  std::vector<Contact> found;
-  MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);
-  double deep = 0;
-  for (const Contact& contact : found) deep = std::max(deep, -contact.gap);
-  return deep;
 }
 
 /// 0.3 s in which they meet, and go no deeper into each other than 1e-3 of a balloon.
