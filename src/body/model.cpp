@@ -17,8 +17,6 @@ namespace {
 constexpr long kCheapBlocks = 10000;
 /// Parts below this share of the mass of another of their island are light among heavy ones.
 constexpr double kUneven = 1e-4;
-/// A joint that begins so many units of the last place after a time begins then.
-constexpr double kUlps = 8;
 }  // namespace
 
 Model::Model(MultiBody& body) : body_(&body) {
@@ -175,27 +173,6 @@ void Model::add_joint(const Joint& joint) {
   n_rows_ += m.rows;
   if (m.driven) driven_joints_.push_back(static_cast<int>(joints_.size()));
   joints_.push_back(std::move(m));
-}
-
-Kink Model::next_kink(double after, double until) const {
-  Kink next;
-  for (const int j : driven_joints_)
-    next = next.or_sooner(next_kink(joints_[static_cast<std::size_t>(j)], after, until));
-  return next;
-}
-
-Kink Model::next_kink(const JointModel& joint, double after, double until) const {
-  const double on = joint.joint->on();
-  after = std::max(after, on - kUlps * std::numeric_limits<double>::epsilon() * std::abs(on));
-  until = std::min(until, joint.joint->off());
-  Kink next;
-  const Part* last = nullptr;
-  for (const Point& point : joint.joint->points()) {
-    if (point.part != nullptr && point.part == last) continue;
-    last = point.part;
-    next = next.or_sooner(first_kink(point, after, until));
-  }
-  return next;
 }
 
 void Model::lay_sides() {

@@ -128,7 +128,8 @@ int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
     c_ = c;
   }
   if (fresh || frame_in_border()) lay_core(now);
-  if (!frame_in_border()) H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
+  if (!frame_in_border() && fresh)
+    H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
   return factorisations;
 }
 

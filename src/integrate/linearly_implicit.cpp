@@ -37,7 +37,7 @@ LinearlyImplicit::~LinearlyImplicit() = default;
 void LinearlyImplicit::take_soft(const Dynamics& dynamics, double t, double c, const Workspace<double>& work,
                                  StepCounters& counters) {
   const Model& model = dynamics.model();
-  Soft& soft = first_order_ ? of_first_ : of_second_;
+  Soft& soft = this->soft();
   if (soft.empty()) {
     soft.resize(model.parts().size());
     for (std::size_t i = 0; i < soft.size(); ++i) {
@@ -55,7 +55,7 @@ void LinearlyImplicit::take_soft(const Dynamics& dynamics, double t, double c, c
 
 void LinearlyImplicit::filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
                               VecX<double>& v_dot) {
-  Soft& soft = first_order_ ? of_first_ : of_second_;
+  Soft& soft = this->soft();
   bool any = false;
   for (std::size_t i = 0; i < soft.size(); ++i) {
     if (soft[i] == nullptr) continue;
@@ -66,7 +66,7 @@ void LinearlyImplicit::filter(const Model& model, const Workspace<double>& work,
 }
 
 void LinearlyImplicit::set_responses(const Model& model, bool on, Workspace<double>& work) const {
-  const Soft& soft = first_order_ ? of_first_ : of_second_;
+  const Soft& soft = this->soft();
   for (std::size_t i = 0; i < soft.size(); ++i)
     if (soft[i] != nullptr && work.parts[i].local)
       work.parts[i].local->response = on ? soft[i].get() : nullptr;

@@ -229,7 +229,7 @@ TEST_CASE("a joint that cannot close is named with its gap", "[joints]") {
   }
 }
 
-TEST_CASE("a part that spins on a closed joint keeps its spin while another joint of its island closes",
+TEST_CASE("a part that spins freely keeps its spin while a joint of its island closes",
           "[assembly][joints]") {
   for (const char* method : {"semi_implicit_euler", "rk4"}) {
     CAPTURE(method);

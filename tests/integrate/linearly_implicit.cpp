@@ -7,12 +7,14 @@
 #include <pliant/part/local_laws.h>
 #include <pliant/solve/suitesparse.h>
 
+#include "deepest.h"
 #include "motion.h"
 #include "spring_net.h"
 #include "widest_gap.h"
 
 using namespace pliant;
 using Basis = LocalSettings::Basis;
+using test::deepest;
 using test::widest_gap;
 
 using test::bump;
@@ -474,9 +476,10 @@ TEST_CASE("a stiff ball dropped on a plane bounces to rest at any step, as it do
       body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
       Simulation simulation(body, kMethod);
       const double weight = 9.81 * part.total_mass();
-      double highest = simulation.ledger().energy(), impulse = 0;
+      double highest = simulation.ledger().energy(), impulse = 0, deep = 0;
       for (int i = 0; i < 2000; ++i) {
         simulation.step(h);
+        deep = std::max(deep, deepest(simulation));
         const double energy = simulation.ledger().energy();
         REQUIRE(energy <= highest + 1e-6 * weight * radius);
         if (i % 10 == 0) highest = energy;
@@ -485,6 +488,7 @@ TEST_CASE("a stiff ball dropped on a plane bounces to rest at any step, as it do
       }
       CHECK(impulse / (500 * h) == Approx(weight).epsilon(1e-2));
       CHECK(simulation.ledger().kinetic < 1e-4 * weight * radius);
+      CHECK(deep < 0.02 * radius);  // it strikes at 1 m/s, which is a hundredth of the radius in a step
       // It is flattened as its weight asks, not by the steps.
       const double sag = radius - simulation.state().q[2];
       CHECK(sag > -3e-4 * radius);

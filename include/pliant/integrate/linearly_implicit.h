@@ -40,6 +40,9 @@ class LinearlyImplicit final : public Integrator {
  private:
   /// Of each part; none where nothing is implicit.
   using Soft = std::vector<std::unique_ptr<ImplicitPart>>;
+  /// Those of the step that is taken.
+  Soft& soft() { return first_order_ ? of_first_ : of_second_; }
+  const Soft& soft() const { return first_order_ ? of_first_ : of_second_; }
   void take_soft(const Dynamics& dynamics, double t, double c, const Workspace<double>& work,
                  StepCounters& counters);
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,

@@ -1,0 +1,35 @@
+// When the rates at which ends of joints are moved jump.
+#include <algorithm>
+#include <limits>
+
+#include <pliant/body/model.h>
+
+namespace pliant {
+
+namespace {
+/// A joint that begins so many units of the last place after a time begins then.
+constexpr double kUlps = 8;
+}  // namespace
+
+Kink Model::next_kink(double after, double until) const {
+  Kink next;
+  for (const int j : driven_joints_)
+    next = next.or_sooner(next_kink(joints_[static_cast<std::size_t>(j)], after, until));
+  return next;
+}
+
+Kink Model::next_kink(const JointModel& joint, double after, double until) const {
+  const double on = joint.joint->on();
+  after = std::max(after, on - kUlps * std::numeric_limits<double>::epsilon() * std::abs(on));
+  until = std::min(until, joint.joint->off());
+  Kink next;
+  const Part* last = nullptr;
+  for (const Point& point : joint.joint->points()) {
+    if (point.part != nullptr && point.part == last) continue;
+    last = point.part;
+    next = next.or_sooner(first_kink(point, after, until));
+  }
+  return next;
+}
+
+}  // namespace pliant
