@@ -6,6 +6,7 @@
 #include <Eigen/SparseQR>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
@@ -20,10 +21,6 @@ constexpr int kMostRefinements = 12, kStalled = 3;
 constexpr double kMet = 1e-16, kImproves = 0.5;
 /// Rows that are met but for this part of them are met as well as rounding lets them be.
 constexpr double kRounding = 1e-13;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

@@ -4,14 +4,11 @@
 #include <cmath>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// C_q^T or M^-1 C_q^T of a side: n_v x rows.
 template <class S, int Velocities, int Rows>

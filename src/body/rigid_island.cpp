@@ -10,15 +10,12 @@
 
 #include <pliant/body/dynamics.h>
 #include <pliant/body/joints/ball.h>
+#include <pliant/math/index.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Most joints of a part: all pairs of them are taken for four parts at once.
 constexpr int kMostArms = 16;

@@ -6,14 +6,9 @@
 #include <pliant/body/dynamics.h>
 #include <pliant/body/group.h>
 #include <pliant/body/one_sided_rows.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
-
-namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-}  // namespace
 
 namespace {
 

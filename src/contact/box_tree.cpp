@@ -2,15 +2,13 @@
 
 #include <algorithm>
 
+#include <pliant/math/index.h>
+
 namespace pliant {
 
 namespace {
 
-constexpr int kLeaf = 4;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr int kBoxesInLeaf = 4;
 
 }  // namespace
 
@@ -31,7 +29,7 @@ int BoxTree::split(int first, int last) {
     centres.extend((*boxes_)[at(order_[at(k)])].center());
   }
   nodes_.push_back({box, first, last});
-  if (last - first <= kLeaf) return number;
+  if (last - first <= kBoxesInLeaf) return number;
   Eigen::Index axis;
   centres.sizes().maxCoeff(&axis);
   auto middle = [&](int i) { return (*boxes_)[at(i)].min()[axis] + (*boxes_)[at(i)].max()[axis]; };

@@ -11,25 +11,25 @@ namespace pliant {
 namespace {
 
 /// Edges along a quarter of a great circle.
-constexpr int kResolution = 6;
+constexpr int kSurfaceResolution = 6;
 /// The same of few points that tell how far the part reaches, and by how much it may reach beyond them.
-constexpr int kFew = 2;
+constexpr int kFewEdges = 2;
 constexpr double kBeyondFew = 1.1;
 /// How far the surface may lie below the chords between its points, in sizes of the part.
-constexpr double kSag = 0.02;
+constexpr double kSurfaceSag = 0.02;
 /// How far it may lie below the lowest of them, where it is thin and crosses something thin.
-constexpr double kSpacing = 0.1;
+constexpr double kThinSag = 0.1;
 /// Points this near in height, in sizes of the part, lie as low as each other.
-constexpr double kLevel = 1e-6;
+constexpr double kSameHeight = 1e-6;
 /// Points nearer than this, in sizes, are one; and how deep the chord between two may lie below a face, in
 /// sizes.
-constexpr double kSame = 0.02, kFlat = 1e-6;
+constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
 /// Size of the stencil, in spacings, that tells whether a point is lowest already; and heights, in sizes,
 /// that differ by rounding alone: on a flat face nothing is sought among them.
 constexpr double kCorner = 1e-3, kRounding = 1e-14;
 /// The search ends when its stencil is this small, in spacings.
 constexpr double kSmallest = 1e-8;
-constexpr int kMostIterations = 60;
+constexpr int kMostHalvings = 60;
 
 /// The outermost of some points: the first, the farthest from it, the farthest from that, and the farthest
 /// from the line through them to either side.
@@ -67,7 +67,8 @@ std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector
 
 }  // namespace
 
-CollisionSurface::CollisionSurface(const Part& part) : part_(&part), spacing_(0.5 * kPi / kResolution) {
+CollisionSurface::CollisionSurface(const Part& part)
+    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution) {
   if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest()))
     thickness_ = 2 * axes->minCoeff();
   else
@@ -76,13 +77,13 @@ CollisionSurface::CollisionSurface(const Part& part) : part_(&part), spacing_(0.
 
 const CollisionSurface::Laid& CollisionSurface::laid() const {
   if (!laid_) {
-    Surface surface(*part_, kResolution);
+    Surface surface(*part_, kSurfaceResolution);
     Eigen::Matrix3Xd p = part_->s(surface.material(), part_->parameters().rest());
-    const double sag = kSag * part_->size();
+    const double sag = kSurfaceSag * part_->size();
     const Eigen::AlignedBox3d box(p.rowwise().minCoeff().array() - sag, p.rowwise().maxCoeff().array() + sag);
-    const double reach = (1 + kSag) * p.colwise().norm().maxCoeff();
+    const double reach = (1 + kSurfaceSag) * p.colwise().norm().maxCoeff();
     std::vector<Material<double>> few;
-    if (part_->parameters().n_dynamic() > 0) few = Surface(*part_, kFew).material();
+    if (part_->parameters().n_dynamic() > 0) few = Surface(*part_, kFewEdges).material();
     laid_.emplace(Laid{std::move(surface), std::move(p), box, reach, std::move(few)});
   }
   return *laid_;
@@ -140,7 +141,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
     best = {stencil[4], p.col(4), h[4]};
     if (h.minCoeff() >= h[4] - kRounding * part_->size()) return best;
   }
-  for (int k = 0; k < kMostIterations && radius > kSmallest * spacing_; ++k) {
+  for (int k = 0; k < kMostHalvings && radius > kSmallest * spacing_; ++k) {
     const Eigen::Matrix3Xd p = lay(radius);
     const Heights h = heights(p);
     // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
@@ -191,7 +192,7 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
                                                                      const Field& field) const {
   const double size = part_->size(), lowest = heights.minCoeff();
   std::vector<LowPoint> found;
-  if (lowest > most + kSpacing * size) return found;
+  if (lowest > most + kThinSag * size) return found;
   auto within = [&](double band) {
     std::vector<Eigen::Index> some;
     for (Eigen::Index i = 0; i < heights.size(); ++i)
@@ -200,21 +201,21 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
   };
   auto add = [&](const LowPoint& point) {
     for (LowPoint& other : found)
-      if ((other.p - point.p).norm() < kSame * size) {
+      if ((other.p - point.p).norm() < kSamePlace * size) {
         if (point.height < other.height) other = point;
         return;
       }
     found.push_back(point);
   };
   std::vector<Eigen::Index> seeds;
-  for (const double band : {kLevel * size, kSag * size})
-    for (const Eigen::Index i : outermost(p, within(band), kSame * size))
+  for (const double band : {kSameHeight * size, kSurfaceSag * size})
+    for (const Eigen::Index i : outermost(p, within(band), kSamePlace * size))
       if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
   // On a face the way down would lead to one side of it: what it rests on is its corners, as far as they lie
   // low enough.
   auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
-    return (a - b).norm() >= kSame * size &&
-           thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlat * size;
+    return (a - b).norm() >= kSamePlace * size &&
+           thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlatChord * size;
   };
   LowPoint deepest;
   deepest.height = most + size;

@@ -9,7 +9,7 @@ namespace pliant {
 
 namespace {
 /// Edges along a quarter of a great circle, of the mesh over a part that has none of its own.
-constexpr int kResolution = 6;
+constexpr int kMeshResolution = 6;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
@@ -42,7 +42,7 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
         rest_.col(k) = all.col(nodes_[static_cast<std::size_t>(k)]);
     }
   } else {
-    const Surface surface(*m.part, kResolution);
+    const Surface surface(*m.part, kMeshResolution);
     material_ = surface.material();
     triangles_ = surface.triangles();
     p = m.part->s(material_, m.part->parameters().rest());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <pliant/body/group.h>
+#include <pliant/math/index.h>
 #include <pliant/part/modal_deformation.h>
 
 namespace pliant {
@@ -11,10 +12,6 @@ namespace {
 
 /// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
 constexpr double kFast = 1e-9;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// Normal and tangents, columns, world.
 Mat3<double> axes(const Contact& contact) {

@@ -6,14 +6,11 @@
 #include <string>
 
 #include <pliant/body/multibody.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 void check(double friction, double restitution) {
   if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))

@@ -12,6 +12,7 @@
 #include <pliant/contact/ellipsoid_points.h>
 #include <pliant/contact/find_on_mesh.h>
 #include <pliant/contact/node_motion.h>
+#include <pliant/math/index.h>
 
 #include "outline.h"
 
@@ -20,7 +21,7 @@ namespace pliant {
 namespace {
 
 /// Contacts of a pair nearer than this, in sizes of the smaller part, are one.
-constexpr double kSame = 0.03;
+constexpr double kOneContact = 0.03;
 /// Share of the thinner of two parts that they may move against each other in a step.
 constexpr double kThinShare = 0.4;
 /// Most that a part may turn in a step over a plane, rad.
@@ -35,11 +36,7 @@ constexpr double kBulge = 0.05;
 /// Gaps over an obstacle are told up to this, in sizes of the part.
 constexpr double kSeen = 0.1;
 /// Normals of one contact differ by less than this.
-constexpr double kSameNormal = 0.2;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr double kOneContactNormal = 0.2;
 
 }  // namespace
 
@@ -366,14 +363,14 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
   if (at_one_point && ours.empty()) return;
   find_on_part(b, a, rule, most, theirs);
   const double same =
-      kSame * std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size());
+      kOneContact * std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size());
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
     contact.carried = -contact.carried;
     auto twin = std::find_if(ours.begin(), ours.end(), [&](const Contact& other) {
-      return at_one_point ||
-             ((other.x - contact.x).norm() < same && (other.normal - contact.normal).norm() < kSameNormal);
+      return at_one_point || ((other.x - contact.x).norm() < same &&
+                              (other.normal - contact.normal).norm() < kOneContactNormal);
     });
     if (twin == ours.end())
       ours.push_back(contact);

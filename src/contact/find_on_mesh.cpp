@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <pliant/contact/ellipsoid_points.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
@@ -16,7 +17,7 @@ constexpr double kSag = 0.02;
 /// How far a low point may lie from the point of the surface that it is found from, in sizes.
 constexpr double kSpacing = 0.4;
 /// A face holds up a part that is no deeper behind it than this share of its thickness.
-constexpr double kDeepest = 0.5;
+constexpr double kDeepestOnFace = 0.5;
 /// A point belongs to a triangle that it is in but for this, in sizes.
 constexpr double kWithin = 1e-6;
 /// A face is not what holds a point that is nearer to others, which are turned by less than this (cosine).
@@ -34,10 +35,6 @@ constexpr int kSamples = 12, kHalvings = 48;
 /// Contacts nearer than this, in sizes, with normals as near as this, are one.
 constexpr double kSame = 0.02, kSameNormal = 0.01;
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// The search for one part on one mesh.
 class Search {
  public:
@@ -47,7 +44,7 @@ class Search {
         mesh_(mesh),
         most_(most),
         size_(a.part.size()),
-        deepest_(-kDeepest * a.surface.thickness()),
+        deepest_(-kDeepestOnFace * a.surface.thickness()),
         near_(near),
         found_(found),
         first_(found.size()) {}

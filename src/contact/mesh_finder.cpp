@@ -7,20 +7,17 @@
 
 #include <pliant/body/multibody.h>
 #include <pliant/contact/mesh_touches.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace {
 
 /// Share of the thinner of two parts that they may move against each other in a step.
-constexpr double kThinShare = 0.4;
+constexpr double kThinStep = 0.4;
 /// An obstacle holds what is no deeper behind it than this share of the part's thickness: beyond may be the
 /// far side of the part, over a plate that it lies on. In a step it moves by less.
 constexpr double kDeepest = 0.25, kStepShare = 0.2;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 
@@ -192,7 +189,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
     const double way = h * (a.speed + b.speed);
-    const double thin = kThinShare * std::min(meshes_.at(pair.a).thickness(), meshes_.at(pair.b).thickness());
+    const double thin = kThinStep * std::min(meshes_.at(pair.a).thickness(), meshes_.at(pair.b).thickness());
     if (way > thin) near.h = std::min(near.h, h * thin / way);
   }
 }

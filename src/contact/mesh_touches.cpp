@@ -18,9 +18,9 @@ constexpr double kParallel = 1e-9;
 /// Distances to triangles that differ by less than this part are to a common edge or corner of theirs.
 constexpr double kTie = 1e-9;
 /// A triangle is straight above a point whose distance to it squared is that to its plane, but for this.
-constexpr double kStraight = 1e-6;
+constexpr double kStraightAbove = 1e-6;
 /// Edges whose triangles turn by less than this, rad, do not stick out.
-constexpr double kFlat = 1e-6;
+constexpr double kNoTurn = 1e-6;
 /// Triangles of an obstacle are searched to this share of the greatest depth around a part.
 constexpr double kMargin = 0.1;
 /// Sine of an angle by which a normal at a corner of an obstacle may point into it.
@@ -95,7 +95,7 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
         (from.cwiseMin(to).array() > box.max().array()).any())
       continue;
     const Vec3<double> n1 = normal_of(m, e.left), n2 = normal_of(m, e.right), n21 = n2.cross(n1);
-    if (-n21.dot(to - from) > kFlat * (to - from).norm())
+    if (-n21.dot(to - from) > kNoTurn * (to - from).norm())
       chosen.edges.push_back({e.from, e.to, from, to - from, n1, n2, n21});
   }
   const Eigen::Matrix3Xi& triangles = m.mesh->triangles();
@@ -131,7 +131,7 @@ struct NearestFace {
 
   /// The point of it.
   Vec3<double> foot() const { return weight[0] * face->p0 + weight[1] * face->p1 + weight[2] * face->p2; }
-  bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraight); }
+  bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraightAbove); }
 };
 
 /// Of those that count.

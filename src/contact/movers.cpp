@@ -4,14 +4,9 @@
 
 #include <pliant/body/group.h>
 #include <pliant/contact/node_motion.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
-
-namespace {
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-}  // namespace
 
 bool moves_locally(const PartModel& m, const PartWorkspace<double>& w) {
   return m.local != nullptr && (m.local->modal() != nullptr || (w.local && w.local->response != nullptr));

@@ -15,11 +15,11 @@ namespace {
 
 /// A triangle that is lower than this share of its longest edge has no area: corners are told in single
 /// precision.
-constexpr double kFlat = 1e-7;
+constexpr double kNoHeight = 1e-7;
 /// Triangles are in one plane when they are this near to it, in diagonals of the mesh, and turned against it
 /// by no more than this.
-constexpr double kSamePlane = 4e-7, kSameNormal = 1e-4;
-constexpr int kLeaf = 4;
+constexpr double kSamePlane = 4e-7, kOnePlaneNormal = 1e-4;
+constexpr int kTrianglesInLeaf = 4;
 
 std::string place(const Vec3<double>& x) {
   std::ostringstream text;
@@ -76,7 +76,7 @@ void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi
     const Vec3<double> a = corner[1] - corner[0], b = corner[2] - corner[0];
     const Vec3<double> across = a.cross(b);
     const double longest = std::max({a.norm(), b.norm(), (corner[2] - corner[1]).norm()});
-    if (!(across.norm() > kFlat * longest * longest))
+    if (!(across.norm() > kNoHeight * longest * longest))
       refuse("triangle " + std::to_string(t) + " has no area: its corners are " + place(corner[0]) + ", " +
              place(corner[1]) + " and " + place(corner[2]));
     normals_.col(t) = across.normalized();
@@ -118,7 +118,7 @@ void ObstacleMesh::lay_tree(int first, int count) {
     for (int k = 0; k < 3; ++k) node.box.extend(x_.col(triangles_(k, order_[at(i)])));
   const std::size_t here = nodes_.size();
   nodes_.push_back(node);
-  if (count <= kLeaf) return;
+  if (count <= kTrianglesInLeaf) return;
   Eigen::Index axis = 0;
   node.box.sizes().maxCoeff(&axis);
   auto middle = [&](int t) {
@@ -151,7 +151,7 @@ void ObstacleMesh::lay_faces() {
       for (const int e : edges_of_[at(from)]) {
         const std::array<int, 2>& sides = edges_[at(e)].triangle;
         const int to = sides[0] == from ? sides[1] : sides[0];
-        if (to < 0 || face_of_[at(to)] >= 0 || (normal(to) - face.normal).norm() > kSameNormal) continue;
+        if (to < 0 || face_of_[at(to)] >= 0 || (normal(to) - face.normal).norm() > kOnePlaneNormal) continue;
         bool flat = true;
         for (int k = 0; k < 3; ++k)
           flat = flat && std::abs(face.normal.dot(x_.col(triangles_(k, to)) - face.point)) <= near;
@@ -171,7 +171,7 @@ void ObstacleMesh::mark_sharp() {
     const double sine = n.cross(m).dot(along(edge));
     // Two sides of a plate lie on each other: that is a ridge too.
     edge.sharp = face_of_[at(edge.triangle[0])] != face_of_[at(edge.triangle[1])] &&
-                 (sine > 0 || (n.dot(m) < 0 && sine > -kSameNormal));
+                 (sine > 0 || (n.dot(m) < 0 && sine > -kOnePlaneNormal));
   }
   for (std::size_t e = 0; e < edges_.size(); ++e)
     for (const int v : edges_[e].vertex) corners_[at(v)].push_back(static_cast<int>(e));

@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 /// Normals of one face turn by less than this, and its gaps are those of a plane to this, in sizes.
-constexpr double kOneNormal = 1e-6, kFlat = 1e-7;
+constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
 /// A corner stands out by more than this, in sizes.
 constexpr double kStraight = 1e-5;
 /// So few contacts are all kept.
@@ -38,7 +38,7 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
     A.row(i) << size, places.back().x, places.back().y;
     gaps[i] = contacts[k].gap;
   }
-  if ((A * A.colPivHouseholderQr().solve(gaps) - gaps).lpNorm<Eigen::Infinity>() > kFlat * size) return;
+  if ((A * A.colPivHouseholderQr().solve(gaps) - gaps).lpNorm<Eigen::Infinity>() > kOnePlane * size) return;
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     if (a.x != b.x) return a.x < b.x;
     return a.y < b.y || (a.y == b.y && a.number < b.number);

@@ -18,7 +18,7 @@ namespace pliant {
 namespace {
 
 /// Most turn of a part in one step, rad, and most change of a parameter, of its size or in rad.
-constexpr double kMostTurn = 0.5, kMostChange = 0.3;
+constexpr double kMostTurnAtOnce = 0.5, kMostChange = 0.3;
 /// eps over the smallest ratio of stiffness to inertia: how little rigid motion costs.
 constexpr double kRigidFirst = 1e-6;
 /// A step, in rad or sizes, at which the shape has settled.
@@ -27,7 +27,7 @@ constexpr double kSettled = 1e-9;
 constexpr double kEqual = 1e-12;
 /// A gap, in lengths, that is left to the projection at the start.
 constexpr double kNearlyClosed = 1e-9;
-constexpr int kMostIterations = 400;
+constexpr int kMostRounds = 400;
 /// Without a gap smaller by this factor in so many iterations it cannot be closed.
 constexpr double kProgress = 0.9;
 constexpr int kPatience = 40, kMostHalvings = 5, kMostAttempts = 10;
@@ -39,7 +39,6 @@ constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-using settling::at;
 using settling::wider;
 
 class Assembly {
@@ -82,7 +81,7 @@ class Assembly {
   int run() {
     double best_gap = kInfinite, best_merit = kInfinite, price = penalty_;
     int since_gap = 0, since_merit = 0;
-    for (int i = 0; i < kMostIterations; ++i) {
+    for (int i = 0; i < kMostRounds; ++i) {
       const double now = gap();
       if (!std::isfinite(now))
         throw NumericalFailure("assembly: the gap of a joint is not a finite number", state_.time());
@@ -98,9 +97,9 @@ class Assembly {
       const double moved = step(now);
       if (closed && moved <= kSettled) return i;
     }
-    if (gap() > kClosedGap) fail(kMostIterations);  // the projection at the start closes the rest
+    if (gap() > kClosedGap) fail(kMostRounds);  // the projection at the start closes the rest
     settled_ = false;
-    return kMostIterations;
+    return kMostRounds;
   }
 
  private:
@@ -197,11 +196,11 @@ class Assembly {
         restore(group);
         if (merit() < before || (is_closed() && merit() <= (1 + kEqual) * before)) {
           if (attempt == 0 && halving == 0) eps_ = std::max(least_eps_, eps_ / kCheaper);
-          return share * size * kMostTurn;
+          return share * size * kMostTurnAtOnce;
         }
         if (halving == kMostHalvings) break;
       }
-      if (last) return share * size * kMostTurn;
+      if (last) return share * size * kMostTurnAtOnce;
       state_.q = from;
       gap();
       eps_ *= kDearer;
@@ -291,7 +290,7 @@ class Assembly {
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);
       const auto of_part = group.share(x, p);
-      size = std::max(size, of_part.segment<3>(3).norm() / kMostTurn);
+      size = std::max(size, of_part.segment<3>(3).norm() / kMostTurnAtOnce);
       for (int k = 0; k < m.n_s; ++k) {
         const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
         const double scale = is_length ? std::abs(state_.q[m.q0 + 7 + k]) : 1.0;

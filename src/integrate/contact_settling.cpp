@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <pliant/integrate/settle.h>
+#include <pliant/math/index.h>
 
 #include "contact_pairs.h"
 #include "pushed_parts.h"
@@ -20,13 +21,9 @@ constexpr int kMostPartings = 8;
 /// Most times in a step that bodies which impulses throw meet others.
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
-constexpr double kRounding = 1e-8;
+constexpr double kLeftOverlap = 1e-8;
 /// Meshes may overlap by this, in sizes, without being parted; and parted ones by this share of it.
 constexpr double kMeshOverlap = 2e-4, kMeshLeft = 0.03;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
@@ -164,7 +161,7 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
     if (i == 0) start = deepest;
     const double left = most - std::max(0.0, start - deepest);
-    if (!(deepest > kRounding * resting_.gap()) || !(left > 0)) return;
+    if (!(deepest > kLeftOverlap * resting_.gap()) || !(left > 0)) return;
     // Parted by so much, they may meet what is as near.
     if (deepest > resting_.gap()) deep = finder_.find(state, t, std::min(deepest, left));
     const std::vector<int> parts = parts_touched(dynamics_.model(), deep);

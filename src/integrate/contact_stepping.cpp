@@ -8,6 +8,7 @@
 
 #include <pliant/integrate/impact_timing.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/math/index.h>
 
 #include "contact_pairs.h"
 
@@ -16,7 +17,7 @@ namespace pliant {
 namespace {
 
 /// Impacts of this speed, in units of what gravity gives in a step, do not rebound.
-constexpr double kSlow = 1e-3;
+constexpr double kSlowImpact = 1e-3;
 /// Most pairs whose impacts in one step are told in time, which takes the step of all parts several times
 /// again; and most moving parts of a body for which that is worth it.
 constexpr std::size_t kMostPairs = 3;
@@ -27,11 +28,7 @@ constexpr int kMostEvents = 200;
 /// Points of one contact at the start and the end of a step are nearer than this, in sizes.
 constexpr double kSamePoint = 0.2;
 /// Where an impact has been told in time, surfaces this near, as a share of what counts as resting, touch.
-constexpr double kTouching = 1e-6;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
+constexpr double kTouchAtImpact = 1e-6;
 
 }  // namespace
 
@@ -67,7 +64,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   double taken = h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
-  const double slow = kSlow * dynamics_.model().body().gravity_at(end).norm() * h;
+  const double slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
   int events = 0;
   for (double now = state.time(); now < end - near;) {
     ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
@@ -138,7 +135,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         there.erase(std::remove_if(there.begin(), there.end(),
                                    [&](const Contact& c) {
                                      return c.gap > resting_.gap(c) ||
-                                            (c.gap > kTouching * resting_.gap(c) && !rest.has(c) &&
+                                            (c.gap > kTouchAtImpact * resting_.gap(c) && !rest.has(c) &&
                                              !Pairs(impacts).has(c));
                                    }),
                     there.end());

@@ -17,22 +17,22 @@ namespace {
 constexpr int kStages = 6;
 constexpr double kGamma = 0.25;
 /// Below the diagonal, row by row from the second stage on; the last row has the weights of the method.
-constexpr double kA[kStages][kStages] = {
+constexpr double kEsdirkA[kStages][kStages] = {
     {},
     {1. / 4},
     {8611. / 62500, -1743. / 31250},
     {5012029. / 34652500, -654441. / 2922500, 174375. / 388108},
     {15267082809. / 155376265600, -71443401. / 120774400, 730878875. / 902184768, 2285395. / 8070912},
     {82889. / 524892, 0, 15625. / 83664, 69875. / 102672, -2260. / 8211}};
-constexpr double kC[kStages] = {0, 1. / 2, 83. / 250, 31. / 50, 17. / 20, 1};
+constexpr double kEsdirkC[kStages] = {0, 1. / 2, 83. / 250, 31. / 50, 17. / 20, 1};
 constexpr double kB3[kStages] = {4586570599. / 29645900160, 0,
                                  178811875. / 945068544,    814220225. / 1159782912,
                                  -3700637. / 11593932,      61727. / 225920};
 /// What may be left of the equations of a stage where no tolerance says it, in sizes and radians.
-constexpr double kExactly = 1e-11;
+constexpr double kStageExactly = 1e-11;
 
 double weight(int stage) {
-  return stage == kStages - 1 ? kGamma : kA[kStages - 1][stage];
+  return stage == kStages - 1 ? kGamma : kEsdirkA[kStages - 1][stage];
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void Esdirk::step(const Dynamics& dynamics, State& state, Workspace<double>& wor
   const double h = state.h, t = state.time(), c = kGamma * h;
   if (!solver_) {
     solver_ = std::make_unique<StageSolver>(model);
-    exactly_ = std::make_unique<ErrorScale>(model, kExactly);
+    exactly_ = std::make_unique<ErrorScale>(model, kStageExactly);
     q_rates_.resize(model.n_q(), kStages);
     v_rates_.resize(model.n_v(), kStages);
   }
@@ -62,12 +62,12 @@ void Esdirk::step(const Dynamics& dynamics, State& state, Workspace<double>& wor
     r_q_ = state.q;
     r_v_ = state.v;
     for (int k = 0; k < stage; ++k) {
-      r_q_ += h * kA[stage][k] * q_rates_.col(k);
-      r_v_ += h * kA[stage][k] * v_rates_.col(k);
+      r_q_ += h * kEsdirkA[stage][k] * q_rates_.col(k);
+      r_v_ += h * kEsdirkA[stage][k] * v_rates_.col(k);
     }
     q_ = r_q_ + c * q_rates_.col(stage - 1);
     v_ = r_v_ + c * v_rates_.col(stage - 1);
-    solver_->solve(t + kC[stage] * h, r_q_, r_v_, q_, v_, work, counters);
+    solver_->solve(t + kEsdirkC[stage] * h, r_q_, r_v_, q_, v_, work, counters);
     q_rates_.col(stage) = (q_ - r_q_) / c;
     v_rates_.col(stage) = (v_ - r_v_) / c;
     power += weight(stage) * work.power;
@@ -95,7 +95,7 @@ double Esdirk::growth(const MatX<double>& K, const MatX<double>& D, double h) co
     std::complex<double> rate[kStages] = {z}, y = 1;
     for (int stage = 1; stage < kStages; ++stage) {
       y = 1;
-      for (int k = 0; k < stage; ++k) y += kA[stage][k] * rate[k];
+      for (int k = 0; k < stage; ++k) y += kEsdirkA[stage][k] * rate[k];
       y /= 1. - kGamma * z;
       rate[stage] = z * y;
     }

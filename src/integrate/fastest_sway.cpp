@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/body/group.h>
 #include <pliant/integrate/advance.h>
+#include <pliant/math/eigenvalues.h>
 
 namespace pliant {
 
@@ -54,7 +53,7 @@ class Sway {
     }
     const auto n = static_cast<Eigen::Index>(basis.size());
     if (n == 0) return 0;
-    return MatX<double>(H.topLeftCorner(n, n)).selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
+    return symmetric_eigenvalues(H.topLeftCorner(n, n)).maxCoeff();
   }
 
  private:

@@ -9,8 +9,6 @@
 
 namespace pliant {
 
-using settling::at;
-
 namespace {
 
 using AllSoft = std::vector<std::unique_ptr<ImplicitPart>>;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <pliant/math/index.h>
+
 namespace pliant {
 
 namespace {
@@ -14,10 +16,6 @@ constexpr double kGap = 1e-13, kTime = 1e-15;
 constexpr int kMostTrials = 60;
 /// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
 constexpr int kMostHalvings = 20;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 }  // namespace
 

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <complex>
 
-#include <Eigen/Eigenvalues>
-
-#include <pliant/math/types.h>
+#include <pliant/math/eigenvalues.h>
 
 namespace pliant {
 
@@ -17,7 +15,7 @@ double linear_growth(const MatX<double>& K, const MatX<double>& D, double h, Sta
   MatX<double> A(2 * n, 2 * n);
   A << MatX<double>::Zero(n, n), MatX<double>::Identity(n, n), -K, -D;
   double worst = 0;
-  for (const std::complex<double>& lambda : A.eigenvalues())
+  for (const std::complex<double>& lambda : eigenvalues(A))
     worst = std::max(worst, std::abs(stability(h * lambda)));
   return worst;
 }

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "hold_rates.h"
 #include "implicit_modes.h"
@@ -214,7 +213,7 @@ double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, do
   F.bottomRightCorner(n, n) = -D;
   filter.topRightCorner(n, n) = kGamma * h * MatX<double>::Identity(n, n);
   const MatX<double> k1 = filter * F, k2 = filter * (F * (I + h * k1) - 2 * k1);
-  return (I + 1.5 * h * k1 + 0.5 * h * k2).eigenvalues().cwiseAbs().maxCoeff();
+  return spectral_radius(I + 1.5 * h * k1 + 0.5 * h * k2);
 }
 
 }  // namespace pliant

@@ -4,14 +4,11 @@
 #include <set>
 
 #include <pliant/integrate/advance.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
 template <class F>

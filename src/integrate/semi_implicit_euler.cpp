@@ -1,9 +1,8 @@
 #include <pliant/integrate/semi_implicit_euler.h>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "carry_momenta.h"
 
@@ -41,7 +40,7 @@ double SemiImplicitEuler::growth(const MatX<double>& K, const MatX<double>& D, d
   const MatX<double> I = MatX<double>::Identity(n, n);
   MatX<double> A(2 * n, 2 * n);
   A << I - h * h * K, h * (I - h * D), -h * K, I - h * D;
-  return A.eigenvalues().cwiseAbs().maxCoeff();
+  return spectral_radius(A);
 }
 
 }  // namespace pliant

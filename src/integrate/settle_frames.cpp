@@ -16,8 +16,8 @@ namespace pliant {
 namespace {
 
 /// Changes of the frame below this part of the size of the part are rounding.
-constexpr double kRounding = 1e-15;
-constexpr int kMostIterations = 8;
+constexpr double kFrameRounding = 1e-15;
+constexpr int kMostFrameIterations = 8;
 /// Of K with H0 scaled to a unit diagonal (design 1.3).
 constexpr double kWorstCondition = 1e8;
 
@@ -47,8 +47,9 @@ void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& stat
   local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
   for (int iteration = 0;; ++iteration) {
     const VecMax<double> delta = now.solve_transposed(now.unmet);
-    if (!(delta.head<3>().norm() > kRounding * size || delta.tail(3 + m.n_s).norm() > kRounding)) break;
-    if (iteration == kMostIterations) {
+    if (!(delta.head<3>().norm() > kFrameRounding * size || delta.tail(3 + m.n_s).norm() > kFrameRounding))
+      break;
+    if (iteration == kMostFrameIterations) {
       std::ostringstream message;
       message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
               << m.part->name() << "' are so far from the shape of its parameters that its frame does not "

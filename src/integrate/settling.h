@@ -13,6 +13,7 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/math/index.h>
 
 namespace pliant::settling {
 
@@ -37,10 +38,6 @@ inline constexpr double kStuckGap = 1e-5, kPatience = 10;
 inline constexpr double kFar = 0.25;
 /// A string this near to its length, in lengths of its smaller part, is taut.
 inline constexpr double kTaut = 1e-9;
-
-inline std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The wider of two gaps, and not a number if the first is none.
 inline double wider(double gap, double widest) {

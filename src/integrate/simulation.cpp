@@ -68,7 +68,7 @@ double after(double kink) {
 }
 
 /// An impulse of a joint that is below this part of the momenta of its lightest part is rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kImpulseRounding = 1e-9;
 
 /// The momentum (N s) of the lightest part of a joint if it moved as fast as any of them, or as the joint
 /// closes.
@@ -411,7 +411,8 @@ void Simulation::note_impulses(const Island& island, double t, bool of_path, con
     if (impulses.segment(joint.row, joint.rows).isZero(0)) return;
     const Wrench impulse = dynamics_.joint_wrench(t, j, work, impulses);
     const double size = impulse.force.norm() + impulse.torque.norm() / joint.length;
-    if (size > kRounding * std::max(momentum(model_, joint, v_before), momentum(model_, joint, state_.v)))
+    if (size >
+        kImpulseRounding * std::max(momentum(model_, joint, v_before), momentum(model_, joint, state_.v)))
       hold_impulses_.push_back({t, j, impulse, of_path});
   };
   std::for_each(island.joints.begin(), island.joints.end(), note);

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <pliant/integrate/free_oscillation.h>
 #include <pliant/integrate/stable_step.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "fastest_sway.h"
 
@@ -21,7 +21,7 @@ namespace {
 /// Above this many velocities in a group the parts are bounded one by one.
 constexpr int kLargestGroup = 120;
 /// Turn in a step, rad, beyond which no method follows the rotation.
-constexpr double kMostTurn = 0.5;
+constexpr double kMostTurnInStep = 0.5;
 /// Phase of a mode that a step goes through, rad, beyond which blows give it energy: they move it as they do
 /// what is free.
 constexpr double kMostPhase = 1;
@@ -54,23 +54,21 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   const MatX<double> M = system.M(kept, kept), K = system.K(kept, kept), D = system.D(kept, kept);
   const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
   const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(scaled);
-  const VecX<double> values = modes.eigenvalues();
+  const auto [values, vectors] = symmetric_eigenpairs(scaled);
   std::vector<Eigen::Index> solid;
   for (Eigen::Index i = 0; i < values.size(); ++i)
     if (values[i] > 1e-10) solid.push_back(i);
-  MatX<double> T = scale.asDiagonal() * modes.eigenvectors() *
-                   values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
+  MatX<double> T =
+      scale.asDiagonal() * vectors * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX<double> all = columns_of(T, solid);
   // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would
   // only blur the growth of the others.
   const MatX<double> resistance = all.transpose() * (K + D) * all;
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> resisted(resistance);
+  const Eigenpairs resisted = symmetric_eigenpairs(resistance);
   std::vector<Eigen::Index> stiff_modes;
   for (Eigen::Index i = 0; i < resistance.rows(); ++i)
-    if (resisted.eigenvalues()[i] > 1e-12 * resisted.eigenvalues().cwiseAbs().maxCoeff())
-      stiff_modes.push_back(i);
-  const MatX<double> basis = all * columns_of(resisted.eigenvectors(), stiff_modes);
+    if (resisted.values[i] > 1e-12 * resisted.values.cwiseAbs().maxCoeff()) stiff_modes.push_back(i);
+  const MatX<double> basis = all * columns_of(resisted.vectors, stiff_modes);
   const MatX<double> k = basis.transpose() * K * basis, d = basis.transpose() * D * basis;
   const double stiff = k.norm(), damped = d.norm();
   if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();
@@ -104,7 +102,7 @@ LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const P
   bound.D += m.drag;
   if (m.n_s > 0 && !implicit) {
     const MatX<double> compliance = w.local->A.block(6, 6, m.n_s, m.n_s);
-    const double omega2 = (compliance * part.K_s()).eigenvalues().cwiseAbs().maxCoeff();
+    const double omega2 = spectral_radius(compliance * part.K_s());
     bound.K += omega2;
     bound.D += part.alpha() + part.beta() * omega2;
   }
@@ -235,7 +233,7 @@ StableStep stable_step(const Simulation& simulation) {
     if (m.q0 < 0) continue;
     const double turning = state.v.segment<3>(m.v0 + 3).norm();
     const std::string name = "part '" + m.part->name() + "'";
-    if (turning > 0) take(kMostTurn / turning, "the spin of " + name);
+    if (turning > 0) take(kMostTurnInStep / turning, "the spin of " + name);
     if (m.local == nullptr) continue;
     if (const Oscillators* modes = m.local->oscillators();
         modes != nullptr && !implicit && model.body().contact.active)

@@ -10,28 +10,25 @@
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/step_failure.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace {
 
 /// An iteration that leaves more than this part of its change is slow; without the matrix, and with it.
-constexpr double kSlowFree = 0.2, kSlow = 0.9;
-constexpr int kMostIterations = 20;
+constexpr double kSlowFree = 0.2, kSlowWith = 0.9;
+constexpr int kMostStageIterations = 20;
 /// Matrices that a stage may have of its own.
 constexpr int kMostMatrices = 4;
 /// Changes that no longer fall and are below this, in sizes and radians, are rounding.
-constexpr double kRounding = 1e-12;
+constexpr double kStageRounding = 1e-12;
 /// Differences, in sizes of what is varied.
 constexpr double kDifference = 1e-7;
 /// Most velocities in a dense matrix.
 constexpr Eigen::Index kMostVelocities = 1000;
 /// Changes below this, in tolerances, are taken for convergence.
 constexpr double kConverged = 0.02;
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 /// The turn (rad, body frame) of each part that a change of quaternions is, all else as it is.
 void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& change,
@@ -138,9 +135,9 @@ void StageSolver::solve(double t, const VecX<double>& r_q, const VecX<double>& r
 
 bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q,
                           VecX<double>& v, Workspace<double>& work, StepCounters& counters) {
-  const double slow = linear_ ? kSlow : kSlowFree;
+  const double slow = linear_ ? kSlowWith : kSlowFree;
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMostStageIterations; ++i) {
     dynamics_->accelerations(t, q, v, *state_, work, RankRule::keep);
     ++counters.evaluations;
     hold_inertialess(model_, work, v);
@@ -155,7 +152,7 @@ bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>&
     const double left = change / before;  // of a change, by one more iteration
     const bool small = change <= kConverged && left / (1 - std::min(left, 0.99)) * change <= kConverged;
     if (change == 0 || (i > 0 && small)) return true;
-    if (left > kSlow && change * scale_->tolerance() <= kRounding) return true;
+    if (left > kSlowWith && change * scale_->tolerance() <= kStageRounding) return true;
     // The first change with the matrix is as crude as the guess was.
     if (i > (linear_ ? 1 : 0) && left > slow) return false;
     before = change;

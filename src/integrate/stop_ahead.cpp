@@ -18,7 +18,7 @@ namespace {
 /// An iteration that leaves more than this part of the gaps has come to the rounding of the rows.
 constexpr double kIdle = 0.9;
 /// Most turn of a part in a step while a joint closes, rad.
-constexpr double kMostTurn = 0.2;
+constexpr double kMostTurnClosing = 0.2;
 
 /// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
 /// closed joints. False when they are closed there, or as near as rounding lets them come. widest: that of
@@ -68,8 +68,8 @@ bool any_closing(const Island& island, const Workspace<double>& work) {
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// In a step of h no part of an island that closes comes to turn by more than kMostTurn: what a gap pulls
-/// may swing about it for long, and gains energy by each step. The centres of mass go on as they were.
+/// In a step of h no part of an island that closes comes to turn by more than kMostTurnClosing: what a gap
+/// pulls may swing about it for long, and gains energy by each step. The centres of mass go on as they were.
 /// before: velocities at the start of the step. Returns the work of it.
 template <int Max>
 double cap_turns(const Group<double, Max>& group, const VecX<double>& before, double h,
@@ -78,7 +78,7 @@ double cap_turns(const Group<double, Max>& group, const VecX<double>& before, do
   for (int i = 0; i < group.parts(); ++i) {
     auto v_r = group.share(capped, i);
     const double turn = h * v_r.template segment<3>(3).norm(),
-                 most = std::max(kMostTurn, h * before.segment<3>(group.model(i).v0 + 3).norm());
+                 most = std::max(kMostTurnClosing, h * before.segment<3>(group.model(i).v0 + 3).norm());
     if (!(turn > most)) continue;
     const Inertia<double>& inertia = group.workspace(i).inertia;
     const Vec3<double> change = (most / turn - 1) * v_r.template segment<3>(3);

@@ -9,13 +9,10 @@
 #include <pliant/io/recording.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/whole_file.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 namespace {
-
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 void add_axes(std::vector<Column>& columns, const std::string& stem, const char* unit, const char* meaning) {
   for (const char* axis : {".x", ".y", ".z"}) columns.push_back({stem + axis, unit, meaning});

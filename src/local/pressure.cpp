@@ -18,7 +18,7 @@ Vec3<Pack> twice_area(const ElementBatches<3>::Corners& x) {
   return Vec3<Pack>(x[1] - x[0]).cross(Vec3<Pack>(x[2] - x[0]));
 }
 
-constexpr int kBatchesInRange = 512;
+constexpr int kPressureRange = 512;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ Pressure::Pressure(const ShellMesh& mesh) : batches_(mesh.triangles(), mesh.n_no
 /// Sum of f over the triangles, from one Pack a batch, in the order of the batches.
 template <class F>
 double Pressure::sum(double* parts, ThreadPool* pool, F&& f) const {
-  for_ranges(batches_.n_batches(), kBatchesInRange, pool, [&](int first, int last) {
+  for_ranges(batches_.n_batches(), kPressureRange, pool, [&](int first, int last) {
     for (int b = first; b < last; ++b) {
       const Pack four = f(b);
       parts[b] = 0;

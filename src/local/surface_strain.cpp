@@ -13,7 +13,7 @@ namespace pliant {
 namespace {
 
 /// Of the square of its longest edge: what is flatter has no plane.
-constexpr double kNoArea = 1e-7;
+constexpr double kNoPlane = 1e-7;
 
 Edges<double> edges_of(const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles, Eigen::Index t) {
   return pliant::edges_of<double>({x.col(triangles(0, t)), x.col(triangles(1, t)), x.col(triangles(2, t))});
@@ -33,7 +33,7 @@ SurfaceStrain::SurfaceStrain(const Eigen::Matrix3Xd& X, Eigen::Matrix3Xi triangl
     const Edges<double> e = edges_of(X, triangles_, t);
     const Vec3<double> twice_area = e[0].cross(e[1]);
     Triangle rest{half_squares_of(e), Mat3<double>::Zero(), 0.5 * twice_area.norm()};
-    if (rest.area > kNoArea * 2 * rest.rest.maxCoeff()) {
+    if (rest.area > kNoPlane * 2 * rest.rest.maxCoeff()) {
       const Vec3<double> t1 = e[0].normalized(), t2 = twice_area.normalized().cross(t1);
       const std::array<Mat3<double>, 3> B = edge_strains(e);
       for (std::size_t k = 0; k < 3; ++k)

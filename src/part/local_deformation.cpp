@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/modal_deformation.h>
 #include <pliant/part/nodal_deformation.h>
 
@@ -80,10 +80,9 @@ MatX<double> inverse_of(const MatX<double>& A) {
   const Eigen::LLT<MatX<double>> factor(scaled);
   if (factor.info() == Eigen::Success && factor.rcond() > well_conditioned)
     return scale.asDiagonal() * factor.solve(MatX<double>(scale.asDiagonal()));
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> eigen(scaled);
-  VecX<double> inverse = eigen.eigenvalues();
+  auto [inverse, vectors] = symmetric_eigenpairs(scaled);
   for (double& value : inverse) value = value > smallest ? 1 / value : 0;
-  const MatX<double> V = scale.asDiagonal() * eigen.eigenvectors();
+  const MatX<double> V = scale.asDiagonal() * vectors;
   return V * inverse.asDiagonal() * V.transpose();
 }
 

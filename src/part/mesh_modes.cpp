@@ -13,11 +13,11 @@
 
 #include <Spectra/SymEigsSolver.h>
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SparseCholesky>
 
 #include <pliant/local/solid_mass.h>
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/modal_basis.h>
 #include <pliant/part/part.h>
 
@@ -140,8 +140,7 @@ MatX<double> lowest(const std::string& of, const LocalMesh& mesh, const MeshElas
     const Eigen::HouseholderQR<MatX<double>> qr(Q);
     const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols()),
                        d = elasticity.mass.solve(Z);
-    const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(d.transpose() * (elasticity.K * d));
-    return Z * modes.eigenvectors().leftCols(count);
+    return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
   }
   constexpr double tolerance = 1e-13;
   constexpr int most_iterations = 1000;
@@ -188,9 +187,9 @@ ModalBasis lay_mesh_modes(const Part& part, const LocalSettings& settings) {
   // By their energies, whose error is the square of that of the modes.
   x = root.solve(x);
   const MatX<double> stiffness = x.transpose() * (elasticity.K * x);
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> inner(stiffness);
-  const MatX<double> modes = x * inner.eigenvectors();
-  basis.omega2 = inner.eigenvalues().cwiseMax(0);
+  const Eigenpairs inner = symmetric_eigenpairs(stiffness);
+  const MatX<double> modes = x * inner.vectors;
+  basis.omega2 = inner.values.cwiseMax(0);
 
   // The fields that make them up, with the constant and X.
   constexpr double dependent = 1e-10;

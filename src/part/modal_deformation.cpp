@@ -5,14 +5,19 @@
 #include <cmath>
 #include <sstream>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/QR>
+
+#include <pliant/math/eigenvalues.h>
 
 #include "mode_conditions.h"
 #include "store_jets.h"
 
 namespace pliant {
+
+double ModalWorkspace::condition() const {
+  return 1 / factor.rcond();
+}
 
 namespace {
 
@@ -291,7 +296,7 @@ LocalDeformation::Bound ModalDeformation::stiffness_bound(const LocalWorkspace&)
 
 double ModalDeformation::mobility(const NodeWeights& at) const {
   const MatX<double> P = modes_at(at);
-  return Mat3<double>(P * P.transpose()).eigenvalues().real().maxCoeff();
+  return symmetric_eigenvalues(P * P.transpose()).maxCoeff();
 }
 
 }  // namespace pliant

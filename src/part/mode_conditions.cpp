@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/part.h>
 
 namespace pliant {
@@ -70,9 +70,9 @@ void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
                                 "': its frame and dynamic parameters leave no displacement to its " +
                                 basis.made_of + "; expected a higher degree");
   const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(left);
-  const Eigen::SelfAdjointEigenSolver<MatX<double>> modes(Z.transpose() * K * Z);
-  basis.B = Z * modes.eigenvectors() / std::sqrt(mass);
-  basis.omega2 = modes.eigenvalues().cwiseMax(0) / mass;
+  const Eigenpairs modes = symmetric_eigenpairs(Z.transpose() * K * Z);
+  basis.B = Z * modes.vectors / std::sqrt(mass);
+  basis.omega2 = modes.values.cwiseMax(0) / mass;
 }
 
 }  // namespace pliant

@@ -7,6 +7,10 @@
 
 namespace pliant {
 
+double NodalWorkspace::condition() const {
+  return 1 / factor.rcond();
+}
+
 NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)
     : LocalDeformation(settings.alpha, settings.beta) {
   mesh_ = lay_local_mesh(part, settings);

@@ -5,8 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/folds.h>
 #include <pliant/part/sum_inertia.h>
 
@@ -137,7 +136,7 @@ Part& Part::stiffness(const std::vector<std::string>& parameters, const MatX<dou
     refuse("the stiffness matrix must be " + std::to_string(n) + " x " + std::to_string(n));
   if (!K.allFinite() || !K.isApprox(K.transpose(), 1e-12))
     refuse("the stiffness matrix must be finite and symmetric");
-  const double lowest = Eigen::SelfAdjointEigenSolver<MatX<double>>(K).eigenvalues().minCoeff();
+  const double lowest = symmetric_eigenvalues(K).minCoeff();
   if (lowest < -1e-12 * K.cwiseAbs().maxCoeff())
     refuse("the stiffness matrix has the negative eigenvalue " + text(lowest));
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -208,7 +207,7 @@ Part& Part::inertia(double mass, const Mat3<double>& about_origin, const Vec3<do
   if (!(mass > 0) || !std::isfinite(mass)) refuse("mass " + text(mass) + " is not a positive number");
   const Mat3<double> about_centre =
       about_origin - mass * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
-  const Vec3<double> I = Eigen::SelfAdjointEigenSolver<Mat3<double>>(about_centre).eigenvalues();
+  const Vec3<double> I = symmetric_eigenvalues(about_centre);
   if (!about_origin.isApprox(about_origin.transpose(), 1e-12) || !(I[0] > 0) ||
       I[0] + I[1] < I[2] * (1 - 1e-12))
     refuse("no body has this inertia: its principal moments about the centre of mass are " + text(I[0]) +

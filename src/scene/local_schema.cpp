@@ -16,7 +16,7 @@ namespace {
 Record law_record(const LocalLawInfo& info, const char* meaning) {
   Record law{info.name, std::string(info.shell ? "Of a shell: " : "Of a solid: ") + meaning, {}};
   for (const LocalLawInfo::Number& n : info.numbers) {
-    Range range = at_most(n.max);
+    schema::Range range = at_most(n.max);
     range.min = n.min;
     range.min_excluded = n.above && std::isfinite(n.min);
     law.fields.push_back(n.fallback ? optional(n.key, number(range, n.unit), n.meaning, brief(*n.fallback))

@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/local_deformation.h>
 #include <pliant/part/registry.h>
 
@@ -110,7 +109,7 @@ void PartReader::read_stiffness(const Reader& r) {
   const bool known = check_names(names);
   if (!check_square(K, names.array().size()) || !check_symmetric(K) || !known) return;
   const MatX<double> full = matrix(K);
-  const double lowest = Eigen::SelfAdjointEigenSolver<MatX<double>>(full).eigenvalues().minCoeff();
+  const double lowest = symmetric_eigenvalues(full).minCoeff();
   if (!(lowest >= -1e-12 * full.cwiseAbs().maxCoeff()))
     return faults_.value(K, "it has the negative eigenvalue " + brief(lowest) +
                                 ", a direction in which it pushes away; expected none below 0");
@@ -178,7 +177,7 @@ void PartReader::read_inertia(const Reader& r) {
   const Vec3<double> c = r.vector3("centre");
   const Mat3<double> offset =
       r.number("mass") * (c.squaredNorm() * Mat3<double>::Identity() - c * c.transpose());
-  const Vec3<double> I = Eigen::SelfAdjointEigenSolver<Mat3<double>>(about_origin - offset).eigenvalues();
+  const Vec3<double> I = symmetric_eigenvalues(about_origin - offset);
   if (!(I[0] > 0) || !(I[0] + I[1] >= I[2] * (1 - 1e-12)))
     return faults_.value(
         moments, "about the centre of mass its principal moments are " + brief(I[0]) + ", " + brief(I[1]) +

@@ -10,7 +10,7 @@ namespace pliant {
 namespace {
 
 /// Rounding of a row, in units of its terms; a row that is open by no more than this is met.
-constexpr double kRounding = 1e-14;
+constexpr double kRowRounding = 1e-14;
 /// A row that adds less than this part of its own diagonal to the tight ones depends on them.
 constexpr double kDependent = 1e-12;
 
@@ -40,7 +40,7 @@ class ActiveSet {
         slack += term;
         terms += std::abs(term);
       }
-      const double open = slack < -kRounding * terms ? slack * slack / W_(i, i) : 0;
+      const double open = slack < -kRowRounding * terms ? slack * slack / W_(i, i) : 0;
       if (open > most) {
         worst = i;
         most = open;

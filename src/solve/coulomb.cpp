@@ -12,10 +12,12 @@ constexpr int kMostIterations = 200;
 /// Rates of sliding grow by no more than this at a time while nothing bounds them.
 constexpr double kGrowth = 16;
 /// Rates of sliding that differ by less than this part are one.
-constexpr double kRounding = 2 * std::numeric_limits<double>::epsilon();
+constexpr double kSameRate = 2 * std::numeric_limits<double>::epsilon();
 /// W that differs from a multiple of 1 by less than this part is one.
 constexpr double kEven = 1e-11;
 }  // namespace
+
+CoulombLaw::CoulombLaw() = default;
 
 CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
     : mu_(mu), W_n_(W(0, 0)), coupling_(W.block<2, 1>(1, 0)) {
@@ -68,7 +70,7 @@ Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
     if (!(next > low && next < high))
       next = bounded ? 0.5 * (low + high) : kGrowth * std::max(s, stiffness_[1]);
     if (!std::isfinite(next)) return {p_alone, 0, 0};
-    if (std::abs(next - s) <= kRounding * next || (bounded && high - low <= kRounding * high)) break;
+    if (std::abs(next - s) <= kSameRate * next || (bounded && high - low <= kSameRate * high)) break;
     s = next;
   }
   const Eigen::Vector2d p_t = modes_ * t.matrix();

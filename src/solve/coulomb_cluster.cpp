@@ -25,7 +25,7 @@ constexpr int kMostDense = 100;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.
-constexpr double kDependent = 1e-14;
+constexpr double kSameSweep = 1e-14;
 /// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
 /// shares of their W.
 constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
@@ -38,13 +38,13 @@ constexpr double kBounded = 2;
 CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch)
     : system_(system),
       number_(number),
-      contacts_(system.order_.data() + system.clusters_[CoulombSystem::at(number)]),
-      size_(system.clusters_[CoulombSystem::at(number) + 1] - system.clusters_[CoulombSystem::at(number)]),
+      contacts_(system.order_.data() + system.clusters_[at(number)]),
+      size_(system.clusters_[at(number) + 1] - system.clusters_[at(number)]),
       enough_(enough),
       scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
     for (int s = point(i).first_side; s < point(i).last_side; ++s)
-      points_ = points_ || system_.sides_[CoulombSystem::at(s)].size == 3;
+      points_ = points_ || system_.sides_[at(s)].size == 3;
 }
 
 /// Velocities that count as zero, and those that may be left.
@@ -53,7 +53,7 @@ void CoulombCluster::set_scale() {
   for (int i = 0; i < size_; ++i) {
     scale = std::max(scale, velocity(i).lpNorm<Eigen::Infinity>());
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
       terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
@@ -93,7 +93,7 @@ Vec3<double> CoulombCluster::met(int i, const Vec3<double>& u) const {
 void CoulombCluster::push(int i, const Vec3<double>& dp) {
   p(i) += dp;
   for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-    const CoulombSystem::Term& term = system_.pushes_[CoulombSystem::at(r)];
+    const CoulombSystem::Term& term = system_.pushes_[at(r)];
     const double* Y = system_.numbers_.data() + term.numbers;
     if (term.size == 3)
       system_.x_.segment<3>(term.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * dp;
@@ -139,7 +139,7 @@ void CoulombCluster::take(VecX<double>& impulses) const {
 void CoulombCluster::set(const VecX<double>& impulses) {
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const CoulombSystem::Term& term = system_.pushes_[CoulombSystem::at(r)];
+      const CoulombSystem::Term& term = system_.pushes_[at(r)];
       system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
     }
   for (int i = 0; i < size_; ++i) {
@@ -205,7 +205,7 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
     now = next;
     if (filled > 0) {
       Gram A = G.topLeftCorner(filled, filled);
-      A.diagonal() *= 1 + kDependent;
+      A.diagonal() *= 1 + kSameSweep;
       Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostHistory, 1> gamma(filled);
       for (int j = 0; j < filled; ++j) gamma[j] = dr.col(j).head(n).dot(r);
       gamma = A.ldlt().solve(gamma).eval();

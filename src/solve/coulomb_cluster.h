@@ -12,7 +12,7 @@
 namespace pliant {
 
 /// The law of a contact, linear about its impulse: F + T du + D dp = 0.
-struct LinearLaw {
+struct LinearContactLaw {
   int contact = 0;
   Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: where it is linear
   Mat3<double> T = Mat3<double>::Zero(), D = T;
@@ -35,7 +35,7 @@ struct CoulombScratch {
     MatX<double> dr, dp;
   } sweeps;
   struct Linear {
-    std::vector<LinearLaw> open;
+    std::vector<LinearContactLaw> open;
     std::vector<std::pair<int, Vec3<double>>> drop;  ///< contacts and changes of their impulses
   } linear;
   Coupling coupling;
@@ -52,10 +52,10 @@ class CoulombCluster {
 
  private:
   using Point = CoulombSystem::Point;
-  Point& point(int i) { return system_.contacts_[CoulombSystem::at(contacts_[i])]; }
-  const Point& point(int i) const { return system_.contacts_[CoulombSystem::at(contacts_[i])]; }
-  Vec3<double>& p(int i) { return system_.p_[CoulombSystem::at(contacts_[i])]; }
-  const Vec3<double>& p(int i) const { return system_.p_[CoulombSystem::at(contacts_[i])]; }
+  Point& point(int i) { return system_.contacts_[at(contacts_[i])]; }
+  const Point& point(int i) const { return system_.contacts_[at(contacts_[i])]; }
+  Vec3<double>& p(int i) { return system_.p_[at(contacts_[i])]; }
+  const Vec3<double>& p(int i) const { return system_.p_[at(contacts_[i])]; }
   bool is_fixed(int i) const { return point(i).first_push == point(i).last_push; }
   void set_scale();
   void yield(double softness);

@@ -12,10 +12,10 @@
 namespace pliant {
 
 namespace {
-constexpr int kMostNewton = 30;
+constexpr int kMostPointNewton = 30;
 /// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
 /// factor from step to step, from the first to the least.
-constexpr double kProximal = 0.003, kProximalFactor = 0.7, kLeastProximal = 1e-5;
+constexpr double kFirstProximal = 0.003, kProximalFactor = 0.7, kLeastProximal = 1e-5;
 }  // namespace
 
 /// The laws of all contacts, linear about the present impulses. What lifts off goes to zero, and so does
@@ -32,7 +32,7 @@ void CoulombCluster::linearise(double proximal) {
       drop.push_back({i, -p(i)});
       continue;
     }
-    LinearLaw law;
+    LinearContactLaw law;
     law.contact = i;
     law.u = u;
     law.T = r * Mat3<double>::Identity();
@@ -64,29 +64,28 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
   const double* numbers = system_.numbers_.data();
   using Y = Eigen::Map<const MatX<double>>;
   movers.clear();
-  for (LinearLaw& law : scratch_.linear.open) {
-    const Point& at = point(law.contact);
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
     const Mat3<double> inverse = law.D.inverse();
     law.F = (inverse * law.F).eval();
     law.T = (inverse * law.T).eval();
-    for (int r = at.first_push; r < at.last_push; ++r) {
-      const CoulombSystem::Term& push = system_.pushes_[CoulombSystem::at(r)];
-      movers.add(coupling.push_rows[CoulombSystem::at(r)],
-                 Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
+    for (int r = contact_at.first_push; r < contact_at.last_push; ++r) {
+      const CoulombSystem::Term& push = system_.pushes_[at(r)];
+      movers.add(coupling.push_rows[at(r)], Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
     }
     const MoverSystem::Block* block =
-        coupling.blocks.data() + coupling.first_block[CoulombSystem::at(contacts_[law.contact])];
-    for (int s = at.first_side; s < at.last_side; ++s) {
-      if (coupling.side_rows[CoulombSystem::at(s)] < 0) continue;
-      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+        coupling.blocks.data() + coupling.first_block[at(contacts_[law.contact])];
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      if (coupling.side_rows[at(s)] < 0) continue;
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       Mat3<double> TS;
       if (side.size == 3)
         TS = law.T.lazyProduct(S.leftCols<3>());
       else
         TS_of_body = law.T.lazyProduct(S);
-      for (int r = at.first_push; r < at.last_push; ++r, ++block) {
-        const CoulombSystem::Term& push = system_.pushes_[CoulombSystem::at(r)];
+      for (int r = contact_at.first_push; r < contact_at.last_push; ++r, ++block) {
+        const CoulombSystem::Term& push = system_.pushes_[at(r)];
         if (side.size == 3 && push.size == 3)
           movers.add(*block, Eigen::Map<const Mat3<double>>(numbers + push.numbers).lazyProduct(TS));
         else if (side.size == 3)
@@ -97,13 +96,13 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
     }
   }
   movers.solve();
-  for (LinearLaw& law : scratch_.linear.open) {
-    const Point& at = point(law.contact);
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
     Vec3<double> du = Vec3<double>::Zero();
-    for (int s = at.first_side; s < at.last_side; ++s) {
-      const int row = coupling.side_rows[CoulombSystem::at(s)];
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      const int row = coupling.side_rows[at(s)];
       if (row < 0) continue;
-      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       du += S.lazyProduct(movers.change(row, side.size));
     }
@@ -117,27 +116,27 @@ MoverSystem& CoulombCluster::couple_movers() {
   auto& [clusters, numbers, push_rows, side_rows, first_block, blocks] = scratch_.coupling;
   if (clusters.empty()) {
     clusters.resize(system_.clusters_.size() - 1);
-    numbers.resize(CoulombSystem::at(system_.movers()), -1);
+    numbers.resize(at(system_.movers()), -1);
     push_rows.resize(system_.pushes_.size(), -1);
     side_rows.resize(system_.sides_.size(), -1);
     first_block.resize(system_.contacts_.size(), 0);
   }
-  MoverSystem& movers = clusters[CoulombSystem::at(number_)];
+  MoverSystem& movers = clusters[at(number_)];
   if (!movers.empty()) return movers;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const int mover = system_.pushes_[CoulombSystem::at(r)].mover;
-      int& number = numbers[CoulombSystem::at(mover)];
+      const int mover = system_.pushes_[at(r)].mover;
+      int& number = numbers[at(mover)];
       if (number < 0) number = movers.add_mover(system_.mover_size(mover));
     }
-  auto number_at = [&](const CoulombSystem::Term& term) { return numbers[CoulombSystem::at(term.mover)]; };
+  auto number_at = [&](const CoulombSystem::Term& term) { return numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
       const int column = number_at(side);
       if (column < 0) continue;
       for (int r = point(i).first_push; r < point(i).last_push; ++r)
-        act(number_at(system_.pushes_[CoulombSystem::at(r)]), column, side);
+        act(number_at(system_.pushes_[at(r)]), column, side);
     }
   };
   for (int i = 0; i < size_; ++i)
@@ -145,18 +144,18 @@ MoverSystem& CoulombCluster::couple_movers() {
   movers.order();
   auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
   for (int i = 0; i < size_; ++i) {
-    first_block[CoulombSystem::at(contacts_[i])] = blocks.size();
+    first_block[at(contacts_[i])] = blocks.size();
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
       MoverSystem::Block block = movers.block(row, column);
-      block.first += CoulombSystem::at(in_mover(side) * block.stride);
+      block.first += at(in_mover(side) * block.stride);
       blocks.push_back(block);
     });
     for (int r = point(i).first_push; r < point(i).last_push; ++r)
-      push_rows[CoulombSystem::at(r)] = movers.row(number_at(system_.pushes_[CoulombSystem::at(r)]));
+      push_rows[at(r)] = movers.row(number_at(system_.pushes_[at(r)]));
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[CoulombSystem::at(s)];
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
       if (const int number = number_at(side); number >= 0)
-        side_rows[CoulombSystem::at(s)] = movers.row(number) + in_mover(side);
+        side_rows[at(s)] = movers.row(number) + in_mover(side);
     }
   }
   return movers;
@@ -167,16 +166,17 @@ bool CoulombCluster::newton_of_points() {
   auto& [open, drop] = scratch_.linear;
   VecX<double>& best = scratch_.best;
   take(best);
-  double best_left = residual(), proximal = kProximal;
+  double best_left = residual(), proximal = kFirstProximal;
   MoverSystem& movers = couple_movers();
-  for (int step = 0; step < kMostNewton && best_left > exact_; ++step) {
+  for (int step = 0; step < kMostPointNewton && best_left > exact_; ++step) {
     linearise(proximal);
     for (const auto& [i, dp] : drop) push(i, dp);
-    for (LinearLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
+    for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
     solve_linear(movers);
-    if (!std::all_of(open.begin(), open.end(), [](const LinearLaw& law) { return law.dp.allFinite(); }))
+    if (!std::all_of(open.begin(), open.end(),
+                     [](const LinearContactLaw& law) { return law.dp.allFinite(); }))
       break;
-    for (const LinearLaw& law : open) push(law.contact, law.dp);
+    for (const LinearContactLaw& law : open) push(law.contact, law.dp);
     const double left = residual();
     if (left < best_left) {
       take(best);

@@ -20,11 +20,11 @@ namespace {
 
 using Long = long double;
 template <class Deform>
-using Parameters = Vec<double, deform_size<Deform>>;
+using Numbers = Vec<double, deform_size<Deform>>;
 
 template <class Deform>
-Parameters<Deform> defaults() {
-  Parameters<Deform> b;
+Numbers<Deform> defaults() {
+  Numbers<Deform> b;
   for (int k = 0; k < deform_size<Deform>; ++k)
     b[k] = Deform::parameters[static_cast<std::size_t>(k)].standard;
   return b;
@@ -32,8 +32,8 @@ Parameters<Deform> defaults() {
 /// Anywhere in the dynamic range; tapers short of the tip and bends short of the fold, where there is no
 /// inverse.
 template <class Deform>
-Parameters<Deform> draw(Draws& draws) {
-  Parameters<Deform> b;
+Numbers<Deform> draw(Draws& draws) {
+  Numbers<Deform> b;
   for (int k = 0; k < deform_size<Deform>; ++k)
     b[k] = draws.parameter(Deform::parameters[static_cast<std::size_t>(k)]);
   if (std::string(Deform::name) == "taper") b *= 0.95;
@@ -46,7 +46,7 @@ Vec3<double> body_point(Draws& draws) {
 }
 
 template <class Deform>
-Mat3<double> gradient(const Vec3<double>& p, double h, const Parameters<Deform>& b) {
+Mat3<double> gradient(const Vec3<double>& p, double h, const Numbers<Deform>& b) {
   using D = Dual<3>;
   const Vec3<D> at{D::variable(p[0], 0), D::variable(p[1], 1), D::variable(p[2], 2)};
   const Vec3<D> moved = Deform::template apply<D>(at, D(h), b.template cast<D>());
@@ -79,7 +79,7 @@ TEMPLATE_LIST_TEST_CASE("amplitudes at their defaults are the identity, whatever
                         "[deform]", AllDeforms) {
   Draws draws(8);
   for (int trial = 0; trial < 200; ++trial) {
-    Parameters<TestType> b = draw<TestType>(draws);
+    Numbers<TestType> b = draw<TestType>(draws);
     b.template head<deform_amplitudes<TestType>>() =
         defaults<TestType>().template head<deform_amplitudes<TestType>>();
     REQUIRE(is_identity<TestType>(b.data()));
@@ -96,7 +96,7 @@ TEMPLATE_LIST_TEST_CASE("inverse undoes apply", "[deform]", AllDeforms) {
   Draws draws(2);
   for (int trial = 0; trial < 1000; ++trial) {
     const Vec3<double> p = body_point(draws);
-    const Parameters<TestType> b = draw<TestType>(draws);
+    const Numbers<TestType> b = draw<TestType>(draws);
     const Vec3<double> moved = TestType::template apply<double>(p, kHalfHeight, b);
     const Vec3<double> back = TestType::template inverse<double>(moved, kHalfHeight, b);
     INFO(TestType::name << " b " << b.transpose() << " p " << p.transpose());
@@ -112,7 +112,7 @@ TEMPLATE_LIST_TEST_CASE("derivatives agree with differences in long double", "[d
   test::Worst worst, worst_curvature;
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3<double> p = body_point(draws);
-    Parameters<TestType> b = draw<TestType>(draws);
+    Numbers<TestType> b = draw<TestType>(draws);
     if (trial == 0) b = defaults<TestType>();
     using D = Dual<4 + K>;
     Vec<double, 4 + K> x, rate;
@@ -242,8 +242,8 @@ TEMPLATE_LIST_TEST_CASE("a link carries jets as the chain rule says", "[deform]"
   constexpr int K = deform_size<TestType>;
   Draws draws(6);
   for (int trial = 0; trial < 60; ++trial) {
-    const Parameters<TestType> b = draw<TestType>(draws);
-    Parameters<TestType> b_dot = Parameters<TestType>::Zero();
+    const Numbers<TestType> b = draw<TestType>(draws);
+    Numbers<TestType> b_dot = Numbers<TestType>::Zero();
     std::array<bool, K> dynamic{};
     for (int k = 0; k < K; ++k) {
       dynamic[static_cast<std::size_t>(k)] = draws.uniform(0, 1) < 0.6;

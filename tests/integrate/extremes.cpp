@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include <pliant/math/eigenvalues.h>
 
 #include "motion.h"
 #include "worst.h"
@@ -34,7 +34,7 @@ TEST_CASE("N07: semi-axes a million times apart have accurate accelerations", "[
     const MatX<double> M = work.parts[0].inertia.M;
     const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
     const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
-    CHECK(Eigen::SelfAdjointEigenSolver<MatX<double>>(scaled).eigenvalues().minCoeff() > 0.1);
+    CHECK(symmetric_eigenvalues(scaled).minCoeff() > 0.1);
   }
 }
 

@@ -6,11 +6,11 @@
 #include <array>
 #include <map>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <pliant/body/joints/rod.h>
 #include <pliant/body/joints/string.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "draws.h"
 #include "motion.h"
@@ -298,7 +298,7 @@ TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomi
       const VecX<double> a = simulation.dynamics().jvp(simulation.state(), along);
       for (int i = 0; i < n; ++i) A(i, k) = -a[simulation.model().parts()[static_cast<std::size_t>(i)].v0];
     }
-    const VecX<double> values = A.eigenvalues().real();
+    const VecX<double> values = eigenvalues(A).real();
     std::vector<double> found(values.data(), values.data() + n);
     std::sort(found.begin(), found.end());
     for (std::size_t i = 0; i < found.size(); ++i) CHECK(found[i] == Approx(roots[i]).epsilon(1e-10));

@@ -1,6 +1,7 @@
 // The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the laws
 // of every energy.
 #include <pliant/local/loaded_membrane.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "catch.h"
 #include "modes.h"
@@ -54,7 +55,7 @@ VecX<double> spectrum(const NodalEnergy& energy, const VecX<double>& M) {
   const Eigen::SparseMatrix<double> K = stiffness(energy, VecX<double>::Zero(3 * n)).topLeftCorner(n, n);
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();
   const MatX<double> scaled = root.asDiagonal() * MatX<double>(K) * root.asDiagonal();
-  return Eigen::SelfAdjointEigenSolver<MatX<double>>(scaled, Eigen::EigenvaluesOnly).eigenvalues();
+  return symmetric_eigenvalues(scaled);
 }
 
 }  // namespace

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
+
+#include <pliant/math/eigenvalues.h>
 
 #include "energy_laws.h"
 #include "shell_meshes.h"
@@ -30,9 +31,9 @@ inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<dou
     modes = factor.solve(MatX<double>(M.asDiagonal() * modes));
     const MatX<double> small_K = modes.transpose() * (K * modes),
                        small_M = modes.transpose() * M.asDiagonal() * modes;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatX<double>> solver(small_K, small_M);
-    values = solver.eigenvalues();
-    modes = modes * solver.eigenvectors();
+    const Eigenpairs small = symmetric_eigenpairs(small_K, small_M);
+    values = small.values;
+    modes = modes * small.vectors;
   }
   const MatX<double> along = U.transpose() * M.asDiagonal() * modes,
                      within = MatX<double>(U.transpose() * M.asDiagonal() * U).ldlt().solve(along);

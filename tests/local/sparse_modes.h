@@ -5,10 +5,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 
 #include <pliant/local/nodal_energy.h>
+#include <pliant/math/eigenvalues.h>
 
 #include "draws.h"
 
@@ -56,15 +56,15 @@ inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int want
     MatX<double> Y = factor.solve(M * X);
     for (Eigen::Index k = 0; k < block; ++k) Y.col(k).normalize();
     const MatX<double> k = Y.transpose() * (K * Y), m = Y.transpose() * (M * Y);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<MatX<double>> small(k, m);
-    X = Y * small.eigenvectors();
+    const Eigenpairs small = symmetric_eigenpairs(k, m);
+    X = Y * small.vectors;
     std::vector<Eigen::Index> order(static_cast<std::size_t>(block));
     for (Eigen::Index i = 0; i < block; ++i) order[static_cast<std::size_t>(i)] = i;
-    auto away = [&](Eigen::Index i) { return std::abs(small.eigenvalues()[i] - shift); };
+    auto away = [&](Eigen::Index i) { return std::abs(small.values[i] - shift); };
     std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) { return away(a) < away(b); });
     order.resize(static_cast<std::size_t>(wanted));
     std::sort(order.begin(), order.end());
-    const Modes modes{small.eigenvalues()(order), X(Eigen::all, order)};
+    const Modes modes{small.values(order), X(Eigen::all, order)};
     if ((modes.values - last).lpNorm<Eigen::Infinity>() <= 1e-9 * modes.values.lpNorm<Eigen::Infinity>())
       return modes;
     last = modes.values;

@@ -1,9 +1,9 @@
 // The strain energy of the whole map: its rule, its derivatives, and stiffnesses known in closed form.
 #include "catch.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <pliant/math/eigenvalues.h>
 #include <pliant/math/quadrature.h>
 
 #include "differences.h"
@@ -108,8 +108,7 @@ VecX<double> omega2(const Part& part) {
   const MatX<double> M_rs = M.topRightCorner(6, n);
   const MatX<double> free =
       M.bottomRightCorner(n, n) - M_rs.transpose() * M.topLeftCorner(6, 6).inverse() * M_rs;
-  return Eigen::GeneralizedSelfAdjointEigenSolver<MatX<double>>(part.elastic_stiffness(q), free)
-      .eigenvalues();
+  return symmetric_eigenpairs(part.elastic_stiffness(q), free).values;
 }
 
 }  // namespace

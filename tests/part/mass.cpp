@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
+#include <pliant/math/eigenvalues.h>
 #include <pliant/part/sum_inertia.h>
 
 #include "beta_moments.h"
@@ -18,11 +18,11 @@ using test::Draws;
 
 namespace {
 
-struct Solid {
+struct Measured {
   double mass;
   Vec3<double> centre, squares;  ///< mean of x^2, y^2, z^2
 };
-Solid solid(const Part& part) {
+Measured solid(const Part& part) {
   const Inertia<double>& I = part.rest_inertia();
   const double xx = I.M(3, 3), yy = I.M(4, 4), zz = I.M(5, 5), half = 0.5 / I.mass;
   return {I.mass, I.moment / I.mass, {(yy + zz - xx) * half, (xx + zz - yy) * half, (xx + yy - zz) * half}};
@@ -53,7 +53,7 @@ TEST_CASE("the moment table of superellipsoids with unit axes", "[mass]") {
         Row{0.1, 0.1, 7.910481, 0.328868, 0.328868, 5e-7}, Row{1, 0.5, 4.944199, 0.239628, 0.2, 5e-7},
         Row{0.5, 1, 5.491624, 0.228828, 0.274168, 5e-7}, Row{2, 2, 1.333333, 0.1, 0.1, 5e-7}})
     for (const char* shape : {"superellipsoid", "superellipsoid_radial"}) {
-      const Solid s = solid(*rigid(shape, {{"eps1", row.eps1}, {"eps2", row.eps2}}));
+      const Measured s = solid(*rigid(shape, {{"eps1", row.eps1}, {"eps2", row.eps2}}));
       INFO(shape << " " << row.eps1 << " " << row.eps2);
       CHECK(std::abs(s.mass - row.volume) <= 1.01 * row.half_unit);
       CHECK(std::abs(s.squares[0] - row.xx) <= 5.1e-7);
@@ -70,7 +70,7 @@ TEST_CASE("volume and second moments are those of the Beta functions", "[mass]")
     const double a1 = draws.uniform(0.3, 2), a2 = draws.uniform(0.3, 2), a3 = draws.uniform(0.3, 2);
     const std::unique_ptr<Part> part =
         rigid("superellipsoid", {{"a1", a1}, {"a2", a2}, {"a3", a3}, {"eps1", eps1}, {"eps2", eps2}});
-    const Solid s = solid(*part);
+    const Measured s = solid(*part);
     const long double a[3] = {a1, a2, a3};
     const long double V = test::moment(a, eps1, eps2, 0, 0, 0);
     INFO(eps1 << " " << eps2);
@@ -216,12 +216,12 @@ TEST_CASE("volumes and centres of deformed solids", "[mass]") {
   CHECK(solid(*rigid("ellipsoid", {{"taper.tx", 1}, {"taper.ty", 1}}, {"taper"})).mass ==
         Approx(4 * kPi / 3 * 1.2).epsilon(1e-13));
   // The offset of a bend of the paper's family moves the centre of mass by 3 b1 / pi^2 (physics 0.1, item 5).
-  const Solid offset = solid(*rigid("ellipsoid", {{"bend_offset.b1", 0.4}}, {"bend_offset"}));
+  const Measured offset = solid(*rigid("ellipsoid", {{"bend_offset.b1", 0.4}}, {"bend_offset"}));
   CHECK(offset.centre[0] == Approx(3 * 0.4 / (kPi * kPi)).epsilon(1e-12));
   CHECK(offset.mass == Approx(4 * kPi / 3).epsilon(1e-13));
   // A bend keeps the volume of a symmetric section (Pappus), and its direction only turns it.
   const Part::Named slim{{"a1", 0.3}, {"a2", 0.2}, {"bend.angle", 1.5}};
-  const Solid bent = solid(*rigid("cylinder", slim, {"bend"}));
+  const Measured bent = solid(*rigid("cylinder", slim, {"bend"}));
   CHECK(bent.mass == Approx(2 * kPi * 0.06).epsilon(1e-13));
   CHECK(bent.centre[0] > 0.1);
 }
@@ -281,7 +281,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces do the work
           CHECK((I.M - I.M.transpose()).norm() == 0);
           const VecX<double> scale = I.M.diagonal().cwiseSqrt().cwiseInverse();
           const MatX<double> scaled = scale.asDiagonal() * MatX<double>(I.M) * scale.asDiagonal();
-          CHECK(Eigen::SelfAdjointEigenSolver<MatX<double>>(scaled).eigenvalues().minCoeff() > 0);
+          CHECK(symmetric_eigenvalues(scaled).minCoeff() > 0);
 
           // M along the motion, by dual numbers.
           VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>(), q_s_dot = state.q_s_dot.cast<Dual<1>>();

@@ -17,14 +17,14 @@ namespace {
 
 /// Masses in a line, each of which meets the next in several contacts with normals near the line, the first a
 /// wall besides.
-struct Line {
+struct Row {
   CoulombSystem system;
   std::vector<double> mass;
   VecX<double> x;
   double mu;
 
   /// size: of each mover, 3 for points, 6 for bodies of unit inertia pushed off their centres.
-  Line(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
+  Row(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
     for (int i = 0; i < movers; ++i) {
       system.add_mover(size);
       mass.push_back(std::pow(10, draws.uniform(-1, 1)));
@@ -85,7 +85,7 @@ TEST_CASE("impulses of many contacts meet Coulomb's law at each", "[coulomb]") {
   Draws draws(7);
   for (const double mu : {0.0, 0.3, 0.8})
     for (int trial = 0; trial < 20; ++trial) {
-      Line line(1 + trial % 7, 6, 2, mu, draws);
+      Row line(1 + trial % 7, 6, 2, mu, draws);
       const CoulombResult result = line.system.solve(line.x);
       CHECK(result.residual < 1e-10);
       CHECK(result.fallbacks == 0);
@@ -96,7 +96,7 @@ TEST_CASE("impulses of many contacts meet Coulomb's law at each", "[coulomb]") {
 TEST_CASE("impulses on points meet Coulomb's law", "[coulomb]") {
   Draws draws(8);
   for (int trial = 0; trial < 20; ++trial) {
-    Line line(10, 3, 1, 0.5, draws);
+    Row line(10, 3, 1, 0.5, draws);
     const CoulombResult result = line.system.solve(line.x);
     CHECK(result.residual < 1e-5);
     CHECK(line.worst() < 1e-4);
@@ -106,7 +106,7 @@ TEST_CASE("impulses on points meet Coulomb's law", "[coulomb]") {
 TEST_CASE("points that more contacts push than they can move are stopped exactly", "[coulomb]") {
   Draws draws(11);
   for (int trial = 0; trial < 20; ++trial) {
-    Line line(2 + trial % 9, 3, 5, 0.4, draws);
+    Row line(2 + trial % 9, 3, 5, 0.4, draws);
     const CoulombResult result = line.system.solve(line.x);
     CHECK(result.residual < 1e-5);
     CHECK(result.fallbacks == 0);
@@ -133,7 +133,7 @@ TEST_CASE("a side that nothing can push is no part of what is solved", "[coulomb
 
 TEST_CASE("velocities after are those before and what the impulses change", "[coulomb]") {
   Draws draws(9);
-  Line line(12, 3, 2, 0.5, draws);
+  Row line(12, 3, 2, 0.5, draws);
   const VecX<double> before = line.x;
   line.system.solve(line.x);
   VecX<double> x = before;
@@ -144,7 +144,7 @@ TEST_CASE("velocities after are those before and what the impulses change", "[co
 
 TEST_CASE("movers that nothing ties together do not change each other's impulses", "[coulomb]") {
   Draws one(10), same(10);
-  Line alone(4, 6, 2, 0.5, one), two(4, 6, 2, 0.5, same);
+  Row alone(4, 6, 2, 0.5, one), two(4, 6, 2, 0.5, same);
   const int far = two.system.add_mover(3);
   two.mass.push_back(1);
   two.system.add_contact(0.5);
@@ -160,7 +160,7 @@ TEST_CASE("movers that nothing ties together do not change each other's impulses
 
 TEST_CASE("a search that begins at the solution ends there at once", "[coulomb]") {
   Draws draws(11), same(11);
-  Line line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, same);
+  Row line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, same);
   const CoulombResult first = line.system.solve(line.x);
   CHECK(first.sweeps > 10);
   for (int k = 0; k < line.system.size(); ++k) again.system.impulse(k) = line.system.impulse(k);

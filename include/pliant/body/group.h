@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/math/index.h>
 
 namespace pliant {
 
@@ -131,7 +132,6 @@ class Group {
   /// C_q^T of a ball joint on a rigid part.
   using BallSide = Eigen::Map<const Eigen::Matrix<S, 6, 3>>;
 
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   const JointFactor<S>& factor() const {
     return (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
   }

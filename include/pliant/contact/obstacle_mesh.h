@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <pliant/math/index.h>
 #include <pliant/math/types.h>
 
 namespace pliant {
@@ -67,7 +68,6 @@ class ObstacleMesh {
     int first, count;  ///< in order_; its children follow it at once and at `second` when it has no triangles
     int second;
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
   void lay_edges();
   void lay_faces();

@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 #include <pliant/local/element_corners.h>
+#include <pliant/math/eigenvalues.h>
 
 namespace pliant {
 
@@ -31,8 +30,7 @@ double element_frequency_bound(const ElementCorners<N>& corners, const VecX<doub
         root[3 * a + i] = std::sqrt(around[node] / (mass * volume(e)));
       }
     const Eigen::Matrix<double, 3 * N, 3 * N> K = root.asDiagonal() * stiffness(e) * root.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 3 * N, 3 * N>> modes(K, Eigen::EigenvaluesOnly);
-    bound = std::max(bound, modes.eigenvalues().maxCoeff());
+    bound = std::max(bound, symmetric_eigenvalues(K).maxCoeff());
   }
   return bound * (1 + 1e-12);  // rounding of the eigenvalues
 }

@@ -10,9 +10,9 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 
+#include <pliant/math/eigenvalues.h>
 #include <pliant/math/types.h>
 
 namespace pliant {
@@ -47,7 +47,6 @@ double largest_of_elements(Each&& each, const VecX<double>& M) {
   });
   double largest = 0;
   each([&](const auto& element) {
-    auto scaled = element.K;
     VecX<double> root(element.K.rows());
     for (std::size_t i = 0; i < element.at.size(); ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -58,9 +57,8 @@ double largest_of_elements(Each&& each, const VecX<double>& M) {
       largest = std::numeric_limits<double>::infinity();
       return;
     }
-    scaled = root.asDiagonal() * element.K * root.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<decltype(scaled)> solver(scaled, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, solver.eigenvalues()[element.K.rows() - 1]);
+    const MatX<double> scaled = root.asDiagonal() * element.K * root.asDiagonal();
+    largest = std::max(largest, symmetric_eigenvalues(scaled)[scaled.rows() - 1]);
   });
   // The eigenvalues' own rounding.
   return largest * (1 + 1e-12);

@@ -33,7 +33,7 @@ struct ModalWorkspace final : LocalWorkspace {
   // what pushes on v_r and on the shared points do
   MatX<double> P, C_P;  ///< modes at the points; C P^T
 
-  double condition() const override { return 1 / factor.rcond(); }
+  double condition() const override;
   template <class Rhs>
   MatX<double> solve(const Rhs& b) const {
     const MatX<double> scaled = factor.solve(MatX<double>(scale.asDiagonal() * b));

@@ -45,7 +45,7 @@ struct NodalWorkspace final : LocalWorkspace {
 
   /// J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
-  double condition() const override { return 1 / factor.rcond(); }
+  double condition() const override;
   /// K^-1 b and K^-T b, with as many columns as b.
   template <class B>
   auto solve(const B& b) const {

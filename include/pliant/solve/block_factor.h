@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <pliant/math/dual.h>
+#include <pliant/math/index.h>
 #include <pliant/math/types.h>
 #include <pliant/solve/block_pattern.h>
 #include <pliant/solve/symmetric_factor.h>
@@ -110,7 +111,6 @@ class BlockFactor {
     int row;
     double entry;
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   /// act(n), with the three rows of a ball joint as a constant, so that loops unroll.
   template <class F>

@@ -12,7 +12,7 @@ namespace pliant {
 /// sliding found as the root of one equation.
 class CoulombLaw {
  public:
-  CoulombLaw() = default;
+  CoulombLaw();
   /// W: of full rank, symmetric positive definite; rows: normal, then the two tangents.
   CoulombLaw(const Mat3<double>& W, double mu);
   Vec3<double> push(const Vec3<double>& b) const;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include <pliant/math/index.h>
 #include <pliant/solve/coulomb.h>
 
 namespace pliant {
@@ -89,7 +90,6 @@ class CoulombSystem {
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);
   void complete();
