@@ -41,10 +41,14 @@ function(pliant_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;PUBLIC;PRIVATE")
   add_library(pliant_${name} ${arg_SOURCES})
   add_library(pliant::${name} ALIAS pliant_${name})
-  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(pliant_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+                                                   UNITY_BUILD ${PLIANT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   target_include_directories(pliant_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                    $<INSTALL_INTERFACE:include>)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
+  if(PLIANT_UNITY)  # a source is then not the main file, whose unnamed namespace may be in its types
+    target_compile_options(pliant_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
   pliant_install_library(${name} ${arg_PUBLIC} ${arg_PRIVATE})
 endfunction()
