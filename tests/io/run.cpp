@@ -167,7 +167,8 @@ std::unique_ptr<Scene> scene_to(double tolerance, double end) {
 }
 }  // namespace
 
-TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywhere or gone on with") {
+TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywhere or gone on with",
+          "[long]") {
   const NewFolder folder;
   const fs::path unbroken = folder / "unbroken", longer = folder / "longer";
   REQUIRE(run(*scene_to(1e-7, 0.2), unbroken));

@@ -99,7 +99,7 @@ TEST_CASE("closed shell: the membrane's spectrum converges with the square of th
   }
 }
 
-TEST_CASE("closed shell: with bending, on 642 nodes", "[local]") {
+TEST_CASE("closed shell: with bending, on 642 nodes", "[local][long]") {
   for (int n = 2; n <= 10; ++n) {
     const double coarse = bending_error(2, n), fine = bending_error(3, n);
     INFO("n " << n << ": errors " << coarse << ", " << fine);

@@ -117,7 +117,7 @@ TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion,
                     test::has_text("0.4999"));
 }
 
-TEST_CASE("N22: a sphere of linear elements locks, with averaged dilatation it does not", "[solid]") {
+TEST_CASE("N22: a sphere of linear elements locks, with averaged dilatation it does not", "[solid][long]") {
   CHECK(lamb_S2(0.3) == Approx(2.64622).margin(1e-5));
   CHECK(lamb_S2(0.49) == Approx(2.66483).margin(1e-5));
   CHECK(plain_error<LinearTetrahedron>(4, 0.3) < 0.05);

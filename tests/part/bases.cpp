@@ -119,7 +119,7 @@ TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing, closer with e
 }
 
 TEST_CASE("Lamb's sphere by modes of curved elements: their consistent mass, fourth order, from above",
-          "[bases]") {
+          "[bases][long]") {
   auto of_mesh = [](int resolution) {
     const auto part = make_part("ball", "sphere", {}, 1);
     LocalSettings settings = polynomials(0);

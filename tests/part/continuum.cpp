@@ -113,7 +113,7 @@ VecX<double> omega2(const Part& part) {
 
 }  // namespace
 
-TEST_CASE("the strain energy is the integral of the law over the rest body", "[continuum]") {
+TEST_CASE("the strain energy is the integral of the law over the rest body", "[continuum][long]") {
   Draws draws(3);
   for (const Body& body : bodies()) {
     const std::string shape = body.shape;

@@ -101,7 +101,8 @@ TEST_CASE("assembly tells whether shapes settled within the most iterations") {
   CHECK(report.settled == (report.iterations < 400));
 }
 
-TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has closed stays closed") {
+TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has closed stays closed",
+          "[long]") {
   struct Case {
     const char* name;
     std::size_t joints;
