@@ -3,7 +3,7 @@
 #   components  find_package with all of COMPONENTS
 #   absent      find_package with a component that does not exist: must fail, naming it
 #   pkg-config  pliant.pc of PREFIX
-#   subdirectory  add_subdirectory(SOURCE): the client compiles; to build core once more and link it would take minutes
+#   subdirectory  add_subdirectory(SOURCE); it links CORE, which is built: once more would take minutes
 # and GENERATOR, CXX, LAUNCHER are those of the build that runs this.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
@@ -12,7 +12,7 @@ set(configure ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/client -B ${work} -G
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 if(WAY STREQUAL subdirectory)
-  list(APPEND configure -DPLIANT_SOURCE=${SOURCE} -DCMAKE_BUILD_TYPE=None)
+  list(APPEND configure -DPLIANT_SOURCE=${SOURCE} -DPLIANT_BUILT_CORE=${CORE} -DCMAKE_BUILD_TYPE=None)
 else()
   list(APPEND configure -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=Release)
 endif()
@@ -35,7 +35,8 @@ endif()
 
 execute_process(COMMAND ${configure} COMMAND_ERROR_IS_FATAL ANY)
 if(WAY STREQUAL subdirectory)
-  execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} --target client_object COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} --target client_of_built COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${work}/client_of_built COMMAND_ERROR_IS_FATAL ANY)
   return()
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} COMMAND_ERROR_IS_FATAL ANY)
