@@ -138,7 +138,22 @@ BlockPattern::BlockPattern(const Elimination& elimination) {
                                         [](const Block& b, int r) { return b.place < r; });
     return found->offset;
   };
-  for (Column& column : columns_) {
+  first_dense_ = nodes();
+  const auto full = [&](int place) {
+    const Column& c = columns_[static_cast<std::size_t>(place)];
+    return c.last - c.first == nodes() - place - 1;
+  };
+  while (first_dense_ > 0 && full(first_dense_ - 1)) --first_dense_;
+  for (int place = first_dense_; place < nodes(); ++place) {
+    const Column& c = columns_[static_cast<std::size_t>(place)];
+    for (int k = 0; k < c.size; ++k) dense_rows_.push_back(c.row + k);
+  }
+  if (static_cast<int>(dense_rows_.size()) < kDense) {
+    first_dense_ = nodes();
+    dense_rows_.clear();
+  }
+  for (int place = 0; place < first_dense_; ++place) {
+    Column& column = columns_[static_cast<std::size_t>(place)];
     column.first_update = static_cast<int>(updates_.size());
     for (int b = column.first; b < column.last; ++b)
       for (int a = b; a < column.last; ++a)

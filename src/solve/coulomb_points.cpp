@@ -113,23 +113,23 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
 /// Contacts couple what each of them pushes with all at its sides that any contact pushes. That is found
 /// once for each cluster.
 MoverSystem& CoulombCluster::couple_movers() {
-  auto& [clusters, numbers, push_rows, side_rows, first_block, blocks] = scratch_.coupling;
-  if (clusters.empty()) {
-    clusters.resize(system_.clusters_.size() - 1);
-    numbers.resize(at(system_.movers()), -1);
-    push_rows.resize(system_.pushes_.size(), -1);
-    side_rows.resize(system_.sides_.size(), -1);
-    first_block.resize(system_.contacts_.size(), 0);
+  Coupling& coupling = scratch_.coupling;
+  if (coupling.clusters.empty()) {
+    coupling.clusters.resize(system_.clusters_.size() - 1);
+    coupling.numbers.resize(at(system_.movers()), -1);
+    coupling.push_rows.resize(system_.pushes_.size(), -1);
+    coupling.side_rows.resize(system_.sides_.size(), -1);
+    coupling.first_block.resize(system_.contacts_.size(), 0);
   }
-  MoverSystem& movers = clusters[at(number_)];
+  MoverSystem& movers = coupling.clusters[at(number_)];
   if (!movers.empty()) return movers;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
       const int mover = system_.pushes_[at(r)].mover;
-      int& number = numbers[at(mover)];
+      int& number = coupling.numbers[at(mover)];
       if (number < 0) number = movers.add_mover(system_.mover_size(mover));
     }
-  auto number_at = [&](const CoulombSystem::Term& term) { return numbers[at(term.mover)]; };
+  auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.sides_[at(s)];
@@ -144,18 +144,18 @@ MoverSystem& CoulombCluster::couple_movers() {
   movers.order();
   auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
   for (int i = 0; i < size_; ++i) {
-    first_block[at(contacts_[i])] = blocks.size();
+    coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
       MoverSystem::Block block = movers.block(row, column);
       block.first += at(in_mover(side) * block.stride);
-      blocks.push_back(block);
+      coupling.blocks.push_back(block);
     });
     for (int r = point(i).first_push; r < point(i).last_push; ++r)
-      push_rows[at(r)] = movers.row(number_at(system_.pushes_[at(r)]));
+      coupling.push_rows[at(r)] = movers.row(number_at(system_.pushes_[at(r)]));
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.sides_[at(s)];
       if (const int number = number_at(side); number >= 0)
-        side_rows[at(s)] = movers.row(number) + in_mover(side);
+        coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
     }
   }
   return movers;

@@ -79,7 +79,8 @@ TEST_CASE("block factor: solves what dense algebra solves, in any order", "[bloc
   Draws draws(1);
   for (int trial = 0; trial < 200; ++trial) {
     const bool chain = trial % 3 == 0;
-    const Sample sample(draws, draws.integer(1, 20), chain ? 0 : draws.integer(0, 15), chain);
+    const int more_edges = chain ? 0 : draws.integer(0, trial % 3 == 1 ? 15 : 300);  // so many fill it
+    const Sample sample(draws, draws.integer(1, 20), more_edges, chain);
     const VecX<double> b = random(draws, sample.A.rows()), expected = sample.A.ldlt().solve(b);
     for (const NodeOrder order : {minimum_degree_order, cardinality_order, given_order}) {
       const BlockPattern pattern(sample.sizes, sample.edges, order);
@@ -105,6 +106,31 @@ TEST_CASE("block factor: a chain and a tree fill nothing in", "[block_factor]") 
       expected += sample.sizes[static_cast<std::size_t>(u)] * sample.sizes[static_cast<std::size_t>(v)];
     CHECK(pattern.values() == expected);
   }
+}
+
+TEST_CASE("block factor: dense from where nothing is zero any more, where that is worth it",
+          "[block_factor]") {
+  auto all_pairs = [](int first, int last) {
+    std::vector<std::pair<int, int>> edges;
+    for (int v = first; v < last; ++v)
+      for (int u = first; u < v; ++u) edges.emplace_back(u, v);
+    return edges;
+  };
+  const std::vector<int> chain(100, 3), star(9, 3), few(5, 3);
+  std::vector<std::pair<int, int>> links;
+  for (int u = 1; u < 100; ++u) links.emplace_back(u - 1, u);
+  CHECK(BlockPattern(chain, links, cardinality_order).dense_rows().empty());
+  CHECK(BlockPattern(few, all_pairs(0, 5), cardinality_order).dense_rows().empty());
+  const BlockPattern all(star, all_pairs(0, 9), cardinality_order);
+  CHECK(all.first_dense() == 0);
+  CHECK(all.dense_rows().size() == 27);
+  CHECK(all.updates().empty());
+  // A chain that leads to a star: blocks, then dense.
+  std::vector<std::pair<int, int>> both = all_pairs(91, 100);
+  both.insert(both.end(), links.begin(), links.end());
+  const BlockPattern last(chain, both, given_order);
+  CHECK(last.first_dense() == 91);
+  CHECK(last.dense_rows().front() == 3 * 91);
 }
 
 TEST_CASE("block factor: rows that depend on others are held, and the rest is solved without them",
@@ -138,7 +164,8 @@ TEST_CASE("block factor: rows that depend on others are held, and the rest is so
 TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
   Draws draws(4);
   for (int trial = 0; trial < 30; ++trial) {
-    const Sample sample(draws, draws.integer(1, 10), draws.integer(0, 5), trial % 2 == 0);
+    const int more_edges = trial % 3 == 0 ? 200 : draws.integer(0, 5);  // so many fill it
+    const Sample sample(draws, draws.integer(1, 10), more_edges, trial % 2 == 0);
     const auto n = sample.A.rows();
     const VecX<double> b = random(draws, n), db = random(draws, n);
     // dA has the pattern of A.

@@ -1,65 +1,53 @@
-// L D L^T of a symmetric positive semi-definite matrix of small blocks, such as W_c = C_q M^-1 C_q^T. Rows
-// that depend on those before them are found by their vanishing pivot and held: their unknown is 0, and all
-// else is solved as if they were not there. S is double or Dual<1>.
+// L D L^T of a symmetric positive semi-definite matrix of small blocks, such as W_c = C_q M^-1 C_q^T: block
+// by block while the matrix is sparse, and dense from where nothing of it is zero any more. Rows that depend
+// on those before them are held. S is double or Dual<1>.
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <type_traits>
 #include <vector>
 
-#include <pliant/math/dual.h>
 #include <pliant/math/index.h>
 #include <pliant/math/types.h>
 #include <pliant/solve/block_pattern.h>
-#include <pliant/solve/symmetric_factor.h>
+#include <pliant/solve/dense_factor.h>
+#include <pliant/solve/pivots.h>
 
 namespace pliant {
-
-/// How rows that depend on others are told: by a vanished pivot; by the factor before, as where joints are a
-/// little open within a step, which makes such rows seem independent; or only where nothing but rounding is
-/// left of a pivot, next to a singular position.
-enum class RankRule { decide, keep, rounding };
 
 template <class S>
 class BlockFactor {
  public:
-  /// A pivot at or below this part of its diagonal entry has vanished, and one of which only rounding is
-  /// left.
-  static constexpr double kVanished = 1e-9, kRounding = 1e-12;
-
-  /// All blocks zero. The pattern must outlive the factor.
+  /// All blocks zero. The pattern must outlive the factor. RankRule::keep asks for the same pattern as
+  /// before, and decides where it is another.
   void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
-    keep_ = rule == RankRule::keep && pattern_ == &pattern;
-    vanished_ = rule == RankRule::rounding ? kRounding : kVanished;
+    const bool another = pattern_ != &pattern;
     pattern_ = &pattern;
-    values_.assign(static_cast<std::size_t>(pattern.values()), S(0.0));
-    if (!keep_) held_.assign(static_cast<std::size_t>(pattern.rows()), 0);
-    measures_.clear();
+    values_.assign(at(pattern.values()), S(0.0));
+    pivots_.clear(pattern.rows(), another && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// Pivots of a row, whose diagonal entry is what is left of larger ones, are measured by those.
-  void measure_by(int row, double entry) { measures_.push_back({row, entry}); }
+  /// The pivot of a row, whose diagonal entry is what is left of larger ones, is measured by those.
+  void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
   /// Numbers of the block at an offset that the pattern gave, by columns.
   S* block(int offset) { return values_.data() + offset; }
 
   /// Factors the blocks that were filled in since clear().
   void factor() {
-    smallest_ = 1;
-    const auto& columns = pattern_->columns();
-    diagonal_.resize(static_cast<std::size_t>(pattern_->rows()));
-    inverse_.resize(static_cast<std::size_t>(pattern_->rows()));
-    for (const BlockPattern::Column& c : columns)
+    for (const BlockPattern::Column& c : pattern_->columns())
       for (int k = 0; k < c.size; ++k)
-        diagonal_[static_cast<std::size_t>(c.row + k)] = plain(values_[at(c.diagonal + k * (c.size + 1))]);
-    for (const Measure& m : measures_) diagonal_[at(m.row)] = std::max(diagonal_[at(m.row)], m.entry);
-    for (const BlockPattern::Column& c : columns) eliminate(c);
+        pivots_.set_entry(c.row + k, values_[at(c.diagonal + k * (c.size + 1))]);
+    pivots_.take_measures();
+    for (int place = 0; place < pattern_->first_dense(); ++place) eliminate(pattern_->columns()[at(place)]);
+    if (pattern_->dense_rows().empty()) return;
+    gather_dense();
+    dense_.factor(pattern_->dense_rows(), pivots_);
   }
 
-  /// x = A^-1 x, with zeros for held rows. x is in the order of the nodes.
+  /// x = A^-1 x, with zeros for held rows. x is in the order of the nodes. One call at a time: it needs room.
   void solve(VecX<S>& x) const {
     const auto& columns = pattern_->columns();
-    for (const BlockPattern::Column& c : columns)
+    for (int place = 0; place < pattern_->first_dense(); ++place) {
+      const BlockPattern::Column& c = columns[at(place)];
       sized(c.size, [&](auto n) {
         S* y = x.data() + c.row;
         const S* D = values_.data() + c.diagonal;
@@ -75,12 +63,15 @@ class BlockFactor {
               for (int i = 0; i < rows; ++i) z[i] -= L[k * rows + i] * y[k];
           });
         }
-        for (int k = 0; k < n; ++k) y[k] = y[k] * inverse_[at(c.row + k)];
+        for (int k = 0; k < n; ++k) y[k] = y[k] * pivots_.inverse(c.row + k);
       });
-    for (auto c = columns.rbegin(); c != columns.rend(); ++c)
-      sized(c->size, [&](auto n) {
-        S* y = x.data() + c->row;
-        for (int b = c->first; b < c->last; ++b) {
+    }
+    if (!pattern_->dense_rows().empty()) solve_dense(x);
+    for (int place = pattern_->first_dense(); place-- > 0;) {
+      const BlockPattern::Column& c = columns[at(place)];
+      sized(c.size, [&](auto n) {
+        S* y = x.data() + c.row;
+        for (int b = c.first; b < c.last; ++b) {
           const BlockPattern::Block& block = pattern_->blocks()[at(b)];
           const BlockPattern::Column& below = columns[at(block.place)];
           const S* L = values_.data() + block.offset;
@@ -90,28 +81,20 @@ class BlockFactor {
               for (int i = 0; i < rows; ++i) y[k] -= L[k * rows + i] * z[i];
           });
         }
-        const S* D = values_.data() + c->diagonal;
+        const S* D = values_.data() + c.diagonal;
         for (int k = n - 1; k >= 0; --k)
           for (int i = k + 1; i < n; ++i) y[k] -= D[k * n + i] * y[i];
       });
+    }
   }
 
   /// Whether a row, in the order of the nodes, depends on others.
-  bool held(int row) const { return held_[at(row)] != 0; }
-  int rank() const {
-    int rank = pattern_->rows();
-    for (const std::uint8_t held : held_) rank -= held;
-    return rank;
-  }
+  bool held(int row) const { return pivots_.held(row); }
+  int rank() const { return pivots_.rank(); }
   /// The smallest pivot that counts, as part of its diagonal entry: digits that the elimination cost.
-  double smallest_pivot() const { return smallest_; }
+  double smallest_pivot() const { return pivots_.smallest(); }
 
  private:
-  struct Measure {
-    int row;
-    double entry;
-  };
-
   /// act(n), with the three rows of a ball joint as a constant, so that loops unroll.
   template <class F>
   static void sized(int n, F&& act) {
@@ -145,6 +128,36 @@ class BlockFactor {
     });
   }
 
+  /// The blocks that are left make the lower triangle of the dense matrix.
+  void gather_dense() {
+    const auto n = static_cast<int>(pattern_->dense_rows().size());
+    const auto& columns = pattern_->columns();
+    dense_.matrix().resize(n, n);
+    for (int place = pattern_->first_dense(), column = 0; place < pattern_->nodes(); ++place) {
+      const BlockPattern::Column& c = columns[at(place)];
+      int row = column;
+      auto copy = [&](int offset, int rows) {
+        for (int k = 0; k < c.size; ++k)
+          std::copy_n(values_.data() + offset + k * rows, rows, &dense_.matrix()(row, column + k));
+        row += rows;
+      };
+      copy(c.diagonal, c.size);
+      for (int b = c.first; b < c.last; ++b) {
+        const BlockPattern::Block& block = pattern_->blocks()[at(b)];
+        copy(block.offset, columns[at(block.place)].size);
+      }
+      column += c.size;
+    }
+  }
+
+  void solve_dense(VecX<S>& x) const {
+    const std::vector<int>& rows = pattern_->dense_rows();
+    dense_x_.resize(static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) dense_x_.data()[i] = x[rows[i]];
+    dense_.solve(rows, pivots_, dense_x_);
+    for (std::size_t i = 0; i < rows.size(); ++i) x[rows[i]] = dense_x_.data()[i];
+  }
+
   S* scaled(int b) { return scaled_.data() + b * kMaxBlock * kMaxBlock; }
 
   /// The diagonal block into its L and D, in place. Held rows have no inverse pivot and a zero column, so
@@ -155,25 +168,16 @@ class BlockFactor {
     for (int j = 0; j < n; ++j) {
       S d = A[j * n + j];
       for (int k = 0; k < j; ++k) d -= A[k * n + j] * A[k * n + j] * A[k * n + k];
-      const double from = diagonal_[at(c.row + j)], left = plain(d);
-      // What is not a number is left to the finite check.
-      const bool gone = (keep_ && held(c.row + j)) ||
-                        (std::isfinite(from) && !(left > (keep_ ? kRounding : vanished_) * from));
-      if (gone) {
-        held_[at(c.row + j)] = 1;
-        inverse_[at(c.row + j)] = S(0.0);
+      if (!pivots_.take(c.row + j, d)) {
         A[j * n + j] = S(1.0);
         for (int i = j + 1; i < n; ++i) A[j * n + i] = S(0.0);
         continue;
       }
-      smallest_ = left < smallest_ * from ? left / from : smallest_;
-      const S inverse = S(1.0) / d;
-      inverse_[at(c.row + j)] = inverse;
       A[j * n + j] = d;
       for (int i = j + 1; i < n; ++i) {
         S sum = A[j * n + i];
         for (int k = 0; k < j; ++k) sum -= A[k * n + i] * A[k * n + j] * A[k * n + k];
-        A[j * n + i] = sum * inverse;
+        A[j * n + i] = sum * pivots_.inverse(c.row + j);
       }
     }
   }
@@ -188,9 +192,9 @@ class BlockFactor {
       for (int i = 0; i < rows; ++i) x[i] = B[k * rows + i];
       for (int m = 0; m < k; ++m)
         for (int i = 0; i < rows; ++i) x[i] -= X[m * rows + i] * A[m * n + k];
-      if (held_[at(c.row + k)] != 0)
+      if (pivots_.held(c.row + k))
         for (int i = 0; i < rows; ++i) x[i] = S(0.0);
-      const S inverse = inverse_[at(c.row + k)];
+      const S inverse = pivots_.inverse(c.row + k);
       for (int i = 0; i < rows; ++i) B[k * rows + i] = x[i] * inverse;
     }
   }
@@ -208,12 +212,9 @@ class BlockFactor {
 
   const BlockPattern* pattern_ = nullptr;
   std::vector<S> values_, scaled_;
-  std::vector<S> inverse_;  ///< 1 / pivot of each row; 0 of held ones
-  std::vector<double> diagonal_;
-  std::vector<Measure> measures_;
-  std::vector<std::uint8_t> held_;
-  double smallest_ = 1, vanished_ = kVanished;
-  bool keep_ = false;
+  Pivots<S> pivots_;
+  DenseFactor<S> dense_;
+  mutable VecX<S> dense_x_;  ///< the room of solve()
 };
 
 }  // namespace pliant

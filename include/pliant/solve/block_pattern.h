@@ -1,5 +1,6 @@
 // The pattern of a symmetric matrix of small blocks and of its factor L D L^T, found once: the order of
-// elimination, the blocks that fill in, and the list of block products that the elimination is.
+// elimination, the blocks that fill in, the list of block products that the elimination is, and where it ends
+// with a dense matrix.
 #pragma once
 
 #include <utility>
@@ -50,6 +51,10 @@ class BlockPattern {
   };
   Place place(int u, int v) const;
 
+  /// Rows that the last nodes must have together to be factored as one dense matrix, when no block of them is
+  /// zero: below this, blocks cost no more.
+  static constexpr int kDense = 18;
+
   int nodes() const { return static_cast<int>(columns_.size()); }
   int rows() const { return rows_; }
   /// Numbers that the blocks of the factor hold: the storage that a factor needs.
@@ -68,17 +73,23 @@ class BlockPattern {
     int first, last;   ///< its blocks below
     int first_update;  ///< of its updates: one for each pair (a, b) of its blocks, a from b on
   };
+  /// Those that are eliminated block by block come first.
   const std::vector<Column>& columns() const { return columns_; }
   const std::vector<Block>& blocks() const { return blocks_; }
-  /// Offsets of the blocks that the pairs of blocks of each column change.
+  /// Offsets of the blocks that the pairs of blocks of each column change, before the dense ones.
   const std::vector<int>& updates() const { return updates_; }
+  /// The first of the columns that are one dense matrix: all of a small star, none of a chain.
+  int first_dense() const { return first_dense_; }
+  /// Rows in the vectors of that matrix.
+  const std::vector<int>& dense_rows() const { return dense_rows_; }
 
  private:
   std::vector<Column> columns_;
   std::vector<Block> blocks_;
   std::vector<int> updates_;
   std::vector<int> place_of_;  // of each node
-  int rows_ = 0, values_ = 0;
+  std::vector<int> dense_rows_;
+  int rows_ = 0, values_ = 0, first_dense_ = 0;
 };
 
 }  // namespace pliant

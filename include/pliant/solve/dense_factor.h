@@ -1,0 +1,71 @@
+// L D L^T of a dense symmetric positive semi-definite matrix, in panels of columns. S is double or Dual<1>.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include <pliant/math/index.h>
+#include <pliant/math/types.h>
+#include <pliant/solve/pivots.h>
+
+namespace pliant {
+
+template <class S>
+class DenseFactor {
+ public:
+  /// The matrix to factor, and then its factor; only the lower triangle counts.
+  MatX<S>& matrix() { return L_; }
+
+  /// Factors the matrix in place. row: the number that each of its rows has among the pivots.
+  void factor(const std::vector<int>& row, Pivots<S>& pivots) {
+    const auto n = static_cast<int>(L_.rows());
+    scaled_.resize(n, kPanel);
+    for (int first = 0; first < n; first += kPanel) {
+      const int last = std::min(first + kPanel, n);
+      for (int j = first; j < last; ++j) {
+        const int below = n - j - 1;
+        for (int k = first; k < j; ++k)
+          L_.col(j).tail(n - j) -= scaled_.col(k - first).tail(n - j) * L_(j, k);
+        scaled_.col(j - first).tail(below) = L_.col(j).tail(below);
+        if (!pivots.take(row[at(j)], L_(j, j))) scaled_.col(j - first).tail(below).setZero();
+        L_.col(j).tail(below) = scaled_.col(j - first).tail(below) * pivots.inverse(row[at(j)]);
+      }
+      if (last == n) break;
+      int j = last;
+      for (; j + 1 < n; j += 2) subtract_panel(first, j);
+      if (j < n) L_(j, j) -= scaled_.row(j).dot(L_.template block<1, kPanel>(j, first));
+    }
+  }
+
+  /// x = A^-1 x, with zeros for held rows.
+  void solve(const std::vector<int>& row, const Pivots<S>& pivots, VecX<S>& x) const {
+    const auto n = static_cast<int>(L_.rows());
+    for (int j = 0; j < n; ++j) x.tail(n - j - 1) -= L_.col(j).tail(n - j - 1) * x[j];
+    for (int j = n; j-- > 0;) {
+      x[j] *= pivots.inverse(row[at(j)]);
+      x[j] -= L_.col(j).tail(n - j - 1).dot(x.tail(n - j - 1));
+    }
+  }
+
+ private:
+  static constexpr int kPanel = 4;
+
+  /// Takes a whole panel from two columns to its right: what is loaded of the panel serves both.
+  void subtract_panel(int first, int j) {
+    const auto rows = static_cast<int>(L_.rows()) - j;
+    const S *x0 = &scaled_(j, 0), *x1 = &scaled_(j, 1), *x2 = &scaled_(j, 2), *x3 = &scaled_(j, 3);
+    const Eigen::Matrix<S, kPanel, 1> l = L_.template block<1, kPanel>(j, first),
+                                      m = L_.template block<1, kPanel>(j + 1, first);
+    const S l0 = l[0], l1 = l[1], l2 = l[2], l3 = l[3], m0 = m[0], m1 = m[1], m2 = m[2], m3 = m[3];
+    S *y = &L_(j, j), *z = &L_(j, j + 1);
+    for (int i = 0; i < rows; ++i) {
+      y[i] -= (x0[i] * l0 + x1[i] * l1) + (x2[i] * l2 + x3[i] * l3);
+      z[i] -= (x0[i] * m0 + x1[i] * m1) + (x2[i] * m2 + x3[i] * m3);
+    }
+  }
+
+  MatX<S> L_;
+  Eigen::Matrix<S, Eigen::Dynamic, kPanel> scaled_;  ///< L D of a panel
+};
+
+}  // namespace pliant
