@@ -32,6 +32,7 @@ if(PLIANT_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=null,alignment,vptr,object-size
                       -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
+  add_compile_definitions(PLIANT_SANITIZED)  # tests that sanitizers slow down, or that count allocations, ask
 endif()
 
 # A library of the project: pliant_library(core SOURCES ... PUBLIC ... PRIVATE ...) makes pliant_core and pliant::core, and

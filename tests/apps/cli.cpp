@@ -15,6 +15,8 @@
 #include "../io/new_folder.h"
 #include "catch.h"
 
+namespace cli_test {
+
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
@@ -405,7 +407,7 @@ TEST_CASE(
   CHECK(files.code == 3);
   CHECK(has(files.err, "at most 1000000"));
   CHECK_FALSE(fs::exists(place.folder / "out"));
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PLIANT_SANITIZED
   const std::string little_memory;  // the sanitizer itself takes terabytes of addresses
 #else
   const std::string little_memory = "ulimit -d 500000;";  // kB
@@ -536,3 +538,5 @@ TEST_CASE(
   CHECK(has(early.err, "ball 'there', by 1 m"));
   CHECK(place.record("out")["monitors"]["open_gap"] == 1);
 }
+
+}  // namespace cli_test

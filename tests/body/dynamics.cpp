@@ -8,6 +8,8 @@
 #include "draws.h"
 #include "worst.h"
 
+namespace dynamics_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -267,3 +269,5 @@ TEST_CASE("states of the same bits have the same hash", "[dynamics]") {
   CHECK(changed([](State& s) { s.h *= 2; }));
   CHECK(changed([](State& s) { ++s.step; }));
 }
+
+}  // namespace dynamics_test

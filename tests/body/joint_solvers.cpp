@@ -14,6 +14,8 @@
 #include "../integrate/motion.h"
 #include "draws.h"
 
+namespace joint_solvers_test {
+
 using namespace pliant;
 using test::Draws;
 using Choice = JointSolver::Choice;
@@ -189,3 +191,5 @@ TEST_CASE("the choice: blocks for chains and nets, the augmented matrix where ve
   const Model of_chain(chain);
   CHECK_FALSE(of_chain.islands()[0].augmented);
 }
+
+}  // namespace joint_solvers_test

@@ -10,6 +10,8 @@
 #include "differences.h"
 #include "draws.h"
 
+namespace joints_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -205,3 +207,5 @@ TEST_CASE("joints within a part that does not deform are refused by name, of eve
   body.stabilization.rule = BaumgarteRule::free;
   CHECK_THROWS_WITH(Model(body), test::has_text("the rule free needs stab_beta > 0"));
 }
+
+}  // namespace joints_test

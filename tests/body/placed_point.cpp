@@ -7,6 +7,8 @@
 
 #include "catch.h"
 
+namespace placed_point_test {
+
 using namespace pliant;
 
 TEST_CASE("a placed point is the point of its part, soft or not, and of the world") {
@@ -40,3 +42,5 @@ TEST_CASE("a placed point is the point of its part, soft or not, and of the worl
             .norm() > 1e-6);
   CHECK(Model::node_weights(on_plain.point()).node.empty());
 }
+
+}  // namespace placed_point_test

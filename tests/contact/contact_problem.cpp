@@ -9,6 +9,8 @@
 
 #include "draws.h"
 
+namespace contact_problem_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -134,3 +136,5 @@ TEST_CASE("what cannot be stopped is said, and stays bounded", "[contact]") {
   for (const Vec3<double>& p : solution.impulse) CHECK(p.norm() < 1e9);
   CHECK(problem.after(problem.movers()[0]).norm() < 0.2);
 }
+
+}  // namespace contact_problem_test

@@ -12,6 +12,8 @@
 
 #include "draws.h"
 
+namespace find_contacts_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -184,3 +186,5 @@ TEST_CASE("N55: near boxes of all sizes are found, each pair once and in order",
     }
   }
 }
+
+}  // namespace find_contacts_test

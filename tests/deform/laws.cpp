@@ -13,6 +13,8 @@
 #include "draws.h"
 #include "worst.h"
 
+namespace laws_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -301,3 +303,5 @@ TEMPLATE_LIST_TEST_CASE("a link carries jets as the chain rule says", "[deform]"
     CHECK((jet.s2 - s2).norm() <= 1e-10 * std::max(1.0, s2.norm()));
   }
 }
+
+}  // namespace laws_test

@@ -13,6 +13,8 @@
 #include "motion.h"
 #include "widest_gap.h"
 
+namespace assembly_test {
+
 using namespace pliant;
 using test::Draws;
 using test::widest_gap;
@@ -249,3 +251,5 @@ TEST_CASE("a part that spins freely keeps its spin while a joint of its island c
     CHECK(simulation.ledger().angular_momentum[2] > 0.99 * L);
   }
 }
+
+}  // namespace assembly_test

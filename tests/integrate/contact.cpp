@@ -9,6 +9,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace contact_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -517,3 +519,5 @@ TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
   }
   CHECK(simulation.state().q[0] == Approx(0).margin(1e-4));
 }
+
+}  // namespace contact_test

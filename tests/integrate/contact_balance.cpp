@@ -9,6 +9,8 @@
 
 #include "motion.h"
 
+namespace contact_balance_test {
+
 using namespace pliant;
 
 namespace {
@@ -131,3 +133,5 @@ TEST_CASE("N57: a joint that pulls a body through the floor holds, and what cont
   // As fast as the path goes on where the ball touches.
   CHECK(simulation.step_counters().contact_residual == Approx(0.4 * std::cos(std::asin(0.5))).epsilon(1e-2));
 }
+
+}  // namespace contact_balance_test

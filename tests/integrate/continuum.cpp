@@ -10,6 +10,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace continuum_test {
+
 using namespace pliant;
 
 namespace {
@@ -288,3 +290,5 @@ TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb'
       CHECK(std::abs(fine - exact[mode]) < 0.2 * std::abs(alone - exact[mode]));
     }
 }
+
+}  // namespace continuum_test

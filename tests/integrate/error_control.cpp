@@ -10,6 +10,8 @@
 
 #include "motion.h"
 
+namespace error_control_test {
+
 using namespace pliant;
 
 namespace {
@@ -235,3 +237,5 @@ TEST_CASE("bodies that lie on each other take short steps, which are counted", "
   CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
   CHECK(simulation.step_counters().steps < 300);
 }
+
+}  // namespace error_control_test

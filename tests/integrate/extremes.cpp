@@ -10,6 +10,8 @@
 #include "motion.h"
 #include "worst.h"
 
+namespace extremes_test {
+
 using namespace pliant;
 
 TEST_CASE("N07: semi-axes a million times apart have accurate accelerations", "[extremes]") {
@@ -105,3 +107,5 @@ TEST_CASE("N70: no operation of a motion is invalid, divides by zero or overflow
   }
 }
 #endif
+
+}  // namespace extremes_test

@@ -7,6 +7,8 @@
 #include "motion.h"
 #include "spring_net.h"
 
+namespace failures_test {
+
 using namespace pliant;
 using test::has_text;
 
@@ -220,3 +222,5 @@ TEST_CASE("gravity that is not a number is refused before the first step", "[fai
   body.gravity[1] = kNaN;
   REQUIRE_THROWS_AS(Simulation(body), std::invalid_argument);
 }
+
+}  // namespace failures_test

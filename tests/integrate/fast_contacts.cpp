@@ -7,6 +7,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace fast_contacts_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -115,3 +117,5 @@ TEST_CASE("N53: hundreds of fast bodies, none through", "[contact]") {
 TEST_CASE("N53: a hundred thousand fast bodies, none through", "[contact][long]") {
   shoot_all(19000, 720);  // 100 040 in all
 }
+
+}  // namespace fast_contacts_test

@@ -6,6 +6,8 @@
 
 #include "motion.h"
 
+namespace forced_motion_test {
+
 using namespace pliant;
 
 namespace {
@@ -182,3 +184,5 @@ TEST_CASE("a hanging body stretches its own springs: static equilibrium", "[forc
   CHECK(simulation.state().q[7] - 1 == Approx(weight / 400).epsilon(1e-6));
   CHECK(simulation.state().q[2] + simulation.state().q[7] == Approx(3 - weight / 2000).epsilon(1e-6));
 }
+
+}  // namespace forced_motion_test

@@ -5,6 +5,8 @@
 #include "motion.h"
 #include "worst.h"
 
+namespace free_motion_test {
+
 using namespace pliant;
 
 namespace {
@@ -319,3 +321,5 @@ TEST_CASE("N28: time is a count of steps", "[motion]") {
   late.step = 1000000000;
   CHECK(late.time() == late.start + 1e9 * 0.1);
 }
+
+}  // namespace free_motion_test

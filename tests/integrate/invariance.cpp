@@ -7,6 +7,8 @@
 #include "motion.h"
 #include "worst.h"
 
+namespace invariance_test {
+
 using namespace pliant;
 
 namespace {
@@ -295,3 +297,5 @@ TEST_CASE("N67: going on from a copied state gives the same bits", "[invariance]
     CHECK(unbroken.time() == resumed.time());
   }
 }
+
+}  // namespace invariance_test

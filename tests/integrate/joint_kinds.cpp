@@ -11,6 +11,8 @@
 
 #include "motion.h"
 
+namespace joint_kinds_test {
+
 using namespace pliant;
 
 namespace {
@@ -469,3 +471,5 @@ TEST_CASE("joints within a part act on how it deforms, and not at all where it d
       if (moving == std::string("a1")) CHECK(simulation.state().q[7] == Approx(0.3).epsilon(1e-12));
     }
 }
+
+}  // namespace joint_kinds_test

@@ -15,6 +15,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace joints_test {
+
 using namespace pliant;
 
 namespace {
@@ -1015,3 +1017,5 @@ TEST_CASE("what is not a number in a joint is named", "[joints]") {
     CHECK(std::string(failure.what()).find("the anchor of ball 'hand'") != std::string::npos);
   }
 }
+
+}  // namespace joints_test

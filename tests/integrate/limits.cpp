@@ -5,6 +5,8 @@
 #include "motion.h"
 #include "worst.h"
 
+namespace limits_test {
+
 using namespace pliant;
 
 namespace {
@@ -247,3 +249,5 @@ TEST_CASE("jvp holds the pressed parameters", "[limits]") {
   simulation.dynamics().accelerations(0, state.q - e * dq, state.v - e * dv, state, work);
   CHECK((d - (more.v_dot - work.v_dot) / (2 * e)).norm() <= 1e-6 * d.norm());
 }
+
+}  // namespace limits_test

@@ -12,6 +12,8 @@
 #include "spring_net.h"
 #include "widest_gap.h"
 
+namespace linearly_implicit_test {
+
 using namespace pliant;
 using Basis = LocalSettings::Basis;
 using test::deepest;
@@ -587,3 +589,5 @@ TEST_CASE("a stiffness that cannot be factored, or not in this memory, names its
     CHECK(simulation.state().q == before.q);
   }
 }
+
+}  // namespace linearly_implicit_test

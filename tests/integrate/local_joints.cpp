@@ -9,6 +9,8 @@
 #include "spring_net.h"
 #include "widest_gap.h"
 
+namespace local_joints_test {
+
 using namespace pliant;
 using test::widest_gap;
 
@@ -228,3 +230,5 @@ TEST_CASE("assembly before time 0 by both solvers, with soft shells and without"
     CHECK((places[0] - places[1]).norm() <= 1e-6 * places[0].norm());
   }
 }
+
+}  // namespace local_joints_test

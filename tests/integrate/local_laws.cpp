@@ -7,6 +7,8 @@
 #include "motion.h"
 #include "spring_net.h"
 
+namespace local_laws_test {
+
 using namespace pliant;
 
 namespace {
@@ -176,3 +178,5 @@ TEST_CASE("laws of shells are refused by solids, and the other way round", "[loc
   }
   CHECK_THROWS_WITH(local_law("jelly", {}), test::has_text("there are: membrane"));
 }
+
+}  // namespace local_laws_test

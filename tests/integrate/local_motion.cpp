@@ -9,6 +9,8 @@
 #include "motion.h"
 #include "spring_net.h"
 
+namespace local_motion_test {
+
 using namespace pliant;
 
 using test::bump;
@@ -253,3 +255,5 @@ TEST_CASE("N20: the largest stable step of a soft shell is on the safe side, and
     CHECK(grows(3 * step));
   }
 }
+
+}  // namespace local_motion_test

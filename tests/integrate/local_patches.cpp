@@ -12,6 +12,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace local_patches_test {
+
 using namespace pliant;
 
 namespace {
@@ -162,3 +164,5 @@ TEST_CASE("patches where there are no nodes are refused", "[local][patch]") {
   other.force("push", point(ball, material_at(0, 0), -0.1), TimeVector(Vec3<double>(1, 0, 0)));
   CHECK_THROWS_WITH(Simulation(other, "rk4"), test::has_text("needs a patch with a positive radius"));
 }
+
+}  // namespace local_patches_test

@@ -17,6 +17,8 @@
 #include "motion.h"
 #include "widest_gap.h"
 
+namespace loops_test {
+
 using namespace pliant;
 using test::widest_gap;
 
@@ -531,3 +533,5 @@ TEST_CASE("N40: 1000 links of 1 kg and 1e6 kg by turns sway for a minute without
   CHECK(late <= 2e-11);
   CHECK(std::abs(simulation.ledger().energy() - energy) <= 1e-12 * std::abs(energy));  // 0.25 J
 }
+
+}  // namespace loops_test

@@ -8,6 +8,8 @@
 
 #include "motion.h"
 
+namespace methods_test {
+
 using namespace pliant;
 
 namespace {
@@ -246,3 +248,5 @@ TEST_CASE("what brings stiff links onto their joints leaves their momentum as it
     CHECK(turned[1] < 0.3 * turned[0]);
   }
 }
+
+}  // namespace methods_test

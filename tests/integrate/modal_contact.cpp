@@ -15,6 +15,8 @@
 #include "motion.h"
 #include "widest_gap.h"
 
+namespace modal_contact_test {
+
 using namespace pliant;
 using test::deepest;
 using test::widest_gap;
@@ -198,3 +200,5 @@ TEST_CASE("what may touch bounds the step by its modes", "[contact][modal]") {
     CHECK(simulation.ledger().energy() < start);
   }
 }
+
+}  // namespace modal_contact_test

@@ -11,6 +11,8 @@
 #include "motion.h"
 #include "widest_gap.h"
 
+namespace modal_motion_test {
+
 using namespace pliant;
 using test::widest_gap;
 
@@ -321,3 +323,5 @@ TEST_CASE("the largest stable step of modes: none when they are free, that of th
       CHECK(std::isinf(step));
   }
 }
+
+}  // namespace modal_motion_test

@@ -12,6 +12,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace obstacle_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -346,3 +348,5 @@ TEST_CASE("a mesh is welded, knows its border, its flat faces and what is near",
     CHECK(found == all);
   }
 }
+
+}  // namespace obstacle_test

@@ -9,6 +9,8 @@
 
 #include "motion.h"
 
+namespace path_kinks_test {
+
 using namespace pliant;
 
 namespace {
@@ -202,3 +204,5 @@ TEST_CASE("impulses of what did not happen are not kept", "[joints]") {
   CHECK(fails.hold_impulses().empty());
   CHECK(fails.time() == Approx(0.48));
 }
+
+}  // namespace path_kinks_test

@@ -7,6 +7,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace prescribed_motion_test {
+
 using namespace pliant;
 using test::wave;
 
@@ -184,3 +186,5 @@ TEST_CASE("a prescribed motion that ends to be finite is told by name", "[motion
   Simulation simulation(body, "rk4");
   CHECK_THROWS_WITH(test::run(simulation, 0.1, 10), test::has_text("motion of part 'hand'"));
 }
+
+}  // namespace prescribed_motion_test

@@ -7,6 +7,8 @@
 
 #include "motion.h"
 
+namespace rest_test {
+
 using namespace pliant;
 
 namespace {
@@ -154,3 +156,5 @@ TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[
             1e-9 * std::abs(simulation.ledger().work[static_cast<int>(Work::contact)]) + 1e-9);
     }
 }
+
+}  // namespace rest_test

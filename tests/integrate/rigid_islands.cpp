@@ -8,6 +8,8 @@
 #include "draws.h"
 #include "motion.h"
 
+namespace rigid_islands_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -244,3 +246,5 @@ TEST_CASE("what is more than rigid parts on ball joints is evaluated the general
     CHECK_FALSE(work.rigid[0].used);
   }
 }
+
+}  // namespace rigid_islands_test

@@ -10,6 +10,8 @@
 #include "motion.h"
 #include "spring_net.h"
 
+namespace skips_test {
+
 using namespace pliant;
 
 namespace {
@@ -17,7 +19,7 @@ long allocations = 0;
 }  // namespace
 
 // Sanitizers have their own malloc; they count nothing.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 constexpr bool kCounted = true;
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) noexcept {
@@ -244,3 +246,5 @@ TEST_CASE("a parameter resting on its limit takes nothing from the heap", "[skip
     check_heap(simulation, 1e-3);
   }
 }
+
+}  // namespace skips_test

@@ -14,6 +14,8 @@
 #include "motion.h"
 #include "widest_gap.h"
 
+namespace soft_contact_test {
+
 using namespace pliant;
 using test::deepest;
 
@@ -335,3 +337,5 @@ TEST_CASE("a ridge and a peak dent a balloon and do not come in", "[contact]") {
     CHECK(deep < 1e-3 * 0.1);
   }
 }
+
+}  // namespace soft_contact_test

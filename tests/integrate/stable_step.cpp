@@ -8,6 +8,8 @@
 
 #include "motion.h"
 
+namespace stable_step_test {
+
 using namespace pliant;
 
 namespace {
@@ -254,3 +256,5 @@ TEST_CASE("long chains: bounded part by part, safely and at once", "[stable]") {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
   CHECK(taken.count() < 10);
 }
+
+}  // namespace stable_step_test

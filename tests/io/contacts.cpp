@@ -12,6 +12,8 @@
 #include <pliant/io/run_files.h>
 #include <pliant/part/registry.h>
 
+namespace contacts_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -129,3 +131,5 @@ TEST_CASE("a run that was broken tells the same contacts", "[contact]") {
     for (const char* table : kTables) CHECK(bytes_of(out / table) == bytes_of(folder / "unbroken" / table));
   }
 }
+
+}  // namespace contacts_test

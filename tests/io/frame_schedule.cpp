@@ -9,6 +9,8 @@
 
 #include <pliant/io/frame_range.h>
 
+namespace frame_schedule_test {
+
 using namespace pliant;
 
 TEST_CASE("N28: steps fill the run, and the last falls on its end") {
@@ -99,3 +101,5 @@ TEST_CASE("ranges of frames") {
   for (const char* bad : {"0/2", "3/2", "1", "1/2/3", "a/2", "1/"})
     CHECK_THROWS_AS(range.parse_shard(bad), std::invalid_argument);
 }
+
+}  // namespace frame_schedule_test

@@ -16,6 +16,8 @@
 #include <pliant/io/run.h>
 #include <pliant/part/local_laws.h>
 
+namespace mesh_files_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -288,3 +290,5 @@ TEST_CASE("PLY vertices carry the values under their name") {
     }
   CHECK(bytes.size() - data == plain.size() - plain.find(mark) - mark.size() + 8 * vertex);
 }
+
+}  // namespace mesh_files_test

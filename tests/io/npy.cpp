@@ -10,6 +10,8 @@
 
 #include <pliant/io/whole_file.h>
 
+namespace npy_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -166,3 +168,5 @@ TEST_CASE("a whole file replaces a link and leaves nothing when it is given up")
   }
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 2);
 }
+
+}  // namespace npy_test

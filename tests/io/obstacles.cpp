@@ -12,6 +12,8 @@
 
 #include "io/new_folder.h"
 
+namespace obstacles_test {
+
 using namespace pliant;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_CASE("obstacles are among the surfaces of a frame while they are there, ope
   state.start = 0;
   CHECK(frame.at(state).size() == 3);
 }
+
+}  // namespace obstacles_test

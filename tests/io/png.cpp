@@ -15,6 +15,8 @@
 #include <pliant/io/png.h>
 #include <pliant/io/whole_file.h>
 
+namespace png_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -144,3 +146,5 @@ TEST_CASE("A file is replaced as a whole") {
   CHECK(bytes_of(path).empty());
   CHECK(folder.entries() == 1);
 }
+
+}  // namespace png_test

@@ -15,6 +15,8 @@
 #include <pliant/part/primitive.h>
 #include <pliant/shape/ellipsoid.h>
 
+namespace recording_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -236,3 +238,5 @@ TEST_CASE("I59: a scene without parts records its times") {
   CHECK(recording.rows() == 6);
   CHECK(recording.state(5).q.size() == 0);
 }
+
+}  // namespace recording_test

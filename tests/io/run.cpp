@@ -17,6 +17,8 @@
 #include <pliant/body/joints/rod.h>
 #include <pliant/io/run_files.h>
 
+namespace run_test {
+
 using namespace pliant;
 namespace fs = std::filesystem;
 
@@ -554,3 +556,5 @@ TEST_CASE("what is told of redundant rows is told once, however often other join
   Run(*scene, options, listener).simulate();
   CHECK(listener.told == 1);
 }
+
+}  // namespace run_test

@@ -14,6 +14,8 @@
 #include <pliant/io/run.h>
 #include <pliant/io/run_files.h>
 
+namespace trajectory_test {
+
 using namespace pliant;
 using Json = nlohmann::json;
 
@@ -172,3 +174,5 @@ TEST_CASE("above a hundred parts only totals are written, unless the scene asks 
   whole.row(simulation.state(), numbers);
   CHECK(numbers.size() == whole.columns().size());
 }
+
+}  // namespace trajectory_test

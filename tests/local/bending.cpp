@@ -5,6 +5,8 @@
 #include "catch.h"
 #include "modes.h"
 
+namespace bending_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -283,3 +285,5 @@ TEST_CASE("bending: plates on irregular meshes converge with the square of the e
     CHECK(std::log2(error[0] / error[2]) >= 2 * 1.8);
   }
 }
+
+}  // namespace bending_test

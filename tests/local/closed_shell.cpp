@@ -6,6 +6,8 @@
 #include "catch.h"
 #include "modes.h"
 
+namespace closed_shell_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -116,3 +118,5 @@ TEST_CASE("closed shell: with bending it converges with the square of the edge",
   }
   CHECK(std::abs(bending_error(4, 10)) <= 0.04);
 }
+
+}  // namespace closed_shell_test

@@ -7,6 +7,8 @@
 #include "energy_laws.h"
 #include "shell_meshes.h"
 
+namespace linear_membrane_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -80,3 +82,5 @@ TEST_CASE("linear membrane: bad sheets and meshes are refused", "[local]") {
   CHECK_THROWS_WITH(shell_mesh({{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}}, {{0, 1, 2}}),
                     has_text("node 2"));
 }
+
+}  // namespace linear_membrane_test

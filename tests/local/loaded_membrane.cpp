@@ -6,6 +6,8 @@
 #include "catch.h"
 #include "modes.h"
 
+namespace loaded_membrane_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -132,3 +134,5 @@ TEST_CASE("loaded membrane: bad weights and meshes are refused", "[local]") {
   grid.triangles(2, 5) = 99;
   CHECK_THROWS_WITH(LoadedMembrane(grid, {1, 1}), has_text("names node 99"));
 }
+
+}  // namespace loaded_membrane_test

@@ -8,6 +8,8 @@
 #include "energy_laws.h"
 #include "shell_meshes.h"
 
+namespace membrane_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -101,3 +103,5 @@ TEST_CASE("membranes: homogeneous strain pushes no node inside", "[local]") {
   check(StVenantKirchhoffMembrane(mesh, {1e5, 0.3, 0.01}));
   check(NeoHookeanMembrane(mesh, {1e5, 0.3, 0.01}));
 }
+
+}  // namespace membrane_test

@@ -13,6 +13,8 @@
 #include "solid_meshes.h"
 #include "sparse_modes.h"
 
+namespace nearly_incompressible_test {
+
 using namespace pliant;
 using test::Draws;
 using test::SolidMesh;
@@ -136,3 +138,5 @@ TEST_CASE("N22: quadratic elements lock less, with averaged dilatation not at al
     CHECK(averaged_error<QuadraticTetrahedron>(2, nu) < 0.002);
   }
 }
+
+}  // namespace nearly_incompressible_test

@@ -9,6 +9,8 @@
 #include "energy_laws.h"
 #include "shell_meshes.h"
 
+namespace pressure_test {
+
 using namespace pliant;
 using namespace pliant::test;
 
@@ -99,3 +101,5 @@ TEST_CASE("pressure: open, disoriented and inverted shells are refused", "[local
   CHECK_THROWS_WITH(ConstantPressure(ShellMesh(closed.X(), all_turned), 1), has_text("enclose a volume"));
   CHECK_THROWS_WITH(GasPressure(closed, {1, 0, 1.4}), has_text("V0 > 0"));
 }
+
+}  // namespace pressure_test

@@ -14,6 +14,8 @@
 #include "solid_meshes.h"
 #include "worst.h"
 
+namespace solid_energy_test {
+
 using namespace pliant;
 using test::affine;
 using test::Draws;
@@ -339,3 +341,5 @@ TEST_CASE("rules of tetrahedra: exact to their degree, shape functions add up", 
     CHECK((EnrichedTetrahedron::N(kEnrichedNodes[a]) - Vec<double, 15>::Unit(static_cast<Eigen::Index>(a)))
               .norm() <= 1e-14);
 }
+
+}  // namespace solid_energy_test

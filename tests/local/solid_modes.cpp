@@ -10,6 +10,8 @@
 #include "solid_meshes.h"
 #include "sparse_modes.h"
 
+namespace solid_modes_test {
+
 using namespace pliant;
 using test::Modes;
 using test::SolidMesh;
@@ -194,3 +196,5 @@ TEST_CASE("a cantilever cylinder bends as Timoshenko's", "[modes]") {
   CHECK(omega[0] == Approx(3.43881 * unit).epsilon(0.025));
   CHECK(omega[2] == Approx(19.2125 * unit).epsilon(0.02));
 }
+
+}  // namespace solid_modes_test

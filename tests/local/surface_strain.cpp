@@ -9,6 +9,8 @@
 
 #include "catch.h"
 
+namespace surface_strain_test {
+
 using namespace pliant;
 
 namespace {
@@ -100,3 +102,5 @@ TEST_CASE("triangles without area count for nothing") {
   CHECK(at.head(3).isApproxToConstant(0.105, 1e-12));
   CHECK(at[3] == 0);
 }
+
+}  // namespace surface_strain_test

@@ -7,6 +7,8 @@
 #include <pliant/math/flush_subnormals.h>
 #include <pliant/math/thread_pool.h>
 
+namespace flush_subnormals_test {
+
 using namespace pliant;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("threads of a pool take subnormal numbers as the thread that asks", "[
     for (const double there : found) REQUIRE(there == here);
   }
 }
+
+}  // namespace flush_subnormals_test

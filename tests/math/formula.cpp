@@ -9,6 +9,8 @@
 
 #include "catch.h"
 
+namespace formula_test {
+
 using pliant::Formula;
 using pliant::FormulaError;
 using Real = long double;
@@ -242,3 +244,5 @@ TEST_CASE("functions are listed") {
     CHECK_FALSE(f.meaning.empty());
   }
 }
+
+}  // namespace formula_test

@@ -3,6 +3,8 @@
 
 #include "catch.h"
 
+namespace nearest_name_test {
+
 using pliant::did_you_mean;
 using pliant::edit_distance;
 using pliant::nearest_name;
@@ -33,3 +35,5 @@ TEST_CASE("the nearest name is within two edits, the first of equals") {
   CHECK(did_you_mean("masss", {"mass"}) == "; did you mean \"mass\"?");
   CHECK(did_you_mean("velocity", {"mass"}).empty());
 }
+
+}  // namespace nearest_name_test

@@ -11,6 +11,8 @@
 
 #include "catch.h"
 
+namespace scalars_test {
+
 using pliant::Dual;
 using pliant::Pack;
 using pliant::Taylor2;
@@ -323,3 +325,5 @@ TEST_CASE("signed powers have value and derivatives, at zero too") {
   }
   CHECK(signed_power(pliant::trig(1.0), Dual<1>::variable(0.5, 0)).d[0] == 0);
 }
+
+}  // namespace scalars_test

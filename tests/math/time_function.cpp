@@ -11,6 +11,8 @@
 
 #include "catch.h"
 
+namespace time_function_test {
+
 using pliant::TimeFunction;
 using pliant::TimeVector;
 
@@ -199,3 +201,5 @@ TEST_CASE("functions of time tell where their rate jumps, and where they jump th
   CHECK(both.time == 0.5);
   CHECK(both.jumps);
 }
+
+}  // namespace time_function_test

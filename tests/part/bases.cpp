@@ -8,6 +8,8 @@
 #include <pliant/part/nodal_deformation.h>
 #include <pliant/part/registry.h>
 
+namespace bases_test {
+
 using namespace pliant;
 
 namespace {
@@ -253,3 +255,5 @@ TEST_CASE("bases that cannot be laid are refused in words", "[bases]") {
   settings = polynomials(11);
   CHECK_THAT(refusal(*ball, settings), test::has_text("degree 11"));
 }
+
+}  // namespace bases_test

@@ -9,6 +9,8 @@
 #include "differences.h"
 #include "random_state.h"
 
+namespace continuum_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -330,3 +332,5 @@ TEST_CASE("frozen parts have no strain energy", "[continuum]") {
   part->prepare();
   CHECK(part->continuum() == nullptr);
 }
+
+}  // namespace continuum_test

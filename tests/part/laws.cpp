@@ -13,6 +13,8 @@
 #include "reference.h"
 #include "worst.h"
 
+namespace laws_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -453,3 +455,5 @@ TEST_CASE("N11: an initial shape that folds over is refused", "[part]") {
   part->initial({{"bend.angle", 2.5}});
   REQUIRE_THROWS_WITH(part->prepare(), test::has_text("part 'fat': its initial shape folds over"));
 }
+
+}  // namespace laws_test

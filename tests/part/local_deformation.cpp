@@ -9,6 +9,8 @@
 
 #include "draws.h"
 
+namespace local_deformation_test {
+
 using namespace pliant;
 
 namespace {
@@ -160,3 +162,5 @@ TEST_CASE("the loaded membrane over the rectangle: exact for a linear field, sec
   CHECK(std::log2(errors[1] / errors[2]) >= 1.9);
   CHECK(errors[2] <= 0.02);
 }
+
+}  // namespace local_deformation_test

@@ -13,6 +13,8 @@
 #include "random_state.h"
 #include "worst.h"
 
+namespace mass_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -428,3 +430,5 @@ TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degre
       CHECK(change_on_doubling(*part, 6) <= 1e-12);
     }
 }
+
+}  // namespace mass_test

@@ -8,6 +8,8 @@
 
 #include "random_state.h"
 
+namespace null_links_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -104,3 +106,5 @@ TEST_CASE("values given for an evaluation count, not those a part rests at", "[p
   CHECK((after - before).norm() > 0.1);
   CHECK(std::abs(part->inside_outside(after, values)) <= 1e-14);
 }
+
+}  // namespace null_links_test

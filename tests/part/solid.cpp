@@ -16,6 +16,8 @@
 #include "random_state.h"
 #include "worst.h"
 
+namespace solid_test {
+
 using namespace pliant;
 using test::Draws;
 using Order = Solid::Order;
@@ -286,3 +288,5 @@ TEST_CASE("solid meshes that cannot be are refused", "[solid]") {
   CHECK_THROWS_WITH(Solid(*ring, 1, Order::quadratic), test::has_text("finer"));
   CHECK_NOTHROW(Solid(*ring, 2, Order::quadratic));
 }
+
+}  // namespace solid_test

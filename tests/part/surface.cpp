@@ -12,6 +12,8 @@
 #include "random_state.h"
 #include "worst.h"
 
+namespace surface_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -204,3 +206,5 @@ TEST_CASE("resolutions that make no sense are refused", "[surface]") {
   CHECK_THROWS_WITH(Surface(*part, 513), test::has_text("513"));
   CHECK(Surface::resolution_for(*part, 1000) == 5);
 }
+
+}  // namespace surface_test

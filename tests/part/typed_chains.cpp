@@ -8,6 +8,8 @@
 
 #include "random_state.h"
 
+namespace typed_chains_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -83,3 +85,5 @@ TEST_CASE("longer chains and none, run time and typed", "[part]") {
   same_bits<Superellipsoid, Taper, Twist, Taper, Shear>();
   same_bits<Ellipsoid, Twist, BendOffset, Bend>();
 }
+
+}  // namespace typed_chains_test

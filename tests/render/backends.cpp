@@ -10,6 +10,8 @@
 
 #include <pliant/render/renderer.h>
 
+namespace backends_test {
+
 using namespace pliant;
 
 namespace {
@@ -91,3 +93,5 @@ TEST_CASE("A renderer may be used by several threads in turn, and several render
   CHECK(first.rgb == other.rgb);
   CHECK(first.rgb == b.draw(scene.picture).rgb);
 }
+
+}  // namespace backends_test

@@ -4,6 +4,8 @@
 #include "catch.h"
 #include "scenes.h"
 
+namespace camera_test {
+
 using namespace pliant;
 
 TEST_CASE("The automatic camera frames any box") {
@@ -43,3 +45,5 @@ TEST_CASE("An empty box and a point are framed too, what is not finite is refuse
   CHECK_THROWS_AS(automatic_camera({p, Eigen::Vector3d(huge, 5, 6)}, 1.5), std::invalid_argument);
   CHECK_THROWS_AS(automatic_camera({p, p}, 0), std::invalid_argument);
 }
+
+}  // namespace camera_test

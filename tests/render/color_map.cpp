@@ -7,6 +7,8 @@
 
 #include <pliant/render/ticks.h>
 
+namespace color_map_test {
+
 using namespace pliant;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("ticks are round and have the digits that they need") {
   CHECK(labels(0, 5e8) == "0 1e+08 2e+08 3e+08 4e+08 5e+08 ");
   CHECK(labels(7.1, 7.3) == "7.10 7.15 7.20 7.25 7.30 ");
 }
+
+}  // namespace color_map_test

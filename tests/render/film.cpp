@@ -8,6 +8,8 @@
 
 #include <pliant/io/run.h>
 
+namespace film_test {
+
 using namespace pliant;
 
 namespace {
@@ -166,3 +168,5 @@ TEST_CASE("a camera that looks straight down has y at the top") {
   filmed.scene->camera.eye = Vec3<double>(0, 1, 5);
   CHECK(filmed.film().camera().up == Eigen::Vector3d::UnitZ());
 }
+
+}  // namespace film_test

@@ -8,6 +8,8 @@
 #include <pliant/io/png.h>
 #include <pliant/render/renderer.h>
 
+namespace loading_test {
+
 using namespace pliant;
 
 namespace {
@@ -34,3 +36,5 @@ TEST_CASE("No OpenGL library is in the process until a renderer is made") {
   Renderer renderer(16, 16);
   CHECK(mapped_gl_library() != "");
 }
+
+}  // namespace loading_test

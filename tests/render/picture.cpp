@@ -7,6 +7,8 @@
 #include <pliant/render/color_map.h>
 #include <pliant/render/renderer.h>
 
+namespace picture_test {
+
 using namespace pliant;
 using test::brightness;
 using test::pixel;
@@ -429,3 +431,5 @@ TEST_CASE("Bodies without triangles draw nothing") {
   scene.picture.bodies.insert(scene.picture.bodies.begin() + 1, {&none, {0, 0, 0}});
   CHECK(renderer.draw(scene.picture).rgb == before.rgb);
 }
+
+}  // namespace picture_test

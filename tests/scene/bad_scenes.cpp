@@ -14,6 +14,8 @@
 
 #include "catch.h"
 
+namespace bad_scenes_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -60,3 +62,5 @@ TEST_CASE("every bad scene is refused in the words of its golden text") {
   }
   fs::current_path(before);
 }
+
+}  // namespace bad_scenes_test

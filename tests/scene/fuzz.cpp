@@ -19,13 +19,15 @@
 
 #include "catch.h"
 
+namespace fuzz_test {
+
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 namespace {
 
 // Sanitizers make a case thirty times as slow: they get one of sixteen cases, plain builds all of them.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef PLIANT_SANITIZED
 constexpr int kEach = 16;
 #else
 constexpr int kEach = 1;
@@ -222,3 +224,5 @@ TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
   CHECK(cases > 3000 / kEach);
   CHECK(ready > 300 / kEach);
 }
+
+}  // namespace fuzz_test

@@ -13,6 +13,8 @@
 
 #include "catch.h"
 
+namespace json_document_test {
+
 using pliant::Diagnostics;
 using pliant::FileError;
 using pliant::JsonDocument;
@@ -470,3 +472,5 @@ TEST_CASE("every cut and every changed byte of a scene is read or refused") {
     }
   }
 }
+
+}  // namespace json_document_test

@@ -14,6 +14,8 @@
 
 #include "io/new_folder.h"
 
+namespace mesh_file_test {
+
 using namespace pliant;
 
 namespace {
@@ -115,3 +117,5 @@ TEST_CASE("files that cannot be read are told in the words of the file system") 
   CHECK_THAT(fault("bowls.obj"), test::has_text("No such file or directory; did you mean \"bowl.obj\"?"));
   CHECK_THAT(fault("folder.obj"), test::has_text("Is a directory"));
 }
+
+}  // namespace mesh_file_test

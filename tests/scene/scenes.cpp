@@ -18,6 +18,8 @@
 #include "catch.h"
 #include "schema_judge.h"
 
+namespace scenes_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -358,3 +360,5 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
   }
   CHECK(accepted == beyond);
 }
+
+}  // namespace scenes_test

@@ -17,6 +17,8 @@
 #include "catch.h"
 #include "schema_judge.h"
 
+namespace schema_test {
+
 using pliant::Diagnostics;
 using pliant::JsonDocument;
 using pliant::MaterialPointValue;
@@ -536,3 +538,5 @@ TEST_CASE("the JSON Schema and the records agree") {
     CHECK_FALSE(faults(text).empty());
   }
 }
+
+}  // namespace schema_test

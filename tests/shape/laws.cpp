@@ -13,6 +13,8 @@
 #include "draws.h"
 #include "worst.h"
 
+namespace laws_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -358,3 +360,5 @@ TEMPLATE_LIST_TEST_CASE("mesh labels lie on the surface", "[shape]", AllShapes) 
     }
   }
 }
+
+}  // namespace laws_test

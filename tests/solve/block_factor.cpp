@@ -11,6 +11,8 @@
 
 #include "draws.h"
 
+namespace block_factor_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -212,3 +214,5 @@ TEST_CASE("what is left of entries that cancel is measured by these") {
     CHECK(x[1] == 3);
   }
 }
+
+}  // namespace block_factor_test

@@ -10,6 +10,8 @@
 
 #include "draws.h"
 
+namespace complementarity_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -114,3 +116,5 @@ TEST_CASE("without the heap: the same impulses", "[solve]") {
           solve_complementarity(W, b).lambda);
   }
 }
+
+}  // namespace complementarity_test

@@ -7,6 +7,8 @@
 
 #include "draws.h"
 
+namespace coulomb_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -54,3 +56,5 @@ TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and sl
   }
   CHECK(solve_coulomb(W, {1, 3, 0}, 0.5) == Vec3<double>::Zero());
 }
+
+}  // namespace coulomb_test

@@ -10,6 +10,8 @@
 
 #include "draws.h"
 
+namespace coulomb_system_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -179,3 +181,5 @@ TEST_CASE("what cannot be stopped shows in the residual", "[coulomb]") {
   CHECK(system.solve(x).residual == Approx(2).epsilon(1e-15));
   CHECK(x == Vec3<double>(-2, 0, 0));
 }
+
+}  // namespace coulomb_system_test

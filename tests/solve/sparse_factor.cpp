@@ -15,6 +15,8 @@
 
 #include "catch.h"
 
+namespace sparse_factor_test {
+
 namespace {
 
 using pliant::SparseFactor;
@@ -148,3 +150,5 @@ TEST_CASE("misuse of a factorisation") {
     CHECK_THROWS_AS(factor->solve(longer), std::invalid_argument);
   }
 }
+
+}  // namespace sparse_factor_test

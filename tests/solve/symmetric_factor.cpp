@@ -10,6 +10,8 @@
 
 #include "draws.h"
 
+namespace symmetric_factor_test {
+
 using namespace pliant;
 using test::Draws;
 
@@ -111,3 +113,5 @@ TEST_CASE("a derivative of the solution") {
     CHECK(x[i].d[0] == Approx(slope[i]).epsilon(1e-10).margin(1e-10));
   }
 }
+
+}  // namespace symmetric_factor_test
