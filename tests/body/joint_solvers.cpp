@@ -118,7 +118,7 @@ TEST_CASE("both solvers give the same accelerations and forces, and derivatives"
   }
 }
 
-TEST_CASE("both solvers move alike, by both methods, through closing, strings and limits", "[joints]") {
+TEST_CASE("both solvers move alike, by both methods, through closing, strings and limits", "[joints][long]") {
   for (const Backend& backend : backends)
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody one, two;

@@ -111,7 +111,7 @@ TEST_CASE("the nearest point of a stretched ball is the best of all", "[contact]
   }
 }
 
-TEST_CASE("the closed forms of ellipsoids agree with the search of other shapes", "[contact]") {
+TEST_CASE("the closed forms of ellipsoids agree with the search of other shapes", "[contact][long]") {
   Draws draws(14);
   for (int trial = 0; trial < 12; ++trial) {
     const Vec3<double> axes(draws.uniform(0.2, 1), draws.uniform(0.2, 1), draws.uniform(0.2, 1));

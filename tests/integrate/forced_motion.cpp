@@ -110,7 +110,7 @@ TEST_CASE("N33: point forces and torques in both frames, and one's own", "[force
     body.torque("spin", a, TimeVector(0, 2, test::wave(0, 4, 5)), Frame::body);
   });
 }
-TEST_CASE("N33: everything at once", "[forced]") {
+TEST_CASE("N33: everything at once", "[forced][long]") {
   check_orders("all", [](MultiBody& body, Part& a, Part& b) {
     body.gravity = {0.5, 0, -9.81};
     a.damping(0.3, 0.002, 0.2).rest("bend.angle", test::wave(0.4, 0.2, 5));

@@ -291,7 +291,7 @@ TEST_CASE("P is conserved to rounding where the frame sits at the centre of mass
   }
 }
 
-TEST_CASE("N26: turning the velocities round brings RK4 back at its order", "[motion]") {
+TEST_CASE("N26: turning the velocities round brings RK4 back at its order", "[motion][long]") {
   std::vector<double> errors;
   for (int steps : {100, 200, 400}) {
     MultiBody body;

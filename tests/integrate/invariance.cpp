@@ -60,7 +60,7 @@ Ends run_in(const Units& u, const char* method, double offset = 0) {
 
 }  // namespace
 
-TEST_CASE("N62: powers of two of the units change no bit", "[invariance]") {
+TEST_CASE("N62: powers of two of the units change no bit", "[invariance][long]") {
   for (const char* method : kMethods) {
     const Ends plain = run_in({}, method);
     for (const Units& u : {Units{0x1p20, 1, 1}, Units{0x1p-20, 1, 1}, Units{1, 0x1p40, 1},
@@ -152,7 +152,7 @@ TEST_CASE("N64: a scene turned as a whole moves as before", "[invariance]") {
   }
 }
 
-TEST_CASE("N64: the order of parts and unrelated company change nothing", "[invariance]") {
+TEST_CASE("N64: the order of parts and unrelated company change nothing", "[invariance][long]") {
   for (const char* method : kMethods) {
     const Ends plain = run_turned(Eigen::Quaterniond::Identity(), method);
     const Ends reversed = run_turned(Eigen::Quaterniond::Identity(), method, true);
@@ -167,7 +167,7 @@ TEST_CASE("N64: the order of parts and unrelated company change nothing", "[inva
   }
 }
 
-TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance]") {
+TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]") {
   // x -> -x: twist, the bend's direction, shear along x, and two components of omega and of the quaternion
   // change.
   for (const char* method : kMethods) {
@@ -198,7 +198,7 @@ TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance]") {
   }
 }
 
-TEST_CASE("N63: a scene far from the origin", "[invariance]") {
+TEST_CASE("N63: a scene far from the origin", "[invariance][long]") {
   const Ends near = run_in({}, "rk4"), far = run_in({}, "rk4", 0x1p20);
   VecX<double> offset = VecX<double>::Zero(near.q.size());
   offset[0] = offset[12] = 0x1p20;
@@ -233,7 +233,7 @@ TEST_CASE("N65: what is there but null changes nothing", "[invariance]") {
   }
 }
 
-TEST_CASE("N66: any number of threads gives the same bits", "[invariance]") {
+TEST_CASE("N66: any number of threads gives the same bits", "[invariance][long]") {
   for (const char* method : kMethods) {
     std::uint64_t alone = 0;
     for (const int threads : {1, 2, 3, 7, 16, 64}) {
@@ -256,7 +256,7 @@ TEST_CASE("N66: any number of threads gives the same bits", "[invariance]") {
   }
 }
 
-TEST_CASE("N30: looking at a simulation does not steer it", "[invariance]") {
+TEST_CASE("N30: looking at a simulation does not steer it", "[invariance][long]") {
   for (const char* method : kMethods) {
     VecX<double> q[2];
     for (int look = 0; look < 2; ++look) {

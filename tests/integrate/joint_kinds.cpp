@@ -150,7 +150,7 @@ TEST_CASE("slider, line and plane: what they leave free falls freely", "[joints]
 
 TEST_CASE(
     "lines, planes, hinges, sliders and welds between free bodies keep momenta and energy, deforming or not",
-    "[joints]") {
+    "[joints][long]") {
   for (const bool deforming : {false, true})
     for (const char* type : {"line", "plane", "hinge", "slider", "weld"}) {
       std::vector<double> errors;
@@ -195,7 +195,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("hinges and welds close from any turn, half turns too", "[joints]") {
+TEST_CASE("hinges and welds close from any turn, half turns too", "[joints][long]") {
   for (const char* type : {"hinge", "weld"})
     for (const double angle : {0.5, kPi / 2, kPi / 2 + 1e-12, kPi / 2 + 1e-7, 2.0, 3.0, kPi}) {
       MultiBody body;
@@ -236,7 +236,7 @@ TEST_CASE("a small fixed part does not make a wrong turn small", "[joints]") {
   CHECK(gap(simulation) == Approx(0.8 * part.size()).epsilon(1e-12));
 }
 
-TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre", "[joints]") {
+TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre", "[joints][long]") {
   struct Where {
     const char* shape;
     std::vector<std::pair<std::string, double>> rest;
@@ -274,7 +274,7 @@ TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre",
       }
 }
 
-TEST_CASE("N48: joints begin and cease to act at their times, between steps too", "[joints]") {
+TEST_CASE("N48: joints begin and cease to act at their times, between steps too", "[joints][long]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     std::vector<double> errors;
     for (const int steps : {100, 200, 400}) {

@@ -142,7 +142,7 @@ bool decays(const char* method, double x) {
 }  // namespace
 
 TEST_CASE("N34: the edges of stability of Baumgarte's equation, over alpha h from 0.01 to 4 and beyond",
-          "[joints]") {
+          "[joints][long]") {
   // |R(-x)| = 1 of explicit methods; the linearly implicit one takes no joint implicitly. 0: no edge.
   const std::map<std::string, double> edges{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
                                             {"rk4", 2.785294},
@@ -438,7 +438,7 @@ TEST_CASE("N35: a spinning rod, by Baumgarte alone and projected", "[joints]") {
     }
 }
 
-TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order", "[joints]") {
+TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order", "[joints][long]") {
   double widest = 0, balance = 0;
   auto at_end = [&](const char* method, int steps) -> VecX<double> {
     MultiBody body;
@@ -597,7 +597,7 @@ TEST_CASE("N46: joints act through the global parameters, limits and all", "[joi
   }
 }
 
-TEST_CASE("N46: a joint that only a bend lets close", "[joints]") {
+TEST_CASE("N46: a joint that only a bend lets close", "[joints][long]") {
   // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two points of the world hold them at
   // 0.9 m.
   double b = 0.8;
@@ -687,7 +687,8 @@ TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "
     }
 }
 
-TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever they spin up to", "[joints]") {
+TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever they spin up to",
+          "[joints][long]") {
   const char* method = GENERATE("rk4", "semi_implicit_euler");
   const int joints = GENERATE(1, 4, 12);
   const double apart = GENERATE(3, 10, 30, 100), h = 2e-3;
@@ -887,7 +888,8 @@ const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"esdirk", 1e-6},
                                                               {"auto", 1e-6}};
 
-TEST_CASE("N42: joints that contradict each other from afar stop the run, projected or not", "[joints]") {
+TEST_CASE("N42: joints that contradict each other from afar stop the run, projected or not",
+          "[joints][long]") {
   for (const auto& [method, tolerance] : kMethods)
     for (const bool projected : {true, false})
       for (const double on : {0., 0.1003}) {

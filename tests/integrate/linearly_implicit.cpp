@@ -183,7 +183,7 @@ TEST_CASE("soft parts hung from each other: order 2, joints closed to rounding",
 }
 
 TEST_CASE("momentum of a free soft part stays to rounding, angular momentum at order 2",
-          "[implicit][motion]") {
+          "[implicit][motion][long]") {
   for (const bool parameters : {false, true}) {
     std::vector<double> turning;
     for (const int steps : {100, 200, 400}) {
@@ -217,7 +217,8 @@ TEST_CASE("the centre of mass of a stiff part flies straight at 100 times the ex
         1e-12 * simulation.time());
 }
 
-TEST_CASE("the ledger of a soft part: damping, drag, a spring, a hand, at order 2", "[implicit][joints]") {
+TEST_CASE("the ledger of a soft part: damping, drag, a spring, a hand, at order 2",
+          "[implicit][joints][long]") {
   std::vector<double> balance;
   for (const int steps : {200, 400, 800}) {
     MultiBody body;
@@ -410,7 +411,8 @@ TEST_CASE("Eigen's factor and CHOLMOD's give the same motion, blocks and the aug
   for (const VecX<double>& end : ends) CHECK((end - ends[0]).norm() <= 1e-9 * ends[0].norm());
 }
 
-TEST_CASE("a limit that holds a parameter of a stiff part, alone and on a joint", "[implicit][limits]") {
+TEST_CASE("a limit that holds a parameter of a stiff part, alone and on a joint",
+          "[implicit][limits][long]") {
   for (const bool joined : {false, true}) {
     MultiBody body;
     if (!joined) body.gravity.setZero();
@@ -438,7 +440,7 @@ TEST_CASE("a limit that holds a parameter of a stiff part, alone and on a joint"
   }
 }
 
-TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints]") {
+TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints][long]") {
   for (const double E : {1e5, 1e6, 1e7, 1e8, 1e9}) {  // 1.3, 4, 13, 40 and 130 times the explicit limit
     CAPTURE(E);
     MultiBody body;
@@ -500,7 +502,7 @@ void drop(Basis basis, double E) {
 }  // namespace
 
 TEST_CASE("a stiff ball dropped on a plane bounces to rest, as it does by explicit steps",
-          "[implicit][contact]") {
+          "[implicit][contact][long]") {
   for (const Basis basis : {Basis::nodes, Basis::polynomial})
     drop(basis, 1e7);  // 10 times the explicit limit
 }

@@ -28,7 +28,7 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
 
 }  // namespace
 
-TEST_CASE("soft shells hung from each other: joints hold, and the order is kept", "[local][joints]") {
+TEST_CASE("soft shells hung from each other: joints hold, and the order is kept", "[local][joints][long]") {
   for (const bool soft : {false, true}) {
     std::vector<double> energy;
     for (const int steps : {100, 200, 400}) {
@@ -71,7 +71,7 @@ TEST_CASE("soft shells on joints: the augmented matrix and the blocks agree", "[
 }
 
 TEST_CASE("a parameter of a soft shell that meets its limit: P and L stay, no energy comes in",
-          "[local][limits]") {
+          "[local][limits][long]") {
   MultiBody body;
   body.gravity.setZero();
   Part& part = balloon(body, "ball", {0, 0, 0}, true);
@@ -109,7 +109,7 @@ TEST_CASE("a soft shell on a string: it goes taut, and the gap stays closed", "[
 }
 
 TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a hand that moves its joint",
-          "[local][joints]") {
+          "[local][joints][long]") {
   std::vector<double> balance;
   for (const int steps : {100, 200, 400}) {
     MultiBody body;

@@ -133,7 +133,8 @@ TEST_CASE("damping of every law: K x_dot about rest, nothing of rigid motion, ne
   }
 }
 
-TEST_CASE("small motion dies alike under a law of positions and under the linear one", "[local][motion]") {
+TEST_CASE("small motion dies alike under a law of positions and under the linear one",
+          "[local][motion][long]") {
   for (const bool shell : {false, true}) {
     auto left = [&](const char* law) {
       MultiBody body;

@@ -120,7 +120,7 @@ TEST_CASE("free flight of a shell that rings, tumbles and changes its shape: ord
 }
 
 TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns the body by its torque",
-          "[local]") {
+          "[local][long]") {
   for (const bool soft : {false, true}) {
     MultiBody body;
     const Surface surface(tumbling(body, 2, soft), 2);
@@ -131,7 +131,8 @@ TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns 
   }
 }
 
-TEST_CASE("N09: a force inside an element does so too, of shells and of solids of both orders", "[local]") {
+TEST_CASE("N09: a force inside an element does so too, of shells and of solids of both orders",
+          "[local][long]") {
   test::Draws draw(9);
   for (const bool soft : {false, true})
     for (const int order : {0, 1, 2})  // 0: a shell
@@ -183,7 +184,7 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
 
 TEST_CASE(
     "a shell twists through 2.5 rad per half length, and its conditions still tell its coordinates apart",
-    "[local]") {
+    "[local][long]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add(make_part("tube", "cylinder", {"twist"}, 2));

@@ -239,7 +239,8 @@ TEST_CASE("N43: a planar four-bar linkage for 10 s", "[loops]") {
   CHECK(worst.gap <= 1e-9);
 }
 
-TEST_CASE("IFToMM A02: two windows of bars turn through the positions where all are in line", "[loops]") {
+TEST_CASE("IFToMM A02: two windows of bars turn through the positions where all are in line",
+          "[loops][long]") {
   MultiBody body;
   windows_in_a_row(body, 2);
   Simulation simulation(body, "rk4");
@@ -273,7 +274,7 @@ TEST_CASE("IFToMM A02: 35 rows of rank 29 wherever the bars are not in line", "[
   }
 }
 
-TEST_CASE("IFToMM A04: Bricard's mechanism from rest, for 10 s", "[loops]") {
+TEST_CASE("IFToMM A04: Bricard's mechanism from rest, for 10 s", "[loops][long]") {
   MultiBody body;
   bricard(body);
   Simulation simulation(body, "rk4");

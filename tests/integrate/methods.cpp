@@ -75,7 +75,7 @@ Way way(const Problem& problem, const std::string& method, int steps, double tol
 
 }  // namespace
 
-TEST_CASE("every method has its order on smooth motion, free, jointed and sprung", "[methods]") {
+TEST_CASE("every method has its order on smooth motion, free, jointed and sprung", "[methods][long]") {
   for (const Problem& problem : kProblems) {
     const Way exact = way(problem, "dop853", 64 * problem.steps);
     for (const IntegratorInfo& method : all_integrators()) {

@@ -194,7 +194,7 @@ TEST_CASE("dust of polynomials: every point of a spinning body without elasticit
 }
 
 TEST_CASE("modes on a ball joint, a hinge and a loop: joints hold, and the order is kept",
-          "[modal][joints]") {
+          "[modal][joints][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool loop : {false, true}) {
       std::vector<double> energy;

@@ -90,7 +90,7 @@ TEST_CASE("a paddle at constant speed hits a ball as 1 + e says", "[motion]") {
   }
 }
 
-TEST_CASE("a thin paddle that swings fast does not pass through a ball", "[motion]") {
+TEST_CASE("a thin paddle that swings fast does not pass through a ball", "[motion][long]") {
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -132,7 +132,7 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
   CHECK(simulation.model().position(simulation.state(), 0)[2] == Approx(0.95));
 }
 
-TEST_CASE("a ball that rolls on a turntable goes round at 2/7 of its rate", "[motion]") {
+TEST_CASE("a ball that rolls on a turntable goes round at 2/7 of its rate", "[motion][long]") {
   constexpr double kRate = 3, kRadius = 0.1, kTurn = 2.0 / 7 * kRate;
   std::vector<double> errors;
   for (const double h : {4e-3, 2e-3, 1e-3}) {

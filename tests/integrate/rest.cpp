@@ -50,7 +50,7 @@ double deepest(const Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("N51: a stack of ten boxes stands without creep", "[contact]") {
+TEST_CASE("N51: a stack of ten boxes stands without creep", "[contact][long]") {
   for (const double h : {2e-3, 2e-2}) {
     MultiBody body;
     stack(body, 10);
@@ -74,7 +74,7 @@ TEST_CASE("N51: a box on a box stands for an hour, a stack of ten for ten minute
   }
 }
 
-TEST_CASE("N51: dropped boxes come to rest on each other", "[contact]") {
+TEST_CASE("N51: dropped boxes come to rest on each other", "[contact][long]") {
   for (const int boxes : {2, 5, 8}) {
     MultiBody body;
     stack(body, boxes, 1e-4);
@@ -90,7 +90,7 @@ TEST_CASE("N51: dropped boxes come to rest on each other", "[contact]") {
   }
 }
 
-TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they touch", "[contact]") {
+TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they touch", "[contact][long]") {
   struct Way {
     const char* name;
     Eigen::Quaterniond R;
@@ -135,7 +135,7 @@ TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they tou
     }
 }
 
-TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[contact]") {
+TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[contact][long]") {
   for (const double ratio : {1e-6, 1e6})
     for (const double h : {1e-3, 2e-3}) {
       MultiBody body;

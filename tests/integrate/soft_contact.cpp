@@ -62,7 +62,8 @@ void run_through_contact(Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("a balloon dropped on a plane comes to rest on it, and the plane carries its weight", "[contact]") {
+TEST_CASE("a balloon dropped on a plane comes to rest on it, and the plane carries its weight",
+          "[contact][long]") {
   for (const char* method : {"semi_implicit_euler", "rk4"}) {
     MultiBody body;
     balloon(body, "ball", {0, 0, 0.15});
@@ -123,7 +124,7 @@ TEST_CASE("a balloon and a rigid box collide: momenta stay, and nothing sinks in
   CHECK(after.energy() < before.energy());
 }
 
-TEST_CASE("balloons on strings that collide: strings hold", "[contact][joints]") {
+TEST_CASE("balloons on strings that collide: strings hold", "[contact][joints][long]") {
   MultiBody body;
   body.contact.active = true;
   Part& left = balloon(body, "left", {-0.3, 0, -0.4});
@@ -273,7 +274,7 @@ double depth_in(const ObstacleMesh& mesh, const Vec3<double>& p) {
 }  // namespace
 
 TEST_CASE("a balloon rests on a plate, on a flat mesh and in a bowl, and each carries its weight",
-          "[contact]") {
+          "[contact][long]") {
   const std::vector<Ground> grounds{Ground(7, [](double, double) { return 0.0; }),
                                     Ground(12, [](double u, double v) { return 1.5 * (u * u + v * v); })};
   for (const std::string on : {"plate", "flat mesh", "bowl"}) {

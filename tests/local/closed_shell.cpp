@@ -74,7 +74,7 @@ double bending_error(int levels, int n) {
 
 }  // namespace
 
-TEST_CASE("closed shell: the membrane's spectrum on 642 nodes", "[local]") {
+TEST_CASE("closed shell: the membrane's spectrum on 642 nodes", "[local][long]") {
   const ShellMesh mesh = icosphere(3, kRadius);
   REQUIRE(mesh.n_nodes() == 642);
   for (const double nu : {0.0, 0.3, 0.5})

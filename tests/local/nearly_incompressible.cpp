@@ -130,7 +130,7 @@ TEST_CASE("N22: a sphere of linear elements locks, with averaged dilatation it d
   }
 }
 
-TEST_CASE("N22: quadratic elements lock less, with averaged dilatation not at all", "[solid]") {
+TEST_CASE("N22: quadratic elements lock less, with averaged dilatation not at all", "[solid][long]") {
   CHECK(plain_error<QuadraticTetrahedron>(2, 0.49) < 0.01);
   CHECK(plain_error<QuadraticTetrahedron>(2, 0.4999) > 0.05);
   for (double nu : {0.49, 0.499, 0.4999}) {

@@ -60,7 +60,7 @@ double order(double coarse, double fine, double ratio) {
 
 }  // namespace
 
-TEST_CASE("Lamb's sphere by linear elements, lumped: second order", "[modes]") {
+TEST_CASE("Lamb's sphere by linear elements, lumped: second order", "[modes][long]") {
   const LambErrors coarse = lamb<LinearTetrahedron>(3, Mass::lumped),
                    fine = lamb<LinearTetrahedron>(6, Mass::lumped);
   CHECK(std::abs(fine.T2) < 0.004);
@@ -72,7 +72,7 @@ TEST_CASE("Lamb's sphere by linear elements, lumped: second order", "[modes]") {
   CHECK(std::abs(breathing<LinearTetrahedron>(5, Mass::lumped)) < 0.01);
 }
 
-TEST_CASE("Lamb's sphere by quadratic elements, consistent: fourth order, from above", "[modes]") {
+TEST_CASE("Lamb's sphere by quadratic elements, consistent: fourth order, from above", "[modes][long]") {
   const LambErrors coarse = lamb<QuadraticTetrahedron>(2, Mass::consistent),
                    fine = lamb<QuadraticTetrahedron>(3, Mass::consistent);
   for (double error : {fine.T2, fine.S2, fine.S1}) {
@@ -85,7 +85,7 @@ TEST_CASE("Lamb's sphere by quadratic elements, consistent: fourth order, from a
   CHECK(std::abs(breathing<QuadraticTetrahedron>(2, Mass::consistent)) < 5e-3);
 }
 
-TEST_CASE("Lamb's sphere by quadratic elements, lumped: second order only", "[modes]") {
+TEST_CASE("Lamb's sphere by quadratic elements, lumped: second order only", "[modes][long]") {
   const LambErrors coarse = lamb<QuadraticTetrahedron>(2, Mass::lumped),
                    fine = lamb<QuadraticTetrahedron>(3, Mass::lumped);
   CHECK(order(coarse.T2, fine.T2, 1.5) == Approx(2).margin(0.3));
@@ -94,7 +94,7 @@ TEST_CASE("Lamb's sphere by quadratic elements, lumped: second order only", "[mo
   CHECK(std::abs(fine.S1) < 0.025);
 }
 
-TEST_CASE("Lamb's sphere by enriched elements, lumped: fourth order", "[modes]") {
+TEST_CASE("Lamb's sphere by enriched elements, lumped: fourth order", "[modes][long]") {
   const LambErrors coarse = lamb<EnrichedTetrahedron>(1, Mass::lumped),
                    fine = lamb<EnrichedTetrahedron>(2, Mass::lumped);
   CHECK(std::abs(fine.T2) < 0.0011);
@@ -159,7 +159,7 @@ BeamErrors beam(double L, int resolution) {
 
 }  // namespace
 
-TEST_CASE("a free cylinder: bending, torsion and stretching", "[modes]") {
+TEST_CASE("a free cylinder: bending, torsion and stretching", "[modes][long]") {
   const BeamErrors errors = beam(10, 3), coarse = beam(10, 2);
   CHECK(errors.first == Approx(0).margin(0.006));
   CHECK(errors.second == Approx(0).margin(0.017));

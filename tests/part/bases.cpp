@@ -62,7 +62,7 @@ std::string refusal(Part& part, const LocalSettings& settings) {
 }  // namespace
 
 TEST_CASE("modes are orthonormal over the mass, and to rigid motion and the fields of the parameters",
-          "[bases]") {
+          "[bases][long]") {
   for (const Basis kind : {Basis::polynomial, Basis::modes})
     for (const char* shape : {"ellipsoid", "superellipsoid", "cylinder", "cone", "supertoroid"}) {
       CAPTURE(shape, static_cast<int>(kind));
@@ -236,7 +236,7 @@ TEST_CASE("weights of a material point make the displacement there", "[bases]") 
   }
 }
 
-TEST_CASE("bases that cannot be laid are refused in words", "[bases]") {
+TEST_CASE("bases that cannot be laid are refused in words", "[bases][long]") {
   const auto shell = make_part("skin", "sphere", {}, 1);
   shell->make_shell();
   LocalSettings settings = polynomials(4);

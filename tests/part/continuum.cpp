@@ -268,7 +268,7 @@ TEST_CASE("a closed spherical shell that breathes: the exact frequency", "[conti
         Approx(2).epsilon(kStrainSettled));
 }
 
-TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing", "[continuum]") {
+TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing", "[continuum][long]") {
   Draws draws(9);
   for (const Body& body : {bodies()[0], bodies()[2], bodies()[3]}) {
     const auto part = make(body, "st_venant_kirchhoff_membrane", true);
@@ -296,7 +296,7 @@ TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing",
   CHECK(turned == Approx(there).epsilon(10 * kStrainSettled));
 }
 
-TEST_CASE("elasticity that a part cannot have is refused by name", "[continuum]") {
+TEST_CASE("elasticity that a part cannot have is refused by name", "[continuum][long]") {
   auto ball = [](const char* shape, const char* law) {
     auto part = make_part("ball", shape, {"taper"}, 1000);
     part->elasticity({law, 1e4, 0.3, 0.01}).make_dynamic({"a1"});

@@ -72,7 +72,7 @@ void check_kinematics(const Part& part, const test::RandomState& state,
 
 }  // namespace
 
-TEST_CASE("s, J and Jdot qdot of every shape and several chains agree with long double", "[part]") {
+TEST_CASE("s, J and Jdot qdot of every shape and several chains agree with long double", "[part][long]") {
   Draws draws(1);
   for_every_part([&](const Part& part) {
     check_kinematics(part, test::draw_state(draws, part), points_of(draws, part, 20));

@@ -135,7 +135,7 @@ TEST_CASE("solid meshes conform, and their boundary is the surface mesh", "[soli
       }
 }
 
-TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[solid]") {
+TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[solid][long]") {
   // A cell of the cubic lattice itself has 0.756.
   for (int resolution : {1, 2, 3, 8, 12}) {
     INFO(resolution);

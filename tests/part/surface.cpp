@@ -103,7 +103,7 @@ TEST_CASE("surfaces are closed, of the right topology, without duplicates or nee
       }
 }
 
-TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an area", "[surface]") {
+TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an area", "[surface][long]") {
   for (const char* shape : {"superellipsoid", "superellipsoid_radial", "supertoroid"})
     for (double eps : {0.02, 0.1, 0.3, 1.9, 3.0, 5.0}) {
       const std::unique_ptr<Part> part = make_part("part", shape, {}, 1);
@@ -127,7 +127,7 @@ TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an are
     }
 }
 
-TEST_CASE("the enclosed volume is positive and converges at second order", "[surface]") {
+TEST_CASE("the enclosed volume is positive and converges at second order", "[surface][long]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : test::usual_chains()) {
       const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
