@@ -76,8 +76,12 @@ Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair
   for (std::size_t j = 0; j < n; ++j)
     place_of[static_cast<std::size_t>(result.node_at[j])] = static_cast<int>(j);
 
+  auto size_at = [&](int place) -> long {
+    return sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(place)])];
+  };
   // What is below the diagonal of a column goes on to the column of its first block.
   result.below.resize(n);
+  std::vector<long> products(n);  // of each column
   for (std::size_t j = 0; j < n; ++j) {
     std::vector<int>& places = result.below[j];
     for (const int v : next[static_cast<std::size_t>(result.node_at[j])])
@@ -85,20 +89,31 @@ Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair
         places.push_back(place_of[static_cast<std::size_t>(v)]);
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
-    const long size = sizes[static_cast<std::size_t>(result.node_at[j])];
+    const long size = size_at(static_cast<int>(j));
     long rows = 0, squares = 0;  // of the blocks below
     for (const int i : places) {
-      const long of_block = sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(i)])];
-      rows += of_block;
-      squares += of_block * of_block;
+      rows += size_at(i);
+      squares += size_at(i) * size_at(i);
     }
+    products[j] = size * size * size / 6 + size + size * size * rows + size * (rows * rows + squares) / 2;
     result.values += size * (size + rows);
-    result.products +=
-        size * size * size / 6 + size + size * size * rows + size * (rows * rows + squares) / 2;
+    result.products += products[j];
     if (places.empty()) continue;
     std::vector<int>& parent = result.below[static_cast<std::size_t>(places.front())];
     parent.insert(parent.end(), places.begin() + 1, places.end());
   }
+
+  // Dense from where every column has all that follow below it.
+  const auto nodes = static_cast<int>(n);
+  int first_dense = nodes;
+  long rows = 0;
+  while (first_dense > 0 &&
+         static_cast<int>(result.below[static_cast<std::size_t>(first_dense - 1)].size()) ==
+             nodes - first_dense)
+    rows += size_at(--first_dense);
+  result.first_dense = rows < kFewDense ? nodes : first_dense;
+  for (int place = result.first_dense; place < nodes; ++place)
+    result.dense_products += products[static_cast<std::size_t>(place)];
   return result;
 }
 
@@ -138,19 +153,10 @@ BlockPattern::BlockPattern(const Elimination& elimination) {
                                         [](const Block& b, int r) { return b.place < r; });
     return found->offset;
   };
-  first_dense_ = nodes();
-  const auto full = [&](int place) {
-    const Column& c = columns_[static_cast<std::size_t>(place)];
-    return c.last - c.first == nodes() - place - 1;
-  };
-  while (first_dense_ > 0 && full(first_dense_ - 1)) --first_dense_;
+  first_dense_ = elimination.first_dense;
   for (int place = first_dense_; place < nodes(); ++place) {
     const Column& c = columns_[static_cast<std::size_t>(place)];
     for (int k = 0; k < c.size; ++k) dense_rows_.push_back(c.row + k);
-  }
-  if (static_cast<int>(dense_rows_.size()) < kDense) {
-    first_dense_ = nodes();
-    dense_rows_.clear();
   }
   for (int place = 0; place < first_dense_; ++place) {
     Column& column = columns_[static_cast<std::size_t>(place)];

@@ -20,12 +20,18 @@ std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::
 /// systems of chains and trees.
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour);
 
+/// Rows that the last nodes must have together to be factored as one dense matrix, when no block of them is
+/// zero: below this, blocks cost no more.
+inline constexpr int kFewDense = 18;
+
 /// A graph of nodes of several rows each, in an order of elimination, and what fills in.
 struct Elimination {
   std::vector<int> sizes;               ///< rows of each node
   std::vector<int> node_at;             ///< the node at each place
   std::vector<std::vector<int>> below;  ///< of each place, the places whose blocks are not zero
+  int first_dense = 0;                  ///< the place from which all is one dense matrix
   long products = 0;                    ///< multiplications of a factorisation
+  long dense_products = 0;              ///< those of the dense matrix among them
   long values = 0;                      ///< numbers in the blocks of the factor
 };
 /// edges: pairs of nodes whose block is not zero, in any order.
@@ -50,10 +56,6 @@ class BlockPattern {
     bool swapped;  ///< it holds the rows of v and the columns of u
   };
   Place place(int u, int v) const;
-
-  /// Rows that the last nodes must have together to be factored as one dense matrix, when no block of them is
-  /// zero: below this, blocks cost no more.
-  static constexpr int kDense = 18;
 
   int nodes() const { return static_cast<int>(columns_.size()); }
   int rows() const { return rows_; }
