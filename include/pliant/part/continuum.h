@@ -125,7 +125,7 @@ class ContinuumEnergy {
   /// J.
   double energy(const Part& part, const VecMax<double>& q_s) const;
   /// f -= dE/dq_s and beta times the damping; returns the power of the latter, W. Throws InvertedElement
-  /// where the body is turned inside out.
+  /// where the body is turned inside out at one of its points.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
   /// The same with derivatives along the direction that q_s and q_s_dot carry.
