@@ -1,6 +1,7 @@
 #include <pliant/integrate/contact_stepping.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -66,6 +67,13 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
   int events = 0;
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last = Clock::now();
+  const auto lap = [&last](double& stage) {
+    const Clock::time_point at_lap = Clock::now();
+    stage += std::chrono::duration<double>(at_lap - last).count();
+    last = at_lap;
+  };
   for (double now = state.time(); now < end - near;) {
     ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
     if (!meshes_.empty()) {
@@ -83,13 +91,16 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     }
     const double length = around.h >= end - now - near ? end - now : around.h;
     if (now != start + static_cast<double>(number) * h || length != h) set_step(state, now, length);
+    lap(times_.finding);
     if (around.empty) {
       method.step(dynamics_, state, work, counters);
+      lap(times_.motion);
       now += length;
       continue;
     }
     const State before = state;
     method.step(dynamics_, state, work, counters);
+    lap(times_.motion);
     if (!state.q.allFinite() || !state.v.allFinite()) break;
     const double after = now + length;
     const std::vector<Contact> resting = resting_.at_rest(before, now, slow);
@@ -114,9 +125,11 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
       if (impacts.size() <= kMostPairs && few_parts_ && !rest.has(contact) && !Pairs(impacts).has(contact))
         impacts.push_back(contact);
     }
+    lap(times_.finding);
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
       const std::optional<double> tau =
           locate_impact(dynamics_, finder_, method, before, now, length, impacts, state, work, counters);
+      lap(times_.motion);
       if (tau) {
         ++events;
         ++counters.impacts;
@@ -130,7 +143,9 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         for (Contact& contact : lying) contact.since = reach * *tau;
         meshes_.find(state, now, lying);
         time_impacts(finder_, before, state, reach, *tau, slow, lying);
+        lap(times_.finding);
         settling_.settle(before, reach * *tau, *tau, state, now, std::move(lying), work, counters);
+        lap(times_.settling);
         std::vector<Contact> there = finder_.find(state, now, resting_.gap());
         there.erase(std::remove_if(there.begin(), there.end(),
                                    [&](const Contact& c) {
@@ -143,7 +158,9 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
           const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
           if (!rest.has(contact) && rebound > slow) contact.rebound = rebound;
         }
+        lap(times_.finding);
         settling_.settle(state, 0, 0, state, now, std::move(there), work, counters);
+        lap(times_.settling);
         if (!to_impact || !(now > begin)) continue;
         taken = now - begin;
         break;
@@ -156,8 +173,10 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     if (method.local_is_implicit())
       for (Contact& contact : contacts)
         if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = reach * length;
+    lap(times_.finding);
     settling_.settle(before, reach * length, length, state, after, contacts, work, counters);
     settling_.settle_chain(std::move(contacts), length, slow, state, after, work, counters);
+    lap(times_.settling);
     now = after;
   }
   state.start = start;

@@ -27,6 +27,14 @@ class ContactStepping {
   double step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters,
               bool to_impact = false);
 
+  /// What the steps so far took, by stages, s of the clock.
+  struct StageTimes {
+    double motion = 0;    ///< the method's steps, contacts aside, and telling impacts in time
+    double finding = 0;   ///< what is near, and where it touches
+    double settling = 0;  ///< impulses, and overlaps taken back
+  };
+  const StageTimes& times() const { return times_; }
+
   const ContactFinder& finder() const { return finder_; }
   /// Whether some of what touched in the last step did so for a time, or was not met at its time.
   bool any_lasts() const;
@@ -43,6 +51,7 @@ class ContactStepping {
   ContactRecord record_, record_before_;
   ContactSettling settling_;
   bool few_parts_ = false;  ///< so that impacts are told in time
+  StageTimes times_;
 };
 
 }  // namespace pliant

@@ -1,0 +1,70 @@
+// What the scenes of the paper's figures take on one core: how many seconds of them a second of the clock
+// makes (the real-time factor), and the shares of its stages. CSV to standard output.
+//
+//   figure_bench SCENES_FOLDER [FOLDER]     writes figure_bench.csv to FOLDER as well
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <pliant/pliant.h>
+#include <pliant/scene/read_scene.h>
+
+#include "table_file.h"
+#include "timing.h"
+
+using namespace pliant;
+
+namespace {
+
+/// One row of the table.
+std::string measure(const std::string& folder, const std::string& name) {
+  using Clock = std::chrono::steady_clock;
+  auto seconds = [](Clock::time_point from) {
+    return std::chrono::duration<double>(Clock::now() - from).count();
+  };
+  Diagnostics faults;
+  const auto before = Clock::now();
+  const auto scene = read_scene(folder + "/" + name + ".json", {}, faults);
+  Simulation simulation(scene->body, scene->integrator);
+  const double load = seconds(before);
+  const auto steps = static_cast<long>(scene->end / scene->step + 0.5);
+  const auto start = Clock::now();
+  for (long i = 0; i < steps; ++i) simulation.step(scene->step);
+  const double taken = seconds(start);
+  const ContactStepping::StageTimes& stages = simulation.contact()->times();
+  char line[256];
+  std::snprintf(line, sizeof line, "%s,%d,%.3g,%.3g,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f\n", name.c_str(),
+                simulation.model().n_v(), scene->end, scene->step, load, taken, simulation.time() / taken,
+                100 * stages.motion / taken, 100 * stages.finding / taken, 100 * stages.settling / taken);
+  return line;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: figure_bench SCENES_FOLDER [FOLDER]\n");
+    return 2;
+  }
+  try {
+    char calibration[64];
+    std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g\n",
+                  bench::multiply_add_peak());
+    const std::string head =
+        std::string(calibration) +
+        "scene,velocities,seconds,step_s,load_s,taken_s,real_time_factor,motion_percent,finding_percent,"
+        "settling_percent\n";
+    bench::TableFile file(argc > 2 ? std::string(argv[2]) + "/figure_bench.csv" : "", head);
+    std::fputs(head.c_str(), stdout);
+    for (const char* name : {"balloons", "dragonfly", "snowman", "springboard"}) {
+      const std::string row = measure(argv[1], name);
+      std::fputs(row.c_str(), stdout);
+      std::fflush(stdout);
+      file.row("%s", row.c_str());
+    }
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "figure_bench: %s\n", e.what());
+    return 1;
+  }
+}
