@@ -17,8 +17,8 @@ OpenRun open_run(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(file))
     throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
   pliant::Diagnostics warnings;  // they were shown when the run began
-  run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings, pliant::MeshFiles::of_a_run);
-  use_solvers(*run.scene);
+  run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings, solvers(),
+                                 pliant::MeshFiles::of_a_run);
   if (run.scene->hash != run.record.scene_hash)
     throw pliant::RecordingMismatch(file.string() +
                                     " is not the scene that was recorded: it was changed since");

@@ -24,18 +24,18 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options) {
   pliant::Diagnostics diagnostics;
-  std::unique_ptr<pliant::Scene> scene = pliant::read_scene(options.file, options.overrides, diagnostics);
+  std::unique_ptr<pliant::Scene> scene =
+      pliant::read_scene(options.file, options.overrides, diagnostics, solvers());
   if (diagnostics.warnings() > 0) std::cerr << diagnostics.text();
-  use_solvers(*scene);
   return scene;
 }
 
-void use_solvers(pliant::Scene& scene) {
+pliant::JointSolver solvers() {
+  pliant::JointSolver solver;
 #ifdef PLIANT_HAS_SUITESPARSE
-  pliant::use_suitesparse(scene.body.joint_solver);
-#else
-  static_cast<void>(scene);
+  pliant::use_suitesparse(solver);
 #endif
+  return solver;
 }
 
 }  // namespace pliant_cli

@@ -21,7 +21,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options);
 /// Reads the scene; warnings go to standard error. Throws pliant::SceneError, pliant::FileError.
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options);
 
-/// The solvers of joints that are linked into this program.
-void use_solvers(pliant::Scene& scene);
+/// The solvers that are linked into this program.
+pliant::JointSolver solvers();
 
 }  // namespace pliant_cli

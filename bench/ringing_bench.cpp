@@ -16,6 +16,9 @@
 
 #include <pliant/part/local_laws.h>
 #include <pliant/pliant.h>
+#ifdef PLIANT_HAS_SUITESPARSE
+#include <pliant/solve/cholmod_factor.h>
+#endif
 
 #include "table_file.h"
 #include "timing.h"
@@ -40,6 +43,9 @@ LocalSettings settings_of(Basis basis, int fineness, int order) {
   settings.order = order;
   settings.modes = 12;
   settings.energies = {local_law("elastic", {1e5, 0.3})};
+#ifdef PLIANT_HAS_SUITESPARSE
+  settings.make_factor = [] { return make_cholmod_factor(); };
+#endif
   return settings;
 }
 
@@ -127,7 +133,7 @@ int main(int argc, char** argv) {
     for (const int degree : {2, 3, 4, 5, 6, 7, 8}) bench.measure("polynomial", Basis::polynomial, degree, 1);
     for (const int order : {2, 1})
       for (const int resolution :
-           order == 1 ? std::vector<int>{2, 3, 4, 6, 8, 10, 12} : std::vector<int>{1, 2, 3, 4}) {
+           order == 1 ? std::vector<int>{2, 3, 4, 6, 8, 10, 12, 14} : std::vector<int>{1, 2, 3, 4, 5}) {
         const std::string kind = " of order " + std::to_string(order);
         const double found = bench.measure("modes" + kind, Basis::modes, resolution, order);
         bench.measure("nodes" + kind, Basis::nodes, resolution, order, found);

@@ -75,8 +75,7 @@ int check(const CheckCommand& command) {
   pliant::Diagnostics diagnostics;
   std::unique_ptr<pliant::Scene> scene;
   try {
-    scene = pliant::read_scene(command.scene.file, command.scene.overrides, diagnostics);
-    use_solvers(*scene);
+    scene = pliant::read_scene(command.scene.file, command.scene.overrides, diagnostics, solvers());
   } catch (const pliant::SceneError& error) {
     if (!machine) throw;
     std::cout << error.diagnostics().json() << "\n";

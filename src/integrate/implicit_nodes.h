@@ -17,8 +17,8 @@
 
 #include <Eigen/LU>
 
+#include <pliant/math/sparse_factor.h>
 #include <pliant/part/nodal_deformation.h>
-#include <pliant/solve/sparse_factor.h>
 
 #include "implicit_part.h"
 

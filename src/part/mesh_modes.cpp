@@ -14,7 +14,6 @@
 #include <Spectra/SymEigsSolver.h>
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
-#include <Eigen/SparseCholesky>
 
 #include <pliant/local/solid_mass.h>
 #include <pliant/math/eigenvalues.h>
@@ -28,12 +27,12 @@ namespace pliant {
 
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
+using Sparse = SparseMatrix;
 
 /// Up to here the dense solver is the faster way.
 constexpr Eigen::Index kDense = 400;
-/// Local coordinates whose factor takes minutes, and numbers in the modes.
-constexpr Eigen::Index kMostCoordinates = 60'000;
+/// Local coordinates whose factor takes gigabytes, and numbers in the modes.
+constexpr Eigen::Index kMostCoordinates = 120'000;
 constexpr double kMostNumbers = 5e7;
 
 /// M over the nodes of a mesh.
@@ -87,13 +86,19 @@ class Flexibility {
  public:
   using Scalar = double;
 
-  Flexibility(const MeshElasticity& of, const MatX<double>& Q, double sigma) : mass_(of.mass), Q_(Q) {
-    factor_.compute(of.K + sigma * of.mass.whole());
-    if (factor_.info() != Eigen::Success) return;
+  Flexibility(const MeshElasticity& of, const MatX<double>& Q, double sigma,
+              const MakeSparseFactor& make_factor)
+      : mass_(of.mass), Q_(Q), factor_(make_factor()) {
+    Sparse shifted = of.K + sigma * of.mass.whole();
+    shifted.makeCompressed();
+    factor_->analyse(shifted);
+    positive_ = factor_->factor(shifted);
+    if (!positive_) return;
     Y_ = yield(Q);
     inner_.compute(Q.transpose() * Y_);
+    positive_ = inner_.info() == Eigen::Success;
   }
-  bool exists() const { return factor_.info() == Eigen::Success && inner_.info() == Eigen::Success; }
+  bool exists() const { return positive_; }
   Eigen::Index rows() const { return Q_.rows(); }
   Eigen::Index cols() const { return Q_.rows(); }
   void perform_op(const double* in, double* out) const {
@@ -104,12 +109,15 @@ class Flexibility {
 
  private:
   MatX<double> yield(const MatX<double>& x) const {
-    return mass_.root(MatX<double>(factor_.solve(mass_.transposed(x))));
+    MatX<double> pushed = mass_.transposed(x);
+    factor_->solve(pushed);
+    return mass_.root(pushed);
   }
 
   const MassRoot& mass_;
   const MatX<double>& Q_;
-  Eigen::SimplicialLDLT<Sparse> factor_;
+  std::unique_ptr<SparseFactor> factor_;
+  bool positive_ = false;
   MatX<double> Y_;
   Eigen::LDLT<MatX<double>> inner_;
 };
@@ -134,7 +142,7 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
 
 /// Columns: the modes in mass-normalised coordinates, of rising frequency.
 MatX<double> lowest(const std::string& of, const LocalMesh& mesh, const MeshElasticity& elasticity,
-                    const MatX<double>& Q, Eigen::Index count) {
+                    const MatX<double>& Q, Eigen::Index count, const MakeSparseFactor& make_factor) {
   const Eigen::Index n = elasticity.mass.size();
   if (n <= kDense || 4 * count > n) {
     const Eigen::HouseholderQR<MatX<double>> qr(Q);
@@ -144,7 +152,7 @@ MatX<double> lowest(const std::string& of, const LocalMesh& mesh, const MeshElas
   }
   constexpr double tolerance = 1e-13;
   constexpr int most_iterations = 1000;
-  Flexibility flexibility(elasticity, Q, shift_of(mesh, elasticity, Q));
+  Flexibility flexibility(elasticity, Q, shift_of(mesh, elasticity, Q), make_factor);
   if (!flexibility.exists())
     throw std::invalid_argument(of + "its elasticity is not positive: its modes cannot be told");
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, std::min(n, 2 * count + 20));
@@ -183,7 +191,7 @@ ModalBasis lay_mesh_modes(const Part& part, const LocalSettings& settings) {
   if (settings.modes > left)
     throw std::invalid_argument(of + std::to_string(settings.modes) + " modes of a mesh that has " +
                                 std::to_string(left) + "; expected no more");
-  MatX<double> x = lowest(of, *mesh, elasticity, Q, settings.modes);
+  MatX<double> x = lowest(of, *mesh, elasticity, Q, settings.modes, settings.make_factor);
   // By their energies, whose error is the square of that of the modes.
   x = root.solve(x);
   const MatX<double> stiffness = x.transpose() * (elasticity.K * x);

@@ -11,9 +11,12 @@
 #include <pliant/math/eigenvalues.h>
 
 #include "mode_conditions.h"
+#include "node_sums.h"
 #include "store_jets.h"
 
 namespace pliant {
+
+using node_sums::axial;
 
 double ModalWorkspace::condition() const {
   return 1 / factor.rcond();
@@ -32,10 +35,6 @@ auto rows_of(const MatX<double>& shape, Eigen::Index first) {
 template <class A, class B>
 Mat3<double> outer(const VecX<double>& m, const A& a, const B& b) {
   return a.transpose() * m.asDiagonal() * b;
-}
-/// sum m a x b for sum m a b^T.
-Vec3<double> axial(const Mat3<double>& ab) {
-  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
 }
 
 }  // namespace

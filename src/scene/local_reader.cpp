@@ -52,9 +52,10 @@ bool takes(const LocalSettings& settings, const LocalLawInfo& info, const Reader
 
 }  // namespace
 
-void read_local(const Reader& local, SceneFaults& faults, Part& part) {
+void read_local(const Reader& local, const MakeSparseFactor& make_factor, SceneFaults& faults, Part& part) {
   const std::size_t before = faults.errors();
   LocalSettings settings;
+  settings.make_factor = make_factor;
   settings.resolution = static_cast<int>(local.integer("resolution"));
   settings.order = static_cast<int>(local.integer("order"));
   read_basis(local, faults, part, settings);

@@ -9,6 +9,6 @@
 namespace pliant {
 
 /// From its record; faults are reported.
-void read_local(const Reader& local, SceneFaults& faults, Part& part);
+void read_local(const Reader& local, const MakeSparseFactor& make_factor, SceneFaults& faults, Part& part);
 
 }  // namespace pliant

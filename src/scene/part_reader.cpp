@@ -67,7 +67,7 @@ std::unique_ptr<Part> PartReader::read() {
   part_->move(r_.vector3("velocity"), r_.vector3("angular_velocity"));
   if (r_.boolean("fixed")) part_->fix();
   if (r_.given("motion")) read_motion(r_.object("motion"));
-  if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), faults_, *part_);
+  if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), make_factor_, faults_, *part_);
   read_elasticity();
   check_rigid();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");

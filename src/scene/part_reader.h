@@ -16,10 +16,10 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: those of the scene by name. end: of the run, s.
-  PartReader(const Reader& part, const std::map<std::string, Reader>& materials, double end,
-             SceneFaults& faults)
-      : r_(part), materials_(materials), end_(end), faults_(faults) {}
+  /// materials: those of the scene by name. make_factor: see LocalSettings. end: of the run, s.
+  PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
+             const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
+      : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
 
   /// The part; null when its shape or its deformations are not known. Faults are reported.
   std::unique_ptr<Part> read();
@@ -46,6 +46,7 @@ class PartReader {
 
   const Reader& r_;
   const std::map<std::string, Reader>& materials_;
+  const MakeSparseFactor& make_factor_;
   double end_;
   SceneFaults& faults_;
   std::unique_ptr<Part> part_;

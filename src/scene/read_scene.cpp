@@ -51,9 +51,10 @@ class SceneReader {
         faults_(document, diagnostics),
         root_(document.root(), scene_record(), &faulty_) {}
 
-  std::unique_ptr<Scene> read() {
+  std::unique_ptr<Scene> read(const JointSolver& solver) {
     auto scene = std::make_unique<Scene>();
     scene_ = scene.get();
+    scene_->body.joint_solver = solver;
     scene_->name =
         root_.given("name") ? root_.text("name") : std::filesystem::path(document_.name()).stem().string();
     scene_->description = root_.text("description");
@@ -151,7 +152,7 @@ class SceneReader {
       if (!is_new) faults_.twice(*entry->second.name, r.at("name"));
     }
     if (r.given("material")) check_material(r.at("material"));
-    PartReader reader(r, materials_, scene_->end, faults_);
+    PartReader reader(r, materials_, scene_->body.joint_solver.make_factor, scene_->end, faults_);
     std::unique_ptr<Part> made = reader.read();
     if (!made || !r.given("name") || scene_->body.find(r.text("name")) != nullptr) return;
     parts_[r.text("name")] = {&r.at("name"), &scene_->body.add(std::move(made)), reader.prepared()};
@@ -276,12 +277,12 @@ std::uint64_t hash_of(const std::string& text) {
 }
 
 std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::string>& overrides,
-                                MeshFiles files, Diagnostics& diagnostics) {
+                                MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
   const MeshFolder folder{std::filesystem::path(document.name()).parent_path(), files == MeshFiles::of_a_run};
   for (const std::string& assignment : overrides) document.set(assignment, diagnostics);
   validate(document, scene_record(), diagnostics);
   if (!document.root().is_object() || diagnostics.full()) diagnostics.throw_if_errors();
-  std::unique_ptr<Scene> scene = SceneReader(document, folder, diagnostics).read();
+  std::unique_ptr<Scene> scene = SceneReader(document, folder, diagnostics).read(solver);
   diagnostics.throw_if_errors();
   std::string resolved = document.text();
   for (const std::string& assignment : overrides) resolved += "\n" + assignment;
@@ -301,13 +302,13 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
 }  // namespace
 
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
-                                  Diagnostics& diagnostics, MeshFiles files) {
-  return scene_of(JsonDocument::read(file, diagnostics), overrides, files, diagnostics);
+                                  Diagnostics& diagnostics, const JointSolver& solver, MeshFiles files) {
+  return scene_of(JsonDocument::read(file, diagnostics), overrides, files, solver, diagnostics);
 }
 
 std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
                                    const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
-  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named,
+  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named, {},
                   diagnostics);
 }
 

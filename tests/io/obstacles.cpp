@@ -40,7 +40,7 @@ void write_scene(const NewFolder& folder, const std::string& third) {
 
 std::unique_ptr<Scene> read(const std::filesystem::path& file, MeshFiles files = MeshFiles::as_named) {
   Diagnostics diagnostics;
-  return read_scene(file.string(), {}, diagnostics, files);
+  return read_scene(file.string(), {}, diagnostics, {}, files);
 }
 
 }  // namespace

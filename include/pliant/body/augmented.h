@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <pliant/body/model.h>
-#include <pliant/solve/sparse_factor.h>
+#include <pliant/math/sparse_factor.h>
 
 namespace pliant {
 

@@ -19,6 +19,7 @@
 
 #include <pliant/local/elasticity.h>
 #include <pliant/local/nodal_energy.h>
+#include <pliant/math/sparse_factor.h>
 #include <pliant/math/thread_pool.h>
 #include <pliant/part/local_mesh.h>
 
@@ -62,6 +63,9 @@ struct LocalSettings {
   /// At time 0, from the place of a point at rest (body frame, m): m and m/s; none: zero.
   std::function<Vec3<double>(const Vec3<double>&)> displacement, velocity;
   double alpha = 0, beta = 0;  ///< D = alpha M + beta K of the local coordinates, 1/s and s
+  /// Of the stiffness of a mesh whose modes are to be found; from some ten thousand coordinates on CHOLMOD's
+  /// is many times faster (solve/cholmod_factor.h).
+  MakeSparseFactor make_factor = make_eigen_factor;
 };
 
 /// What pushes on (v_r, the points at joints) do to a part in place of M^-1: of a method that steps its

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include <pliant/solve/sparse_factor.h>
+#include <pliant/math/sparse_factor.h>
 
 namespace pliant {
 

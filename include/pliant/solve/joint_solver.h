@@ -5,8 +5,8 @@
 #include <functional>
 #include <memory>
 
+#include <pliant/math/sparse_factor.h>
 #include <pliant/solve/block_pattern.h>
-#include <pliant/solve/sparse_factor.h>
 
 namespace pliant {
 
@@ -14,7 +14,7 @@ struct JointSolver {
   enum class Choice { automatic, blocks, augmented };
   Choice choice = Choice::automatic;
   /// Of the augmented matrix, and of the stiffness of nodes where a method of integration factors it.
-  std::function<std::unique_ptr<SparseFactor>()> make_factor = make_eigen_factor;
+  MakeSparseFactor make_factor = make_eigen_factor;
   /// A fill-reducing order for the blocks, beside the cardinality search.
   NodeOrder order = minimum_degree_order;
 };

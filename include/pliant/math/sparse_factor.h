@@ -5,6 +5,7 @@
 // core; CHOLMOD's is the library pliant::suitesparse (solve/cholmod_factor.h).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -80,5 +81,7 @@ class SparseFactor {
 
 /// Eigen's simplicial LDLᵀ: the faster one below some thousand unknowns.
 std::unique_ptr<SparseFactor> make_eigen_factor();
+
+using MakeSparseFactor = std::function<std::unique_ptr<SparseFactor>()>;
 
 }  // namespace pliant

@@ -1,7 +1,7 @@
 // Eigen's factorisation and CHOLMOD's, simplicial and supernodal: the same answers, and the same verdict on
 // bad input.
+#include <pliant/math/sparse_factor.h>
 #include <pliant/solve/cholmod_factor.h>
-#include <pliant/solve/sparse_factor.h>
 
 #include <algorithm>
 #include <functional>

@@ -1,7 +1,7 @@
 // Eigen's simplicial LDLᵀ with its approximate minimum degree ordering.
 #include <Eigen/SparseCholesky>
 
-#include <pliant/solve/sparse_factor.h>
+#include <pliant/math/sparse_factor.h>
 
 namespace pliant {
 namespace {

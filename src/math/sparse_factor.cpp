@@ -1,5 +1,5 @@
 // What every sparse factorisation checks: patterns, pivots, the order of calls.
-#include <pliant/solve/sparse_factor.h>
+#include <pliant/math/sparse_factor.h>
 
 #include <algorithm>
 #include <cmath>
