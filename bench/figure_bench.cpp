@@ -9,6 +9,9 @@
 
 #include <pliant/pliant.h>
 #include <pliant/scene/read_scene.h>
+#ifdef PLIANT_HAS_SUITESPARSE
+#include <pliant/solve/suitesparse.h>
+#endif
 
 #include "table_file.h"
 #include "timing.h"
@@ -23,9 +26,13 @@ std::string measure(const std::string& folder, const std::string& name) {
   auto seconds = [](Clock::time_point from) {
     return std::chrono::duration<double>(Clock::now() - from).count();
   };
+  JointSolver solver;
+#ifdef PLIANT_HAS_SUITESPARSE
+  use_suitesparse(solver);
+#endif
   Diagnostics faults;
   const auto before = Clock::now();
-  const auto scene = read_scene(folder + "/" + name + ".json", {}, faults);
+  const auto scene = read_scene(folder + "/" + name + ".json", {}, faults, solver);
   Simulation simulation(scene->body, scene->integrator);
   const double load = seconds(before);
   const auto steps = static_cast<long>(scene->end / scene->step + 0.5);
