@@ -4,8 +4,9 @@
 //   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
 //   standard output; no more than MOST bodies (10000)
 //
-// Stages, of a step at the end: motion (the method's own step), near (what may meet), find (contacts), solve
-// (impulses). They are timed one by one, in loops of their own, so that their caches are warm.
+// Asleep: a step in which all of them sleep, which a scene may ask for. Stages, of a step at the end: motion
+// (the method's own step), near (what may meet), find (contacts), solve (impulses). They are timed one by
+// one, in loops of their own, so that their caches are warm.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -37,6 +38,7 @@ struct Cost {
   std::string system;
   int bodies, contacts;
   double step, still_step;  ///< over the whole fall and its impacts; of the end
+  double asleep;            ///< of a step in which all sleep
   double motion, near, find, solve;
   double deepest;  ///< penetration over all of it, in sizes of a body
   double residual;
@@ -66,11 +68,11 @@ void build(MultiBody& body, const System& system, int n) {
 }
 
 Cost measure(const System& system, int n) {
-  MultiBody body, apart;
-  build(body, system, n);
-  build(apart, system, n);
+  MultiBody body, apart, sleepy;
+  for (MultiBody* b : {&body, &apart, &sleepy}) build(*b, system, n);
   apart.contact.active = false;
-  Simulation simulation(body, "rk4"), loose(apart, "rk4");
+  sleepy.contact.sleep = Sleep{1e-3};
+  Simulation simulation(body, "rk4"), loose(apart, "rk4"), sleeping(sleepy, "rk4");
   Cost cost{};
   cost.system = system.name;
   cost.bodies = n;
@@ -101,6 +103,13 @@ Cost measure(const System& system, int n) {
     loose.set_state(state);
     loose.step(kStep);
   });
+  State asleep = state;
+  asleep.v.setZero();
+  asleep.at_rest.assign(static_cast<std::size_t>(n), -1);
+  cost.asleep = stage([&] {
+    sleeping.set_state(asleep);
+    sleeping.step(kStep);
+  });
   cost.near = stage([&] { finder.neighbourhood(state, t, kStep); });
   const std::vector<Contact> contacts = finder.find(state, t, 1e-6);
   cost.contacts = static_cast<int>(contacts.size());
@@ -129,10 +138,11 @@ int main(int argc, char** argv) try {
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
                 bench::multiply_add_peak(), bench::triad_bandwidth());
   std::printf("%s", calibration);
-  bench::TableFile costs_file(in_folder("contact_bench.csv"),
-                              std::string(calibration) +
-                                  "system,bodies,contacts,step_us_per_body,still_step_us_per_body,motion_us,"
-                                  "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
+  bench::TableFile costs_file(
+      in_folder("contact_bench.csv"),
+      std::string(calibration) +
+          "system,bodies,contacts,step_us_per_body,still_step_us_per_body,asleep_us,motion_us,"
+          "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
   bench::TableFile exponents_file(in_folder("contact_exponents.csv"),
                                   std::string(calibration) + "system,step,still_step\n");
   const std::vector<System> systems{
@@ -145,13 +155,13 @@ int main(int argc, char** argv) try {
     for (int n = 10; n <= std::min(most, system.most); n *= 10) {
       const Cost c = measure(system, n);
       costs.push_back(c);
-      std::printf("%-14s %6d %8d | %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
-                  c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.motion, c.near, c.find,
-                  c.solve, c.deepest, c.residual, c.fallbacks);
+      std::printf("%-14s %6d %8d | %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
+                  c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.asleep, c.motion, c.near,
+                  c.find, c.solve, c.deepest, c.residual, c.fallbacks);
       std::fflush(stdout);
-      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n", c.system.c_str(), c.bodies,
-                     c.contacts, c.step, c.still_step, c.motion, c.near, c.find, c.solve, c.deepest,
-                     c.residual, c.fallbacks);
+      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n", c.system.c_str(),
+                     c.bodies, c.contacts, c.step, c.still_step, c.asleep, c.motion, c.near, c.find, c.solve,
+                     c.deepest, c.residual, c.fallbacks);
     }
     if (costs.size() < 2) continue;
     const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),

@@ -26,6 +26,11 @@ void prepare_loads(const Model& model, int i, double t, const VecX<double>& q, c
   w.f.setZero(6);
 }
 
+/// Whether the parts of an island sleep, which they do together.
+bool asleep(const Island& island, const State* modes) {
+  return modes != nullptr && sleeps(*modes, island.parts.front());
+}
+
 /// Whether an evaluation leaves an island to rigid_island.h.
 template <class S>
 bool is_rigid(const Island& island, const Workspace<S>& work) {
@@ -40,13 +45,23 @@ void Dynamics::choose_rigid_islands(const State* modes, Workspace<S>& work) cons
   work.rigid.resize(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {
     const Island& island = model_->islands()[static_cast<std::size_t>(islands[k].island())];
-    work.rigid[k].used = modes != nullptr && hold_.projected &&
+    work.rigid[k].used = modes != nullptr && hold_.projected && !asleep(island, modes) &&
                          std::all_of(island.joints.begin(), island.joints.end(), [&](int j) {
                            return modes->joints[static_cast<std::size_t>(j)] == JointMode::closed;
                          });
   }
-  work.one_by_one = model_->lone_parts();
+  const bool any_sleep = modes != nullptr && !modes->at_rest.empty();
+  if (any_sleep) {
+    // Loads have to know where the parts are that they act on.
+    work.one_by_one.clear();
+    for (const int i : model_->lone_parts())
+      if (!sleeps(*modes, i) || model_->parts()[static_cast<std::size_t>(i)].loaded)
+        work.one_by_one.push_back(i);
+  } else {
+    work.one_by_one = model_->lone_parts();
+  }
   for (const Island& island : model_->islands()) {
+    if (!island.loaded && asleep(island, modes)) continue;
     const bool left_to_rigid =
         is_rigid(island, work) && work.rigid[static_cast<std::size_t>(island.rigid)].prepared;
     if (!left_to_rigid && !with_joints(island, work))
@@ -81,7 +96,9 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
       for (std::size_t i = 0; i < n; ++i) task(static_cast<int>(i));
   };
 
-  choose_rigid_islands(rates_only ? modes : nullptr, work);
+  // What sleeps has no accelerations, and a stage leaves it out.
+  const State* sleepers = rates_only ? modes : nullptr;
+  choose_rigid_islands(sleepers, work);
   // Whether a part is evaluated with its rigid island, and none but its loads here.
   auto by_rigid_island = [&](const PartModel& m) {
     return m.rigid_island >= 0 && work.rigid[static_cast<std::size_t>(m.rigid_island)].used;
@@ -117,7 +134,7 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
       if (!by_rigid_island(m)) accelerate<S>(model, i, modes, fixed_modes, work);
     });
   }
-  if (!model.joints().empty()) join<S>(t, modes, fixed_modes, std::ref(evaluate_part), work);
+  if (!model.joints().empty()) join<S>(t, modes, sleepers, fixed_modes, std::ref(evaluate_part), work);
   if constexpr (std::is_same_v<S, double>)
     for (std::size_t k = 0; k < work.rigid.size(); ++k)
       if (work.rigid[k].used)
@@ -125,6 +142,10 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
   auto finish = [&](int i) {
     const PartModel& m = parts[static_cast<std::size_t>(i)];
     if (m.q0 < 0) return;
+    if (modes != nullptr && sleeps(*modes, i)) {
+      work.v_dot.segment(m.v0, m.n_v()).setConstant(S(0.0));
+      return;
+    }
     const PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(i)];
     work.power += w.power;
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
@@ -162,7 +183,7 @@ void Dynamics::size_joints(Workspace<S>& work) const {
 
 // joints: rows, W_c and its factor, forces; each island on its own
 template <class S>
-void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed_modes,
+void Dynamics::join(double t, const State* modes, const State* sleepers, const Workspace<double>* fixed_modes,
                     const PlacePart& evaluate_part, Workspace<S>& work) const {
   const Model& model = *model_;
   ConstraintWorkspace<S>& joints = work.joints;
@@ -171,6 +192,11 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   if (modes != nullptr) {
     const Stabilization& rule = model.body().stabilization;
     joints.modes = modes->joints;
+    for (const Island& island : model.islands()) {
+      if (!asleep(island, sleepers)) continue;
+      for (const std::vector<int>* of : {&island.joints, &island.strings})
+        for (const int j : *of) joints.modes[static_cast<std::size_t>(j)] = JointMode::off;
+    }
     joints.gains = rule.gains(modes->h, hold_.step_consistent);
     joints.most_speed = rule.speed * rule.rate;
   } else if (fixed_modes != nullptr) {
@@ -189,7 +215,7 @@ void Dynamics::join(double t, const State* modes, const Workspace<double>* fixed
   joints.stabilise_closed = !hold_.projected;
   auto solve = [&](int i) {
     const Island& island = model.islands()[static_cast<std::size_t>(i)];
-    if (is_rigid(island, work)) return;
+    if (is_rigid(island, work) || asleep(island, sleepers)) return;
     evaluate_and_factor_joints<S>(model, island, t, work.parts, joints,
                                   with_joints(island, work) ? evaluate_part : PlacePart());
     if constexpr (std::is_same_v<S, double>) {

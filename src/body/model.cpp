@@ -360,6 +360,7 @@ State Model::initial_state() const {
   state.at_limit.assign(static_cast<std::size_t>(n_limits_), 0);
   for (const JointModel& joint : joints_)
     state.joints.push_back(joint.joint->acts_at(0) ? JointMode::closing : JointMode::off);
+  state.at_rest.assign(n_resting(), 0);
   for (const PartModel& m : parts_) {
     if (m.q0 < 0) continue;
     const Part& part = *m.part;

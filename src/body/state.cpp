@@ -1,5 +1,6 @@
 #include <pliant/body/state.h>
 
+#include <algorithm>
 #include <cstddef>
 
 namespace pliant {
@@ -25,6 +26,17 @@ class BitHash {
 
 }  // namespace
 
+bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other) {
+  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
+                    [](double a, double b) { return (a < 0) == (b < 0); });
+}
+
+void wake(State& state, int part) {
+  if (!sleeps(state, part)) return;
+  const double number = state.at_rest[static_cast<std::size_t>(part)];
+  std::replace(state.at_rest.begin(), state.at_rest.end(), number, 0.0);
+}
+
 std::uint64_t hash(const State& state) {
   BitHash hash;
   hash.add(&state.start, sizeof state.start);
@@ -36,6 +48,7 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.work);
   hash.add_each(state.at_limit);
   hash.add_each(state.joints);
+  hash.add_each(state.at_rest);
   return hash.value();
 }
 

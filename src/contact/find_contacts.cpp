@@ -388,8 +388,12 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   std::vector<Contact> found;
   for (const int i : smooth_) {
     place(state, t, i);
-    for (std::size_t k = 0; k < s.planes.size(); ++k)
-      if (on_planes_[at(i) * s.planes.size() + k].touch) find_on_plane(i, k, most, found);
+    const bool asleep = sleeps(state, i);
+    for (std::size_t k = 0; k < s.planes.size(); ++k) {
+      const bool at_rest = asleep && model_->body().contact.planes[k].point.is_constant();
+      if (on_planes_[at(i) * s.planes.size() + k].touch && !at_rest) find_on_plane(i, k, most, found);
+    }
+    if (asleep) continue;
     for (std::size_t k = 0; k < obstacles_.size(); ++k)
       if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, most, found);
   }
@@ -400,6 +404,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
   s.tree.near_pairs(most, s.pairs);
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_[at(one)], j = smooth_[at(other)];
+    if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
     const ContactRule rule = rules_.of_parts(i, j);
     if (rule.touch) find_between(i, j, rule, most, found);
   }
@@ -460,7 +465,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
     ball.c_dot = v.head<3>();
     ball.speed = ball.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
     const double speed = ball.c_dot.norm() + ball.speed;
-    ball.reach += h * (speed + free_fall);
+    ball.reach += h * (speed + (sleeps(state, i) ? 0 : free_fall));
     fastest = std::max(fastest, speed);
   }
   const auto& planes = model_->body().contact.planes;
@@ -470,6 +475,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       const Vec3<double> point = planes[k].point.value(when);
       for (const int i : smooth_) {
         const Scratch::Ball& ball = s.balls[at(i)];
+        if (sleeps(state, i) && planes[k].point.is_constant()) continue;
         if (!on_planes_[at(i) * planes.size() + k].touch ||
             !(planes[k].normal.dot(ball.c - point) < ball.reach))
           continue;
@@ -484,6 +490,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (!(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h))) continue;
     for (const int i : smooth_) {
+      if (sleeps(state, i)) continue;
       const Scratch::Ball& ball = s.balls[at(i)];
       const double way = h * (ball.c_dot.norm() + ball.speed),
                    thin = kThinShare * surfaces_[at(i)]->thickness();
@@ -505,6 +512,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
   s.tree.near_pairs(0, s.pairs);
   for (const auto& [one, other] : s.pairs) {
     const int i = smooth_[at(one)], j = smooth_[at(other)];
+    if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
     if (!rules_.of_parts(i, j).touch) continue;
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;

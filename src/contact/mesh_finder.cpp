@@ -89,7 +89,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   for (const auto& entry : meshes_) placed.emplace(entry.first, place(state, t, entry.first));
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
-    if (!plane.acts_at(t)) continue;
+    if (!plane.acts_at(t) || (sleeps(state, on.part) && plane.point.is_constant())) continue;
     const PlacedMesh& m = placed.at(on.part);
     const Vec3<Taylor2<double>> moving = plane.point.at(t);
     const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v);
@@ -110,7 +110,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   }
   std::vector<MeshTouch> touches;
   for (const OnObstacle& on : on_obstacles_) {
-    if (!model_->body().contact.obstacles[on.obstacle].acts_at(t)) continue;
+    if (!model_->body().contact.obstacles[on.obstacle].acts_at(t) || sleeps(state, on.part)) continue;
     touches.clear();
     const PlacedMesh& m = placed.at(on.part);
     find_touches(m, *on.mesh, kDeepest * m.mesh->thickness(), touches);
@@ -127,6 +127,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     }
   }
   for (const Pair& pair : pairs_) {
+    if (model_->lies_still(state, pair.a) && model_->lies_still(state, pair.b)) continue;
     touches.clear();
     const PlacedMesh &a = placed.at(pair.a), &b = placed.at(pair.b);
     find_touches(a, b, touches);
@@ -171,13 +172,14 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
     if (!plane.acts_at(t) && !plane.acts_at(t + h)) continue;
+    if (sleeps(state, on.part) && plane.point.is_constant()) continue;
     const Swept& a = all.at(on.part);
     for (const double when : {t, t + h})
       if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.empty = false;
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
-    if (!obstacle.acts_at(t) && !obstacle.acts_at(t + h)) continue;
+    if ((!obstacle.acts_at(t) && !obstacle.acts_at(t + h)) || sleeps(state, on.part)) continue;
     const Swept& a = all.at(on.part);
     if (!on.mesh->comes_near(a.c, a.reach)) continue;
     near.empty = false;
@@ -185,6 +187,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     if (way > thin) near.h = std::min(near.h, h * thin / way);
   }
   for (const Pair& pair : pairs_) {
+    if (model_->lies_still(state, pair.a) && model_->lies_still(state, pair.b)) continue;
     const Swept &a = all.at(pair.a), &b = all.at(pair.b);
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;

@@ -11,6 +11,8 @@ void carry_momenta(const Model& model, const Workspace<double>& work, const VecX
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const PartModel& m = model.parts()[i];
     if (m.q0 < 0 || m.local != nullptr || work.held[i] != 0) continue;
+    const Vec3<double> omega_before = v_before.segment<3>(m.v0 + 3), omega = state.v.segment<3>(m.v0 + 3);
+    if (omega_before.isZero(0) && omega.isZero(0)) continue;
     const PartWorkspace<double>& w = work.parts[i];
     const MatX<double>& M = w.inertia.M;
     const Vec3<double> r = w.inertia.moment / w.inertia.mass;
@@ -22,8 +24,6 @@ void carry_momenta(const Model& model, const Workspace<double>& work, const VecX
       const Vec3<double> P = M.topRightCorner(3, m.n_s).lazyProduct(rates);
       return L + M.block(3, 6, 3, m.n_s).lazyProduct(rates) - r.cross(P);
     };
-    const Vec3<double> omega_before = v_before.segment<3>(m.v0 + 3), omega = state.v.segment<3>(m.v0 + 3);
-    if (omega_before.isZero(0) && omega.isZero(0)) continue;
     const Vec3<double> L = angular_momentum(state.v);
     const Vec3<double> turned = L + h * omega_before.cross(angular_momentum(v_before));
     const Vec3<double> impulse = quaternion(-h * omega) * turned - L;

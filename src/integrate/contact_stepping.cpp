@@ -38,7 +38,8 @@ ContactStepping::ContactStepping(const Dynamics& dynamics)
       finder_(dynamics.model()),
       meshes_(dynamics.model(), finder_.obstacles()),
       resting_(dynamics.model(), finder_),
-      settling_(dynamics, finder_, meshes_, resting_, record_) {
+      settling_(dynamics, finder_, meshes_, resting_, record_),
+      sleeping_(dynamics, resting_, meshes_) {
   for (ContactRecord* record : {&record_, &record_before_})
     record->joint_impulses.setZero(dynamics.model().n_rows());
   few_parts_ = std::count_if(dynamics.model().parts().begin(), dynamics.model().parts().end(),
@@ -75,6 +76,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     last = at_lap;
   };
   for (double now = state.time(); now < end - near;) {
+    sleeping_.begin_motion(now, end - now, state);
     ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
     if (!meshes_.empty()) {
       ContactFinder::Neighbourhood of_meshes{true, around.h};
@@ -94,12 +96,14 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     lap(times_.finding);
     if (around.empty) {
       method.step(dynamics_, state, work, counters);
+      sleeping_.restore(state);
       lap(times_.motion);
       now += length;
       continue;
     }
     const State before = state;
     method.step(dynamics_, state, work, counters);
+    sleeping_.restore(state);
     lap(times_.motion);
     if (!state.q.allFinite() || !state.v.allFinite()) break;
     const double after = now + length;
@@ -113,6 +117,15 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
                                     return c.gap > 0 && (c.gap > resting_.gap(c) || !rest.has(c));
                                   }),
                    contacts.end());
+    // Sleepers that are met wake at the start of the step.
+    std::vector<Contact> of_meshes;
+    if (sleeping_.any()) meshes_.find(state, after, of_meshes);
+    if (sleeping_.is_met(contacts, state) || sleeping_.is_met(of_meshes, state)) {
+      state = before;
+      sleeping_.wake_met(contacts, state);
+      sleeping_.wake_met(of_meshes, state);
+      continue;
+    }
     std::vector<Contact> impacts;
     for (Contact& contact : contacts) {
       const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
@@ -129,6 +142,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
       const std::optional<double> tau =
           locate_impact(dynamics_, finder_, method, before, now, length, impacts, state, work, counters);
+      sleeping_.restore(state);
       lap(times_.motion);
       if (tau) {
         ++events;
@@ -161,6 +175,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         lap(times_.finding);
         settling_.settle(state, 0, 0, state, now, std::move(there), work, counters);
         lap(times_.settling);
+        sleeping_.wake_moved(state);
         if (!to_impact || !(now > begin)) continue;
         taken = now - begin;
         break;
@@ -176,12 +191,14 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     lap(times_.finding);
     settling_.settle(before, reach * length, length, state, after, contacts, work, counters);
     settling_.settle_chain(std::move(contacts), length, slow, state, after, work, counters);
+    sleeping_.wake_moved(state);
     lap(times_.settling);
     now = after;
   }
   state.start = start;
   state.step = number;
   state.h = h;
+  sleeping_.fall_asleep(record_.contacts, begin, taken, state);
   return taken;
 }
 

@@ -65,7 +65,7 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
   };
   const bool known = last_t_ == t && gains(last_.h) == gains(h) && last_.q.size() == state.q.size() &&
                      last_.q == state.q && last_.v == state.v && last_.at_limit == state.at_limit &&
-                     last_.joints == state.joints;
+                     last_.joints == state.joints && same_sleepers(last_.at_rest, state.at_rest);
   if (known) {
     q_rates_.col(0) = q_rates_.col(n);
     v_rates_.col(0) = v_rates_.col(n);

@@ -24,9 +24,11 @@ double RestingContacts::gap(const Contact& contact) const {
 }
 
 const std::vector<Contact>& RestingContacts::near(const State& state, double t) {
-  if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t) {
+  if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t ||
+      !same_sleepers(last_at_rest_, state.at_rest)) {
     last_ = finder_.find(state, t, gap_);
     last_q_ = state.q;
+    last_at_rest_ = state.at_rest;
     last_t_ = t;
   }
   return last_;

@@ -252,6 +252,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
   if (model.joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
   Workspace<double> scratch;
   for (const Island& island : model.islands()) {
+    if (sleeps(state, island.parts.front())) continue;
     if (closed_by_rigid_island(model, island, work, state)) continue;
     fail_if_stuck(dynamics, t, island, state, work);
     auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };

@@ -357,6 +357,7 @@ void Simulation::switch_joints(double t, double near) {
     const bool on = joint.joint->acts_at(t + near), was_on = state_.joints[j] != JointMode::off;
     if (on == was_on) continue;
     state_.joints[j] = on ? JointMode::closing : JointMode::off;
+    wake(state_, model_.islands()[static_cast<std::size_t>(joint.island)].parts.front());
     if (on) more[static_cast<std::size_t>(joint.island)] = true;
   }
   if (std::find(more.begin(), more.end(), true) != more.end()) take_hold(more, t, work_);
@@ -472,7 +473,7 @@ std::set<std::string> Simulation::held() const {
 void Simulation::set_state(State state) {
   if (state.q.size() != model_.n_q() || state.v.size() != model_.n_v() ||
       static_cast<int>(state.at_limit.size()) != model_.n_limits() ||
-      state.joints.size() != model_.joints().size())
+      state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting())
     throw std::invalid_argument("this state belongs to another model");
   state_ = std::move(state);
   const double now = time() + kNear * state_.h;

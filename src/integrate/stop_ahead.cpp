@@ -125,6 +125,7 @@ void stop_ahead(const Dynamics& dynamics, Workspace<double>& work, const VecX<do
   auto act = [&](const auto& group) {
     constexpr int kMax = std::decay_t<decltype(group)>::kMax;
     const Island* island = group.island();
+    if (island != nullptr && sleeps(state, island->parts.front())) return;
     if (island == nullptr && !crosses(group, h, state)) return note_limits(group, h, state);
     if (island != nullptr && closed_ahead_by_rigid_island(dynamics, *island, work, state, h, q_end)) return;
     GroupVectors<double, kMax>& kept = kept_vectors(group, work);

@@ -21,7 +21,7 @@ namespace pliant {
 namespace {
 
 int mode_count(const Model& model) {
-  return 4 + kWorks + model.n_limits() + static_cast<int>(model.joints().size()) + 1;
+  return static_cast<int>(mode_columns_of(model).size());
 }
 
 // The names of a table's columns must be the model's.
@@ -139,7 +139,7 @@ State Recording::state(std::int64_t row) const {
   velocities_.read(row, state.v.data());
   std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
   modes_.read(row, modes.data());
-  if (!read_modes(modes, model_->n_limits(), state) || !(state.time() == time(row)))
+  if (!read_modes(modes, model_->n_limits(), model_->n_resting(), state) || !(state.time() == time(row)))
     throw RecordingMismatch("the recorded state at row " + std::to_string(row) +
                             " is damaged: its check number does not fit");
   return state;

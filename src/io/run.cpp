@@ -291,6 +291,9 @@ void Run::write_record() {
       std::max(counted_steps_.contact_residual, session.contact_residual);
   record_.counters = counted_work_;
   record_.counters += simulation_->counters();
+  const std::vector<double>& rested = simulation_->state().at_rest;
+  record_.asleep =
+      static_cast<int>(std::count_if(rested.begin(), rested.end(), [](double time) { return time < 0; }));
   for (const std::string& held : simulation_->held())
     if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end())
       record_.held.push_back(held);

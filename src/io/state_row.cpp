@@ -65,6 +65,10 @@ std::vector<Column> mode_columns_of(const Model& model) {
       columns.push_back({"limit." + model.coordinate_name(part.q0 + 7 + k), "1",
                          "-1 at its lower limit, 1 at its upper, 0 free"});
   }
+  if (model.n_resting() > 0)
+    for (const PartModel& part : model.parts())
+      columns.push_back(
+          {"rest." + part.part->name(), "s", "how long it has been at rest; negative: it sleeps"});
   for (const JointModel& joint : model.joints())
     columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
   columns.push_back({"check", "1", "hash of the bits of the state"});
@@ -79,13 +83,15 @@ void write_modes(const State& state, std::vector<double>& row) {
   row.push_back(state.error);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
+  row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
   for (const JointMode mode : state.joints) row.push_back(static_cast<double>(mode));
   row.push_back(check_of(state));
 }
 
-bool read_modes(const std::vector<double>& row, int n_limits, State& state) {
+bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
   constexpr std::size_t first_work = 4, first_limit = first_work + kWorks;
-  const std::size_t first_joint = first_limit + static_cast<std::size_t>(n_limits);
+  const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
+                    first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
   state.start = row[0];
   state.h = row[1];
@@ -93,10 +99,12 @@ bool read_modes(const std::vector<double>& row, int n_limits, State& state) {
   state.error = row[3];
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
-  for (std::size_t i = first_limit; i < first_joint; ++i) {
+  for (std::size_t i = first_limit; i < first_resting; ++i) {
     if (!(row[i] == -1 || row[i] == 0 || row[i] == 1)) return false;
     state.at_limit.push_back(static_cast<std::int8_t>(row[i]));
   }
+  state.at_rest.assign(row.begin() + static_cast<std::ptrdiff_t>(first_resting),
+                       row.begin() + static_cast<std::ptrdiff_t>(first_joint));
   state.joints.clear();
   for (std::size_t i = first_joint; i + 1 < row.size(); ++i) {
     if (!(row[i] == 0 || row[i] == 1 || row[i] == 2 || row[i] == 3)) return false;

@@ -30,12 +30,20 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
                 "Whether they touch; parts that a joint ties do so only where a pair names both.", "true"),
        optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
        optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
+  const Record sleep{
+      "sleep",
+      "Bodies at rest, and all that they touch and are tied to with them, are left as they are until "
+      "something "
+      "meets or drives them.",
+      {required("speed", number(above(0), "m/s"), "No point of a body at rest is faster.", "0.001"),
+       optional("after", number(above(0), "s"), "How long they have rested before.", "0.5")}};
   return {"contact",
           "Parts touch planes, obstacles and each other; when not given, they pass through everything.",
           {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
            optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
                     "0"),
            optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
+           optional("sleep", record(sleep), "Whether bodies at rest sleep; they do not when not given."),
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
            optional("obstacles", array(record(obstacle_record(orientation, color))),
                     "Meshes and plates that do not move.", "[]"),
@@ -127,6 +135,10 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   settings.friction = contact.number("friction");
   settings.restitution = contact.number("restitution");
   settings.between_parts = contact.boolean("between_parts");
+  if (contact.given("sleep")) {
+    const Reader sleep = contact.object("sleep");
+    if (sleep.complete()) settings.sleep = Sleep{sleep.number("speed"), sleep.number("after")};
+  }
   for (const Reader& r : contact.objects("planes")) read_plane(r, parts, times, faults, body);
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);

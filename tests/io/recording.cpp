@@ -62,6 +62,27 @@ TEST_CASE("recorded states come back to the last bit, limits and works included"
   CHECK(states.back().work.cwiseAbs().maxCoeff() > 0);
 }
 
+TEST_CASE("recorded sleepers sleep on") {
+  const NewFolder folder;
+  const auto scene = pulled_scene();
+  scene->body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
+  scene->body.contact.sleep = Sleep{1e-3, 0.02};
+  Part& stone = scene->body.add(make_part("stone", "box", {}, 1000));
+  stone.place({5, 5, -4});
+  const std::vector<State> states = record(folder.path, *scene, 60, 3);
+  const Model model(scene->body);
+  const Recording recording(folder.path, model);
+  REQUIRE(recording.rows() == static_cast<std::int64_t>(states.size()));
+  bool awake = false, asleep = false;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    CHECK(hash(recording.state(static_cast<std::int64_t>(i))) == hash(states[i]));
+    awake = awake || states[i].at_rest.back() > 0;
+    asleep = asleep || states[i].at_rest.back() < 0;
+  }
+  CHECK(awake);
+  CHECK(asleep);
+}
+
 TEST_CASE("the layout names every column") {
   const NewFolder folder;
   const auto scene = pulled_scene();

@@ -258,6 +258,21 @@ TEST_CASE("colouring of parts is read") {
         std::string::npos);
 }
 
+TEST_CASE("whether bodies sleep is read") {
+  pliant::Diagnostics diagnostics;
+  const std::string start = R"json({"parts": [{"name": "a", "shape": "sphere"}], "contact": {)json";
+  auto sleep_of = [&](const char* contact) {
+    return pliant::parse_scene("s.json", start + contact + "}}", {}, diagnostics)->body.contact.sleep;
+  };
+  CHECK_FALSE(sleep_of("").has_value());
+  const std::optional<pliant::Sleep> given = sleep_of(R"json("sleep": {"speed": 0.01, "after": 2})json"),
+                                     short_one = sleep_of(R"json("sleep": {"speed": 0.01})json");
+  REQUIRE((given && short_one));
+  CHECK(given->speed == 0.01);
+  CHECK(given->after == 2);
+  CHECK(short_one->after == 0.5);
+}
+
 TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
   // What needs more than types, keys and ranges: names and numbers that must fit others.
   const std::vector<std::string> beyond{"anchor_not_finite",

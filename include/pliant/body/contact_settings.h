@@ -50,6 +50,15 @@ struct ContactPair {
   std::optional<double> friction{}, restitution{};  ///< those of the settings where not given
 };
 
+/// Bodies that have been at rest for long enough, and all that they touch and are tied to with them, sleep:
+/// they are neither evaluated nor searched for contacts with each other until an awake body meets them, or
+/// what drives them changes: a joint switches, the end of a spring or joint, a force, a rest value, a plane
+/// or gravity moves.
+struct Sleep {
+  double speed = 0;    ///< of the fastest point of a body that counts as resting, m/s; above 0
+  double after = 0.5;  ///< for how long it does, s; above 0
+};
+
 struct ContactSettings {
   bool active = false;        ///< whether anything touches at all
   bool between_parts = true;  ///< whether parts touch parts, or planes and obstacles alone
@@ -60,6 +69,7 @@ struct ContactSettings {
   std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
+  std::optional<Sleep> sleep{};  ///< not given: nothing sleeps
 };
 
 }  // namespace pliant

@@ -103,12 +103,13 @@ class Dynamics {
   void set_hold(const Hold& hold) { hold_ = hold; }
   const Hold& hold() const { return hold_; }
 
-  /// Accelerations and powers at (t, q, v), with the step and the modes of limits and joints of a state.
-  /// Parameters that rest at a limit, with a rate of exactly 0, may only leave it; those that move there are
-  /// the integrator's to stop.
+  /// Accelerations and powers (none of parts that sleep) at (t, q, v), with the step and the modes of limits
+  /// and joints of a state. Parameters that rest at a limit, with a rate of exactly 0, may only leave it;
+  /// those that move there are the integrator's to stop.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// work.v_dot and work.power of the same, for a stage of a method, and the factors of W_c. Rigid islands
+  /// work.v_dot and work.power of the same, for a stage of a method, and the factors of W_c. Parts that sleep
+  /// have no rates, and are as they were in work. Rigid islands
   /// whose joints are closed leave no more: frames, velocities, points and accelerations of their parts, and
   /// rows and forces of their joints, are as they were or zero.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
@@ -172,7 +173,7 @@ class Dynamics {
   template <class S>
   void size_joints(Workspace<S>& work) const;
   template <class S>
-  void join(double t, const State* modes, const Workspace<double>* fixed_modes,
+  void join(double t, const State* modes, const State* sleepers, const Workspace<double>* fixed_modes,
             const PlacePart& evaluate_part, Workspace<S>& work) const;
   /// Whether the parts of an island are evaluated with its joints, each just before the first that asks for
   /// it: by one thread, and where no load has to know first where they all are.

@@ -155,6 +155,8 @@ class Model {
   int n_q() const { return n_q_; }
   int n_v() const { return n_v_; }
   int n_limits() const { return n_limits_; }
+  /// Parts whose rest is told in a state (State::at_rest): all where bodies may sleep, else none.
+  std::size_t n_resting() const { return body_->contact.active && body_->contact.sleep ? parts_.size() : 0; }
 
   /// The state at time 0.
   State initial_state() const;
@@ -179,6 +181,11 @@ class Model {
   static NodeWeights node_weights(const Point& point);
   /// Positions of the nodes of the mesh of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
+  /// Whether a part neither moves nor is moved: it is fixed, or sleeps.
+  bool lies_still(const State& state, int part) const {
+    const PartModel& m = parts_[static_cast<std::size_t>(part)];
+    return m.q0 < 0 ? m.motion == nullptr : sleeps(state, part);
+  }
   /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
   double gap(const State& state, int joint) const;
   /// "upper.c.x", "upper.bend.angle": the name of an entry of v (or of q, where they differ).

@@ -48,9 +48,23 @@ struct State {
   std::vector<std::int8_t>
       at_limit;                   ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
   std::vector<JointMode> joints;  ///< of each joint
+  /// Per part, where bodies may sleep (else empty): how long it has been at rest, s; negative: it sleeps,
+  /// with those of the same number. Who moves a part that sleeps wakes it.
+  std::vector<double> at_rest;
 
   double time() const { return start + static_cast<double>(step) * h; }
 };
+
+/// Whether a part sleeps: it stays as it is, to the last bit, and rests.
+inline bool sleeps(const State& state, int part) {
+  return !state.at_rest.empty() && state.at_rest[static_cast<std::size_t>(part)] < 0;
+}
+
+/// Whether the same parts sleep, of State::at_rest of two states.
+bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other);
+
+/// Wakes a part, and all that fell asleep with it.
+void wake(State& state, int part);
 
 /// Of all bits of a state.
 std::uint64_t hash(const State& state);

@@ -11,6 +11,7 @@
 #include <pliant/integrate/contact_settling.h>
 #include <pliant/integrate/integrator.h>
 #include <pliant/integrate/resting_contacts.h>
+#include <pliant/integrate/sleeping.h>
 
 namespace pliant {
 
@@ -50,6 +51,7 @@ class ContactStepping {
   RestingContacts resting_;
   ContactRecord record_, record_before_;
   ContactSettling settling_;
+  Sleeping sleeping_;
   bool few_parts_ = false;  ///< so that impacts are told in time
   StageTimes times_;
 };

@@ -33,6 +33,7 @@ class RestingContacts {
   double gap_ = 0;
   // Of the state that was looked at last.
   VecX<double> last_q_;
+  std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
 };

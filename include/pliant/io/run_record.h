@@ -58,6 +58,7 @@ struct RunRecord {
   double max_kinetic = 0;                                        ///< J
   double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
   double open_gap = 0;                 ///< m, widest of the joints that have yet to close at the last state
+  int asleep = 0;                      ///< parts that sleep in the last state
   std::optional<ErrorEstimate> error;  ///< where it was asked for
   std::vector<std::string> held;       ///< parameters that had no inertia and were held
   std::vector<std::string> skipped;    ///< what the scene did not need

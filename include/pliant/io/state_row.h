@@ -19,8 +19,9 @@ std::vector<Column> mode_columns_of(const Model& model);
 /// The row of a state. Its last number is a hash of all bits of the state.
 void write_modes(const State& state, std::vector<double>& row);
 
-/// Fills in the rest of a state whose q and v are set, of a model with so many limits. False when the row's
-/// hash is not that of the state.
-[[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, State& state);
+/// Fills in the rest of a state whose q and v are set, of a model with so many limits, and parts whose rest
+/// is told. False when the row's hash is not that of the state.
+[[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting,
+                              State& state);
 
 }  // namespace pliant
