@@ -8,6 +8,12 @@ namespace {
 double snap(double x) {
   return std::abs(x) < 4e-16 ? 0.0 : (std::abs(x) > 1 - 1e-16 ? std::copysign(1.0, x) : x);
 }
+
+/// sqrt(x^2 + y^2); std::hypot, which takes several times as long, where squares leave the range of numbers.
+double length(double x, double y) {
+  const double square = x * x + y * y;
+  return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::hypot(x, y);
+}
 }  // namespace
 
 Material<double> material_at(double u, double v, double w) {
@@ -55,8 +61,8 @@ Material<Dual<3>> material_with_tangents(const Material<double>& m) {
 }
 
 Material<double> material_towards(const Vec3<double>& direction, double w) {
-  const double ring = std::hypot(direction[0], direction[1]);
-  const double size = std::hypot(ring, direction[2]);
+  const double ring = length(direction[0], direction[1]);
+  const double size = length(ring, direction[2]);
   if (size == 0) return material_from(0, 1, 1, 0, w);
   const double cv = ring > 0 ? direction[0] / ring : 1.0, sv = ring > 0 ? direction[1] / ring : 0.0;
   return material_from(ring / size, direction[2] / size, cv, sv, w);
