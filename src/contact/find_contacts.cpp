@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 
 #include <pliant/body/multibody.h>
-#include <pliant/contact/box_tree.h>
 #include <pliant/contact/ellipsoid_points.h>
 #include <pliant/contact/find_on_mesh.h>
-#include <pliant/contact/node_motion.h>
 #include <pliant/math/index.h>
 
+#include "finder_scratch.h"
 #include "outline.h"
 
 namespace pliant {
@@ -22,60 +19,17 @@ namespace {
 
 /// Contacts of a pair nearer than this, in sizes of the smaller part, are one.
 constexpr double kOneContact = 0.03;
-/// Share of the thinner of two parts that they may move against each other in a step.
-constexpr double kThinShare = 0.4;
-/// Most that a part may turn in a step over a plane, rad.
-constexpr double kMostTurn = 0.5;
 /// Where the normal of b turns by more than this within a share of the way to the middle of a contact is an
 /// edge.
 constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 /// Points this near to a surface, in sizes of the part, are in it.
 constexpr double kFlush = 1e-4;
-/// How far the surface may be outside the box of its points, in sizes of the part.
-constexpr double kBulge = 0.05;
 /// Gaps over an obstacle are told up to this, in sizes of the part.
 constexpr double kSeen = 0.1;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
 
 }  // namespace
-
-/// A part where it is.
-struct ContactFinder::Placed {
-  Vec3<double> c;
-  Mat3<double> R;
-  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
-  double reach;  ///< radius of a ball about c that it is in, m
-  std::optional<Vec3<double>> axes;
-  bool has_points;  ///< whether those of Scratch are of now
-
-  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
-};
-
-struct ContactFinder::Scratch {
-  std::vector<ParameterValues<double>> values;  ///< of each part
-  std::vector<Placed> parts;
-  std::vector<Eigen::Matrix3Xd> points;  ///< of parts that change, body frame
-  struct PlaneNow {
-    bool acts;
-    Vec3<double> point, carried;
-  };
-  std::vector<PlaneNow> planes;
-  MeshSearch mesh_search;
-  struct Ball {
-    Vec3<double> c, c_dot;
-    double speed, reach;  ///< of any point against the frame's origin, m/s; the ball and the way, m
-  };
-  std::vector<Ball> balls;
-  std::vector<Eigen::AlignedBox3d> boxes;
-  BoxTree tree;
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<Contact> ours, theirs;
-  std::vector<Material<double>> material{1};
-  std::vector<PointJet<double>> jets;
-  std::vector<int> nodes;
-  Eigen::Matrix3Xd x_dot;
-};
 
 /// w - 1 of a part b, over points of the frame of a; to first order the distance to b is that over the length
 /// of its gradient.
@@ -149,74 +103,6 @@ ContactFinder::ContactFinder(const Model& model)
   scratch_->parts.resize(n);
   scratch_->points.resize(n);
   for (const PartModel& m : model.parts()) scratch_->values.push_back(m.part->parameters().rest());
-}
-
-/// Whether the shape stays what it is at rest.
-bool ContactFinder::is_still(int i) const {
-  return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
-}
-
-void ContactFinder::place(const State& state, double t, int i) const {
-  const PartModel& m = model_->parts()[at(i)];
-  ParameterValues<double>& values = scratch_->values[at(i)];
-  if (!is_still(i))
-    for (int k = 0; k < m.n_s; ++k) {
-      const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
-      values.b[parameter] = state.q[m.q0 + 7 + k];
-      values.b_dot[parameter] = state.v[m.v0 + 6 + k];
-    }
-  Placed& placed = scratch_->parts[at(i)];
-  placed.c = model_->position(state, i, t);
-  placed.R = model_->orientation(state, i, t).toRotationMatrix();
-  if (m.motion != nullptr) {
-    const MovingFrame frame = m.motion->at(t);
-    placed.c_dot = frame.c_dot;
-    placed.omega = frame.omega;
-  }
-  placed.axes = surfaces_[at(i)]->semi_axes(values);
-  placed.reach = surfaces_[at(i)]->reach(values);
-  placed.has_points = false;
-}
-
-const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {
-  if (is_still(i)) return surfaces_[at(i)]->rest_points();
-  Eigen::Matrix3Xd& points = scratch_->points[at(i)];
-  if (!scratch_->parts[at(i)].has_points) points = surfaces_[at(i)]->points(scratch_->values[at(i)]);
-  scratch_->parts[at(i)].has_points = true;
-  return points;
-}
-
-/// A box about a part in its own frame.
-Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
-  const Placed& placed = scratch_->parts[at(i)];
-  if (placed.axes) return {-*placed.axes, *placed.axes};
-  if (is_still(i)) return surfaces_[at(i)]->rest_box();
-  const Eigen::Matrix3Xd& p = points_of(i);
-  return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
-}
-
-/// A box about it in the world; of a part that changes the one about its ball.
-Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
-  const Placed& placed = scratch_->parts[at(i)];
-  Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);
-  if (placed.axes) {
-    half = (placed.R * placed.axes->asDiagonal()).rowwise().norm();
-  } else if (is_still(i)) {
-    const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
-    middle += placed.R * box.center();
-    half = placed.R.cwiseAbs() * (0.5 * box.sizes());
-    half.array() += kBulge * model_->parts()[at(i)].part->size();
-  }
-  return {middle - half, middle + half};
-}
-
-void ContactFinder::place_planes(double t) const {
-  scratch_->planes.clear();
-  for (const ContactPlane& plane : model_->body().contact.planes) {
-    const Vec3<Taylor2<double>> moving = plane.point.at(t);
-    scratch_->planes.push_back(
-        {plane.acts_at(t), {moving[0].v, moving[1].v, moving[2].v}, {moving[0].d, moving[1].d, moving[2].d}});
-  }
 }
 
 void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::vector<Contact>& found) const {
@@ -409,119 +295,6 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
     if (rule.touch) find_between(i, j, rule, most, found);
   }
   return found;
-}
-
-Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
-  auto of = [&](const ContactSide& side) -> Vec3<double> {
-    if (side.part < 0 || model_->parts()[at(side.part)].q0 < 0) return Vec3<double>::Zero();
-    const PartModel& m = model_->parts()[at(side.part)];
-    if (side.at_nodes()) {
-      scratch_->nodes.clear();
-      for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
-        scratch_->nodes.push_back(side.node[k]);
-      node_velocities(*model_, state, side.part, scratch_->nodes, scratch_->x_dot);
-      return scratch_->x_dot * side.weight.head(scratch_->x_dot.cols());
-    }
-    const Mat3<double> R = model_->orientation(state, side.part).toRotationMatrix();
-    const auto v = state.v.segment(m.v0, m.n_v());
-    const Vec3<double> p = R.transpose() * (contact.x - state.q.segment<3>(m.q0));
-    Vec3<double> p_dot = v.segment<3>(3).cross(p);
-    if (m.n_s > 0) {
-      Counters counters;
-      scratch_->material[0] = side.material;
-      m.part->points(scratch_->material, state.q.segment(m.q0 + 7, m.n_s), v.segment(6, m.n_s),
-                     scratch_->jets, counters);
-      p_dot += scratch_->jets[0].p1;
-    }
-    return v.head<3>() + R * p_dot;
-  };
-  return of(contact.a) - of(contact.b) - contact.carried;
-}
-
-ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
-  Neighbourhood near;
-  near.h = h;
-  Scratch& s = *scratch_;
-  s.balls.resize(model_->parts().size());
-  const double free_fall = model_->body().gravity_at(t).norm() * h;
-  double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
-  for (const int i : smooth_) {
-    const PartModel& m = model_->parts()[at(i)];
-    place(state, t, i);
-    Scratch::Ball& ball = s.balls[at(i)];
-    // A parameter may be larger than at rest: the ball is about where the surface is.
-    ball = {s.parts[at(i)].c, Vec3<double>::Zero(), 0, s.parts[at(i)].reach};
-    thinnest = std::min(thinnest, surfaces_[at(i)]->thickness());
-    if (m.motion != nullptr) {
-      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
-      ball.c_dot = (then.c - now.c) / h;
-      ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
-                   std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
-      ball.reach += h * (ball.c_dot.norm() + ball.speed);
-      fastest = std::max(fastest, ball.c_dot.norm() + ball.speed);
-    }
-    if (m.q0 < 0) continue;
-    const auto v = state.v.segment(m.v0, m.n_v());
-    ball.c_dot = v.head<3>();
-    ball.speed = ball.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
-    const double speed = ball.c_dot.norm() + ball.speed;
-    ball.reach += h * (speed + (sleeps(state, i) ? 0 : free_fall));
-    fastest = std::max(fastest, speed);
-  }
-  const auto& planes = model_->body().contact.planes;
-  for (std::size_t k = 0; k < planes.size(); ++k) {
-    if (!(planes[k].acts_at(t) || planes[k].acts_at(t + h))) continue;
-    for (const double when : {t, t + h}) {
-      const Vec3<double> point = planes[k].point.value(when);
-      for (const int i : smooth_) {
-        const Scratch::Ball& ball = s.balls[at(i)];
-        if (sleeps(state, i) && planes[k].point.is_constant()) continue;
-        if (!on_planes_[at(i) * planes.size() + k].touch ||
-            !(planes[k].normal.dot(ball.c - point) < ball.reach))
-          continue;
-        near.empty = false;
-        // None is thin, but what spins may come round with its other end.
-        if (const double turn = h * ball.speed / s.parts[at(i)].reach; turn > kMostTurn)
-          near.h = std::min(near.h, h * kMostTurn / turn);
-      }
-    }
-  }
-  const auto& obstacles = model_->body().contact.obstacles;
-  for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (!(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h))) continue;
-    for (const int i : smooth_) {
-      if (sleeps(state, i)) continue;
-      const Scratch::Ball& ball = s.balls[at(i)];
-      const double way = h * (ball.c_dot.norm() + ball.speed),
-                   thin = kThinShare * surfaces_[at(i)]->thickness();
-      if (!near.empty && way <= thin) continue;  // it would change nothing
-      if (!on_obstacles_[at(i) * obstacles.size() + k].touch || !obstacles_[k].comes_near(ball.c, ball.reach))
-        continue;
-      near.empty = false;
-      if (way > thin) near.h = std::min(near.h, h * thin / way);
-    }
-  }
-  if (!any_pairs_) return near;
-  if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
-  s.boxes.clear();
-  for (const int i : smooth_) {
-    const Scratch::Ball& ball = s.balls[at(i)];
-    s.boxes.emplace_back(ball.c.array() - ball.reach, ball.c.array() + ball.reach);
-  }
-  s.tree.build(s.boxes);
-  s.tree.near_pairs(0, s.pairs);
-  for (const auto& [one, other] : s.pairs) {
-    const int i = smooth_[at(one)], j = smooth_[at(other)];
-    if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
-    if (!rules_.of_parts(i, j).touch) continue;
-    const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
-    if ((a.c - b.c).norm() > a.reach + b.reach) continue;
-    near.empty = false;
-    const double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed);
-    const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
-    if (way > thin) near.h = std::min(near.h, h * thin / way);
-  }
-  return near;
 }
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {

@@ -1,0 +1,84 @@
+// Where the parts and planes of a ContactFinder are at a time, and boxes about them.
+#include <pliant/body/multibody.h>
+#include <pliant/math/index.h>
+
+#include "finder_scratch.h"
+
+namespace pliant {
+
+namespace {
+
+/// How far the surface may be outside the box of its points, in sizes of the part.
+constexpr double kBulge = 0.05;
+
+}  // namespace
+
+/// Whether the shape stays what it is at rest.
+bool ContactFinder::is_still(int i) const {
+  return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
+}
+
+void ContactFinder::place(const State& state, double t, int i) const {
+  const PartModel& m = model_->parts()[at(i)];
+  ParameterValues<double>& values = scratch_->values[at(i)];
+  if (!is_still(i))
+    for (int k = 0; k < m.n_s; ++k) {
+      const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
+      values.b[parameter] = state.q[m.q0 + 7 + k];
+      values.b_dot[parameter] = state.v[m.v0 + 6 + k];
+    }
+  Placed& placed = scratch_->parts[at(i)];
+  placed.c = model_->position(state, i, t);
+  placed.R = model_->orientation(state, i, t).toRotationMatrix();
+  if (m.motion != nullptr) {
+    const MovingFrame frame = m.motion->at(t);
+    placed.c_dot = frame.c_dot;
+    placed.omega = frame.omega;
+  }
+  placed.axes = surfaces_[at(i)]->semi_axes(values);
+  placed.reach = surfaces_[at(i)]->reach(values);
+  placed.has_points = false;
+}
+
+const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {
+  if (is_still(i)) return surfaces_[at(i)]->rest_points();
+  Eigen::Matrix3Xd& points = scratch_->points[at(i)];
+  if (!scratch_->parts[at(i)].has_points) points = surfaces_[at(i)]->points(scratch_->values[at(i)]);
+  scratch_->parts[at(i)].has_points = true;
+  return points;
+}
+
+/// A box about a part in its own frame.
+Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
+  const Placed& placed = scratch_->parts[at(i)];
+  if (placed.axes) return {-*placed.axes, *placed.axes};
+  if (is_still(i)) return surfaces_[at(i)]->rest_box();
+  const Eigen::Matrix3Xd& p = points_of(i);
+  return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
+}
+
+/// A box about it in the world; of a part that changes the one about its ball.
+Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
+  const Placed& placed = scratch_->parts[at(i)];
+  Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);
+  if (placed.axes) {
+    half = (placed.R * placed.axes->asDiagonal()).rowwise().norm();
+  } else if (is_still(i)) {
+    const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
+    middle += placed.R * box.center();
+    half = placed.R.cwiseAbs() * (0.5 * box.sizes());
+    half.array() += kBulge * model_->parts()[at(i)].part->size();
+  }
+  return {middle - half, middle + half};
+}
+
+void ContactFinder::place_planes(double t) const {
+  scratch_->planes.clear();
+  for (const ContactPlane& plane : model_->body().contact.planes) {
+    const Vec3<Taylor2<double>> moving = plane.point.at(t);
+    scratch_->planes.push_back(
+        {plane.acts_at(t), {moving[0].v, moving[1].v, moving[2].v}, {moving[0].d, moving[1].d, moving[2].d}});
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,51 @@
+// What a ContactFinder works with from call to call.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pliant/contact/box_tree.h>
+#include <pliant/contact/find_contacts.h>
+#include <pliant/contact/find_on_mesh.h>
+
+namespace pliant {
+
+/// A part where it is.
+struct ContactFinder::Placed {
+  Vec3<double> c;
+  Mat3<double> R;
+  Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
+  double reach;  ///< radius of a ball about c that it is in, m
+  std::optional<Vec3<double>> axes;
+  bool has_points;  ///< whether those of Scratch are of now
+
+  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
+};
+
+struct ContactFinder::Scratch {
+  std::vector<ParameterValues<double>> values;  ///< of each part
+  std::vector<Placed> parts;
+  std::vector<Eigen::Matrix3Xd> points;  ///< of parts that change, body frame
+  struct PlaneNow {
+    bool acts;
+    Vec3<double> point, carried;
+  };
+  std::vector<PlaneNow> planes;
+  MeshSearch mesh_search;
+  struct Ball {
+    Vec3<double> c, c_dot;
+    double speed, reach;  ///< of any point against the frame's origin, m/s; the ball and the way, m
+  };
+  std::vector<Ball> balls;
+  std::vector<Eigen::AlignedBox3d> boxes;
+  BoxTree tree;
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<Contact> ours, theirs;
+  std::vector<Material<double>> material{1};
+  std::vector<PointJet<double>> jets;
+  std::vector<int> nodes;
+  Eigen::Matrix3Xd x_dot;
+};
+
+}  // namespace pliant
