@@ -285,41 +285,41 @@ TEST_CASE("constant forces, springs and dampers do no work on sleepers", "[sleep
 }
 
 TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][contact]") {
-  for (const auto basis : {LocalSettings::Basis::nodes, LocalSettings::Basis::polynomial})
-    for (const bool obstacle : {false, true}) {
-      CAPTURE(obstacle, basis == LocalSettings::Basis::nodes);
-      MultiBody body;
-      body.contact.sleep = Sleep{2e-3, 0.1};
-      if (obstacle) {
-        Eigen::Matrix3Xd x(3, 4);
-        x << -2, 2, 2, -2, -2, -2, 2, 2, 0, 0, 0, 0;
-        Eigen::Matrix3Xi triangles(3, 2);
-        triangles << 0, 0, 1, 2, 2, 3;
-        body.obstacle("floor", x, triangles);
-      } else {
-        body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
-      }
-      auto& jelly = body.add<Primitive<Box>>("jelly", 1000.0);
-      jelly.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.05}}).place({0, 0, 0.05});
-      LocalSettings settings;
-      settings.basis = basis;
-      settings.resolution = 2;
-      settings.alpha = 30;
-      settings.energies = {local_law("elastic", {1e5, 0.3})};
-      jelly.deform_locally(settings);
-      // It falls for 0.8 s.
-      Part& ball = test::add(body, "ball", "sphere", {}, 200);
-      ball.rest({{"r", 0.03}}).place({0, 0, 0.13 + 0.5 * 9.81 * 0.64}, Eigen::Quaterniond::Identity());
-      Simulation simulation(body, "linearly_implicit");
-      while (simulation.time() < 0.78 && !sleeps(simulation.state(), 0)) simulation.step(kStep);
-      REQUIRE(sleeps(simulation.state(), 0));
-      const State asleep = simulation.state();
-      const int n = simulation.model().parts()[0].n_q();
-      while (simulation.time() < 0.79) simulation.step(kStep);
-      CHECK(simulation.state().q.head(n) == asleep.q.head(n));
-      while (simulation.time() < 0.9) simulation.step(kStep);
-      CHECK(none_sleeps(simulation));
+  for (const auto basis : {LocalSettings::Basis::nodes, LocalSettings::Basis::polynomial}) {
+    const bool obstacle = basis == LocalSettings::Basis::nodes;
+    CAPTURE(obstacle);
+    MultiBody body;
+    body.contact.sleep = Sleep{2e-3, 0.1};
+    if (obstacle) {
+      Eigen::Matrix3Xd x(3, 4);
+      x << -2, 2, 2, -2, -2, -2, 2, 2, 0, 0, 0, 0;
+      Eigen::Matrix3Xi triangles(3, 2);
+      triangles << 0, 0, 1, 2, 2, 3;
+      body.obstacle("floor", x, triangles);
+    } else {
+      body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
     }
+    auto& jelly = body.add<Primitive<Box>>("jelly", 1000.0);
+    jelly.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.05}}).place({0, 0, 0.05});
+    LocalSettings settings;
+    settings.basis = basis;
+    settings.resolution = 2;
+    settings.alpha = 30;
+    settings.energies = {local_law("elastic", {1e5, 0.3})};
+    jelly.deform_locally(settings);
+    // It falls for 0.8 s.
+    Part& ball = test::add(body, "ball", "sphere", {}, 200);
+    ball.rest({{"r", 0.03}}).place({0, 0, 0.13 + 0.5 * 9.81 * 0.64}, Eigen::Quaterniond::Identity());
+    Simulation simulation(body, "linearly_implicit");
+    while (simulation.time() < 0.78 && !sleeps(simulation.state(), 0)) simulation.step(kStep);
+    REQUIRE(sleeps(simulation.state(), 0));
+    const State asleep = simulation.state();
+    const int n = simulation.model().parts()[0].n_q();
+    while (simulation.time() < 0.79) simulation.step(kStep);
+    CHECK(simulation.state().q.head(n) == asleep.q.head(n));
+    while (simulation.time() < 0.9) simulation.step(kStep);
+    CHECK(none_sleeps(simulation));
+  }
 }
 
 TEST_CASE("settings of sleep out of range are refused", "[sleep][failure]") {
