@@ -118,7 +118,8 @@ void Sleeping::note_switches() {
     return [&thing](double t, double h) { return thing.acts_at(t) != thing.acts_at(t + h); };
   };
   for (const JointModel& joint : model_.joints())
-    if (!model_.switch_times().empty()) drives_.push_back({joint.sides.front().part, switches(*joint.joint)});
+    if (joint.joint->on() > 0 || std::isfinite(joint.joint->off()))
+      drives_.push_back({joint.sides.front().part, switches(*joint.joint)});
   auto note = [&](const auto& things) {
     for (const auto& thing : things)
       if (thing.on > 0 || std::isfinite(thing.off)) drives_.push_back({-1, switches(thing)});

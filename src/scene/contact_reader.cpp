@@ -33,8 +33,7 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
   const Record sleep{
       "sleep",
       "Bodies at rest, and all that they touch and are tied to with them, are left as they are until "
-      "something "
-      "meets or drives them.",
+      "something meets or drives them.",
       {required("speed", number(above(0), "m/s"), "No point of a body at rest is faster.", "0.001"),
        optional("after", number(above(0), "s"), "How long they have rested before.", "0.5")}};
   return {"contact",
