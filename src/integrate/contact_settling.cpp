@@ -21,7 +21,7 @@ constexpr int kMostPartings = 8;
 /// Most times in a step that bodies which impulses throw meet others.
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
-constexpr double kLeftOverlap = 1e-8;
+constexpr double kLeftOverlap = 1e-4;
 /// Meshes may overlap by this, in sizes, without being parted; and parted ones by this share of it.
 constexpr double kMeshOverlap = 2e-4, kMeshLeft = 0.03;
 
