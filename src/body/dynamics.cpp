@@ -151,13 +151,10 @@ void Dynamics::evaluate(double t, const VecX<S>& q, const VecX<S>& v, const Stat
     work.v_dot.template segment<3>(m.v0) = w.R * w.a_r.template head<3>();
     work.v_dot.segment(m.v0 + 3, 3 + m.n_s) = w.a_r.segment(3, 3 + m.n_s);
     if constexpr (std::is_same_v<S, double>)
-      if (m.local != nullptr) {
-        auto d_ddot = work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d());
-        d_ddot = w.local->d_ddot;
-        // What joints and limits push.
-        if (w.a_r != w.local->a_free)
-          m.local->push_all(m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local, d_ddot);
-      }
+      // What joints and limits push.
+      if (m.local != nullptr && w.a_r != w.local->a_free)
+        m.local->push_all(m.shared, w.local->A_inverse * (w.a_r - w.local->a_free), *w.local,
+                          work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
   };
   for (const int i : model.lone_parts()) finish(i);
   for (const Island& island : model.islands())

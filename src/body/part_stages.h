@@ -52,8 +52,7 @@ void positions(const PartModel& m, double t, const VecX<S>& q, const VecX<S>& v,
   if constexpr (std::is_same_v<S, double>)
     if (m.local != nullptr) {
       if (!w.local) w.local = m.local->workspace();
-      w.local->d = q.segment(m.q0 + 7 + m.n_s, m.n_d());
-      w.local->d_dot = v.segment(m.v0 + 6 + m.n_s, m.n_d());
+      w.local->place(q.data() + m.q0 + 7 + m.n_s, v.data() + m.v0 + 6 + m.n_s, m.n_d());
       m.local->positions(part, w.q_s, w.v_r, *w.local, w.counters);
     }
   if (n_ports == 0) return;
@@ -213,13 +212,14 @@ inline void take_factor(const Model& model, int i, Workspace<double>& work) {
 }
 
 /// a_r of a part that deforms locally, with the d_ddot at its joints, and the d_ddot of all of it.
-inline void accelerate_locally(const PartModel& m, PartWorkspace<double>& w) {
-  m.local->accelerations(w.a_r, *w.local);
+inline void accelerate_locally(const PartModel& m, PartWorkspace<double>& w,
+                               Eigen::Ref<VecX<double>> d_ddot) {
+  m.local->accelerations(w.a_r, *w.local, d_ddot);
   if (!m.shared.empty()) {
     VecX<double> buffer;
     const VecX<double> a_r = w.a_r;
     w.a_r.resize(m.n_x());
-    w.a_r << a_r, at_points(m.shared, m.local->at_nodes(w.local->d_ddot.data(), buffer));
+    w.a_r << a_r, at_points(m.shared, m.local->at_nodes(d_ddot.data(), buffer));
   }
   w.local->a_free = w.a_r;
 }
@@ -281,7 +281,7 @@ void accelerate(const Model& model, int i, const State* modes, const Workspace<d
   if constexpr (std::is_same_v<S, double>) {
     take_factor(model, i, work);
     if (m.local != nullptr)
-      accelerate_locally(m, w);
+      accelerate_locally(m, w, work.v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
     else
       w.solve_mass(w.a_r);
     if (modes != nullptr && m.island < 0) press(model, i, *modes, work);

@@ -76,13 +76,12 @@ bool anything_stiff(const Model& model) {
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start) {
   const Model& model = dynamics.model();
   if (!anything_stiff(model)) return {"dop853", "nothing is elastic or damped"};
-  const bool nodes = std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
-    return m.local != nullptr && m.local->oscillators() == nullptr;
-  });
+  bool nodes = false, modes = false;
+  for (const PartModel& m : model.parts())
+    if (m.local != nullptr) (m.local->oscillators() == nullptr ? nodes : modes) = true;
   std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
-  if (nodes)
-    candidates.emplace_back("linearly_implicit", kSparseFactorisation);
-  else if (model.n_v() <= kMostStiff)
+  if (nodes || modes) candidates.emplace_back("linearly_implicit", nodes ? kSparseFactorisation : 0);
+  if (!nodes && model.n_v() <= kMostStiff)
     candidates.emplace_back("esdirk", kFactorisation * model.n_v() * model.n_v());
   IntegratorChoice best;
   double fastest = -1;

@@ -43,6 +43,7 @@ void ExplicitRungeKutta::take_rates(const Dynamics& dynamics, double t, int stag
   ++counters.evaluations;
   hold_inertialess(dynamics.model(), work, v_);
   dynamics.coordinate_rates(q_, v_, q_dot_);
+  free_.take(stage, q_, v_, work.v_dot);
   q_rates_.col(stage) = q_dot_;
   v_rates_.col(stage) = work.v_dot;
   powers_.col(stage) = work.power;
@@ -59,6 +60,7 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     v_rates_.resize(state.v.size(), n + 1);
     powers_.resize(kWorks, n + 1);
   }
+  free_.prepare(dynamics.model(), of, h);
   // Baumgarte's terms may follow the length of the step, and the rates with them.
   auto gains = [&](double step) {
     return dynamics.model().body().stabilization.gains(step, dynamics.hold().step_consistent);
@@ -70,6 +72,7 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     q_rates_.col(0) = q_rates_.col(n);
     v_rates_.col(0) = v_rates_.col(n);
     powers_.col(0) = powers_.col(n);
+    free_.begin_at_end();
   } else {
     q_ = state.q;
     v_ = state.v;
@@ -79,12 +82,14 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
   for (int stage = 1; stage < n; a += stage, ++stage) {
     combine(state.q, q_rates_, a, stage, h, q_);
     combine(state.v, v_rates_, a, stage, h, v_);
+    free_.move(stage, state.q, state.v, q_, v_);
     take_rates(dynamics, t + of.c[stage] * h, stage, RankRule::keep, state, work, counters);
   }
   for (int k = 0; k < n; ++k)
     if (of.b[k] != 0) state.work += (h * of.b[k]) * powers_.col(k);
   combine(state.q, q_rates_, of.b, n, h, q_);
   combine(state.v, v_rates_, of.b, n, h, v_);
+  free_.move(n, state.q, state.v, q_, v_);
   if (scale() != nullptr) v_start_ = state.v;
   state.q.swap(q_);
   state.v.swap(v_);
@@ -106,6 +111,7 @@ double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {
   auto size = [&](const double* weights) {
     sum(q_rates_, weights, count, h, q_error_);
     sum(v_rates_, weights, count, h, v_error_);
+    free_.weigh(weights, count, q_error_, v_error_);
     return scale()->norm(q_error_, v_error_, v);
   };
   const double first = size(of_->error);

@@ -67,8 +67,8 @@ ImplicitNodes::ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor
                          [](const auto& energy) { return energy->of() == Of::position; });
   VecX<double> q_s(part.n_s);
   for (int k = 0; k < part.n_s; ++k) q_s[k] = part.part->parameters().moving(k).rest_value();
-  rest_.d.setZero(local().n_d());
-  rest_.d_dot.setZero(local().n_d());
+  none_.setZero(local().n_d());
+  rest_.place(none_.data(), none_.data(), none_.size());
   Counters unused;
   local().positions(*part.part, q_s, VecX<double>::Zero(6 + part.n_s), rest_, unused);
 }

@@ -50,6 +50,7 @@ class ImplicitNodes final : public ImplicitPart {
   MatX<double> at_joints(const MatX<double>& of_nodes) const;
 
   std::unique_ptr<SparseFactor> factor_;
+  VecX<double> none_;          ///< zeros, as many as local coordinates
   NodalWorkspace rest_;        ///< the part at rest
   bool follows_;               ///< whether it has energies of position
   double c_ = 0;               ///< of the factor

@@ -12,6 +12,10 @@ namespace pliant {
 
 namespace {
 
+constexpr double kA[] = {0.5, 0, 0.5, 0, 0, 1}, kNodes[] = {0, 0.5, 0.5, 1},
+                 kWeights[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+constexpr ButcherTableau kTableau{"rk4", 4, 4, kA, kWeights, kNodes, nullptr, nullptr, 0, false};
+
 /// sum += weight rate, or its first share, and to = from + step rate: in one pass over memory.
 void take(const VecX<double>& rate, double weight, bool first, VecX<double>& sum, const VecX<double>& from,
           double step, VecX<double>& to) {
@@ -36,28 +40,25 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   Vec<double, kWorks> work_sum = Vec<double, kWorks>::Zero();
   q_ = state.q;
   v_ = state.v;
-  free_.prepare(dynamics.model(), 0.5 * h);
-  constexpr double node[4] = {0, 0.5, 0.5, 1}, weight[4] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+  free_.prepare(dynamics.model(), kTableau, h);
   for (int stage = 0; stage < 4; ++stage) {
-    dynamics.rates(t + node[stage] * h, q_, v_, state, work, stage == 0 ? RankRule::decide : RankRule::keep);
+    dynamics.rates(t + kNodes[stage] * h, q_, v_, state, work,
+                   stage == 0 ? RankRule::decide : RankRule::keep);
     ++counters.evaluations;
     hold_inertialess(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);
-    free_.take_off(q_, v_, work.v_dot);
-    free_.take_off(q_dot_);
-    work_sum += weight[stage] * work.power;
+    free_.take(stage, q_, v_, work.v_dot);
+    free_.still(q_dot_);
+    work_sum += kWeights[stage] * work.power;
     if (stage == 3) break;
-    if (!free_.empty() && stage != 1) {  // on to the next node
-      free_.move(state.q, state.v);
-      if (stage > 0) free_.move(q_sum_, v_sum_);
-      free_.move(q_dot_, work.v_dot);
-    }
-    const double step = node[stage + 1] * h;
-    take(q_dot_, weight[stage], stage == 0, q_sum_, state.q, step, q_);
-    take(work.v_dot, weight[stage], stage == 0, v_sum_, state.v, step, v_);
+    const double step = kNodes[stage + 1] * h;
+    take(q_dot_, kWeights[stage], stage == 0, q_sum_, state.q, step, q_);
+    take(work.v_dot, kWeights[stage], stage == 0, v_sum_, state.v, step, v_);
+    free_.move(stage + 1, state.q, state.v, q_, v_);
   }
-  state.q += h * (q_sum_ + weight[3] * q_dot_);
-  state.v += h * (v_sum_ + weight[3] * work.v_dot);
+  state.q += h * (q_sum_ + kWeights[3] * q_dot_);
+  state.v += h * (v_sum_ + kWeights[3] * work.v_dot);
+  free_.move(4, state.q, state.v, state.q, state.v);
   state.work += h * work_sum;
   end_motion(dynamics, t + h, state, work);
   settle(dynamics, t + h, state, work, counters);

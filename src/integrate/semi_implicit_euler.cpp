@@ -8,15 +8,31 @@
 
 namespace pliant {
 
+namespace {
+
+constexpr double kNode[] = {0}, kWeight[] = {1};
+constexpr ButcherTableau kTableau{
+    "semi_implicit_euler", 1, 1, nullptr, kWeight, kNode, nullptr, nullptr, 0, false};
+
+/// v += h v_dot, what v was before going to `before`: in one pass over memory.
+void accelerate(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
+  before.resize(v.size());
+  for (Eigen::Index i = 0; i < v.size(); ++i) {
+    before[i] = v[i];
+    v[i] += h * v_dot[i];
+  }
+}
+
+}  // namespace
+
 void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
                              StepCounters& counters) {
   const double h = state.h;
   dynamics.rates(state.time(), state.q, state.v, state, work);
   ++counters.evaluations;
-  free_.prepare(dynamics.model(), h);
-  free_.take_off(state.q, state.v, work.v_dot);
-  v_before_ = state.v;
-  state.v += h * work.v_dot;
+  free_.prepare(dynamics.model(), kTableau, h);
+  free_.take(0, state.q, state.v, work.v_dot);
+  accelerate(h, work.v_dot, state.v, v_before_);
   carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
@@ -28,7 +44,7 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
     else
       advance_whole_part(m, state.q, state.v, h);
   }
-  free_.move(state.q, state.v);
+  free_.move(1, state.q, state.v, state.q, state.v);
   settle_frames(dynamics, state.time() + h, state, work);
   settle_on_limits(dynamics.model(), state);
   settle_joints(dynamics, state.time() + h, state, work, counters);

@@ -21,11 +21,35 @@ constexpr int kMostFrameIterations = 8;
 /// Of K with H0 scaled to a unit diagonal (design 1.3).
 constexpr double kWorstCondition = 1e8;
 
+/// Whether the conditions of a part without dynamic parameters hold to rounding, in place and by the rates of
+/// another step, as they do after a step of most methods: W is constant then, and they are linear.
+bool hold(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
+  if (m.n_s > 0 || !(state.h > 0) || !work.local || work.local->H0.rows() == 0 ||
+      !(work.local->condition() <= kWorstCondition))
+    return false;
+  const NodalDeformation& local = *m.local->nodal();
+  const auto at_nodes = [&](const VecX<double>& of, int first) {
+    return Eigen::Map<const Nodes>(of.data() + first, local.n_nodes(), 3);
+  };
+  const NodalDeformation::Unmet unmet =
+      local.unmet(at_nodes(state.q, m.q0 + 7), at_nodes(state.v, m.v0 + 6), *work.local);
+  const Vec<double, 6> inertia = work.local->H0.diagonal();
+  const double size = m.part->size();
+  const auto small = [&](const Vec<double, 6>& share) {
+    return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
+           (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
+  };
+  return small(unmet.of_d) && small(state.h * unmet.of_d_dot);
+}
+
 void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& state, Workspace<double>& work) {
   const PartModel& m = dynamics.model().parts()[i];
   if (m.local == nullptr) return;
   auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
   if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) return;
+  work.parts.resize(dynamics.model().parts().size());
+  if (m.local->nodal() != nullptr && hold(m, state, work.parts[i])) return;
+  if (!all_finite(state.q) || !all_finite(state.v)) return;
   const int part = static_cast<int>(i);
   dynamics.evaluate_frame(state.q, state.v, part, work);
   PartWorkspace<double>& w = work.parts[i];
@@ -81,7 +105,6 @@ void end_motion(const Dynamics& dynamics, double t, State& state, Workspace<doub
 }
 
 void settle_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work) {
-  if (!all_finite(state.q) || !all_finite(state.v)) return;
   for (std::size_t i = 0; i < dynamics.model().parts().size(); ++i) settle_frame(dynamics, t, i, state, work);
 }
 

@@ -39,7 +39,7 @@ AveragedLinearSolid<Element>::AveragedLinearSolid(const Nodes& rest, const Eigen
 }
 
 template <class Element>
-Pack AveragedLinearSolid<Element>::spread(const VecX<double>& x, int pack) const {
+Pack AveragedLinearSolid<Element>::spread(const Coordinates& x, int pack) const {
   Vec3<Pack> d[N];
   corners_.gather(x.data(), pack, d);
   const Pack* b = gradients(pack);
@@ -50,7 +50,7 @@ Pack AveragedLinearSolid<Element>::spread(const VecX<double>& x, int pack) const
 }
 
 template <class Element>
-void AveragedLinearSolid<Element>::pressures(const VecX<double>& x, double* sums, double* pressure,
+void AveragedLinearSolid<Element>::pressures(const Coordinates& x, double* sums, double* pressure,
                                              ThreadPool* pool) const {
   auto of_patch = [&](int c, double q) {
     const double V = volume_[static_cast<std::size_t>(c)];
@@ -77,7 +77,7 @@ void AveragedLinearSolid<Element>::pressures(const VecX<double>& x, double* sums
 }
 
 template <class Element>
-void AveragedLinearSolid<Element>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
+void AveragedLinearSolid<Element>::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                              ThreadPool* pool) const {
   const std::size_t sums = corners_.buffer_size();
   buffer.numbers.resize(std::max(buffer.numbers.size(), sums + volume_.size()));
@@ -104,7 +104,7 @@ void AveragedLinearSolid<Element>::add_force(const VecX<double>& x, VecX<double>
 }
 
 template <class Element>
-double AveragedLinearSolid<Element>::energy(const VecX<double>& x) const {
+double AveragedLinearSolid<Element>::energy(const Coordinates& x) const {
   std::vector<double> sums(corners_.buffer_size(1)), pressure(volume_.size());
   pressures(x, sums.data(), pressure.data(), nullptr);
   double twice = 0;
@@ -114,7 +114,7 @@ double AveragedLinearSolid<Element>::energy(const VecX<double>& x) const {
 }
 
 template <class Element>
-void AveragedLinearSolid<Element>::add_stiffness(const VecX<double>& x,
+void AveragedLinearSolid<Element>::add_stiffness(const Coordinates& x,
                                                  std::vector<Eigen::Triplet<double>>& K) const {
   shear_.add_stiffness(x, K);
   const int n = corners_.n_nodes();
@@ -137,7 +137,7 @@ void AveragedLinearSolid<Element>::add_stiffness(const VecX<double>& x,
 }
 
 template <class Element>
-double AveragedLinearSolid<Element>::frequency_bound(const VecX<double>& x, const VecX<double>& M) const {
+double AveragedLinearSolid<Element>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
   return whole_.frequency_bound(x, M);
 }
 

@@ -266,7 +266,7 @@ void MidEdgeBending<Hinges>::add_own_forces(VecX<double>& f, const double* m) co
 }
 
 template <class Hinges>
-double MidEdgeBending<Hinges>::energy(const VecX<double>& x) const {
+double MidEdgeBending<Hinges>::energy(const Coordinates& x) const {
   std::vector<double> angles(static_cast<std::size_t>(n_angles()));
   fill_angles(angles.data(), nullptr, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
   double twice = 0;
@@ -281,7 +281,7 @@ double MidEdgeBending<Hinges>::energy(const VecX<double>& x) const {
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::push(const VecX<double>& x, const double* m, VecX<double>& f, double* corners,
+void MidEdgeBending<Hinges>::push(const Coordinates& x, const double* m, VecX<double>& f, double* corners,
                                   ThreadPool* pool) const {
   batches_.add(f, corners, pool, [&](int b) {
     return times(-hinge_moment(b, m), hinges_.gradient(b, batches_.corners(x, b)));
@@ -295,7 +295,7 @@ void MidEdgeBending<Hinges>::push(const VecX<double>& x, const double* m, VecX<d
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::fill_changes(const VecX<double>& x, const VecX<double>& dx, double* angles,
+void MidEdgeBending<Hinges>::fill_changes(const Coordinates& x, const Coordinates& dx, double* angles,
                                           double* m, ThreadPool* pool) const {
   fill_angles(angles, pool, [&](int b) {
     return dot(hinges_.gradient(b, batches_.corners(x, b)), batches_.corners(dx, b));
@@ -307,7 +307,7 @@ void MidEdgeBending<Hinges>::fill_changes(const VecX<double>& x, const VecX<doub
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
+void MidEdgeBending<Hinges>::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                        ThreadPool* pool) const {
   const Places at = places(buffer, 1);
   fill_angles(at.angles, pool, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
@@ -317,7 +317,7 @@ void MidEdgeBending<Hinges>::add_force(const VecX<double>& x, VecX<double>& f, B
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot,
+void MidEdgeBending<Hinges>::add_viscous_force(const Coordinates& x, const Coordinates& x_dot,
                                                VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
   const Places at = places(buffer, 1);
   fill_changes(x, x_dot, at.angles, at.moments, pool);
@@ -325,7 +325,7 @@ void MidEdgeBending<Hinges>::add_viscous_force(const VecX<double>& x, const VecX
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f,
+void MidEdgeBending<Hinges>::add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f,
                                             Buffer& buffer, ThreadPool* pool) const {
   add_viscous_force(x, dx, f, buffer, pool);
   if constexpr (Hinges::kOf == Of::position) {
@@ -349,7 +349,7 @@ void MidEdgeBending<Hinges>::add_derivative(const VecX<double>& x, const VecX<do
 /// A triangle's coordinates: its corners, the corners across its edges, phi of its edges.
 template <class Hinges>
 template <class Visit>
-void MidEdgeBending<Hinges>::each_element(const VecX<double>& x, Visit&& visit) const {
+void MidEdgeBending<Hinges>::each_element(const Coordinates& x, Visit&& visit) const {
   constexpr int kCoordinates = 21;
   std::vector<double> angles(static_cast<std::size_t>(n_angles()));
   fill_angles(angles.data(), nullptr, [&](int b) { return hinges_.angle(b, batches_.corners(x, b)); });
@@ -427,13 +427,13 @@ void MidEdgeBending<Hinges>::each_element(const VecX<double>& x, Visit&& visit) 
 }
 
 template <class Hinges>
-void MidEdgeBending<Hinges>::add_stiffness(const VecX<double>& x,
+void MidEdgeBending<Hinges>::add_stiffness(const Coordinates& x,
                                            std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(x, visit); }, K);
 }
 
 template <class Hinges>
-double MidEdgeBending<Hinges>::frequency_bound(const VecX<double>& x, const VecX<double>& M) const {
+double MidEdgeBending<Hinges>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
   return largest_of_elements([&](auto&& visit) { each_element(x, visit); }, M);
 }
 

@@ -25,7 +25,7 @@ LinearMembrane::LinearMembrane(const ShellMesh& mesh, const Sheet& sheet)
     }
 }
 
-double LinearMembrane::energy(const VecX<double>& x) const {
+double LinearMembrane::energy(const Coordinates& x) const {
   double twice = 0;
   for (int b = 0; b < batches_.n_batches(); ++b) {
     const Triangle& triangle = triangles_[static_cast<std::size_t>(b)];
@@ -36,7 +36,7 @@ double LinearMembrane::energy(const VecX<double>& x) const {
   return 0.5 * twice;
 }
 
-void LinearMembrane::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
+void LinearMembrane::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                ThreadPool* pool) const {
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
@@ -45,7 +45,7 @@ void LinearMembrane::add_force(const VecX<double>& x, VecX<double>& f, Buffer& b
   });
 }
 
-void LinearMembrane::add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f,
+void LinearMembrane::add_derivative(const Coordinates&, const Coordinates& dx, VecX<double>& f,
                                     Buffer& buffer, ThreadPool* pool) const {
   add_force(dx, f, buffer, pool);
 }
@@ -70,11 +70,11 @@ void LinearMembrane::each_element(Visit&& visit) const {
   }
 }
 
-void LinearMembrane::add_stiffness(const VecX<double>&, std::vector<Eigen::Triplet<double>>& K) const {
+void LinearMembrane::add_stiffness(const Coordinates&, std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(visit); }, K);
 }
 
-double LinearMembrane::frequency_bound(const VecX<double>&, const VecX<double>& M) const {
+double LinearMembrane::frequency_bound(const Coordinates&, const VecX<double>& M) const {
   return largest_of_elements([&](auto&& visit) { each_element(visit); }, M);
 }
 

@@ -73,7 +73,7 @@ LoadedMembrane::Corners LoadedMembrane::pull(int b, const Corners& d) const {
   return pull;
 }
 
-double LoadedMembrane::energy(const VecX<double>& x) const {
+double LoadedMembrane::energy(const Coordinates& x) const {
   double twice = 0;
   for (int b = 0; b < batches_.n_batches(); ++b) {
     const Corners d = batches_.corners(x, b), f = pull(b, d);
@@ -83,7 +83,7 @@ double LoadedMembrane::energy(const VecX<double>& x) const {
   return 0.5 * twice;
 }
 
-void LoadedMembrane::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
+void LoadedMembrane::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                ThreadPool* pool) const {
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
@@ -93,7 +93,7 @@ void LoadedMembrane::add_force(const VecX<double>& x, VecX<double>& f, Buffer& b
   });
 }
 
-void LoadedMembrane::add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f,
+void LoadedMembrane::add_derivative(const Coordinates&, const Coordinates& dx, VecX<double>& f,
                                     Buffer& buffer, ThreadPool* pool) const {
   add_force(dx, f, buffer, pool);
 }
@@ -121,11 +121,11 @@ void LoadedMembrane::each_element(Visit&& visit) const {
   }
 }
 
-void LoadedMembrane::add_stiffness(const VecX<double>&, std::vector<Eigen::Triplet<double>>& K) const {
+void LoadedMembrane::add_stiffness(const Coordinates&, std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(visit); }, K);
 }
 
-double LoadedMembrane::frequency_bound(const VecX<double>&, const VecX<double>& M) const {
+double LoadedMembrane::frequency_bound(const Coordinates&, const VecX<double>& M) const {
   return largest_of_elements([&](auto&& visit) { each_element(visit); }, M);
 }
 

@@ -20,7 +20,7 @@ Membrane<Law>::Membrane(const ShellMesh& mesh, const Sheet& sheet)
 }
 
 template <class Law>
-double Membrane<Law>::energy(const VecX<double>& x) const {
+double Membrane<Law>::energy(const Coordinates& x) const {
   double sum = 0;
   for (int b = 0; b < batches_.n_batches(); ++b) {
     const Pack W = batch(b).law.energy(batch(b).strain(edges_of(batches_.corners(x, b))));
@@ -30,8 +30,7 @@ double Membrane<Law>::energy(const VecX<double>& x) const {
 }
 
 template <class Law>
-void Membrane<Law>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
-                              ThreadPool* pool) const {
+void Membrane<Law>::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b));
@@ -40,7 +39,7 @@ void Membrane<Law>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& bu
 }
 
 template <class Law>
-void Membrane<Law>::add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f,
+void Membrane<Law>::add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f,
                                    Buffer& buffer, ThreadPool* pool) const {
   using D = Dual<1, Pack>;
   buffer.numbers.resize(batches_.buffer_size());
@@ -61,7 +60,7 @@ void Membrane<Law>::add_derivative(const VecX<double>& x, const VecX<double>& dx
 }
 
 template <class Law>
-void Membrane<Law>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f,
+void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f,
                                       Buffer& buffer, ThreadPool* pool) const {
   using D = Dual<1, Pack>;
   buffer.numbers.resize(batches_.buffer_size());
@@ -80,7 +79,7 @@ void Membrane<Law>::add_viscous_force(const VecX<double>& x, const VecX<double>&
 
 template <class Law>
 template <class Visit>
-void Membrane<Law>::each_element(const VecX<double>& x, Visit&& visit) const {
+void Membrane<Law>::each_element(const Coordinates& x, Visit&& visit) const {
   using D = Dual<3, Pack>;
   for (int b = 0; b < batches_.n_batches(); ++b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b));
@@ -116,12 +115,12 @@ void Membrane<Law>::each_element(const VecX<double>& x, Visit&& visit) const {
 }
 
 template <class Law>
-void Membrane<Law>::add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const {
+void Membrane<Law>::add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(x, visit); }, K);
 }
 
 template <class Law>
-double Membrane<Law>::frequency_bound(const VecX<double>& x, const VecX<double>& M) const {
+double Membrane<Law>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
   return largest_of_elements([&](auto&& visit) { each_element(x, visit); }, M);
 }
 

@@ -55,7 +55,7 @@ double Pressure::sum(double* parts, ThreadPool* pool, F&& f) const {
   return total;
 }
 
-double Pressure::volume(const VecX<double>& x, double* parts, ThreadPool* pool) const {
+double Pressure::volume(const Coordinates& x, double* parts, ThreadPool* pool) const {
   // Seen from a node of the shell, so that a shell far from the origin loses no digits.
   const Eigen::Index n = batches_.n_nodes();
   const Vec3<Pack> from(x[0], x[n], x[2 * n]);
@@ -67,16 +67,16 @@ double Pressure::volume(const VecX<double>& x, double* parts, ThreadPool* pool) 
          6;
 }
 
-double Pressure::volume(const VecX<double>& x) const {
+double Pressure::volume(const Coordinates& x) const {
   std::vector<double> parts(static_cast<std::size_t>(batches_.n_batches()));
   return volume(x, parts.data(), nullptr);
 }
 
-double Pressure::energy(const VecX<double>& x) const {
+double Pressure::energy(const Coordinates& x) const {
   return law(volume(x)).E;
 }
 
-void Pressure::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
+void Pressure::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
   buffer.numbers.resize(batches_.buffer_size());
   double* numbers = buffer.numbers.data();
   const Pack push = -law(volume(x, numbers, pool)).slope / 6;
@@ -86,7 +86,7 @@ void Pressure::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
   });
 }
 
-void Pressure::add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+void Pressure::add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const {
   buffer.numbers.resize(batches_.buffer_size());
   double* numbers = buffer.numbers.data();
@@ -108,7 +108,7 @@ void Pressure::add_derivative(const VecX<double>& x, const VecX<double>& dx, Vec
 
 /// E' d2V/dx2 edge by edge: a and b turn the volume with what stands across them, c - d.
 template <class Visit>
-void Pressure::each_element(const VecX<double>& x, Visit&& visit) const {
+void Pressure::each_element(const Coordinates& x, Visit&& visit) const {
   const double slope = law(volume(x)).slope;
   const int n = batches_.n_nodes();
   const auto at = nodes(x, n);
@@ -122,17 +122,17 @@ void Pressure::each_element(const VecX<double>& x, Visit&& visit) const {
   }
 }
 
-void Pressure::add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const {
+void Pressure::add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const {
   add_triplets([&](auto&& visit) { each_element(x, visit); }, K);
 }
 
-double Pressure::frequency_bound(const VecX<double>& x, const VecX<double>& M) const {
+double Pressure::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
   const VecX<double> w = rank_one(x);
   return largest_of_elements([&](auto&& visit) { each_element(x, visit); }, M) +
          w.cwiseAbs2().cwiseQuotient(M.head(w.size())).sum();
 }
 
-VecX<double> Pressure::rank_one(const VecX<double>& x) const {
+VecX<double> Pressure::rank_one(const Coordinates& x) const {
   VecX<double> w = VecX<double>::Zero(x.size());
   std::vector<double> numbers(batches_.buffer_size());
   batches_.add(w, numbers.data(), nullptr, [&](int b) -> ElementBatches<3>::Corners {

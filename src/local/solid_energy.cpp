@@ -65,13 +65,13 @@ void SolidEnergy<Element, Law>::add(const std::array<const double*, Fields>& fie
 }
 
 template <class Element, class Law>
-void SolidEnergy<Element, Law>::add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer,
+void SolidEnergy<Element, Law>::add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer,
                                           ThreadPool* pool) const {
   add<1>({x.data()}, f, buffer, pool, [&](const Mat3<Pack>* G) { return law_.stress(G[0]); });
 }
 
 template <class Element, class Law>
-void SolidEnergy<Element, Law>::add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f,
+void SolidEnergy<Element, Law>::add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f,
                                                Buffer& buffer, ThreadPool* pool) const {
   if constexpr (Law::constant)
     add<1>({dx.data()}, f, buffer, pool, [&](const Mat3<Pack>* G) { return law_.stress(G[0]); });
@@ -81,7 +81,7 @@ void SolidEnergy<Element, Law>::add_derivative(const VecX<double>& x, const VecX
 }
 
 template <class Element, class Law>
-void SolidEnergy<Element, Law>::add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot,
+void SolidEnergy<Element, Law>::add_viscous_force(const Coordinates& x, const Coordinates& x_dot,
                                                   VecX<double>& f, Buffer& buffer, ThreadPool* pool) const {
   if constexpr (Law::of == Of::displacement)
     add_derivative(x, x_dot, f, buffer, pool);
@@ -91,7 +91,7 @@ void SolidEnergy<Element, Law>::add_viscous_force(const VecX<double>& x, const V
 }
 
 template <class Element, class Law>
-double SolidEnergy<Element, Law>::energy(const VecX<double>& x) const {
+double SolidEnergy<Element, Law>::energy(const Coordinates& x) const {
   Vec3<Pack> corner[N];
   double E = 0;
   for (int pack = 0; pack < corners_.n_packs(); ++pack) {
@@ -114,7 +114,7 @@ double SolidEnergy<Element, Law>::volume(int element) const {
 
 template <class Element, class Law>
 Eigen::Matrix<double, 3 * SolidEnergy<Element, Law>::N, 3 * SolidEnergy<Element, Law>::N>
-SolidEnergy<Element, Law>::element_stiffness(const VecX<double>& x, int element) const {
+SolidEnergy<Element, Law>::element_stiffness(const Coordinates& x, int element) const {
   using T = double;
   Eigen::Matrix<T, 3 * N, 3 * N> K = Eigen::Matrix<T, 3 * N, 3 * N>::Zero();
   Vec3<T> corner[N];
@@ -153,7 +153,7 @@ SolidEnergy<Element, Law>::element_stiffness(const VecX<double>& x, int element)
 }
 
 template <class Element, class Law>
-void SolidEnergy<Element, Law>::add_stiffness(const VecX<double>& x,
+void SolidEnergy<Element, Law>::add_stiffness(const Coordinates& x,
                                               std::vector<Eigen::Triplet<double>>& K) const {
   const int n = corners_.n_nodes();
   for (int e = 0; e < corners_.n_elements(); ++e) {
@@ -168,7 +168,7 @@ void SolidEnergy<Element, Law>::add_stiffness(const VecX<double>& x,
 }
 
 template <class Element, class Law>
-double SolidEnergy<Element, Law>::frequency_bound(const VecX<double>& x, const VecX<double>& M) const {
+double SolidEnergy<Element, Law>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
   return element_frequency_bound(
       corners_, M, [&](int e) { return element_stiffness(x, e); }, [&](int e) { return volume(e); });
 }

@@ -216,13 +216,14 @@ void ModalDeformation::push(const NodeWeights& at, const Vec3<double>& force, Lo
     of(work).F.row(at.node[i]) += at.weight[i] * force.transpose();
 }
 
-void ModalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) const {
+void ModalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work,
+                                     Eigen::Ref<VecX<double>> d_ddot) const {
   ModalWorkspace& w = of(work);
   w.force = w.f_d;
   w.force.noalias() += basis_.B.transpose() * w.F.reshaped();
   f_r += w.own;
-  w.d_ddot = w.force;
-  respond(f_r, w.d_ddot, w);
+  d_ddot = w.force;
+  respond(f_r, d_ddot, w);
 }
 
 void ModalDeformation::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes,

@@ -60,7 +60,7 @@ void NodalDeformation::own_push_all(const std::vector<NodeWeights>& points, cons
   const Eigen::Index n = n_nodes();
   const VecMax<double> kappa = w.kappa_of * g, a = w.a_of * g;
   const FrameMotion pull(kappa, w, n), frame(a, w, n);
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> by_kappa = plus(pull.rigid(four.load(w.s.data(), n)), pull.shape(four)),
                      by_frame = plus(frame.rigid(four.load(w.x.data(), n)), frame.shape(four));
     Vec3<Pack> v = four.load(d_dot.data(), n);

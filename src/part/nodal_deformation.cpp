@@ -8,7 +8,14 @@
 namespace pliant {
 
 double NodalWorkspace::condition() const {
-  return 1 / factor.rcond();
+  // A unit triangle times pivots none of which is small is far from singular.
+  constexpr double clear = 1e-3;
+  return std::visit(
+      [](const auto& lu) {
+        const double pivot = lu.matrixLU().diagonal().cwiseAbs().minCoeff();
+        return 1 / (pivot > clear ? pivot : lu.rcond());
+      },
+      factor);
 }
 
 NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)

@@ -16,7 +16,7 @@ MatMax<double> still_inertia(const double* at_s, const double* mass, const Nodal
   VectorSum ms;
   OuterSum ss;
   Pack total(0.0);
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Pack m = four.load(mass);
     const Vec3<Pack> s = four.load(at_s, n), m_s = times(m, s);
     total += m;
@@ -32,7 +32,7 @@ MatMax<double> still_inertia(const double* at_s, const double* mass, const Nodal
     OuterSum sJ;
     std::array<Pack, kMaxGlobal> JJ;
     JJ.fill(Pack(0.0));
-    for_each_four(n, [&](const FourNodes& four) {
+    for_each_four(n, [&](const auto& four) {
       const Vec3<Pack> mJ = times(four.load(mass), four.load(column(w, n, k), n));
       J.add(mJ);
       sJ.add(four.load(at_s, n), mJ);
@@ -49,7 +49,7 @@ MatMax<double> still_inertia(const double* at_s, const double* mass, const Nodal
 void place_nodes(const double* mass, Eigen::Index n, NodalWorkspace& w) {
   VectorSum md;
   OuterSum ds;
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> s = four.load(w.s.data(), n), d = four.load(w.d.data(), n),
                      m_d = times(four.load(mass), d);
     four.store(w.x.data(), n, plus(s, d));
@@ -88,7 +88,7 @@ void shape_rates(const Part& part, const NodalDeformation& local, const VecX<dou
       JetBatch<Dual<1, Pack>> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
       part.jets(values, local.packs().data() + first, batch);
       for (int i = 0; i < count; ++i) {
-        const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, n);
+        const FourNodes<> four((first + i) * Eigen::Index{Pack::kLanes}, n);
         const Pack m = four.load(local.inertia().data());
         const Vec3<Pack> md = times(m, four.load(w.d.data(), n)), mv = times(m, four.load(w.d_dot.data(), n));
         const Jet<Dual<1, Pack>>& jet = jets[static_cast<std::size_t>(i)];
@@ -158,14 +158,14 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
     OuterSum s1v, s2d;
     const bool moving = any(q_s_dot);
     if (moving)
-      for_each_four(n, [&](const FourNodes& four) {
+      for_each_four(n, [&](const auto& four) {
         const Pack m = four.load(mass);
         s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
         s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
       });
     for (int k = 0; k < n_s; ++k) {
       OuterSum dJ;
-      for_each_four(n, [&](const FourNodes& four) {
+      for_each_four(n, [&](const auto& four) {
         dJ.add(times(four.load(mass), four.load(w.d.data(), n)), four.load(column(w, n, k), n));
       });
       const Mat3<double> d_J = dJ.total();
@@ -187,7 +187,11 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
     K(6 + k, 6 + k) = w.scale[6 + k] = 1;
     w.rates[6 + k] = 0;
   }
-  w.factor.compute(w.scale.asDiagonal() * K * w.scale.asDiagonal());
+  K = (w.scale.asDiagonal() * K * w.scale.asDiagonal()).eval();
+  if (n_s == 0)
+    w.factor.emplace<0>(K);
+  else
+    w.factor.emplace<1>(K);
   ++counters.mass_matrices;
 }
 
@@ -204,7 +208,7 @@ void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<double>& g, do
   Pack square(0.0);
   VectorSum f_d, f, torque_d, torque;
   w.force.resize(n_d());
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> p = four.load(w.x.data(), n), u = four.load(w.rates_of_p(n), n);
     const Pack m = four.load(inertia_.data());
     const Vec3<Pack> spin = cross(frame.omega, p);
@@ -256,7 +260,7 @@ void NodalDeformation::add_elasticity(NodalWorkspace& w, ThreadPool* pool) const
       energy.add_force(w.x, w.f, w.buffers[k], pool);
   }
   w.damping = 0;
-  auto damp = [&](NodalEnergy::Of of, const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f) {
+  auto damp = [&](NodalEnergy::Of of, const Coordinates& x, const Coordinates& x_dot, VecX<double>& f) {
     VecX<double>& damping = w.force;
     damping.setZero(size);
     for (std::size_t k = 0; k < energies_.size(); ++k)
@@ -301,15 +305,15 @@ void NodalDeformation::push(const NodeWeights& at, const Vec3<double>& force, Lo
   }
 }
 
-void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) const {
+void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work,
+                                     Eigen::Ref<VecX<double>> d_ddot) const {
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  w.d_ddot.resize(n_d());
   w.kappa = w.solve(w.of_d - f_r);
   const VecMax<double> a = w.solve_transposed(w.of_all - w.H0 * w.kappa + w.rates);
   f_r = a;
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Pack mobility = four.load(mobility_.data());
     Vec3<Pack> d = times(mobility, four.load(w.force.data(), n));
     const Vec3<Pack> by_kappa = pull.rigid(four.load(w.s.data(), n)),
@@ -319,15 +323,36 @@ void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work) co
       const Vec3<Pack> k = pull.shape(four), shape = frame.shape(four);
       for (int r = 0; r < 3; ++r) d[r] -= k[r] + shape[r];
     }
-    four.store(w.d_ddot.data(), n, d);
+    four.store(d_ddot.data(), n, d);
   });
   const Eigen::Index own = n_d() - 3 * n;
-  w.d_ddot.tail(own) = mobility_.tail(own).cwiseProduct(w.force.tail(own));
+  d_ddot.tail(own) = mobility_.tail(own).cwiseProduct(w.force.tail(own));
 }
 
 Eigen::Matrix<double, 6, 6> NodalDeformation::rigid_inertia(const LocalWorkspace& work) const {
   const NodalWorkspace& w = of(work);
   return still_inertia(w.x.data(), inertia_.data(), w, n_nodes(), 0);
+}
+
+NodalDeformation::Unmet NodalDeformation::unmet(const Eigen::Ref<const Nodes>& d,
+                                                const Eigen::Ref<const Nodes>& d_dot,
+                                                const LocalWorkspace& work) const {
+  const NodalWorkspace& w = of(work);
+  const Eigen::Index n = n_nodes();
+  VectorSum md, mv, s_md, s_mv;
+  for_each_four(n, [&](const auto& four) {
+    const Pack m = four.load(inertia_.data());
+    const Vec3<Pack> s = four.load(w.s.data(), n), m_d = times(m, four.load(d.data(), n)),
+                     m_v = times(m, four.load(d_dot.data(), n));
+    md.add(m_d);
+    mv.add(m_v);
+    s_md.add(cross(s, m_d));
+    s_mv.add(cross(s, m_v));
+  });
+  Unmet unmet;
+  unmet.of_d << md.total(), s_md.total();
+  unmet.of_d_dot << mv.total(), s_mv.total();
+  return unmet;
 }
 
 VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
@@ -336,7 +361,7 @@ VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
   const Eigen::Index n = n_nodes(), n_s = w.H0.rows() - 6;
   VecMax<double> share(6 + n_s);
   VectorSum sum_a, s_a;
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> ma = times(four.load(inertia_.data()), four.load(a.data(), n));
     sum_a.add(ma);
     s_a.add(cross(four.load(w.s.data(), n), ma));
@@ -345,7 +370,7 @@ VecMax<double> NodalDeformation::frame_share(const Eigen::Ref<const Nodes>& a,
   share.segment<3>(3) = s_a.total();
   for (int k = 0; k < n_s; ++k) {
     Pack along(0.0);
-    for_each_four(n, [&](const FourNodes& four) {
+    for_each_four(n, [&](const auto& four) {
       along += four.load(inertia_.data()) * four.load(column(w, n, k), n).dot(four.load(a.data(), n));
     });
     share[6 + k] = sum(along);
@@ -360,7 +385,7 @@ void NodalDeformation::add_frame_velocities(const VecMax<double>& v_r, double si
   const Eigen::Index n = n_nodes();
   const VecMax<double> v = sign * v_r;
   const FrameMotion frame(v, w, n);
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     Vec3<Pack> by_frame = frame.rigid(four.load(w.x.data(), n));
     if (v.size() > 6) by_frame = plus(by_frame, frame.shape(four));
     four.store(to, n, plus(four.load(from, n), by_frame));
@@ -372,7 +397,7 @@ void NodalDeformation::move_frame(const Vec3<double>& shift, const Mat3<double>&
   const Eigen::Index n = n_nodes();
   const Vec3<Pack> from = spread(-shift),
                    row[3] = {spread(turn.col(0)), spread(turn.col(1)), spread(turn.col(2))};
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Vec3<Pack> x = plus(four.load(p.data(), n), from), v = four.load(u.data(), n);
     Vec3<Pack> x_now, v_now;
     for (int r = 0; r < 3; ++r) {
@@ -391,7 +416,7 @@ LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspa
   const FrameMotion frame(v, w, n);
   VectorSum P, L, moment;
   Pack twice(0.0);
-  for_each_four(n, [&](const FourNodes& four) {
+  for_each_four(n, [&](const auto& four) {
     const Pack m = four.load(inertia_.data());
     const Vec3<Pack> p = four.load(w.x.data(), n);
     const Vec3<Pack> velocity = plus(frame.rigid(p), four.load(w.rates_of_p(n), n));
@@ -405,7 +430,7 @@ LocalMotion NodalDeformation::motion(const VecX<double>& v_r, const LocalWorkspa
   LocalMotion all{0.5 * sum(twice), 0, P.total(), L.total(), moment.total()};
   all.kinetic += 0.5 * w.d_dot.tail(own).dot(inertia_.tail(own).cwiseProduct(w.d_dot.tail(own)));
   for (const auto& energy : energies_)
-    all.elastic += energy->energy(energy->of() == NodalEnergy::Of::displacement ? w.d : w.x);
+    all.elastic += energy->of() == NodalEnergy::Of::displacement ? energy->energy(w.d) : energy->energy(w.x);
   return all;
 }
 
@@ -413,7 +438,8 @@ LocalDeformation::Bound NodalDeformation::stiffness_bound(const LocalWorkspace& 
   Bound bound;
   for (const auto& energy : energies_) {
     const bool linear = energy->of() == NodalEnergy::Of::displacement;
-    const double omega2 = energy->frequency_bound(linear ? work.d : of(work).x, inertia_);
+    const double omega2 =
+        linear ? energy->frequency_bound(work.d, inertia_) : energy->frequency_bound(of(work).x, inertia_);
     bound.K += omega2;
     if (linear) bound.D += beta() * omega2;
   }

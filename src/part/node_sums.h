@@ -71,7 +71,8 @@ struct FrameMotion {
   FrameMotion(const VecMax<double>& all, const NodalWorkspace& work, Eigen::Index n_nodes)
       : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
   Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, cross(omega, p)); }
-  Vec3<Pack> shape(const FourNodes& four) const {
+  template <class Four>
+  Vec3<Pack> shape(const Four& four) const {
     Vec3<Pack> sum = Vec3<Pack>::Constant(Pack(0.0));
     for (int k = 6; k < v.size(); ++k) {
       const Vec3<Pack> J = four.load(column(w, n, k - 6), n);
@@ -84,8 +85,7 @@ struct FrameMotion {
 /// sum J^T F of parameter k over nodes.
 inline double along_column(const double* F, const NodalWorkspace& w, Eigen::Index n, int k) {
   Pack along(0.0);
-  for_each_four(n,
-                [&](const FourNodes& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });
+  for_each_four(n, [&](const auto& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });
   return sum(along);
 }
 

@@ -20,7 +20,7 @@ void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>&
     JetBatch<Pack> batch{jets.data(), count, 0, moving ? Level::rates : Level::jacobian};
     part.jets(values, packs.data() + first, batch);
     for (int i = 0; i < count; ++i) {
-      const FourNodes four((first + i) * Eigen::Index{Pack::kLanes}, to.n);
+      const FourNodes<> four((first + i) * Eigen::Index{Pack::kLanes}, to.n);
       const Jet<Pack>& jet = jets[static_cast<std::size_t>(i)];
       four.store(to.s, to.n, jet.s);
       if (moving) {

@@ -52,7 +52,7 @@ void check_push(MultiBody& body, Part& part, const Material<double>& at) {
   simulation.dynamics().accelerations(0, state.q, state.v, state, work);
   const PartWorkspace<double>& w = work.parts[0];
   const NodalDeformation& local = *part.local()->nodal();
-  Nodes a = nodes(w.local->d_ddot, local.n_nodes());
+  Nodes a = nodes(work.v_dot.tail(local.n_d()), local.n_nodes());
   local.add_frame_velocities(w.a_r, 1, *w.local, a.data(), a.data());
   Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
   for (Eigen::Index i = 0; i < a.rows(); ++i) {

@@ -14,13 +14,13 @@ class Net final : public NodalEnergy {
  public:
   Net(const LocalMesh& mesh, double k) : triangles_(mesh.triangles), n_(mesh.X.rows()), k_(k) {}
   Of of() const override { return Of::displacement; }
-  double energy(const VecX<double>& x) const override {
+  double energy(const Coordinates& x) const override {
     VecX<double> f = VecX<double>::Zero(x.size());
     Buffer none;
     add_force(x, f, none, nullptr);
     return -0.5 * x.dot(f);
   }
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer&, ThreadPool*) const override {
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer&, ThreadPool*) const override {
     auto d = nodes(x, n_);
     auto force = nodes(f, n_);
     for (Eigen::Index t = 0; t < triangles_.cols(); ++t)
@@ -32,12 +32,12 @@ class Net final : public NodalEnergy {
         force.row(j) -= pull;
       }
   }
-  void add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  void add_derivative(const Coordinates&, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override {
     add_force(dx, f, buffer, pool);
   }
-  void add_stiffness(const VecX<double>&, std::vector<Eigen::Triplet<double>>&) const override {}
-  double frequency_bound(const VecX<double>&, const VecX<double>& M) const override {
+  void add_stiffness(const Coordinates&, std::vector<Eigen::Triplet<double>>&) const override {}
+  double frequency_bound(const Coordinates&, const VecX<double>& M) const override {
     return 24 * k_ / M.minCoeff();
   }
 

@@ -1,26 +1,16 @@
 // Explicit Runge-Kutta methods with an estimate of the error of a step (Hairer, Norsett & Wanner, Solving
 // Ordinary Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers
 // by theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, closed joints are
-// projected: neither costs an order.
+// projected: neither costs an order. What oscillates freely does so exactly.
 #pragma once
 
 #include <vector>
 
+#include <pliant/integrate/butcher_tableau.h>
+#include <pliant/integrate/free_stages.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
-
-/// The coefficients of a method.
-struct ButcherTableau {
-  const char* name;
-  int order, stages;
-  const double *a, *b, *c;  ///< a: row by row what lies below its diagonal, from the second row on
-  /// k_i times these is the error of a method of lower order; second: of one of an even lower, nullptr for
-  /// none. They have an entry more where the rates at the end of the step count.
-  const double *error, *second_error;
-  int error_order;    ///< the estimate is O(h^(error_order + 1))
-  bool rates_at_end;  ///< whether they count
-};
 
 class ExplicitRungeKutta : public Integrator {
  public:
@@ -39,6 +29,7 @@ class ExplicitRungeKutta : public Integrator {
   double error_of(double h, const VecX<double>& v);
 
   const ButcherTableau* of_;
+  FreeStages free_;
   // Kept between steps: no heap in a step.
   MatX<double> q_rates_, v_rates_, powers_;  ///< a column a stage, and one of the rates at the end
   VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;

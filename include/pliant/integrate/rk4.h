@@ -1,9 +1,9 @@
 // The classical Runge-Kutta method of fourth order on (q, v, work). Quaternions are integrated as four
 // numbers by theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, which keeps
-// the order. What oscillates freely does so exactly: the stages are taken in coordinates that move with it.
+// the order. What oscillates freely does so exactly.
 #pragma once
 
-#include <pliant/integrate/free_oscillation.h>
+#include <pliant/integrate/free_stages.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
@@ -16,7 +16,7 @@ class Rk4 final : public Integrator {
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
-  FreeOscillation free_;
+  FreeStages free_;
   VecX<double> q_, v_, q_dot_, q_sum_, v_sum_;  // kept between steps: no heap in a step
 };
 

@@ -1,11 +1,11 @@
 // Semi-implicit Euler, the paper's method (section 4), first order:
 //   v <- v + h vdot(q, v),   q <- q (+) h v
-// What oscillates freely does so exactly after the kick by the rest of vdot, and angular momenta turn with
+// What oscillates freely does so exactly under the rest of vdot, and angular momenta turn with
 // the parts by what they turn, not by its first order, which would let parts that tumble gain energy without
 // end.
 #pragma once
 
-#include <pliant/integrate/free_oscillation.h>
+#include <pliant/integrate/free_stages.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
@@ -19,7 +19,7 @@ class SemiImplicitEuler final : public Integrator {
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
-  FreeOscillation free_;
+  FreeStages free_;
   // Velocities at the start of a step, coordinates at its end and their joints: kept, for no heap in a step.
   VecX<double> v_before_, q_end_;
   Workspace<double> ahead_;

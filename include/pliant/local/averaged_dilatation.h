@@ -21,22 +21,22 @@ class AveragedLinearSolid final : public NodalEnergy {
   AveragedLinearSolid(const Nodes& rest, const Eigen::MatrixXi& elements, const Elasticity& material);
 
   Of of() const override { return Of::displacement; }
-  double energy(const VecX<double>& x) const override;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>&, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates&, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override {
     add_force(dx, f, buffer, pool);
   }
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
   /// That of the solid without averages, which is no less.
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
   static constexpr bool kNodal = N == 4;
   /// int of div d over the elements of a pack.
-  Pack spread(const VecX<double>& x, int pack) const;
+  Pack spread(const Coordinates& x, int pack) const;
   /// lambda theta of all patches. sums: room for corners_.buffer_size(1) numbers.
-  void pressures(const VecX<double>& x, double* sums, double* pressure, ThreadPool* pool) const;
+  void pressures(const Coordinates& x, double* sums, double* pressure, ThreadPool* pool) const;
   const Pack* gradients(int pack) const {
     return gradients_.data() + static_cast<std::ptrdiff_t>(pack) * 3 * N;
   }

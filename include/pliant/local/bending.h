@@ -29,14 +29,14 @@ class MidEdgeBending final : public NodalEnergy {
   Of of() const override { return Hinges::kOf; }
   /// phi of the edges in the order of shell_edges: kg m^2.
   VecX<double> own_inertia() const override { return own_inertia_; }
-  double energy(const VecX<double>& x) const override;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
-  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+  void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
   using Three = std::array<Pack, 3>;
@@ -73,13 +73,13 @@ class MidEdgeBending final : public NodalEnergy {
   Pack hinge_moment(int batch, const double* moments) const;
   void add_own_forces(VecX<double>& f, const double* moments) const;
   /// What the turns of angles at dx do to angles and moments.
-  void fill_changes(const VecX<double>& x, const VecX<double>& dx, double* angles, double* moments,
+  void fill_changes(const Coordinates& x, const Coordinates& dx, double* angles, double* moments,
                     ThreadPool* pool) const;
   /// What moments push on nodes at x and on the own coordinates.
-  void push(const VecX<double>& x, const double* moments, VecX<double>& f, double* corners,
+  void push(const Coordinates& x, const double* moments, VecX<double>& f, double* corners,
             ThreadPool* pool) const;
   template <class Visit>
-  void each_element(const VecX<double>& x, Visit&& visit) const;
+  void each_element(const Coordinates& x, Visit&& visit) const;
 
   Eigen::Index n_nodes_;
   Eigen::Matrix3Xi corners_;

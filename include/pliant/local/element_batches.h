@@ -55,7 +55,7 @@ class ElementBatches {
   std::size_t buffer_size() const { return nodes_.size() * static_cast<std::size_t>(kBatchSize); }
 
   /// The three coordinates of the corners of a batch, from local coordinates (nodes.h).
-  Corners corners(const VecX<double>& x, int batch) const {
+  Corners corners(const Coordinates& x, int batch) const {
     Corners c;
     const auto& at = nodes_[static_cast<std::size_t>(batch)];
     for (std::size_t k = 0; k < K; ++k)

@@ -9,6 +9,8 @@
 
 namespace pliant {
 
+/// whole: known to have four, so that sums over nodes stay in registers.
+template <bool whole = false>
 class FourNodes {
  public:
   FourNodes(Eigen::Index first, Eigen::Index n)
@@ -17,13 +19,15 @@ class FourNodes {
   Eigen::Index first() const { return first_; }
   /// Lanes beyond the last node are zero.
   [[gnu::always_inline]] Pack load(const double* column) const {
-    if (count_ != Pack::kLanes) return load_some(column + first_);
+    if constexpr (!whole)
+      if (count_ != Pack::kLanes) return load_some(column + first_);
     Pack x;
     std::memcpy(x.vectors, column + first_, sizeof x.vectors);
     return x;
   }
   [[gnu::always_inline]] void store(double* column, const Pack& x) const {
-    if (count_ != Pack::kLanes) return store_some(column + first_, x);
+    if constexpr (!whole)
+      if (count_ != Pack::kLanes) return store_some(column + first_, x);
     std::memcpy(column + first_, x.vectors, sizeof x.vectors);
   }
   /// The same of three columns that stand one after the other.
@@ -46,10 +50,12 @@ class FourNodes {
   int count_;
 };
 
-/// act(four) for all of n nodes.
+/// act(four) for all of n nodes; four is of one or the other type.
 template <class F>
 void for_each_four(Eigen::Index n, F&& act) {
-  for (Eigen::Index first = 0; first < n; first += Pack::kLanes) act(FourNodes(first, n));
+  Eigen::Index first = 0;
+  for (; first + Pack::kLanes <= n; first += Pack::kLanes) act(FourNodes<true>(first, n));
+  if (first < n) act(FourNodes<>(first, n));
 }
 
 }  // namespace pliant

@@ -35,12 +35,13 @@ class LoadedMembrane final : public NodalEnergy {
   LoadedMembrane(const ShellMesh& mesh, const Load& load);
 
   Of of() const override { return Of::displacement; }
-  double energy(const VecX<double>& x) const override;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  bool isotropic() const override { return true; }
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
   struct Triangle {

@@ -17,14 +17,14 @@ class Membrane final : public NodalEnergy {
 
   Of of() const override { return Of::position; }
   /// Not finite where a triangle of a neo-Hookean membrane has lost its area.
-  double energy(const VecX<double>& x) const override;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
-  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+  void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
   struct Batch {
@@ -37,7 +37,7 @@ class Membrane final : public NodalEnergy {
   };
   const Batch& batch(int b) const { return triangles_[static_cast<std::size_t>(b)]; }
   template <class Visit>
-  void each_element(const VecX<double>& x, Visit&& visit) const;
+  void each_element(const Coordinates& x, Visit&& visit) const;
 
   ElementBatches<3> batches_;
   std::vector<Batch> triangles_;

@@ -8,6 +8,8 @@
 
 #include <array>
 
+#include <Eigen/Geometry>
+
 #include <pliant/local/edge_strain.h>
 
 namespace pliant {

@@ -25,32 +25,35 @@ class NodalEnergy {
 
   virtual ~NodalEnergy() = default;
   virtual Of of() const = 0;
+  /// Whether displacements of every direction are alike to it, so that it does not mind how the shape under d
+  /// is turned.
+  virtual bool isotropic() const { return false; }
   /// Inertia of the coordinates that the energy has of its own; they follow those of the nodes. Most have
   /// none.
   virtual VecX<double> own_inertia() const { return {}; }
 
   /// J.
-  virtual double energy(const VecX<double>& x) const = 0;
+  virtual double energy(const Coordinates& x) const = 0;
   /// f -= dE/dx, N. pool: may be nullptr.
-  virtual void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const = 0;
+  virtual void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const = 0;
   /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
-  virtual void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  virtual void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
   /// f -= what beta = 1 s of Kelvin and Voigt's damping pushes while x moves at x_dot: viscous stresses in
   /// proportion to the rate of strain, which rigid motion does not make, and which never give power. K x_dot
   /// of what is quadratic in d, and about rest of the others.
-  virtual void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f,
+  virtual void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f,
                                  Buffer& buffer, ThreadPool* pool) const {
     add_derivative(x, x_dot, f, buffer, pool);
   }
   /// Adds the entries of K(x), but for w w^T with w = rank_one(x), which ties every coordinate to every
   /// other.
-  virtual void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
+  virtual void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
   /// Empty where add_stiffness leaves nothing out.
-  virtual VecX<double> rank_one(const VecX<double>& /*x*/) const { return {}; }
+  virtual VecX<double> rank_one(const Coordinates& /*x*/) const { return {}; }
   /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over
   /// all coordinates.
-  virtual double frequency_bound(const VecX<double>& x, const VecX<double>& M) const = 0;
+  virtual double frequency_bound(const Coordinates& x, const VecX<double>& M) const = 0;
 };
 
 }  // namespace pliant

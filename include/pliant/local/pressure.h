@@ -13,19 +13,19 @@ namespace pliant {
 class Pressure : public NodalEnergy {
  public:
   Of of() const final { return Of::position; }
-  double energy(const VecX<double>& x) const final;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const final;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  double energy(const Coordinates& x) const final;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const final;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const final;
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const final;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const final;
   /// A pressure damps nothing.
-  void add_viscous_force(const VecX<double>&, const VecX<double>&, VecX<double>&, Buffer&,
+  void add_viscous_force(const Coordinates&, const Coordinates&, VecX<double>&, Buffer&,
                          ThreadPool*) const final {}
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const final;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const final;
 
   /// w = sqrt(E'') dV/dx. Nothing but zeros at constant pressure.
-  VecX<double> rank_one(const VecX<double>& x) const final;
-  double volume(const VecX<double>& x) const;
+  VecX<double> rank_one(const Coordinates& x) const final;
+  double volume(const Coordinates& x) const;
 
  protected:
   struct Law {
@@ -38,9 +38,9 @@ class Pressure : public NodalEnergy {
   virtual Law law(double V) const = 0;
   template <class F>
   double sum(double* parts, ThreadPool* pool, F&& f) const;
-  double volume(const VecX<double>& x, double* parts, ThreadPool* pool) const;
+  double volume(const Coordinates& x, double* parts, ThreadPool* pool) const;
   template <class Visit>
-  void each_element(const VecX<double>& x, Visit&& visit) const;
+  void each_element(const Coordinates& x, Visit&& visit) const;
 
   ElementBatches<3> batches_;
   Eigen::Matrix4Xi edges_;  ///< a, b, c opposite on the left, d on the right

@@ -28,19 +28,19 @@ class SolidEnergy final : public NodalEnergy {
   SolidEnergy(const Nodes& rest, const Eigen::MatrixXi& elements, const Law& law);
 
   Of of() const override { return Law::of; }
-  double energy(const VecX<double>& x) const override;
-  void add_force(const VecX<double>& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
-  void add_derivative(const VecX<double>& x, const VecX<double>& dx, VecX<double>& f, Buffer& buffer,
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                       ThreadPool* pool) const override;
-  void add_viscous_force(const VecX<double>& x, const VecX<double>& x_dot, VecX<double>& f, Buffer& buffer,
+  void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
                          ThreadPool* pool) const override;
-  void add_stiffness(const VecX<double>& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  double frequency_bound(const VecX<double>& x, const VecX<double>& M) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
   const Law& law() const { return law_; }
   int n_elements() const { return corners_.n_elements(); }
   /// K of one element, corner by corner: row 3 a + i is direction i of corner a.
-  Eigen::Matrix<double, 3 * N, 3 * N> element_stiffness(const VecX<double>& x, int element) const;
+  Eigen::Matrix<double, 3 * N, 3 * N> element_stiffness(const Coordinates& x, int element) const;
   /// The volume of an element by its rule, m^3.
   double volume(int element) const;
 

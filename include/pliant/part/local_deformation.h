@@ -10,6 +10,7 @@
 #include <bitset>
 #include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -86,19 +87,24 @@ class LocalResponse {
 struct LocalWorkspace {
   virtual ~LocalWorkspace() = default;
 
-  VecX<double> d, d_dot;  ///< local coordinates and their rates
-  MatX<double> H0;        ///< M over (c, theta, q_s) at d = 0
-  Vec3<double> moment;    ///< sum m p
+  /// Local coordinates and their rates, which stand in (q, v) of the evaluation.
+  Eigen::Map<const VecX<double>> d{nullptr, 0}, d_dot{nullptr, 0};
+  MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
+  Vec3<double> moment;  ///< sum m p
   /// Of (c, theta, q_s), those that move nothing right now; they have no acceleration.
   std::bitset<kMaxVelocities> held;
   double damping = 0, drag = 0;  ///< powers of the local damping, and of the drag, W
   VecX<double> force;            ///< on the local coordinates
-  VecX<double> d_ddot;
-  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+  VecX<double> a_free;           ///< (a_r, d_ddot at the shared points) without joints and limits
   /// M^-1 as joints see it, see compliance(), and its inverse where no points hold each other.
   MatX<double> A, A_inverse;
   const LocalResponse* response = nullptr;  ///< if there is one, it tells A
 
+  /// n local coordinates and their rates, which must stay where they are as long as the workspace is used.
+  void place(const double* q_d, const double* q_d_dot, Eigen::Index n) {
+    new (&d) Eigen::Map<const VecX<double>>(q_d, n);
+    new (&d_dot) Eigen::Map<const VecX<double>>(q_d_dot, n);
+  }
   /// Of what tells (c, theta, q_s) and d apart; 1 at best.
   virtual double condition() const { return 1; }
   /// Takes A, whose rows depend on each other where points lie close together, and its inverse.
@@ -157,7 +163,7 @@ class LocalDeformation {
   virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, stage after stage, body frame. v_r = (R^T c_dot, omega, q_s_dot). Each takes a workspace
-  // that workspace() made; d and d_dot are the caller's to set.
+  // that workspace() made, in which place() has set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
   virtual void positions(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r,
@@ -169,8 +175,9 @@ class LocalDeformation {
                       ThreadPool* pool) const = 0;
   /// Adds a force on a material point; what it does to (c, theta, q_s) is told apart.
   virtual void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const = 0;
-  /// f_r: what acts on (c, theta, q_s) beside the forces above; becomes a_r. Fills d_ddot.
-  virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work) const = 0;
+  /// f_r: what acts on (c, theta, q_s) beside the forces above; becomes a_r. Fills d_ddot, as long as d.
+  virtual void accelerations(VecX<double>& f_r, LocalWorkspace& work,
+                             Eigen::Ref<VecX<double>> d_ddot) const = 0;
   /// A = M^-1 as the joints of a part see it: what pushes g on (v_r, the points) do to (v_r, d_dot at the
   /// points).
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;

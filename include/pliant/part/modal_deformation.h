@@ -67,7 +67,7 @@ class ModalDeformation final : public LocalDeformation {
   void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
               ThreadPool* pool) const override;
   void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const override;
-  void accelerations(VecX<double>& f_r, LocalWorkspace& work) const override;
+  void accelerations(VecX<double>& f_r, LocalWorkspace& work, Eigen::Ref<VecX<double>> d_ddot) const override;
   Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const override;
   LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
   Bound stiffness_bound(const LocalWorkspace& work) const override;

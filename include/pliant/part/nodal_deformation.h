@@ -9,6 +9,7 @@
 // with G = [I, -[p]x, J], p = s + d, and W = m G at d = 0. No matrix of mesh size is formed.
 #pragma once
 
+#include <variant>
 #include <vector>
 
 #include <Eigen/LU>
@@ -28,10 +29,11 @@ struct NodalWorkspace final : LocalWorkspace {
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // mass
-  VecMax<double> unmet;                        ///< W^T d, which is to be zero
-  VecMax<double> scale;                        ///< of K: the diagonal of H0 becomes 1
-  Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale K scale
-  VecMax<double> rates;                        ///< 2 Wdot^T d_dot + Wddot^T d
+  VecMax<double> unmet;  ///< W^T d, which is to be zero
+  VecMax<double> scale;  ///< of K: the diagonal of H0 becomes 1
+  /// Of scale K scale; of rigid motion alone, the size is fixed.
+  std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
+  VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // forces, N
   VecX<double> x_dot;     ///< rates of x in the body frame, where they damp
   VecX<double> f, f_d;    ///< of energies of positions; of those of d, which act on d alone
@@ -50,13 +52,13 @@ struct NodalWorkspace final : LocalWorkspace {
   template <class B>
   auto solve(const B& b) const {
     Solution<B> y = scale.asDiagonal() * b;
-    y = factor.solve(y).eval();
+    std::visit([&](const auto& lu) { y = lu.solve(y).eval(); }, factor);
     return Solution<B>(scale.asDiagonal() * y);
   }
   template <class B>
   auto solve_transposed(const B& b) const {
     Solution<B> y = scale.asDiagonal() * b;
-    y = factor.transpose().solve(y).eval();
+    std::visit([&](const auto& lu) { y = lu.transpose().solve(y).eval(); }, factor);
     return Solution<B>(scale.asDiagonal() * y);
   }
 
@@ -97,7 +99,7 @@ class NodalDeformation final : public LocalDeformation {
   void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
               ThreadPool* pool) const override;
   void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const override;
-  void accelerations(VecX<double>& f_r, LocalWorkspace& work) const override;
+  void accelerations(VecX<double>& f_r, LocalWorkspace& work, Eigen::Ref<VecX<double>> d_ddot) const override;
   Eigen::Matrix<double, 6, 6> rigid_inertia(const LocalWorkspace& work) const override;
   LocalMotion motion(const VecX<double>& v_r, const LocalWorkspace& work) const override;
   Bound stiffness_bound(const LocalWorkspace& work) const override;
@@ -109,6 +111,12 @@ class NodalDeformation final : public LocalDeformation {
   static const NodalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const NodalWorkspace&>(work);
   }
+  /// What reference conditions of rigid motion miss.
+  struct Unmet {
+    Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
+  };
+  Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
+              const LocalWorkspace& work) const;
   /// sum W^T a over nodes.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
   /// to = from + sign G v_r of all nodes, which stand in both as in local coordinates; both may be one.
