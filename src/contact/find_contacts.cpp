@@ -239,7 +239,7 @@ bool ContactFinder::are_apart(int a, int b, double most) const {
 /// Contacts of a pair, each point once though both surfaces are searched.
 void ContactFinder::find_between(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
-  if (are_apart(a, b, most)) return;
+  if (are_apart(a, b, most) || find_deep(a, b, rule, found)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();
   theirs.clear();

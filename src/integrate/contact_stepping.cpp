@@ -55,6 +55,12 @@ void ContactStepping::undo_step() {
   std::swap(record_, record_before_);
 }
 
+std::vector<Contact> ContactStepping::overlaps(const State& state, double t) const {
+  std::vector<Contact> found = finder_.find(state, t, 0);
+  meshes_.find(state, t, found);
+  return found;
+}
+
 bool ContactStepping::any_lasts() const {
   return std::any_of(record_.contacts.begin(), record_.contacts.end(),
                      [](const Contact& contact) { return contact.since > 0; });

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <pliant/integrate/stable_step.h>
+#include <pliant/io/contact_notes.h>
 #include <pliant/io/joint_notes.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/ply.h>
@@ -13,6 +14,7 @@
 #include <pliant/io/skipped.h>
 #include <pliant/io/trajectory.h>
 #include <pliant/io/whole_file.h>
+#include <pliant/part/surface_turn.h>
 
 namespace pliant {
 namespace {
@@ -117,6 +119,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
          count_text(assembly.iterations, "iteration") +
          (assembly.settled ? "" : ", the most that are taken; the shapes have not settled"));
   note_redundancy();
+  for (const std::string& text : overlap_notes(*simulation_)) note(text);
   write_layout(folder_->path(), simulation_->model(), schedule_,
                TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
   for (const char* file :
@@ -238,6 +241,24 @@ void Run::note_holds() {
   told_holds_ = simulation_->hold_impulses().size();
 }
 
+/// Tells of each part once whose parameters turn it so far that elasticity linear in d is no longer what it
+/// was at rest.
+void Run::note_turns() {
+  for (const PartModel& m : simulation_->model().parts()) {
+    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || told_turned_.count(m.part->name()) > 0) continue;
+    const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
+    if (!(turn > kMostLinearTurn)) continue;
+    told_turned_.insert(m.part->name());
+    note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
+         m.part->name() + "' turn some of its surface by " + rounded_text(turn) +
+         " rad; local elasticity that is linear in the displacements means something else there than at "
+         "rest beyond " +
+         rounded_text(kMostLinearTurn) +
+         " rad; laws of the whole map (neo_hookean, st_venant_kirchhoff, corotated and the membranes of "
+         "these names) bear any turn");
+  }
+}
+
 void Run::record_state() {
   if (simulation_->time() == recorded_time_) return;
   recorded_time_ = simulation_->time();
@@ -247,8 +268,10 @@ void Run::record_state() {
   const Gaps gaps = widest_gaps(*simulation_);
   record_.max_gap = std::max(record_.max_gap, gaps.closed);
   record_.open_gap = gaps.open;
+  record_.max_depth = std::max(record_.max_depth, deepest_share(*simulation_));
   note_redundancy();
   note_holds();
+  note_turns();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);

@@ -114,6 +114,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"max_kinetic", r.max_kinetic},
                       {"max_gap", r.max_gap},
                       {"open_gap", r.open_gap},
+                      {"max_depth", r.max_depth},
                       {"asleep", r.asleep},
                       {"max_contact_residual", r.step_counters.contact_residual},
                       {"largest_stable_step", bound(r.stable_step)}};
@@ -200,6 +201,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     monitors.at("max_kinetic").get_to(r.max_kinetic);
     monitors.at("max_gap").get_to(r.max_gap);
     monitors.at("open_gap").get_to(r.open_gap);
+    r.max_depth = monitors.value("max_depth", 0.0);  // older runs had none of these
     r.asleep = monitors.value("asleep", 0);
     r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
     if (!monitors.at("largest_stable_step").is_null())

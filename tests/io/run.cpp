@@ -16,6 +16,7 @@
 
 #include <pliant/body/joints/rod.h>
 #include <pliant/io/run_files.h>
+#include <pliant/part/local_laws.h>
 
 namespace run_test {
 
@@ -420,6 +421,33 @@ TEST_CASE("run.json tells what was done and what was not needed") {
   CHECK(record.stable_step == Approx(0.5 / std::sqrt(5.01)));  // nothing stiff: half a radian of its spin
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
+}
+
+TEST_CASE("run.json tells once which part is turned too far for elasticity that is linear in d") {
+  const NewFolder folder;
+  auto notes = [&](const char* name, const char* law, double twist) {
+    const auto scene = free_top();
+    scene->end = 0.01;
+    scene->appearance.emplace_back();
+    Part& tube = scene->body.add(make_part("tube", "cylinder", {"twist"}, 1));
+    tube.make_shell().initial({{"twist.angle", twist}}).stiffness({{"twist.angle", 1}});
+    LocalSettings settings;
+    settings.resolution = 2;
+    if (std::string(law) == "loaded_membrane")
+      settings.energies = {local_law(law, {1, 1})};
+    else
+      settings.energies = {local_law(law, {1e3, 0.3, 0.01})};
+    tube.deform_locally(settings);
+    REQUIRE(run(*scene, folder / name));
+    const RunRecord record = read_run_record(folder / name / kRunFile);
+    return std::count_if(record.notes.begin(), record.notes.end(), [](const std::string& note) {
+      return note.find("the parameters of part 'tube' turn some of its surface by") != std::string::npos;
+    });
+  };
+  CHECK(notes("far", "membrane", 0.8) == 1);
+  CHECK(notes("near", "membrane", 0.2) == 0);
+  CHECK(notes("whole", "neo_hookean_membrane", 0.8) == 0);
+  CHECK(notes("alike", "loaded_membrane", 0.8) == 0);
 }
 
 TEST_CASE("run.json tells once which rows of joints follow from others, and what stays open") {

@@ -53,6 +53,9 @@ class ContactFinder {
                         std::vector<Contact>& found) const;
   bool are_apart(int a, int b, double most) const;
   void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
+  Vec3<double> farthest(int part, const Vec3<double>& direction) const;
+  /// The way out of bodies that hold each other's centres; whether they do.
+  bool find_deep(int a, int b, const ContactRule& rule, std::vector<Contact>& found) const;
   /// Low points of a over b.
   void find_on_part(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
 

@@ -37,6 +37,8 @@ class ContactStepping {
   const StageTimes& times() const { return times_; }
 
   const ContactFinder& finder() const { return finder_; }
+  /// All contacts whose sides are in each other at a state and a time, s.
+  std::vector<Contact> overlaps(const State& state, double t) const;
   /// Whether some of what touched in the last step did so for a time, or was not met at its time.
   bool any_lasts() const;
   /// Of the last whole step; empty where nothing touched.

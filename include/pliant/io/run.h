@@ -81,6 +81,7 @@ class Run {
   void note(const std::string& text);
   void note_redundancy();
   void note_holds();
+  void note_turns();
 
   Scene* scene_;
   RunOptions options_;
@@ -91,9 +92,9 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;   // of the last recorded state
-  std::size_t told_holds_ = 0;  ///< of the impulses of joints that took hold
-  std::set<std::string> told_redundant_;
+  double recorded_time_ = -1;                           // of the last recorded state
+  std::size_t told_holds_ = 0;                          ///< of the impulses of joints that took hold
+  std::set<std::string> told_redundant_, told_turned_;  // texts; names of parts
   std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
   StepCounters counted_steps_;     // of the sessions before
   Counters counted_work_;

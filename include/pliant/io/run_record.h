@@ -57,6 +57,7 @@ struct RunRecord {
   double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
   double max_kinetic = 0;                                        ///< J
   double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
+  double max_depth = 0;                ///< of contacts at a recorded state, in sizes of the smaller part
   double open_gap = 0;                 ///< m, widest of the joints that have yet to close at the last state
   int asleep = 0;                      ///< parts that sleep in the last state
   std::optional<ErrorEstimate> error;  ///< where it was asked for
