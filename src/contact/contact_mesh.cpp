@@ -10,6 +10,10 @@ namespace pliant {
 namespace {
 /// Edges along a quarter of a great circle, of the mesh over a part that has none of its own.
 constexpr int kMeshResolution = 6;
+/// The same of few points that tell how far such a part reaches and how fast it changes, and by how much the
+/// others may go beyond them.
+constexpr int kFewEdges = 2;
+constexpr double kBeyondFew = 1.1;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
@@ -46,7 +50,10 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     material_ = surface.material();
     triangles_ = surface.triangles();
     p = m.part->s(material_, m.part->parameters().rest());
-    if (m.n_s == 0 || m.q0 < 0) rigid_ = p;
+    if (m.n_s == 0 || m.q0 < 0)
+      rigid_ = p;
+    else
+      few_ = Surface(*m.part, kFewEdges).material();
   }
   edges_ = mesh_edges(triangles_);
   thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
@@ -65,6 +72,12 @@ Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, 
   return p;
 }
 
+double ContactMesh::reach(const Model& model, const State& state, int number) const {
+  if (!few_.empty())
+    return kBeyondFew * part_->part->s(few_, model.values(state, number)).colwise().norm().maxCoeff();
+  return positions(model, state, number).colwise().norm().maxCoeff();
+}
+
 double ContactMesh::speed(const State& state) const {
   if (part_->q0 < 0) return 0;
   const PartModel& m = *part_;
@@ -76,12 +89,13 @@ double ContactMesh::speed(const State& state) const {
       q_s[k].v = state.q[m.q0 + 7 + k];
       q_s[k].d[0] = state.v[m.v0 + 6 + k];
     }
-    speed = m.part
-                ->s_along(m.local != nullptr ? m.local->mesh().nodes : material_,
-                          m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
-                .colwise()
-                .norm()
-                .maxCoeff();
+    speed =
+        (few_.empty() ? 1 : kBeyondFew) * m.part
+                                              ->s_along(m.local != nullptr ? m.local->mesh().nodes : few_,
+                                                        m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
+                                              .colwise()
+                                              .norm()
+                                              .maxCoeff();
   }
   if (m.local != nullptr)
     speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();

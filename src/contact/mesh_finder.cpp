@@ -85,14 +85,27 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
 }
 
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
+  // Meshes are placed when they are first asked for; balls about them tell which pairs need none.
+  struct Around {
+    Vec3<double> c;
+    double reach;
+  };
+  std::map<int, Around> balls;
+  for (const auto& [part, mesh] : meshes_)
+    balls.emplace(part, Around{model_->position(state, part, t), mesh.reach(*model_, state, part)});
   std::map<int, PlacedMesh> placed;
-  for (const auto& entry : meshes_) placed.emplace(entry.first, place(state, t, entry.first));
+  auto mesh_of = [&](int part) -> const PlacedMesh& {
+    const auto known = placed.find(part);
+    return known != placed.end() ? known->second : placed.emplace(part, place(state, t, part)).first->second;
+  };
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
     if (!plane.acts_at(t) || (sleeps(state, on.part) && plane.point.is_constant())) continue;
-    const PlacedMesh& m = placed.at(on.part);
     const Vec3<Taylor2<double>> moving = plane.point.at(t);
     const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v);
+    const Around& ball = balls.at(on.part);
+    if (plane.normal.dot(ball.c - point) > ball.reach) continue;
+    const PlacedMesh& m = mesh_of(on.part);
     const VecX<double> height = (m.x.colwise() - point).transpose() * plane.normal;
     for (int k = 0; k < height.size(); ++k) {
       if (!(height[k] < 0)) continue;
@@ -112,7 +125,9 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   for (const OnObstacle& on : on_obstacles_) {
     if (!model_->body().contact.obstacles[on.obstacle].acts_at(t) || sleeps(state, on.part)) continue;
     touches.clear();
-    const PlacedMesh& m = placed.at(on.part);
+    const Around& ball = balls.at(on.part);
+    if (!on.mesh->comes_near(ball.c, ball.reach)) continue;
+    const PlacedMesh& m = mesh_of(on.part);
     find_touches(m, *on.mesh, kDeepest * m.mesh->thickness(), touches);
     for (const MeshTouch& touch : touches) {
       Contact contact;
@@ -129,7 +144,9 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   for (const Pair& pair : pairs_) {
     if (model_->lies_still(state, pair.a) && model_->lies_still(state, pair.b)) continue;
     touches.clear();
-    const PlacedMesh &a = placed.at(pair.a), &b = placed.at(pair.b);
+    const Around &ball_a = balls.at(pair.a), &ball_b = balls.at(pair.b);
+    if ((ball_a.c - ball_b.c).norm() > ball_a.reach + ball_b.reach) continue;
+    const PlacedMesh &a = mesh_of(pair.a), &b = mesh_of(pair.b);
     find_touches(a, b, touches);
     for (const MeshTouch& touch : touches) {
       Contact contact;
@@ -154,8 +171,7 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
   std::map<int, Swept> all;
   for (const auto& [part, mesh] : meshes_) {
     const PartModel& m = model_->parts()[at(part)];
-    Swept swept{model_->position(state, part, t), 0,
-                mesh.positions(*model_, state, part).colwise().norm().maxCoeff()};
+    Swept swept{model_->position(state, part, t), 0, mesh.reach(*model_, state, part)};
     if (m.q0 >= 0) {
       const auto v = state.v.segment(m.v0, m.n_v());
       swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(state);

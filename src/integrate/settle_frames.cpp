@@ -18,6 +18,8 @@ namespace {
 /// Changes of the frame below this part of the size of the part are rounding.
 constexpr double kFrameRounding = 1e-15;
 constexpr int kMostFrameIterations = 8;
+/// K that differs from H by less than this share of its least diagonal entry is as regular.
+constexpr double kSmallChange = 0.3;
 /// Of K with H0 scaled to a unit diagonal (design 1.3).
 constexpr double kWorstCondition = 1e8;
 
@@ -39,7 +41,9 @@ bool hold(const PartModel& m, const State& state, const PartWorkspace<double>& w
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  return small(unmet.of_d) && small(state.h * unmet.of_d_dot);
+  // K differs from H by no more than this.
+  const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
+  return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
 }
 
 void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& state, Workspace<double>& work) {
@@ -57,8 +61,9 @@ void settle_frame(const Dynamics& dynamics, double t, std::size_t i, State& stat
   if (!(condition <= kWorstCondition)) {
     std::ostringstream message;
     message << "the motion of the nodes of part '" << m.part->name()
-            << "' no longer tells its frame and global parameters apart (condition " << condition
-            << "); freeze some of the parameters";
+            << "' no longer tells its frame and global parameters apart (condition " << condition << "); "
+            << (m.n_s > 0 ? "freeze some of the parameters"
+                          : "they have come too near to a line, or are as far from the shape as it is large");
     throw NumericalFailure(message.str(), t);
   }
   if (m.local->nodal() == nullptr) return;

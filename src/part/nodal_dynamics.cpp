@@ -339,18 +339,20 @@ NodalDeformation::Unmet NodalDeformation::unmet(const Eigen::Ref<const Nodes>& d
                                                 const LocalWorkspace& work) const {
   const NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
-  VectorSum md, mv, s_md, s_mv;
+  VectorSum md, mv, s_mv;
+  OuterSum ds;
   for_each_four(n, [&](const auto& four) {
     const Pack m = four.load(inertia_.data());
     const Vec3<Pack> s = four.load(w.s.data(), n), m_d = times(m, four.load(d.data(), n)),
                      m_v = times(m, four.load(d_dot.data(), n));
     md.add(m_d);
     mv.add(m_v);
-    s_md.add(cross(s, m_d));
+    ds.add(m_d, s);
     s_mv.add(cross(s, m_v));
   });
   Unmet unmet;
-  unmet.of_d << md.total(), s_md.total();
+  unmet.d_s = ds.total();
+  unmet.of_d << md.total(), -axial(unmet.d_s);
   unmet.of_d_dot << mv.total(), s_mv.total();
   return unmet;
 }

@@ -3,6 +3,7 @@
 #include "catch.h"
 
 #include <complex>
+#include <string>
 
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/part/local_laws.h>
@@ -127,32 +128,54 @@ TEST_CASE("semi-implicit Euler with modes: first order", "[modal][motion][long]"
   CHECK(test::observed_order(errors) >= 0.9);
 }
 
-TEST_CASE("a force on a point moves the centre of mass by F / m and turns the body by its torque",
+TEST_CASE("a force on any node moves the centre of mass by F / m and turns the body by its torque",
           "[modal]") {
-  for (const bool parameters : {false, true}) {
-    MultiBody body;
-    Part& part = tumbling(body, Basis::polynomial, parameters);
-    const Vec3<double> force(1, -2, 0.5);
-    body.force("push", point(part, 0.4, 1.2), force);
-    part.move({0, 0, 0}, {0, 0, 0});
-    Simulation simulation(body, "rk4");
-    State state = simulation.state();
-    state.v.setZero();
-    Workspace<double> work;
-    const auto& local = *part.local();
-    const Oscillators& all = *local.oscillators();
-    state.q.tail(local.n_d()).setZero();
-    simulation.dynamics().accelerations(0, state.q, state.v, state, work);
-    // What elasticity of the parameters does is inside the body; momentum changes by the force alone.
-    LocalMotion rate = local.motion(work.parts[0].v_r, *work.parts[0].local);
-    work.parts[0].local->d_dot = work.v_dot.tail(local.n_d());
-    VecX<double> a = work.parts[0].a_r;
-    rate = local.motion(a, *work.parts[0].local);
-    const Vec3<double> f = work.parts[0].R.transpose() * force;
-    CHECK((rate.momentum - f).norm() <= 1e-12 * f.norm());
-    CHECK((rate.angular_momentum - work.parts[0].ports[0].p.cross(f)).norm() <= 1e-11 * f.norm());
-    CHECK(all.omega2.size() == local.n_d());
-  }
+  for (const Basis basis : {Basis::polynomial, Basis::modes})
+    for (const bool parameters : {false, true})
+      for (const bool moving : {false, true}) {
+        CAPTURE(basis == Basis::polynomial, parameters, moving);
+        MultiBody body;
+        Part& part = tumbling(body, basis, parameters);
+        part.prepare();
+        const std::vector<Material<double>> nodes = part.local()->mesh().nodes;
+        const Vec3<double> force(100, -200, 50);
+        int pushed = -1;
+        Vec3<double> place = Vec3<double>::Zero();
+        for (int k = 0; k < static_cast<int>(nodes.size()); ++k)
+          body.force("push" + std::to_string(k), point(part, nodes[static_cast<std::size_t>(k)]),
+                     [&, k](double, const Vec3<double>& x, const Vec3<double>&) -> Vec3<double> {
+                       if (k != pushed) return {0, 0, 0};
+                       place = x;
+                       return force;
+                     });
+        Simulation simulation(body, "rk4");
+        State state = simulation.state();
+        if (!moving) state.v.setZero();
+        const LocalDeformation& local = *part.local();
+        Workspace<double> work;
+        PartWorkspace<double>* w = nullptr;
+        auto accelerate = [&] {
+          simulation.dynamics().accelerations(0, state.q, state.v, state, work);
+          w = &work.parts[0];
+        };
+        accelerate();
+        const VecX<double> without = w->a_r, d_without = work.v_dot.tail(local.n_d());
+        if (!moving) {
+          w->local->place(state.q.data() + 7 + part.n_s(), d_without.data(), local.n_d());
+          const LocalMotion rate = local.motion(without, *w->local);
+          CHECK(rate.momentum.norm() <= 1e-12 * force.norm());
+          CHECK(rate.angular_momentum.norm() <= 1e-12 * force.norm());
+        }
+        for (pushed = 0; pushed < static_cast<int>(nodes.size()); ++pushed) {
+          accelerate();
+          const VecX<double> a_r = w->a_r - without, d_ddot = work.v_dot.tail(local.n_d()) - d_without;
+          w->local->place(state.q.data() + 7 + part.n_s(), d_ddot.data(), local.n_d());
+          const LocalMotion rate = local.motion(a_r, *w->local);
+          const Vec3<double> f = w->R.transpose() * force, p = w->R.transpose() * (place - w->c);
+          CHECK((rate.momentum - f).norm() <= 1e-12 * f.norm());
+          CHECK((rate.angular_momentum - p.cross(f)).norm() <= 1e-12 * f.norm());
+        }
+      }
 }
 
 TEST_CASE("dust of polynomials: every point of a spinning body without elasticity moves straight",
@@ -222,6 +245,71 @@ TEST_CASE("modes on a ball joint, a hinge and a loop: joints hold, and the order
       }
       CAPTURE(static_cast<int>(basis), loop, energy);
       CHECK(test::observed_order(energy) >= 3.7);
+    }
+}
+
+namespace {
+
+/// A part of a basis in free flight, or hung from a point of its surface; nodes are few, and swing slowly.
+void lay(MultiBody& body, Basis basis, bool hung) {
+  auto& part = body.add<Primitive<Ellipsoid>>("soft", 20);
+  part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})
+      .stiffness({{"a1", 200}})
+      .initial({{"a1", 0.52}})
+      .place({0, 0, -0.6})
+      .move({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
+  LocalSettings settings = soft(basis, 500);
+  if (basis == Basis::nodes) settings.resolution = 1;
+  if (hung) settings.displacement = nullptr;
+  part.deform_locally(settings);
+  if (hung)
+    body.ball("top", world(0, 0, 0), point(part, kPi / 2, 0));
+  else
+    body.gravity.setZero();
+}
+
+State end_of(Basis basis, bool hung, const std::string& method, int steps) {
+  MultiBody body;
+  lay(body, basis, hung);
+  Simulation simulation(body, method);
+  test::run(simulation, 0.2, steps);
+  return simulation.state();
+}
+
+struct Converging {
+  const char* method;
+  int steps;  ///< of the longest
+};
+
+}  // namespace
+
+TEST_CASE("what deforms locally comes to the same end by every method, at its order, free and on a joint",
+          "[modal][methods][joints][long]") {
+  for (const Basis basis : {Basis::nodes, Basis::polynomial, Basis::modes})
+    for (const bool hung : {false, true}) {
+      const State exact = end_of(basis, hung, "rk4", 8000);
+      std::vector<Converging> all{{"esdirk", 20}, {"implicit_midpoint", 40}};
+      if (basis == Basis::nodes || hung) {
+        all.push_back({"dop853", basis == Basis::modes ? 3 : 8});
+        all.push_back({"dormand_prince", basis == Basis::modes        ? 10
+                                         : basis == Basis::polynomial ? 160
+                                         : hung                       ? 80
+                                                                      : 40});
+      }
+      for (const Converging& way : all) {
+        CAPTURE(static_cast<int>(basis), hung, way.method);
+        std::vector<double> q, v;
+        for (int halving = 0; halving < 3; ++halving) {
+          const State at = end_of(basis, hung, way.method, way.steps << halving);
+          q.push_back((at.q - exact.q).norm());
+          v.push_back((at.v - exact.v).norm());
+        }
+        CAPTURE(q, v);
+        const int order = make_integrator(way.method)->order();
+        const double least = order >= 8 ? order - 0.5 : order - 0.1;
+        CHECK(test::observed_order(q) >= least);
+        CHECK(test::observed_order(v) >= least);
+      }
     }
 }
 

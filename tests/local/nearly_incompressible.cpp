@@ -119,6 +119,31 @@ TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion,
                     test::has_text("0.4999"));
 }
 
+TEMPLATE_TEST_CASE("averaged dilatation: a uniform strain stresses all elements alike", "[solid]",
+                   LinearTetrahedron, QuadraticTetrahedron, EnrichedTetrahedron) {
+  Mat3<double> A;
+  A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
+  const SolidMesh box = test::crooked_box(TestType::n_nodes);
+  for (const SolidMesh& mesh : {TestType::n_nodes == 15 ? test::without_bubbles(box) : box,
+                                sphere<TestType>(TestType::n_nodes == 4 ? 2 : 1)})
+    for (double nu : {0.3, 0.4999}) {
+      const Elasticity material(3, nu);
+      const AveragedLinearSolid<TestType> energy(mesh.rest, mesh.elements, material);
+      const LinearSolid<TestType> plain(mesh.rest, mesh.elements, LinearLaw(material));
+      const VecX<double> x = test::affine(mesh.rest, A, {1, 2, 3});
+      NodalEnergy::Buffer buffer;
+      VecX<double> f = VecX<double>::Zero(x.size()), f_plain = f;
+      energy.add_force(x, f, buffer, nullptr);
+      plain.add_force(x, f_plain, buffer, nullptr);
+      CHECK(test::largest_inside(f, mesh) <= 1e-14 * f.norm());
+      CHECK((f - f_plain).norm() <= 1e-13 * f.norm());
+      double volume = 0;
+      for (int e = 0; e < plain.n_elements(); ++e) volume += plain.volume(e);
+      const Mat3<double> stress = nodes(f, mesh.n()).transpose() * mesh.rest;
+      CHECK((stress + volume * plain.law().stress(A)).norm() <= 1e-13 * stress.norm());
+    }
+}
+
 TEST_CASE("N22: a sphere of linear elements locks, with averaged dilatation it does not", "[solid][long]") {
   CHECK(lamb_S2(0.3) == Approx(2.64622).margin(1e-5));
   CHECK(lamb_S2(0.49) == Approx(2.66483).margin(1e-5));

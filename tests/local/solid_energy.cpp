@@ -18,18 +18,15 @@ namespace solid_energy_test {
 
 using namespace pliant;
 using test::affine;
+using test::crooked_box;
 using test::Draws;
+using test::largest_inside;
 using test::SolidMesh;
 
 namespace {
 
 const Elasticity kRubber(3.0, 0.3);
 
-/// A bent and tapered box: 48 elements of every orientation, or 8 x 48.
-SolidMesh crooked(int n_nodes) {
-  return test::solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
-                          n_nodes == 4 ? 2 : 1, test::order_of(n_nodes), {"taper", "bend"});
-}
 SolidMesh ball(int n_nodes) {
   return test::solid_mesh("sphere", {}, n_nodes == 4 ? 2 : 1, test::order_of(n_nodes));
 }
@@ -41,8 +38,10 @@ struct Kind {
   static constexpr int N = Element::n_nodes;
   static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
   static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
-  /// A state with strains of some tenths.
-  static VecX<double> state(const SolidMesh& mesh, double size = 0.05) {
+  /// How far nodes are drawn about: by strains of some tenths, and no element inside out that does not bear
+  /// it.
+  static constexpr double kSize = N == 15 && std::is_same_v<Law, Corotated> ? 0.01 : 0.05;
+  static VecX<double> state(const SolidMesh& mesh, double size = kSize) {
     Draws draws(3);
     VecX<double> x = affine(mesh.rest, linear ? Mat3<double>::Zero().eval() : Mat3<double>::Identity().eval(),
                             Vec3<double>::Zero());
@@ -85,11 +84,11 @@ template <class F>
 auto difference(F&& f, double h) -> decltype(f(h)) {
   return ((8 * (f(h) - f(-h)) - (f(2 * h) - f(-2 * h))) / (12 * h));
 }
-std::vector<bool> inside(const SolidMesh& mesh) {
-  std::vector<bool> is(static_cast<std::size_t>(mesh.n()), true);
-  for (Eigen::Index i = 0; i < mesh.boundary.size(); ++i)
-    is[static_cast<std::size_t>(mesh.boundary(i))] = false;
-  return is;
+/// A uniform strain of some tenths.
+Mat3<double> uniform_strain() {
+  Mat3<double> A;
+  A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
+  return A;
 }
 double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();
@@ -104,11 +103,12 @@ double largest_frequency(const MatX<double>& K, const VecX<double>& M) {
       (Kind<LinearTetrahedron, NeoHookean>), (Kind<LinearTetrahedron, Corotated>),              \
       (Kind<QuadraticTetrahedron, LinearLaw>), (Kind<QuadraticTetrahedron, StVenantKirchhoff>), \
       (Kind<QuadraticTetrahedron, NeoHookean>), (Kind<QuadraticTetrahedron, Corotated>),        \
-      (Kind<EnrichedTetrahedron, LinearLaw>), (Kind<EnrichedTetrahedron, NeoHookean>)
+      (Kind<EnrichedTetrahedron, LinearLaw>), (Kind<EnrichedTetrahedron, StVenantKirchhoff>),   \
+      (Kind<EnrichedTetrahedron, NeoHookean>), (Kind<EnrichedTetrahedron, Corotated>)
 
 TEMPLATE_TEST_CASE("forces are gradients of the energy, derivatives those of the forces", "[solid]",
                    PLIANT_ALL_KINDS) {
-  const SolidMesh mesh = crooked(TestType::N);
+  const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
   const VecX<double> f = force(energy, x), df = derivative(energy, x, dx);
@@ -121,7 +121,7 @@ TEMPLATE_TEST_CASE("forces are gradients of the energy, derivatives those of the
 }
 
 TEMPLATE_TEST_CASE("the assembled stiffness is the derivative, and symmetric", "[solid]", PLIANT_ALL_KINDS) {
-  const SolidMesh mesh = crooked(TestType::N);
+  const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const VecX<double> x = TestType::state(mesh), dx = TestType::direction(mesh);
   const MatX<double> K = stiffness(energy, x);
@@ -131,7 +131,7 @@ TEMPLATE_TEST_CASE("the assembled stiffness is the derivative, and symmetric", "
 }
 
 TEMPLATE_TEST_CASE("at rest every law is that of linear elasticity", "[solid]", PLIANT_ALL_KINDS) {
-  const SolidMesh mesh = crooked(TestType::N);
+  const SolidMesh mesh = crooked_box(TestType::N);
   using Linear = Kind<typename TestType::Shape, LinearLaw>;
   const VecX<double> rest = TestType::state(mesh, 0);
   const MatX<double> K = stiffness(TestType::make(mesh), rest);
@@ -141,19 +141,14 @@ TEMPLATE_TEST_CASE("at rest every law is that of linear elasticity", "[solid]", 
 }
 
 TEMPLATE_TEST_CASE("a uniform strain stresses all elements alike", "[solid]", PLIANT_ALL_KINDS) {
-  Mat3<double> A;
-  A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
+  Mat3<double> A = uniform_strain();
   if (!TestType::linear) A += Mat3<double>::Identity();
-  for (const SolidMesh& mesh : {crooked(TestType::N), ball(TestType::N)}) {
+  const SolidMesh box = crooked_box(TestType::N);
+  for (const SolidMesh& mesh : {TestType::N == 15 ? test::without_bubbles(box) : box, ball(TestType::N)}) {
     const auto energy = TestType::make(mesh);
     const VecX<double> x = affine(mesh.rest, A, {0.3, -0.2, 0.1});
     const VecX<double> f = force(energy, x);
-    const std::vector<bool> is_inside = inside(mesh);
-    test::Worst unbalanced;
-    for (int i = 0; i < mesh.n(); ++i)
-      if (is_inside[static_cast<std::size_t>(i)]) unbalanced.note(nodes(f, mesh.n()).row(i).norm());
-    // The rule of enriched elements is exact where the boundary is no more than quadratic.
-    CHECK(unbalanced <= (TestType::N == 15 ? 1e-5 : 1e-14) * f.norm());
+    CHECK(largest_inside(f, mesh) <= 1e-14 * f.norm());
     double volume = 0;
     for (int e = 0; e < energy.n_elements(); ++e) volume += energy.volume(e);
     CHECK(energy.energy(x) == Approx(volume * energy.law().density(A)).epsilon(1e-13));
@@ -163,8 +158,36 @@ TEMPLATE_TEST_CASE("a uniform strain stresses all elements alike", "[solid]", PL
   }
 }
 
+TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding, but where the rest shape is deformed",
+          "[solid]") {
+  // A node in balance is an integral of degree 3 over elements whose places are quadratic, which the rule of
+  // degree 5 has exactly; a bubble of the boundary adds nothing, by the symmetry of the rule. Solid places
+  // the nodes of faces and middles inside without bubbles in the shape; taper and bend make bubbles of them,
+  // and degree 7 of the integral.
+  auto unbalanced = [](const SolidMesh& mesh) {
+    using Linear = Kind<EnrichedTetrahedron, LinearLaw>;
+    const VecX<double> f = force(Linear::make(mesh), affine(mesh.rest, uniform_strain(), {0, 0, 0}));
+    return largest_inside(f, mesh) / f.norm();
+  };
+  auto box = [](int resolution, bool deformed) {
+    return deformed
+               ? test::solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
+                                  resolution, Solid::Order::enriched, {"taper", "bend"})
+               : test::solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}}, resolution, Solid::Order::enriched);
+  };
+  CHECK(unbalanced(box(2, false)) <= 1e-14);
+  const double coarse = unbalanced(box(1, true)), middle = unbalanced(box(2, true)),
+               fine = unbalanced(box(4, true));
+  INFO(coarse << ", " << middle << ", " << fine);
+  CHECK(coarse <= 3.2e-6);
+  CHECK(middle <= 1.9e-7);
+  CHECK(fine <= 1.5e-8);
+  CHECK(std::log2(coarse / middle) >= 3.5);
+  CHECK(std::log2(middle / fine) >= 3.5);
+}
+
 TEMPLATE_TEST_CASE("rigid motion strains nothing", "[solid]", PLIANT_ALL_KINDS) {
-  const SolidMesh mesh = crooked(TestType::N);
+  const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const double scale = stiffness(energy, TestType::state(mesh, 0)).norm();
   const Mat3<double> turn =
@@ -199,7 +222,7 @@ TEMPLATE_TEST_CASE("the same bits for any number of threads", "[solid]", PLIANT_
 }
 
 TEMPLATE_TEST_CASE("the bound of frequencies holds, and is not far away", "[solid]", PLIANT_ALL_KINDS) {
-  for (const SolidMesh& mesh : {crooked(TestType::N), ball(TestType::N)}) {
+  for (const SolidMesh& mesh : {crooked_box(TestType::N), ball(TestType::N)}) {
     const auto energy = TestType::make(mesh);
     const VecX<double> M = lumped_mass(mesh.rest, mesh.elements, 2.5).replicate(3, 1);
     for (double size : {0.0, 0.03}) {

@@ -1,13 +1,17 @@
 // Meshes of solid parts as the energies of tetrahedra take them.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <pliant/local/nodes.h>
+#include <pliant/local/tetrahedron.h>
 #include <pliant/part/registry.h>
 #include <pliant/part/solid.h>
+
+#include "worst.h"
 
 namespace pliant::test {
 
@@ -31,6 +35,49 @@ inline SolidMesh solid_mesh(const std::string& shape, const Part::Named& values,
   const Solid solid(*part, resolution, order);
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements(),
           solid.boundary()};
+}
+
+/// A bent and tapered box: 48 elements of every orientation, or with 4 nodes 8 x 48.
+inline SolidMesh crooked_box(int n_nodes) {
+  return solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
+                    n_nodes == 4 ? 2 : 1, order_of(n_nodes), {"taper", "bend"});
+}
+
+/// The nodes of faces and middles where the quadratic function of the other nodes has them, so that elements
+/// of 15 nodes have the places of those of 10.
+inline SolidMesh without_bubbles(SolidMesh mesh) {
+  std::array<Vec3<double>, EnrichedTetrahedron::n_nodes> X;
+  std::array<Vec3<double>, 5> size;  // of the bubbles of faces and middle
+  auto measure = [&] {
+    for (int r = 0; r < 3; ++r) {
+      double face[4], middle;
+      EnrichedTetrahedron::bubbles(X.data(), r, face, middle);
+      for (std::size_t f = 0; f < 4; ++f) size[f][r] = face[f];
+      size[4][r] = middle;
+    }
+  };
+  for (Eigen::Index e = 0; e < mesh.elements.cols(); ++e) {
+    for (std::size_t a = 0; a < X.size(); ++a)
+      X[a] = mesh.rest.row(mesh.elements(static_cast<Eigen::Index>(a), e));
+    measure();
+    for (std::size_t f = 0; f < 4; ++f) X[10 + f] -= size[f];
+    measure();
+    X[14] -= size[4];
+    for (std::size_t a = 10; a < X.size(); ++a)
+      mesh.rest.row(mesh.elements(static_cast<Eigen::Index>(a), e)) = X[a].transpose();
+  }
+  return mesh;
+}
+
+/// The largest force on a node inside.
+inline double largest_inside(const VecX<double>& f, const SolidMesh& mesh) {
+  std::vector<bool> is(static_cast<std::size_t>(mesh.n()), true);
+  for (Eigen::Index i = 0; i < mesh.boundary.size(); ++i)
+    is[static_cast<std::size_t>(mesh.boundary(i))] = false;
+  Worst largest;
+  for (int i = 0; i < mesh.n(); ++i)
+    if (is[static_cast<std::size_t>(i)]) largest.note(nodes(f, mesh.n()).row(i).norm());
+  return largest;
 }
 
 /// Positions or displacements A X + b of all nodes.

@@ -1,8 +1,9 @@
-// Eigenvalues of K u = lambda M u next to a shift, by inverse subspace iteration.
+// Eigenvalues of K u = lambda M u next to a shift, by inverse subspace iteration; those of given fields.
 #pragma once
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <Eigen/SparseCholesky>
@@ -36,6 +37,27 @@ inline Sparse in_space(const std::vector<Eigen::Triplet<double>>& entries, int n
 inline Sparse in_space(const VecX<double>& masses) {
   return Sparse(VecX<double>(masses.replicate(3, 1)).asDiagonal());
 }
+
+/// omega^2 of what a mesh does that is let go in given fields. One solution of (K + below M) U' = M U makes
+/// fields of the mesh's own of them; what else is in these are modes of frequencies nearby, of which each
+/// value is a mean, however modes of the mesh mix that lie close together.
+class SmoothedFields {
+ public:
+  SmoothedFields(Sparse K, Sparse M, double below) : K_(std::move(K)), M_(std::move(M)) {
+    factor_.compute(K_ + below * M_);
+    if (factor_.info() != Eigen::Success) throw std::runtime_error("no factor of K + below M");
+  }
+  /// In rising order, one a column of U.
+  VecX<double> values(const MatX<double>& U) const {
+    const MatX<double> smooth = factor_.solve(MatX<double>(M_ * U));
+    const MatX<double> k = smooth.transpose() * (K_ * smooth), m = smooth.transpose() * (M_ * smooth);
+    return symmetric_eigenpairs(k, m).values;
+  }
+
+ private:
+  Sparse K_, M_;
+  Eigen::SimplicialLDLT<Sparse> factor_;
+};
 
 struct Modes {
   VecX<double> values;  ///< in rising order

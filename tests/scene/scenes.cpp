@@ -1,8 +1,10 @@
 // The scenes that come with pliant are sound, for the program and for an editor that follows the JSON Schema;
 // and the schema alone already refuses every bad scene that types, keys and ranges can tell.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -64,35 +66,165 @@ TEST_CASE("every scene that comes with pliant reads without a warning, and a run
   }
 }
 
+namespace {
+
+using pliant::kPi;
+using pliant::material_at;
+using pliant::Simulation;
+using pliant::Vec3;
+
+/// Steps a scene to a time (s); each step leaves no more of the balance of energy than a part of the largest
+/// kinetic energy, or of 1 J.
+template <class AfterStep>
+void run(const char* name, double until, double books, AfterStep&& after_step) {
+  INFO(name);
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
+  Simulation simulation(scene->body, scene->integrator);
+  double largest = 0;
+  while (simulation.time() < until) {
+    simulation.step(scene->step);
+    const pliant::Ledger ledger = simulation.ledger();
+    largest = std::max(largest, ledger.kinetic);
+    REQUIRE(std::abs(ledger.balance) < books * std::max(largest, 1.0));
+    after_step(simulation, ledger);
+  }
+}
+
+/// Where a material point of the first part is.
+Vec3<double> place(const Simulation& simulation, const pliant::Material<double>& m) {
+  return simulation.model().world_point(simulation.state(), 0, m);
+}
+/// How wide the first part is at a latitude.
+double width(const Simulation& simulation, double u) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    sum += (place(simulation, material_at(u, kPi * i / 4)) -
+            place(simulation, material_at(u, kPi * i / 4 + kPi)))
+               .norm();
+  return sum / 4;
+}
+
+}  // namespace
+
 TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books",
           "[long]") {
-  const auto run = [](const char* name, double until, const auto& after_step) {
-    pliant::Diagnostics diagnostics;
-    const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
-    pliant::Simulation simulation(scene->body, scene->integrator);
-    double largest = 0;
-    while (simulation.time() < until) {
-      simulation.step(scene->step);
-      const pliant::Ledger ledger = simulation.ledger();
-      largest = std::max(largest, ledger.kinetic);
-      REQUIRE(std::abs(ledger.balance) < 1e-5 * std::max(largest, 1.0));
-      after_step(simulation);
-    }
-  };
   double least = 0;
-  run("twisting_tube.json", 0.8,
-      [&](const pliant::Simulation& simulation) { least = std::min(least, simulation.state().q[7]); });
+  run("twisting_tube.json", 0.8, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
+    least = std::min(least, simulation.state().q[7]);
+  });
   CHECK(least < -2);  // from 2.5
   double longest = 0;
-  run("soft_chain.json", 0.7, [&](const pliant::Simulation& simulation) {
-    const pliant::Model& model = simulation.model();
-    REQUIRE(model.gap(simulation.state(), 3) < 1e-12);
-    const auto end = [&](double u) {
-      return model.world_point(simulation.state(), 0, pliant::material_at(u, 0, 1));
-    };
-    longest = std::max(longest, (end(pliant::kPi / 2) - end(-pliant::kPi / 2)).norm());
+  run("soft_chain.json", 0.7, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
+    REQUIRE(simulation.model().gap(simulation.state(), 3) < 1e-12);
+    longest = std::max(
+        longest,
+        (place(simulation, material_at(kPi / 2, 0)) - place(simulation, material_at(-kPi / 2, 0))).norm());
   });
   CHECK(longest > 1.2 * 0.32);
+}
+
+TEST_CASE("the ringing sphere: its dents spring out and back, it turns, momentum and energy stay", "[long]") {
+  std::optional<pliant::Ledger> start;
+  double out = 0, in = 1, least = 1, most = 0, turned = 0;
+  run("ringing_sphere.json", 0.45, 1e-3, [&](const Simulation& simulation, const pliant::Ledger& ledger) {
+    if (!start) start = ledger;
+    REQUIRE((ledger.momentum - start->momentum).norm() < 1e-11 * start->momentum.norm());
+    REQUIRE((ledger.angular_momentum - start->angular_momentum).norm() <
+            1e-9 * start->angular_momentum.norm());
+    REQUIRE(std::abs(ledger.energy() - start->energy()) < 3e-4 * ledger.kinetic);
+    least = std::min(least, ledger.kinetic);
+    most = std::max(most, ledger.kinetic);
+    const double dent = (place(simulation, material_at(0, 0)) - simulation.state().q.head<3>()).norm();
+    out = std::max(out, dent);
+    if (out > 0.55) in = std::min(in, dent);
+    turned = 2 * std::acos(std::abs(simulation.state().q[3]));
+  });
+  CHECK(out > 0.55);  // from 0.38; the radius is 0.5
+  CHECK(in < 0.53);
+  CHECK(most > 1.2 * least);
+  CHECK(turned == Approx(0.45 * std::sqrt(1.2)).epsilon(0.1));
+}
+
+TEST_CASE("the balloon falls onto its string, is drawn out at its knot, and bulges below", "[long]") {
+  bool slack = false;
+  double drawn = 0, above = 0, below = 0;
+  run("balloon.json", 0.6, 1e-4, [&](const Simulation& simulation, const pliant::Ledger&) {
+    const Vec3<double> knot = place(simulation, material_at(kPi / 2, 0));
+    REQUIRE(knot.norm() <= 0.5 + 1e-12);
+    slack = slack || knot.norm() < 0.4;
+    const double far = (knot - simulation.state().q.head<3>()).norm();
+    if (far <= drawn) return;
+    drawn = far;
+    above = width(simulation, 0.7);
+    below = width(simulation, -0.7);
+  });
+  CHECK(slack);
+  CHECK(drawn > 2 * 0.36);
+  CHECK(below > 1.05 * above);
+}
+
+TEST_CASE("the rubber bar bends to one side and to the other, and turns", "[long]") {
+  double most = 0, least = 0;
+  Vec3<double> along = Vec3<double>::UnitZ();
+  std::optional<pliant::Ledger> start;
+  run("beam.json", 0.22, 5e-3, [&](const Simulation& simulation, const pliant::Ledger& ledger) {
+    if (!start) start = ledger;
+    REQUIRE((ledger.momentum - start->momentum).norm() < 1e-11 * start->momentum.norm());
+    REQUIRE((ledger.angular_momentum - start->angular_momentum).norm() <
+            1e-6 * start->angular_momentum.norm());
+    const Vec3<double> top = place(simulation, material_at(kPi / 2, 0)),
+                       foot = place(simulation, material_at(-kPi / 2, 0));
+    const double sag = (place(simulation, material_at(0, 0, 0)) - (top + foot) / 2)[0];
+    most = std::max(most, sag);
+    least = std::min(least, sag);
+    along = (top - foot).normalized();
+  });
+  CHECK(most > 0.15);
+  CHECK(least < -0.15);
+  CHECK(along[1] > 0.4);  // from 0
+  CHECK(std::abs(along[0]) < 0.01);
+}
+
+TEST_CASE("a spring pulls the membrane of a shell out, and its parameters follow", "[long]") {
+  double pulled = 0, local = 0, a1 = 0, others = 0;
+  run("soft_pull.json", 0.3, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
+    const pliant::State& state = simulation.state();
+    const double x = place(simulation, material_at(0, 0))[0];
+    pulled = std::max(pulled, x);
+    local = std::max(local, x - state.q[0] - state.q[7]);
+    a1 = std::max(a1, state.q[7]);
+    others = std::max({others, std::abs(state.q[8] - 0.4), std::abs(state.q[9] - 0.6)});
+  });
+  CHECK(pulled > 0.8);  // from 0.4
+  CHECK(local > 0.35);
+  CHECK(a1 > 1.05 * 0.4);
+  CHECK(others < 0.2 * (a1 - 0.4));
+}
+
+TEST_CASE("the density of a shell is per volume where it has a thickness, else per area") {
+  const auto mass = [](const std::string& members) {
+    pliant::Diagnostics diagnostics;
+    const auto scene = pliant::parse_scene(
+        "s.json",
+        R"json({"parts": [{"name": "a", "shape": "sphere", "parameters": {"r": 0.3}, "density": 1100)json" +
+            members + "}]}",
+        {}, diagnostics);
+    CHECK(diagnostics.text().empty());
+    const pliant::Part& part = *scene->body.parts()[0];
+    if (part.local() != nullptr)
+      CHECK(part.local()->mesh().mass.sum() == Approx(part.total_mass()).epsilon(1e-12));
+    return part.total_mass();
+  };
+  const double area = 4 * kPi * 0.3 * 0.3;
+  const std::string local =
+      R"json(, "local": {"resolution": 3, "laws": [{"type": "membrane", "E": 1e5, "thickness": 0.002}]})json";
+  for (const std::string& more : {std::string(), local}) {
+    CHECK(mass(R"json(, "shell": true, "thickness": 0.002)json" + more) ==
+          Approx(1100 * 0.002 * area).epsilon(1e-12));
+    CHECK(mass(R"json(, "shell": true)json" + more) == Approx(1100 * area).epsilon(1e-12));
+  }
+  CHECK(mass("") == Approx(1100 * area * 0.1).epsilon(1e-12));
 }
 
 TEST_CASE("assembly tells whether shapes settled within the most iterations") {

@@ -29,6 +29,8 @@ class ContactMesh {
   double thickness() const { return thickness_; }
   /// Vertices in the body frame, m. number: of the part.
   Eigen::Matrix3Xd positions(const Model& model, const State& state, int number) const;
+  /// Radius of a ball about the origin of the part's frame that it is in, m.
+  double reach(const Model& model, const State& state, int number) const;
   /// No point of it moves faster against the frame of the part, m/s.
   double speed(const State& state) const;
 
@@ -38,8 +40,9 @@ class ContactMesh {
   std::vector<Edge> edges_;
   std::vector<int> nodes_;
   std::vector<Material<double>> material_;
-  Eigen::Matrix3Xd rigid_;  // vertices of a part that does not change
-  Eigen::Matrix3Xd rest_;   // and of one that changes by local deformation alone, without it
+  std::vector<Material<double>> few_;  // of a part without nodes that changes: where it reaches the farthest
+  Eigen::Matrix3Xd rigid_;             // vertices of a part that does not change
+  Eigen::Matrix3Xd rest_;              // and of one that changes by local deformation alone, without it
   double thickness_;
 };
 

@@ -114,6 +114,7 @@ class NodalDeformation final : public LocalDeformation {
   /// What reference conditions of rigid motion miss.
   struct Unmet {
     Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
+    Mat3<double> d_s;               ///< sum m d s^T
   };
   Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
               const LocalWorkspace& work) const;
