@@ -266,7 +266,6 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
     }
     settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), closed, state, work,
                  scratch, counters);
-    settle_frames(dynamics, t, island.parts, state, work);
     if (island.strings.empty()) continue;
     dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
     note_strings(model, island, work, state);
