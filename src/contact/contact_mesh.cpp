@@ -12,8 +12,8 @@ namespace {
 constexpr int kMeshResolution = 6;
 /// The same of few points that tell how far such a part reaches and how fast it changes, and by how much the
 /// others may go beyond them.
-constexpr int kFewEdges = 2;
-constexpr double kBeyondFew = 1.1;
+constexpr int kFewMeshEdges = 2;
+constexpr double kBeyondFewVertices = 1.1;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
@@ -53,7 +53,7 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     if (m.n_s == 0 || m.q0 < 0)
       rigid_ = p;
     else
-      few_ = Surface(*m.part, kFewEdges).material();
+      few_ = Surface(*m.part, kFewMeshEdges).material();
   }
   edges_ = mesh_edges(triangles_);
   thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
@@ -74,7 +74,7 @@ Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, 
 
 double ContactMesh::reach(const Model& model, const State& state, int number) const {
   if (!few_.empty())
-    return kBeyondFew * part_->part->s(few_, model.values(state, number)).colwise().norm().maxCoeff();
+    return kBeyondFewVertices * part_->part->s(few_, model.values(state, number)).colwise().norm().maxCoeff();
   return positions(model, state, number).colwise().norm().maxCoeff();
 }
 
@@ -89,13 +89,13 @@ double ContactMesh::speed(const State& state) const {
       q_s[k].v = state.q[m.q0 + 7 + k];
       q_s[k].d[0] = state.v[m.v0 + 6 + k];
     }
-    speed =
-        (few_.empty() ? 1 : kBeyondFew) * m.part
-                                              ->s_along(m.local != nullptr ? m.local->mesh().nodes : few_,
-                                                        m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
-                                              .colwise()
-                                              .norm()
-                                              .maxCoeff();
+    speed = (few_.empty() ? 1 : kBeyondFewVertices) *
+            m.part
+                ->s_along(m.local != nullptr ? m.local->mesh().nodes : few_,
+                          m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
+                .colwise()
+                .norm()
+                .maxCoeff();
   }
   if (m.local != nullptr)
     speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();

@@ -16,7 +16,7 @@ namespace {
 constexpr double kOneCentre = 1e-9;
 /// And a centre this much outside of the other surface, in its w, counts as in it: there, low points lie at
 /// it.
-constexpr double kMargin = 0.1;
+constexpr double kNearCentre = 0.1;
 }  // namespace
 
 /// The point of a part that is the farthest in a direction of the world, body frame.
@@ -37,7 +37,8 @@ bool ContactFinder::find_deep(int a, int b, const ContactRule& rule, std::vector
   if (d.norm() > one.reach || d.norm() > other.reach) return false;
   const auto holds = [&](const Part& part, int i, const Vec3<double>& x) {
     return part.shape().mesh() == MeshPattern::ball &&
-           part.inside_outside(scratch_->parts[at(i)].R.transpose() * x, scratch_->values[at(i)]) < kMargin;
+           part.inside_outside(scratch_->parts[at(i)].R.transpose() * x, scratch_->values[at(i)]) <
+               kNearCentre;
   };
   if (!holds(part_b, b, d) || !holds(part_a, a, -d)) return false;
   std::vector<Vec3<double>> ways;

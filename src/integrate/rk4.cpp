@@ -12,9 +12,9 @@ namespace pliant {
 
 namespace {
 
-constexpr double kA[] = {0.5, 0, 0.5, 0, 0, 1}, kNodes[] = {0, 0.5, 0.5, 1},
-                 kWeights[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
-constexpr ButcherTableau kTableau{"rk4", 4, 4, kA, kWeights, kNodes, nullptr, nullptr, 0, false};
+constexpr double kRk4A[] = {0.5, 0, 0.5, 0, 0, 1}, kRk4Nodes[] = {0, 0.5, 0.5, 1},
+                 kRk4Weights[] = {1. / 6, 1. / 3, 1. / 3, 1. / 6};
+constexpr ButcherTableau kRk4Tableau{"rk4", 4, 4, kRk4A, kRk4Weights, kRk4Nodes, nullptr, nullptr, 0, false};
 
 /// sum += weight rate, or its first share, and to = from + step rate: in one pass over memory.
 void take(const VecX<double>& rate, double weight, bool first, VecX<double>& sum, const VecX<double>& from,
@@ -40,24 +40,24 @@ void Rk4::step(const Dynamics& dynamics, State& state, Workspace<double>& work, 
   Vec<double, kWorks> work_sum = Vec<double, kWorks>::Zero();
   q_ = state.q;
   v_ = state.v;
-  free_.prepare(dynamics.model(), kTableau, h);
+  free_.prepare(dynamics.model(), kRk4Tableau, h);
   for (int stage = 0; stage < 4; ++stage) {
-    dynamics.rates(t + kNodes[stage] * h, q_, v_, state, work,
+    dynamics.rates(t + kRk4Nodes[stage] * h, q_, v_, state, work,
                    stage == 0 ? RankRule::decide : RankRule::keep);
     ++counters.evaluations;
     hold_inertialess(dynamics.model(), work, v_);
     dynamics.coordinate_rates(q_, v_, q_dot_);
     free_.take(stage, q_, v_, work.v_dot);
     free_.still(q_dot_);
-    work_sum += kWeights[stage] * work.power;
+    work_sum += kRk4Weights[stage] * work.power;
     if (stage == 3) break;
-    const double step = kNodes[stage + 1] * h;
-    take(q_dot_, kWeights[stage], stage == 0, q_sum_, state.q, step, q_);
-    take(work.v_dot, kWeights[stage], stage == 0, v_sum_, state.v, step, v_);
+    const double step = kRk4Nodes[stage + 1] * h;
+    take(q_dot_, kRk4Weights[stage], stage == 0, q_sum_, state.q, step, q_);
+    take(work.v_dot, kRk4Weights[stage], stage == 0, v_sum_, state.v, step, v_);
     free_.move(stage + 1, state.q, state.v, q_, v_);
   }
-  state.q += h * (q_sum_ + kWeights[3] * q_dot_);
-  state.v += h * (v_sum_ + kWeights[3] * work.v_dot);
+  state.q += h * (q_sum_ + kRk4Weights[3] * q_dot_);
+  state.v += h * (v_sum_ + kRk4Weights[3] * work.v_dot);
   free_.move(4, state.q, state.v, state.q, state.v);
   state.work += h * work_sum;
   end_motion(dynamics, t + h, state, work);

@@ -10,12 +10,12 @@ namespace pliant {
 
 namespace {
 
-constexpr double kNode[] = {0}, kWeight[] = {1};
-constexpr ButcherTableau kTableau{
-    "semi_implicit_euler", 1, 1, nullptr, kWeight, kNode, nullptr, nullptr, 0, false};
+constexpr double kEulerNode[] = {0}, kEulerWeight[] = {1};
+constexpr ButcherTableau kEulerTableau{
+    "semi_implicit_euler", 1, 1, nullptr, kEulerWeight, kEulerNode, nullptr, nullptr, 0, false};
 
 /// v += h v_dot, what v was before going to `before`: in one pass over memory.
-void accelerate(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
+void kick(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
   before.resize(v.size());
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     before[i] = v[i];
@@ -30,9 +30,9 @@ void SemiImplicitEuler::step(const Dynamics& dynamics, State& state, Workspace<d
   const double h = state.h;
   dynamics.rates(state.time(), state.q, state.v, state, work);
   ++counters.evaluations;
-  free_.prepare(dynamics.model(), kTableau, h);
+  free_.prepare(dynamics.model(), kEulerTableau, h);
   free_.take(0, state.q, state.v, work.v_dot);
-  accelerate(h, work.v_dot, state.v, v_before_);
+  kick(h, work.v_dot, state.v, v_before_);
   carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
   hold_inertialess(dynamics.model(), work, state.v);
