@@ -2,12 +2,11 @@
 // whose lowest modes are T2 at 24.68711 Hz and S2 at 26.11917 Hz (Lamb 1882), and a closed membrane of the
 // same radius and material, 1 mm thick, whose lowest are those of n = 2 at 11.695 Hz (Lamb 1882; on a mesh
 // the next ones lie among short waves): processor time of a period of the lowest mode and relative error of
-// the frequencies, by basis. Nodes
-// take steps of 0.9 of the largest stable one, modes three a period, which they solve exactly. The error of
-// nodes is that of the modes of their mesh, which of order 2 has more nodes an element than modes use and is
-// better than that, and of the method at the step. CSV to standard output; after it
-// what each basis takes at the errors of the table, of the lower mode and of both, "not reached" where no row
-// does.
+// the frequencies, by basis. Nodes take steps of 0.9 of the largest stable one, modes three a period, which
+// they solve exactly. The error of nodes is that of the modes of their mesh, which of order 2 has more nodes
+// an element than modes use and is better than that, and of the method at the step. CSV to standard output;
+// after it what each basis takes at the errors of the table, of the lower mode and of both, "not reached"
+// where no row does.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>

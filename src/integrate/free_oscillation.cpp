@@ -1,5 +1,6 @@
 #include <pliant/integrate/free_oscillation.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -27,17 +28,23 @@ Swing swing(double omega2, double g, double t) {
   return {fade * (1 - 0.5 * faster), k * t != 0 ? fade * faster / (2 * k) : fade * t};
 }
 
+/// (1 - exp(-rate t)) / rate.
+double decayed(double rate, double t) {
+  return rate == 0 ? t : -std::expm1(-rate * t) / rate;
+}
+
 /// The integral of s over t, which is (1 - c - g s) / omega^2: that loses its digits while t is short.
 double pushed(double omega2, double g, double t, const Swing& of) {
   constexpr double kShort = 0.5;
-  const double turn = std::sqrt(omega2) * std::abs(t);
-  if (turn > kShort || g * std::abs(t) > 1) return (1 - of.c - g * of.s) / omega2;
+  if (std::sqrt(omega2) * std::abs(t) > kShort) return (1 - of.c - g * of.s) / omega2;
+  const double k = std::sqrt(std::max(0.0, g * g - omega2));
+  if (2 * k * std::abs(t) > kShort) return (decayed(omega2 / (g + k), t) - decayed(g + k, t)) / (2 * k);
   // Gauss's rule of five points.
   constexpr std::array<double, 5> x{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
                                     0.9530899229693320},
       w{0.1184634425280945, 0.2393143352496832, 0.2844444444444444, 0.2393143352496832, 0.1184634425280945};
   double sum = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) sum += w[k] * swing(omega2, g, x[k] * t).s;
+  for (std::size_t n = 0; n < x.size(); ++n) sum += w[n] * swing(omega2, g, x[n] * t).s;
   return t * sum;
 }
 
@@ -57,6 +64,18 @@ OscillatorMoves moves_over(const Oscillators& oscillators, double t) {
     moves.qn[j] = pushed(omega2, g, t, of);
   }
   return moves;
+}
+
+OscillatorKicks kicks_over(const Oscillators& oscillators, double t) {
+  const Eigen::Index n = oscillators.omega2.size();
+  OscillatorKicks kicks{VecX<double>(n), VecX<double>(n)};
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double g = 0.5 * oscillators.damping[j];
+    const Swing of = swing(oscillators.omega2[j], g, t);
+    kicks.qv[j] = of.s;
+    kicks.vv[j] = of.c - g * of.s;
+  }
+  return kicks;
 }
 
 bool oscillates_freely(const PartModel& part) {

@@ -29,7 +29,7 @@ void FreeStages::prepare(const Model& model, const ButcherTableau& of, double h)
       part.between.emplace_back(at(i));
       for (int j = 1; j < i; ++j)  // n_0 - n_0 is zero
         if (i == of.stages || weights(i)[j] != 0)
-          part.between.back()[at(j)] = moves_over(*part.oscillators, (node(i) - node(j)) * h);
+          part.between.back()[at(j)] = kicks_over(*part.oscillators, (node(i) - node(j)) * h);
     }
   }
 }
@@ -64,10 +64,10 @@ void FreeStages::move(int stage, const VecX<double>& q_start, const VecX<double>
     for (int j = 1; j < stage; ++j) {
       const double weight = h_ * weights(stage)[j];
       if (weight == 0) continue;
-      const OscillatorMoves& moves = part.between[at(stage)][at(j)];
+      const OscillatorKicks& kicks = part.between[at(stage)][at(j)];
       const VecX<double> change = weight * (part.n.col(j) - part.n.col(0));
-      q_now += moves.qv.cwiseProduct(change);
-      v_now += moves.vv.cwiseProduct(change);
+      q_now += kicks.qv.cwiseProduct(change);
+      v_now += kicks.vv.cwiseProduct(change);
     }
   }
 }
@@ -84,9 +84,9 @@ void FreeStages::weigh(const double* weights, int count, VecX<double>& q, VecX<d
         v_sum += change;
         continue;
       }
-      const OscillatorMoves& moves = part.between.back()[at(j)];
-      q_sum += moves.qv.cwiseProduct(change);
-      v_sum += moves.vv.cwiseProduct(change);
+      const OscillatorKicks& kicks = part.between.back()[at(j)];
+      q_sum += kicks.qv.cwiseProduct(change);
+      v_sum += kicks.vv.cwiseProduct(change);
     }
   }
 }

@@ -124,6 +124,7 @@ void settle_group(const Dynamics& dynamics, double t, const Group<double, Max>& 
     dynamics.factor_joints(t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
+  // What scratch sees of velocities is in the state; they are the same before and now.
   if (pushed) keep_momenta(group, scratch, work, state);
   settling.forget();
   counters.limit_impulses += settling.velocities(joints, rows);

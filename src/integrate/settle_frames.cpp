@@ -41,7 +41,7 @@ bool hold(const PartModel& m, const State& state, const PartWorkspace<double>& w
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H by no more than this.
+  // K differs from H by no more than the root of 2 times this, and by what has just been told small.
   const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
 }

@@ -254,8 +254,8 @@ void Run::note_turns() {
          " rad; local elasticity that is linear in the displacements means something else there than at "
          "rest beyond " +
          rounded_text(kMostLinearTurn) +
-         " rad; laws of the whole map (neo_hookean, st_venant_kirchhoff, corotated and the membranes of "
-         "these names) bear any turn");
+         " rad; laws of the whole map (neo_hookean, st_venant_kirchhoff, corotated, neo_hookean_membrane, "
+         "st_venant_kirchhoff_membrane) bear any turn");
   }
 }
 

@@ -29,9 +29,10 @@ class ContactMesh {
   double thickness() const { return thickness_; }
   /// Vertices in the body frame, m. number: of the part.
   Eigen::Matrix3Xd positions(const Model& model, const State& state, int number) const;
-  /// Radius of a ball about the origin of the part's frame that it is in, m.
+  /// Radius of a ball about the origin of the part's frame that it is in, m; of a part without nodes that
+  /// changes estimated by few points.
   double reach(const Model& model, const State& state, int number) const;
-  /// No point of it moves faster against the frame of the part, m/s.
+  /// No point of it moves faster against the frame of the part, m/s; estimated likewise.
   double speed(const State& state) const;
 
  private:

@@ -16,5 +16,10 @@ struct OscillatorMoves {
   VecX<double> qq, qv, vq, vv, qn;
 };
 OscillatorMoves moves_over(const Oscillators& oscillators, double t);
+/// What changes of q_dot become over a time: qv and vv of these.
+struct OscillatorKicks {
+  VecX<double> qv, vv;
+};
+OscillatorKicks kicks_over(const Oscillators& oscillators, double t);
 
 }  // namespace pliant

@@ -37,7 +37,7 @@ class FreeStages {
     int q0, v0;
     MatX<double> n;                                     ///< a column a stage, and one of the end
     std::vector<OscillatorMoves> from_start;            ///< over c_i h, of each stage and the end
-    std::vector<std::vector<OscillatorMoves>> between;  ///< over (c_i - c_j) h, where a_ij is not zero
+    std::vector<std::vector<OscillatorKicks>> between;  ///< over (c_i - c_j) h, where a_ij is not zero
   };
   /// The weights of the stages before a stage, or of all for the end.
   const double* weights(int stage) const {
