@@ -1,5 +1,7 @@
 #include <pliant/integrate/free_stages.h>
 
+#include <algorithm>
+
 #include <pliant/math/index.h>
 
 namespace pliant {
@@ -55,39 +57,36 @@ void FreeStages::begin_at_end() {
 void FreeStages::move(int stage, const VecX<double>& q_start, const VecX<double>& v_start, VecX<double>& q,
                       VecX<double>& v) const {
   for (const OfPart& part : parts_) {
-    const Eigen::Index n = part.n.rows();
-    const VecX<double> q_0 = q_start.segment(part.q0, n), v_0 = v_start.segment(part.v0, n);
-    auto q_now = q.segment(part.q0, n), v_now = v.segment(part.v0, n);
     const OscillatorMoves& whole = part.from_start[at(stage)];
-    q_now = whole.qq.cwiseProduct(q_0) + whole.qv.cwiseProduct(v_0) + whole.qn.cwiseProduct(part.n.col(0));
-    v_now = whole.vq.cwiseProduct(q_0) + whole.vv.cwiseProduct(v_0) + whole.qv.cwiseProduct(part.n.col(0));
-    for (int j = 1; j < stage; ++j) {
-      const double weight = h_ * weights(stage)[j];
-      if (weight == 0) continue;
-      const OscillatorKicks& kicks = part.between[at(stage)][at(j)];
-      const VecX<double> change = weight * (part.n.col(j) - part.n.col(0));
-      q_now += kicks.qv.cwiseProduct(change);
-      v_now += kicks.vv.cwiseProduct(change);
+    for (Eigen::Index k = 0; k < part.n.rows(); ++k) {
+      const double q_0 = q_start[part.q0 + k], v_0 = v_start[part.v0 + k], n_0 = part.n(k, 0);
+      q[part.q0 + k] = whole.qq[k] * q_0 + whole.qv[k] * v_0 + whole.qn[k] * n_0;
+      v[part.v0 + k] = whole.vq[k] * q_0 + whole.vv[k] * v_0 + whole.qv[k] * n_0;
     }
+    for (int j = 1; j < stage; ++j)
+      if (const double weight = h_ * weights(stage)[j]; weight != 0)
+        add_kicks(part, part.between[at(stage)][at(j)], j, weight, q, v);
   }
 }
 
 void FreeStages::weigh(const double* weights, int count, VecX<double>& q, VecX<double>& v) const {
   for (const OfPart& part : parts_) {
     const Eigen::Index n = part.n.rows();
-    auto q_sum = q.segment(part.q0, n), v_sum = v.segment(part.v0, n);
-    q_sum.setZero();
-    v_sum.setZero();
-    for (int j = 1; j < count; ++j) {
-      const VecX<double> change = h_ * weights[j] * (part.n.col(j) - part.n.col(0));
-      if (j == of_->stages) {  // at the end
-        v_sum += change;
-        continue;
-      }
-      const OscillatorKicks& kicks = part.between.back()[at(j)];
-      q_sum += kicks.qv.cwiseProduct(change);
-      v_sum += kicks.vv.cwiseProduct(change);
-    }
+    q.segment(part.q0, n).setZero();
+    v.segment(part.v0, n).setZero();
+    for (int j = 1; j < std::min(count, of_->stages); ++j)
+      add_kicks(part, part.between.back()[at(j)], j, h_ * weights[j], q, v);
+    if (count > of_->stages)  // at the end
+      v.segment(part.v0, n) += h_ * weights[of_->stages] * (part.n.col(of_->stages) - part.n.col(0));
+  }
+}
+
+void FreeStages::add_kicks(const OfPart& part, const OscillatorKicks& kicks, int stage, double weight,
+                           VecX<double>& q, VecX<double>& v) {
+  for (Eigen::Index k = 0; k < part.n.rows(); ++k) {
+    const double change = weight * (part.n(k, stage) - part.n(k, 0));
+    q[part.q0 + k] += kicks.qv[k] * change;
+    v[part.v0 + k] += kicks.vv[k] * change;
   }
 }
 

@@ -43,6 +43,9 @@ class FreeStages {
   const double* weights(int stage) const {
     return stage == of_->stages ? of_->b : of_->a + stage * (stage - 1) / 2;
   }
+  /// Adds weight exp(A t) (0, n_stage - n_0), by kicks over t.
+  static void add_kicks(const OfPart& part, const OscillatorKicks& kicks, int stage, double weight,
+                        VecX<double>& q, VecX<double>& v);
   double node(int stage) const { return stage >= of_->stages ? 1 : of_->c[stage]; }
 
   const Model* model_ = nullptr;
