@@ -62,18 +62,11 @@ void Membrane<Law>::add_derivative(const Coordinates& x, const Coordinates& dx, 
 template <class Law>
 void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f,
                                       Buffer& buffer, ThreadPool* pool) const {
-  using D = Dual<1, Pack>;
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b)), e_dot = edges_of(batches_.corners(x_dot, b));
     // Tensions of the rates q_dot by the law about rest: constant, symmetric and positive.
-    std::array<D, 3> rate;
-    for (std::size_t k = 0; k < 3; ++k) {
-      rate[k] = D(0.0);
-      rate[k].d[0] = e[k].dot(e_dot[k]);
-    }
-    const std::array<D, 3> tau = batch(b).law.tension(rate);
-    return corner_forces<Pack>({tau[0].d[0], tau[1].d[0], tau[2].d[0]}, e);
+    return corner_forces<Pack>(batch(b).law.linear_tension(strain_change(e, e_dot)), e);
   });
 }
 

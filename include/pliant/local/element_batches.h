@@ -69,14 +69,15 @@ class ElementBatches {
   /// f += push(batch), the forces at the corners of a batch, for all batches.
   template <class Push>
   void add(VecX<double>& f, double* buffer, ThreadPool* pool, Push&& push) const {
-    for_ranges(n_batches(), kBatchesInRange, pool, [&](int first, int last) {
-      for (int b = first; b < last; ++b) {
-        const Corners force = push(b);
-        double* to = buffer + b * kBatchSize;
-        for (std::size_t k = 0; k < K; ++k)
-          for (int i = 0; i < 3; ++i, to += Pack::kLanes) store(force[k][i], to);
-      }
-    });
+    for_ranges(
+        n_batches(), kBatchesInRange, pool, [&](int first, int last) __attribute__((flatten)) {
+          for (int b = first; b < last; ++b) {
+            const Corners force = push(b);
+            double* to = buffer + b * kBatchSize;
+            for (std::size_t k = 0; k < K; ++k)
+              for (int i = 0; i < 3; ++i, to += Pack::kLanes) store(force[k][i], to);
+          }
+        });
     add_corners(f, buffer, pool);
   }
 

@@ -37,6 +37,8 @@ struct StVenantKirchhoffSheet {
       }
       return tau;
     }
+    /// As far as strains are small.
+    std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return tension(q); }
     Pack energy(const std::array<Pack, 3>& q) const {
       const std::array<Pack, 3> tau = tension(q);
       return 0.5 * (q[0] * tau[0] + q[1] * tau[1] + q[2] * tau[2]);
@@ -52,6 +54,7 @@ struct NeoHookeanSheet {
     Pack inverse;               ///< 1/(2A)^2
     Pack stiffness;             ///< A t mu / 2
     double k = 0;
+    StVenantKirchhoffSheet::Triangles small;  ///< the same material, as far as strains are small
 
     void set(int lane, const Edges<double>& e, const Sheet& sheet) {
       const Vec3<double> tr = edge_traces(e);
@@ -60,7 +63,9 @@ struct NeoHookeanSheet {
       inverse.set(lane, 1 / (twice_area * twice_area));
       stiffness.set(lane, 0.25 * twice_area * sheet.thickness * sheet.mu());
       k = sheet.nu / (1 - sheet.nu);
+      small.set(lane, e, sheet);
     }
+    std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return small.tension(q); }
     template <class T>
     T trace_of(const std::array<T, 3>& q) const {
       return q[0] * trace[0] + q[1] * trace[1] + q[2] * trace[2];
