@@ -35,6 +35,38 @@ bool link_acts(const LinkParameters<P>& parameters) {
   return !is_identity<Deform>(parameters.b);
 }
 
+/// Of points at rest by the only parameter of a link that moves, number k: one series in it tells s, J and
+/// the rates.
+template <class Deform, class P, class S>
+[[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
+                                       JetBatch<S>& batch) {
+  auto each = [&](auto along, auto&& take) {
+    using T = decltype(along);
+    const T h(S(half.h.v));
+    Vec<T, deform_size<Deform>> b;
+    for (int i = 0; i < deform_size<Deform>; ++i) b[i] = i == k ? along : T(S(parameters.b[i]));
+    for (int i = 0; i < batch.count; ++i) {
+      Jet<S>& jet = batch.jet[i];
+      const Vec3<T> moved = Deform::template apply<T>({T(jet.s[0]), T(jet.s[1]), T(jet.s[2])}, h, b);
+      for (int r = 0; r < 3; ++r) {
+        jet.s[r] = moved[r].v;
+        take(jet, r, moved[r]);
+      }
+    }
+  };
+  const S b(parameters.b[k]), rate(parameters.b_dot[k]), rate2(rate * rate);
+  if (batch.level == Level::rates)
+    each(Taylor2<S>(b, S(1.0), S(0.0)), [&](Jet<S>& jet, int r, const Taylor2<S>& moved) {
+      jet.J[0][r] = moved.d;
+      jet.s1[r] = rate * moved.d;
+      jet.s2[r] = rate2 * moved.dd;
+    });
+  else
+    each(Dual<1, S>::variable(b, 0),
+         [](Jet<S>& jet, int r, const Dual<1, S>& moved) { jet.J[0][r] = moved.d[0]; });
+  batch.n_columns = 1;
+}
+
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                  JetBatch<S>& batch) {
@@ -42,18 +74,20 @@ template <class Deform, class P, class S>
   constexpr int K = deform_size<Deform>;
   const S h(half.h.v);
   Vec<S, K> b;
-  bool moves = false;
+  int moving = 0, last = 0;
   for (int k = 0; k < K; ++k) {
     b[k] = S(parameters.b[k]);
-    moves = moves || parameters.dynamic[k];
+    if (parameters.dynamic[k]) last = k;
+    moving += parameters.dynamic[k] ? 1 : 0;
   }
-  if (batch.level == Level::position || (batch.n_columns == 0 && !moves)) {
+  if (batch.level == Level::position || (batch.n_columns == 0 && moving == 0)) {
     for (int i = 0; i < batch.count; ++i) {
       Vec3<S>& s = batch.jet[i].s;
       s = Deform::template apply<S>(Vec3<S>(s), h, b);
     }
     return;
   }
+  if (batch.n_columns == 0 && moving == 1) return apply_link_alone<Deform>(last, half, parameters, batch);
 
   using T = Taylor2<S>;
   using D = Dual<4 + K, S>;
@@ -106,7 +140,7 @@ template <class Deform, class P, class S>
     each(std::true_type{});
   else
     each(std::false_type{});
-  for (int k = 0; k < K; ++k) batch.n_columns += parameters.dynamic[k] ? 1 : 0;
+  batch.n_columns += moving;
 }
 
 }  // namespace pliant

@@ -10,15 +10,46 @@
 
 namespace pliant {
 
+/// By the only parameter that moves, number k: one series in it tells e, J and the rates.
+template <class Shape, class P, class S, class U>
+[[gnu::flatten]] void shape_jets_alone(int k, const LinkParameters<P>& parameters,
+                                       const Material<U>* material, JetBatch<S>& batch) {
+  auto each = [&](auto along, auto&& take) {
+    using T = decltype(along);
+    Vec<T, shape_size<Shape>> a;
+    for (int i = 0; i < shape_size<Shape>; ++i) a[i] = i == k ? along : T(S(parameters.b[i]));
+    for (int i = 0; i < batch.count; ++i) {
+      const Material<U> m = material[i];
+      const Vec3<T> e = Shape::template e<T>(m, a);
+      Jet<S>& jet = batch.jet[i];
+      for (int r = 0; r < 3; ++r) {
+        jet.s[r] = e[r].v;
+        take(jet, r, e[r]);
+      }
+    }
+  };
+  const S a(parameters.b[k]), rate(parameters.b_dot[k]), rate2(rate * rate);
+  if (batch.level == Level::rates)
+    each(Taylor2<S>(a, S(1.0), S(0.0)), [&](Jet<S>& jet, int r, const Taylor2<S>& e) {
+      jet.J[0][r] = e.d;
+      jet.s1[r] = rate * e.d;
+      jet.s2[r] = rate2 * e.dd;
+    });
+  else
+    each(Dual<1, S>::variable(a, 0), [](Jet<S>& jet, int r, const Dual<1, S>& e) { jet.J[0][r] = e.d[0]; });
+  batch.n_columns = 1;
+}
+
 /// P: scalar of the parameters; S: scalar of the points; U: scalar of the material points.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
                                  JetBatch<S>& batch) {
   constexpr int K = shape_size<Shape>;
   Vec<S, K> a;
-  int n_dynamic = 0;
+  int n_dynamic = 0, last = 0;
   for (int k = 0; k < K; ++k) {
     a[k] = S(parameters.b[k]);
+    if (parameters.dynamic[k]) last = k;
     n_dynamic += parameters.dynamic[k] ? 1 : 0;
   }
   if (batch.level == Level::position || n_dynamic == 0) {
@@ -31,6 +62,7 @@ template <class Shape, class P, class S, class U>
     batch.n_columns = 0;
     return;
   }
+  if (n_dynamic == 1) return shape_jets_alone<Shape>(last, parameters, material, batch);
   using T = Taylor2<S>;
   using D = Dual<K, S>;
   Vec<T, K> a_t;
