@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/body/multibody.h>
+#include <pliant/contact/box_tree.h>
 #include <pliant/contact/mesh_touches.h>
 #include <pliant/math/index.h>
 
@@ -21,42 +22,79 @@ constexpr double kDeepest = 0.25, kStepShare = 0.2;
 
 }  // namespace
 
-MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles) : model_(&model) {
-  const ContactRules rules(model);
+MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles)
+    : model_(&model), rules_(model) {
   const int n = static_cast<int>(model.parts().size());
-  auto soft = [&](int i) { return model.parts()[at(i)].local != nullptr; };
   auto need = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
   for (int i = 0; i < n; ++i) {
-    if (!soft(i)) continue;
+    if (!is_soft(i)) continue;
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
-      const ContactRule rule = rules.on_plane(i, static_cast<int>(k));
+      const ContactRule rule = rules_.on_plane(i, static_cast<int>(k));
       if (!rule.touch) continue;
       need(i);
       planes_.push_back({i, k, rule});
     }
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
-      const ContactRule rule = rules.on_obstacle(i, static_cast<int>(k));
+      const ContactRule rule = rules_.on_obstacle(i, static_cast<int>(k));
       if (!rule.touch) continue;
       need(i);
       on_obstacles_.push_back({i, k, &obstacles[k], rule});
     }
-  }
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 1; j < n; ++j) {
-      if (!soft(i) && !soft(j)) continue;
-      const ContactRule rule = rules.of_parts(i, j);
-      if (!rule.touch) continue;
+    for (int j = 0; j < n; ++j) {
+      if (j == i || (j < i && is_soft(j)) || !rules_.of_parts(std::min(i, j), std::max(i, j)).touch) continue;
       need(i);
       need(j);
-      pairs_.push_back({i, j, rule});
     }
+  }
 }
 
-PlacedMesh MeshFinder::place(const State& state, double t, int part) const {
-  const ContactMesh& mesh = meshes_.at(part);
-  const Mat3<double> R = model_->orientation(state, part, t).toRotationMatrix();
-  return PlacedMesh(mesh,
-                    (R * mesh.positions(*model_, state, part)).colwise() + model_->position(state, part, t));
+bool MeshFinder::is_soft(int part) const {
+  return model_->parts()[at(part)].local != nullptr;
+}
+
+template <class Thing, class F>
+void MeshFinder::each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  std::vector<const Thing*> things;
+  for (const auto& [part, thing] : all) {
+    boxes.emplace_back(thing.c.array() - thing.reach, thing.c.array() + thing.reach);
+    things.push_back(&thing);
+  }
+  BoxTree tree;
+  tree.build(boxes);
+  std::vector<std::pair<int, int>> pairs;
+  tree.near_pairs(0, pairs);
+  for (const auto& [i, j] : pairs) {
+    const Thing &one = *things[at(i)], &other = *things[at(j)];
+    if ((!is_soft(one.part) && !is_soft(other.part)) ||
+        (model_->lies_still(state, one.part) && model_->lies_still(state, other.part)) ||
+        (one.c - other.c).norm() > one.reach + other.reach)
+      continue;
+    const ContactRule rule = rules_.of_parts(one.part, other.part);
+    if (rule.touch) act(one, other, rule);
+  }
+}
+
+std::map<int, MeshFinder::Around> MeshFinder::balls(const State& state, double t) const {
+  std::map<int, Around> all;
+  for (const auto& [part, mesh] : meshes_) {
+    Around ball{part, model_->position(state, part, t), 0, {}};
+    if (mesh.reaches_by_few()) {
+      ball.reach = mesh.reach(*model_, state, part);
+    } else {
+      ball.p = mesh.positions(*model_, state, part);
+      ball.reach = ball.p.colwise().norm().maxCoeff();
+    }
+    all.emplace(part, std::move(ball));
+  }
+  return all;
+}
+
+PlacedMesh MeshFinder::place(const State& state, double t, const Around& ball) const {
+  const ContactMesh& mesh = meshes_.at(ball.part);
+  const Mat3<double> R = model_->orientation(state, ball.part, t).toRotationMatrix();
+  auto placed = [&](const Eigen::Matrix3Xd& p) { return PlacedMesh(mesh, (R * p).colwise() + ball.c); };
+  return placed(ball.p.cols() > 0 ? ball.p : mesh.positions(*model_, state, ball.part));
 }
 
 /// Velocity that a prescribed motion gives a point of a part, m/s.
@@ -86,17 +124,12 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
 
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
   // Meshes are placed when they are first asked for; balls about them tell which pairs need none.
-  struct Around {
-    Vec3<double> c;
-    double reach;
-  };
-  std::map<int, Around> balls;
-  for (const auto& [part, mesh] : meshes_)
-    balls.emplace(part, Around{model_->position(state, part, t), mesh.reach(*model_, state, part)});
+  const std::map<int, Around> balls = this->balls(state, t);
   std::map<int, PlacedMesh> placed;
   auto mesh_of = [&](int part) -> const PlacedMesh& {
     const auto known = placed.find(part);
-    return known != placed.end() ? known->second : placed.emplace(part, place(state, t, part)).first->second;
+    return known != placed.end() ? known->second
+                                 : placed.emplace(part, place(state, t, balls.at(part))).first->second;
   };
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
@@ -141,37 +174,35 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
       found.push_back(contact);
     }
   }
-  for (const Pair& pair : pairs_) {
-    if (model_->lies_still(state, pair.a) && model_->lies_still(state, pair.b)) continue;
+  each_pair(state, balls, [&](const Around& one, const Around& other, const ContactRule& rule) {
     touches.clear();
-    const Around &ball_a = balls.at(pair.a), &ball_b = balls.at(pair.b);
-    if ((ball_a.c - ball_b.c).norm() > ball_a.reach + ball_b.reach) continue;
-    const PlacedMesh &a = mesh_of(pair.a), &b = mesh_of(pair.b);
+    const PlacedMesh &a = mesh_of(one.part), &b = mesh_of(other.part);
     find_touches(a, b, touches);
     for (const MeshTouch& touch : touches) {
       Contact contact;
-      contact.a = side(a, pair.a, state, touch.a, touch.x);
-      contact.b = side(b, pair.b, state, touch.b, touch.x - touch.gap * touch.normal);
+      contact.a = side(a, one.part, state, touch.a, touch.x);
+      contact.b = side(b, other.part, state, touch.b, touch.x - touch.gap * touch.normal);
       contact.x = touch.x;
       contact.normal = touch.normal;
       contact.gap = touch.gap;
-      contact.carried = carries(pair.b, t, touch.x) - carries(pair.a, t, touch.x);
-      contact.friction = pair.rule.friction;
-      contact.restitution = pair.rule.restitution;
+      contact.carried = carries(other.part, t, touch.x) - carries(one.part, t, touch.x);
+      contact.friction = rule.friction;
+      contact.restitution = rule.restitution;
       found.push_back(contact);
     }
-  }
+  });
 }
 
 void MeshFinder::approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const {
   struct Swept {
+    int part;
     Vec3<double> c;
     double speed, reach;  // of any point in the world, m/s; about c, with the way of a step, m
   };
   std::map<int, Swept> all;
   for (const auto& [part, mesh] : meshes_) {
     const PartModel& m = model_->parts()[at(part)];
-    Swept swept{model_->position(state, part, t), 0, mesh.reach(*model_, state, part)};
+    Swept swept{part, model_->position(state, part, t), 0, mesh.reach(*model_, state, part)};
     if (m.q0 >= 0) {
       const auto v = state.v.segment(m.v0, m.n_v());
       swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(state);
@@ -202,15 +233,12 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     const double way = h * a.speed, thin = kStepShare * meshes_.at(on.part).thickness();
     if (way > thin) near.h = std::min(near.h, h * thin / way);
   }
-  for (const Pair& pair : pairs_) {
-    if (model_->lies_still(state, pair.a) && model_->lies_still(state, pair.b)) continue;
-    const Swept &a = all.at(pair.a), &b = all.at(pair.b);
-    if ((a.c - b.c).norm() > a.reach + b.reach) continue;
+  each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
     near.empty = false;
     const double way = h * (a.speed + b.speed);
-    const double thin = kThinStep * std::min(meshes_.at(pair.a).thickness(), meshes_.at(pair.b).thickness());
+    const double thin = kThinStep * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
     if (way > thin) near.h = std::min(near.h, h * thin / way);
-  }
+  });
 }
 
 }  // namespace pliant

@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include <pliant/math/index.h>
+
 namespace pliant {
 
 namespace {
@@ -57,14 +59,15 @@ struct Candidates {
     Vec3<double> p0, p1, p2, normal, centre;
     double radius;  ///< of a ball about the centre that it is in
   };
-  struct Edge {
-    int from, to;
-    Vec3<double> p, along;
-    Vec3<double> n1, n2, n21;  ///< normals of its triangles, and n2 x n1
-  };
-  std::vector<int> vertices;
+  std::vector<int> vertices, edges;
   std::vector<Face> faces;
-  std::vector<Edge> edges;
+};
+
+/// An edge that sticks out.
+struct SharpEdge {
+  int from, to;
+  Vec3<double> p, along;
+  Vec3<double> n1, n2, n21;  ///< normals of its triangles, and n2 x n1
 };
 
 Vec3<double> normal_of(const PlacedMesh& m, int triangle) {
@@ -88,15 +91,14 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
   Candidates chosen;
   for (int k = 0; k < m.x.cols(); ++k)
     if (height[k] >= least && box.contains(m.x.col(k))) chosen.vertices.push_back(k);
-  for (const ContactMesh::Edge& e : m.mesh->edges()) {
+  const std::vector<ContactMesh::Edge>& edges = m.mesh->edges();
+  for (int k = 0; k < static_cast<int>(edges.size()); ++k) {
+    const ContactMesh::Edge& e = edges[at(k)];
     if (std::max(height[e.from], height[e.to]) < least || e.right < 0) continue;
     const Vec3<double> from = m.x.col(e.from), to = m.x.col(e.to);
-    if ((from.cwiseMax(to).array() < box.min().array()).any() ||
-        (from.cwiseMin(to).array() > box.max().array()).any())
-      continue;
-    const Vec3<double> n1 = normal_of(m, e.left), n2 = normal_of(m, e.right), n21 = n2.cross(n1);
-    if (-n21.dot(to - from) > kNoTurn * (to - from).norm())
-      chosen.edges.push_back({e.from, e.to, from, to - from, n1, n2, n21});
+    if (!(from.cwiseMax(to).array() < box.min().array()).any() &&
+        !(from.cwiseMin(to).array() > box.max().array()).any())
+      chosen.edges.push_back(k);
   }
   const Eigen::Matrix3Xi& triangles = m.mesh->triangles();
   for (int t = 0; t < triangles.cols(); ++t) {
@@ -112,14 +114,28 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
 }
 
 /// Leaves those that are not below `least`.
-void keep_above(Candidates& chosen, const VecX<double>& height, double least) {
+void keep_above(Candidates& chosen, const PlacedMesh& m, const VecX<double>& height, double least) {
   auto keep = [](auto& all, auto&& top) {
     all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return !top(one); }), all.end());
   };
   keep(chosen.vertices, [&](int k) { return height[k] >= least; });
-  keep(chosen.edges,
-       [&](const Candidates::Edge& e) { return std::max(height[e.from], height[e.to]) >= least; });
+  keep(chosen.edges, [&](int k) {
+    const ContactMesh::Edge& e = m.mesh->edges()[at(k)];
+    return std::max(height[e.from], height[e.to]) >= least;
+  });
   keep(chosen.faces, [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= least; });
+}
+
+/// Those of some edges of a mesh that stick out.
+std::vector<SharpEdge> sharp_edges(const PlacedMesh& m, const std::vector<int>& edges) {
+  std::vector<SharpEdge> sharp;
+  for (const int k : edges) {
+    const ContactMesh::Edge& e = m.mesh->edges()[at(k)];
+    const Vec3<double> from = m.x.col(e.from), along = m.x.col(e.to) - from;
+    const Vec3<double> n1 = normal_of(m, e.left), n2 = normal_of(m, e.right), n21 = n2.cross(n1);
+    if (-n21.dot(along) > kNoTurn * along.norm()) sharp.push_back({e.from, e.to, from, along, n1, n2, n21});
+  }
+  return sharp;
 }
 
 /// The face that a point is nearest to.
@@ -134,38 +150,56 @@ struct NearestFace {
   bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraightAbove); }
 };
 
-/// Of those that count.
-template <class F>
-NearestFace nearest_face(const Vec3<double>& x, const std::vector<Candidates::Face>& faces, F&& counts) {
-  NearestFace best;
-  double reach = std::numeric_limits<double>::infinity();
-  auto consider = [&](const Candidates::Face& face) {
-    const double height = face.normal.dot(x - face.p0);
-    const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
-    const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
-    // Where several are as near, the one that x stands highest over or below tells inside from outside.
-    const bool nearer = square < best.square * (1 - kTie);
-    if (!nearer && !(square < best.square * (1 + kTie) && std::abs(height) > std::abs(best.gap))) return;
-    best = {&face, w, square, height};
-    reach = std::sqrt(square) * (1 + kTie);
-  };
-  // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
-  const Candidates::Face* first = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Candidates::Face& face : faces) {
-    const double square = (face.centre - x).squaredNorm();
-    if (!(square < least) || !counts(face)) continue;
-    least = square;
-    first = &face;
+/// Tells which of some faces a point is nearest to.
+class NearestOf {
+ public:
+  /// faces: must outlive it.
+  explicit NearestOf(const std::vector<Candidates::Face>& faces)
+      : faces_(faces), centres_(static_cast<Eigen::Index>(faces.size()), 3) {
+    for (Eigen::Index k = 0; k < centres_.rows(); ++k)
+      centres_.row(k) = faces[static_cast<std::size_t>(k)].centre.transpose();
   }
-  if (first == nullptr) return best;
-  consider(*first);
-  for (const Candidates::Face& face : faces) {
-    const double most = reach + face.radius;
-    if ((x - face.centre).squaredNorm() <= most * most && counts(face)) consider(face);
+
+  /// Of those that count.
+  template <class F>
+  NearestFace operator()(const Vec3<double>& x, F&& counts) {
+    NearestFace best;
+    double reach = std::numeric_limits<double>::infinity();
+    auto consider = [&](const Candidates::Face& face) {
+      const double height = face.normal.dot(x - face.p0);
+      const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
+      const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
+      // Where several are as near, the one that x stands highest over or below tells inside from outside.
+      const bool nearer = square < best.square * (1 - kTie);
+      if (!nearer && !(square < best.square * (1 + kTie) && std::abs(height) > std::abs(best.gap))) return;
+      best = {&face, w, square, height};
+      reach = std::sqrt(square) * (1 + kTie);
+    };
+    // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
+    squares_ = (centres_.col(0) - x[0]).square() + (centres_.col(1) - x[1]).square() +
+               (centres_.col(2) - x[2]).square();
+    std::size_t first = faces_.size();
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      const double square = squares_[static_cast<Eigen::Index>(k)];
+      if (!(square < least) || !counts(faces_[k])) continue;
+      least = square;
+      first = k;
+    }
+    if (first == faces_.size()) return best;
+    consider(faces_[first]);
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      const double most = reach + faces_[k].radius;
+      if (squares_[static_cast<Eigen::Index>(k)] <= most * most && counts(faces_[k])) consider(faces_[k]);
+    }
+    return best;
   }
-  return best;
-}
+
+ private:
+  const std::vector<Candidates::Face>& faces_;
+  Eigen::Array<double, Eigen::Dynamic, 3> centres_;
+  Eigen::ArrayXd squares_;  // of distances
+};
 
 /// Vertices of one mesh that are behind faces of the other. all: these are all of its faces, so
 /// that what is behind one is inside even where another one meets it in a dent. one_is_a: which is which in
@@ -173,9 +207,10 @@ NearestFace nearest_face(const Vec3<double>& x, const std::vector<Candidates::Fa
 void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
                      const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
                      std::vector<MeshTouch>& found) {
+  NearestOf nearest_of(faces);
   for (const int k : vertices) {
     const Vec3<double> x = one.col(k);
-    const NearestFace nearest = nearest_face(x, faces, [](const Candidates::Face&) { return true; });
+    const NearestFace nearest = nearest_of(x, [](const Candidates::Face&) { return true; });
     if (!(nearest.gap < 0) || !(all || nearest.is_straight_behind())) continue;
     const Candidates::Face& which = *nearest.face;
     Vec3<double> normal = which.normal;
@@ -200,10 +235,10 @@ void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertic
 
 /// Edges of a and b that have gone across each other: of convex surfaces those whose normals, those of b
 /// turned round, cross on the sphere, so that their distance is one of the bodies.
-void edges_across(const std::vector<Candidates::Edge>& of_a, const std::vector<Candidates::Edge>& of_b,
+void edges_across(const std::vector<SharpEdge>& of_a, const std::vector<SharpEdge>& of_b,
                   std::vector<MeshTouch>& found) {
-  for (const Candidates::Edge& e : of_a)
-    for (const Candidates::Edge& f : of_b) {
+  for (const SharpEdge& e : of_a)
+    for (const SharpEdge& f : of_b) {
       const double above_1 = -f.n1.dot(e.n21), above_2 = -f.n2.dot(e.n21);
       if (!(above_1 * above_2 < 0)) continue;
       const double beside_1 = e.n1.dot(f.n21), beside_2 = e.n2.dot(f.n21);
@@ -266,10 +301,11 @@ void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vect
         (Vec3<double>(a.x.col(corner[1])) - p0).cross(Vec3<double>(a.x.col(corner[2])) - p0);
     for (Eigen::Index k = 0; k < 3; ++k) out.col(corner[k]) += normal;
   }
+  NearestOf nearest_of(faces);
   for (int k = 0; k < a.x.cols(); ++k) {
     const Vec3<double> x = a.x.col(k), outward = out.col(k);
     const NearestFace nearest =
-        nearest_face(x, faces, [&](const Candidates::Face& face) { return face.normal.dot(outward) < 0; });
+        nearest_of(x, [&](const Candidates::Face& face) { return face.normal.dot(outward) < 0; });
     if (!(nearest.gap < 0)) continue;
     MeshTouch touch;
     touch.a.vertex[0] = k;
@@ -294,10 +330,15 @@ void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vect
   }
 }
 
+struct SharpParts {
+  std::vector<int> vertices;
+  std::vector<SharpEdge> edges;
+};
+
 /// What sticks out of some triangles of an obstacle: the border does so to its side, the edge of a plate from
 /// its front to its side and from there to its back.
-Candidates sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
-  Candidates sharp;
+SharpParts sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
+  SharpParts sharp;
   std::vector<int> edges;
   for (const int t : triangles)
     for (const int e : m.edges_of(t))
@@ -353,11 +394,11 @@ void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouc
   end_of_a = along_a.maxCoeff();
   start_of_b = -along_b.maxCoeff();
   if (end_of_a < start_of_b) return;
-  keep_above(of_a, along_a, start_of_b);
-  keep_above(of_b, along_b, -end_of_a);
+  keep_above(of_a, a, along_a, start_of_b);
+  keep_above(of_b, b, along_b, -end_of_a);
   vertices_inside(a.x, of_a.vertices, of_b.faces, false, true, found);
   vertices_inside(b.x, of_b.vertices, of_a.faces, false, false, found);
-  edges_across(of_a.edges, of_b.edges, found);
+  edges_across(sharp_edges(a, of_a.edges), sharp_edges(b, of_b.edges), found);
 }
 
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found) {
@@ -369,7 +410,7 @@ void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, st
   if (near.empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   vertices_behind(a, b, near, found);
-  const Candidates sharp = sharp_of(b, near);
+  const SharpParts sharp = sharp_of(b, near);
   const auto of_corners = static_cast<std::ptrdiff_t>(found.size());
   if (!sharp.edges.empty()) {
     const Candidates of_a = candidates(a, around, VecX<double>::Zero(a.x.cols()), 0);
@@ -379,7 +420,7 @@ void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, st
                                  return !b.leads_out(touch.b.vertex[0], touch.normal, kOut);
                                }),
                 found.end());
-    edges_across(of_a.edges, sharp.edges, found);
+    edges_across(sharp_edges(a, of_a.edges), sharp.edges, found);
   }
   found.erase(std::remove_if(found.begin() + first, found.end(),
                              [&](const MeshTouch& touch) { return touch.gap < -deepest; }),

@@ -32,6 +32,8 @@ class ContactMesh {
   /// Radius of a ball about the origin of the part's frame that it is in, m; of a part without nodes that
   /// changes estimated by few points.
   double reach(const Model& model, const State& state, int number) const;
+  /// Whether it is estimated.
+  bool reaches_by_few() const { return !few_.empty(); }
   /// No point of it moves faster against the frame of the part, m/s; estimated likewise.
   double speed(const State& state) const;
 

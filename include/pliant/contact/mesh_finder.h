@@ -20,7 +20,7 @@ class MeshFinder {
   /// The model and its obstacles must outlive it.
   MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
-  bool empty() const { return planes_.empty() && on_obstacles_.empty() && pairs_.empty(); }
+  bool empty() const { return meshes_.empty(); }
   /// Where surfaces have gone through each other at a state and a time, s. Appends.
   void find(const State& state, double t, std::vector<Contact>& found) const;
   /// What a step from a state comes near to, on top of what is in `near` already.
@@ -38,20 +38,28 @@ class MeshFinder {
     const ObstacleMesh* mesh;
     ContactRule rule;
   };
-  struct Pair {
-    int a, b;
-    ContactRule rule;
+  /// A ball that a part is in, and the vertices of its mesh (body frame, m) where they told it.
+  struct Around {
+    int part;
+    Vec3<double> c;
+    double reach;
+    Eigen::Matrix3Xd p;
   };
+  bool is_soft(int part) const;
   ContactSide side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
                    const Vec3<double>& x) const;
-  PlacedMesh place(const State& state, double t, int part) const;
+  std::map<int, Around> balls(const State& state, double t) const;
+  PlacedMesh place(const State& state, double t, const Around& ball) const;
+  /// act(one, other) for each two things of a map over parts that may touch: meshes, whose boxes meet.
+  template <class Thing, class F>
+  void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> carries(int part, double t, const Vec3<double>& x) const;
 
   const Model* model_;
   std::map<int, ContactMesh> meshes_;  // of each part that needs one
   std::vector<OnPlane> planes_;
   std::vector<OnObstacle> on_obstacles_;
-  std::vector<Pair> pairs_;  // one of the two deforms locally
+  ContactRules rules_;
 };
 
 }  // namespace pliant
