@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <pliant/integrate/settle.h>
@@ -18,12 +19,15 @@ namespace {
 /// move.
 constexpr double kPartingSpeed = 1;
 constexpr int kMostPartings = 8;
+/// Less than this share of what bodies may be parted by in a step is none.
+constexpr double kNothingLeft = 1e-3;
 /// Most times in a step that bodies which impulses throw meet others.
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kLeftOverlap = 1e-4;
-/// Meshes may overlap by this, in sizes, without being parted; and parted ones by this share of it.
-constexpr double kMeshOverlap = 2e-4, kMeshLeft = 0.03;
+/// Meshes may overlap by this many times what counts as resting without being parted; and parted ones by this
+/// share of it.
+constexpr double kMeshOverlap = 800, kMeshLeft = 0.03;
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
@@ -80,8 +84,6 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   counters.contact_sweeps += solution.sweeps;
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
-  bool smooth = false, deep = false;
-  double overlap = std::numeric_limits<double>::infinity();  // that the smallest of the meshes may have
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
@@ -90,28 +92,19 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
     const double moved = c.since * (solution.velocity[k].dot(c.normal) - opening[k]);
     thrown = std::max(thrown, moved);
-    if (!of_meshes(c)) {
-      smooth = true;
-      continue;
-    }
-    const double may = kMeshOverlap * dynamics_.model().parts()[at(c.a.part)].part->size();
-    deep = deep || c.gap + moved < -may;
-    overlap = std::min(overlap, may);
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(since_of_limits, h);
-  if (deep) problem.part_bodies(most, smooth ? 0 : kMeshLeft * overlap);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
-  // string has stopped something within it too, or bodies are parted, it is what the energy changes by. So is
-  // that of hands that move joints, on which impulses push back, and of impulses at one moment.
+  // string has stopped something within it too, it is what the energy changes by. So is that of hands that
+  // move joints, on which impulses push back, and of impulses at one moment.
   const bool hands = are_driven(dynamics_.model(), parts), moment = &before == &state;
-  const bool broken =
-      hands || deep || moment || state.at_limit != before.at_limit || state.joints != before.joints;
+  const bool broken = hands || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
   move_by(problem, dynamics_.model(), work, state);
-  if (h > 0 || deep) reconcile(parts, state, t, work, counters);
-  if (h > 0 && smooth) part_overlaps(most + thrown, state, t, work, counters);
+  if (h > 0) reconcile(parts, state, t, work, counters);
+  if (h > 0) part_overlaps(most + thrown, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
@@ -151,25 +144,61 @@ void ContactSettling::settle_chain(std::vector<Contact> settled, double h, doubl
   }
 }
 
-/// Moves smooth bodies that overlap apart, by at most so many m.
+/// How deep a contact may be without being parted, m.
+double ContactSettling::may_overlap(const Contact& contact) const {
+  return of_meshes(contact) ? kMeshOverlap * resting_.gap(contact) : kLeftOverlap * resting_.gap();
+}
+
+/// What parting the deep ones of some contacts moves: of meshes alone others of the same pairs, and those of
+/// bodies that move as a whole.
+void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const {
+  std::set<std::pair<int, int>> pairs;
+  std::set<int> bodies;
+  for (const Contact& contact : contacts) {
+    if (!(contact.gap < -may_overlap(contact))) continue;
+    if (!of_meshes(contact)) return;
+    pairs.insert({contact.a.part, contact.b.part});
+    for (const int part : {contact.a.part, contact.b.part})
+      if (part >= 0 && !moves_by_nodes(dynamics_.model().parts()[at(part)], work.parts[at(part)]))
+        bodies.insert(part);
+  }
+  contacts.erase(
+      std::remove_if(
+          contacts.begin(), contacts.end(),
+          [&](const Contact& c) {
+            return pairs.count({c.a.part, c.b.part}) + bodies.count(c.a.part) + bodies.count(c.b.part) == 0;
+          }),
+      contacts.end());
+}
+
+/// Moves bodies that overlap apart, by at most so many m.
 void ContactSettling::part_overlaps(double most, State& state, double t, Workspace<double>& work,
                                     StepCounters& counters) {
-  double start = 0;  // the deepest at first, m
+  double left = most;
   for (int i = 0; i < kMostPartings; ++i) {
-    std::vector<Contact> deep = resting_.near(state, t);
+    std::vector<Contact> found = resting_.near(state, t);
     double deepest = 0;
-    for (const Contact& contact : deep) deepest = std::max(deepest, -contact.gap);
-    if (i == 0) start = deepest;
-    const double left = most - std::max(0.0, start - deepest);
-    if (!(deepest > kLeftOverlap * resting_.gap()) || !(left > 0)) return;
+    for (const Contact& contact : found) deepest = std::max(deepest, -contact.gap);
     // Parted by so much, they may meet what is as near.
-    if (deepest > resting_.gap()) deep = finder_.find(state, t, std::min(deepest, left));
-    const std::vector<int> parts = parts_touched(dynamics_.model(), deep);
+    if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, left));
+    meshes_.find(state, t, found);
+    bool any = false;
+    for (const Contact& contact : found) {
+      any = any || contact.gap < -may_overlap(contact);
+      deepest = std::max(deepest, -contact.gap);
+    }
+    if (!any || !(left > kNothingLeft * most)) return;
+    keep_concerned(found, work);
+    double enough = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : found)
+      enough = std::min(enough, of_meshes(contact) ? kMeshLeft * may_overlap(contact) : 0);
+    const std::vector<int> parts = parts_touched(dynamics_.model(), found);
     Workspace<double> scratch;
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
-    evaluate_touched(dynamics_, state, t, deep, work);
-    ContactProblem parting(dynamics_.model(), state, work, deep);
-    parting.part_bodies(left);
+    evaluate_touched(dynamics_, state, t, found, work);
+    ContactProblem parting(dynamics_.model(), state, work, found);
+    parting.part_bodies(left, enough);
+    left -= std::min(deepest, left);
     move_by(parting, dynamics_.model(), work, state);
     reconcile(parts, state, t, work, counters);
     state.work[static_cast<int>(Work::contact)] +=

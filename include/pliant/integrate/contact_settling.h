@@ -40,6 +40,8 @@ class ContactSettling {
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
   double swing(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
+  double may_overlap(const Contact& contact) const;
+  void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
   void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
 
   const Dynamics& dynamics_;
