@@ -33,6 +33,7 @@ ContactProblem::ContactProblem(const Model& model, const State& state, Workspace
     complete();
   }
   add_limits();
+  add_strings();
   before_ = movers_.velocities(state, work);
   after_ = before_;
   shift_.setZero(movers_.n_x());
@@ -113,6 +114,30 @@ void ContactProblem::add_limits() {
         sides_.push_back(std::move(side));
         complete();
       }
+    }
+  }
+}
+
+/// Taut strings of what the contacts push do not grow. Those of parts that deform locally are left to what
+/// settles joints.
+void ContactProblem::add_strings() {
+  const std::vector<Mover> movers = movers_.all();
+  for (const Mover& mover : movers) {
+    if (mover.island == nullptr) continue;
+    for (const int j : mover.island->strings) {
+      const JointModel& string = model_.joints()[at(j)];
+      if (state_.joints[at(j)] != JointMode::closed ||
+          std::any_of(string.sides.begin(), string.sides.end(),
+                      [&](const JointSide& side) { return model_.parts()[at(side.part)].local != nullptr; }))
+        continue;
+      strings_.push_back({system_.size(), string.row});
+      system_.add_row();
+      for (const JointSide& end : string.sides) {
+        Side side = side_of(end.part);
+        side.J.row(0) = work_.joints.Cq.segment(end.offset, side.J.cols()).transpose();
+        sides_.push_back(std::move(side));
+      }
+      complete();
     }
   }
 }
@@ -228,6 +253,11 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
     system_.constant(k) = -axes(contact).transpose() * contact.carried;
     system_.constant(k)[0] -= contact.rebound;
   }
+  for (const String& string : strings_) {
+    double& along = system_.constant(string.contact)[0];
+    along = 0;  // what its ends are moved by is what is left of its rate
+    along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
+  }
   const CoulombResult result = system_.solve(after_);
   ContactSolution solution{{}, {}, result.residual, result.sweeps, result.fallbacks};
   for (int k = 0; k < system_.size(); ++k) {
@@ -251,6 +281,7 @@ void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
       rows.segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
     }
   }
+  for (const String& string : strings_) rows[string.row] += system_.impulse(string.contact)[0];
 }
 
 void ContactProblem::bound_shifts(double since, double most) {

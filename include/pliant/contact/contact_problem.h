@@ -1,6 +1,7 @@
 // The contacts of bodies that push on each other at once, at velocity level (design 1.6): each contact has a
 // velocity u of its sides against each other and an impulse p that meets Coulomb's law
-// (solve/coulomb_system.h), while the joints of each body hold and no parameter leaves its limits.
+// (solve/coulomb_system.h), while the joints of each body hold, no parameter leaves its limits and no taut
+// string grows.
 #pragma once
 
 #include <vector>
@@ -26,8 +27,8 @@ class ContactProblem {
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
-  /// Impulses of the contacts, with the rebound that each of them asks for, and of limits, whose `since` is
-  /// that of all.
+  /// Impulses of the contacts, with the rebound that each of them asks for, and of limits and strings, whose
+  /// `since` is that of all.
   ContactSolution solve(double since_of_limits);
   /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
   /// another state.
@@ -55,6 +56,10 @@ class ContactProblem {
     const Island* island;
     MatX<double> lambda;
   };
+  /// A taut string: the lone row that it is, and its number among those of all joints.
+  struct String {
+    int contact, row;
+  };
   /// A side of the contact that is added now.
   struct Side {
     int part, mover, first;  ///< of its velocities in those of the mover
@@ -70,6 +75,7 @@ class ContactProblem {
   void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
   void add_side(const ContactSide& side, const Contact& contact, double sign);
   void add_limits();
+  void add_strings();
   void complete();
   void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;
   void hold_joints(int contact);
@@ -79,9 +85,10 @@ class ContactProblem {
   Workspace<double>& work_;
   const std::vector<Contact>& contacts_;
   Movers movers_;
-  CoulombSystem system_;  // the contacts first, then limits
+  CoulombSystem system_;  // the contacts first, then limits and strings
   std::vector<Side> sides_;
   std::vector<JointResponse> joints_;
+  std::vector<String> strings_;
   std::vector<PointJet<double>> jets_;
   VecX<double> before_, after_, shift_;
 };
