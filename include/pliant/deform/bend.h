@@ -22,8 +22,16 @@ struct Bend {
   static constexpr int amplitudes = 1;
 
   template <class T>
+  static math::SinCos<T> prepare(const Vec<T, 2>& b) {
+    return math::sin_cos(b[1]);
+  }
+  template <class T>
   static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
-    const auto [s, c] = math::sin_cos(b[1]);
+    return apply<T>(p, h, b, prepare<T>(b));
+  }
+  template <class T>
+  static Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, 2>& b, const math::SinCos<T>& direction) {
+    const auto& [s, c] = direction;
     const T r = c * p[0] + s * p[1];
     const T half = b[0] * p[2] / h * 0.5;  // g / 2
     const math::SinCos<T> of_half = math::sin_cos(half);

@@ -7,12 +7,14 @@
 //   sections           what becomes of the planes z = const, which decides the quadrature of the mass
 //   apply(p, h, b)     T(p, h; b); the identity when all parameters are at their defaults
 //   inverse(p, h, b)   the point that apply takes to p
+//   prepare(b)         optional: what T takes of the parameters alone; apply(p, h, b, that) is then T as well
 //   amplitudes         optional: how many parameters, from the first, make it the identity while at their
 //                      defaults, whatever the others are; all of them unless it says
 #pragma once
 
 #include <array>
 #include <type_traits>
+#include <utility>
 
 #include <pliant/math/dual.h>
 #include <pliant/math/functions.h>
@@ -35,7 +37,37 @@ template <class Deform, class = void>
 inline constexpr int amplitudes_of = deform_size<Deform>;
 template <class Deform>
 inline constexpr int amplitudes_of<Deform, std::void_t<decltype(Deform::amplitudes)>> = Deform::amplitudes;
+template <class Deform, class T, class = void>
+struct Prepared {
+  explicit Prepared(const Vec<T, deform_size<Deform>>&) {}
+  Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, deform_size<Deform>>& b) const {
+    return Deform::template apply<T>(p, h, b);
+  }
+};
+template <class Deform, class T>
+struct Prepared<
+    Deform, T,
+    std::void_t<decltype(Deform::template prepare<T>(std::declval<Vec<T, deform_size<Deform>>>()))>> {
+  decltype(Deform::template prepare<T>(std::declval<Vec<T, deform_size<Deform>>>())) of_b;
+  explicit Prepared(const Vec<T, deform_size<Deform>>& b) : of_b(Deform::template prepare<T>(b)) {}
+  Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, deform_size<Deform>>& b) const {
+    return Deform::template apply<T>(p, h, b, of_b);
+  }
+};
 }  // namespace detail
+
+/// T(.; b) of a deformation at given h and b, for many points.
+template <class Deform, class T>
+class DeformBy {
+ public:
+  DeformBy(const T& h, const Vec<T, deform_size<Deform>>& b) : h_(h), b_(b), prepared_(b) {}
+  Vec3<T> operator()(const Vec3<T>& p) const { return prepared_.apply(p, h_, b_); }
+
+ private:
+  T h_;
+  Vec<T, deform_size<Deform>> b_;
+  detail::Prepared<Deform, T> prepared_;
+};
 
 /// How many parameters of a deformation, from the first, make it the identity while at their defaults.
 template <class Deform>

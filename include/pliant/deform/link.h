@@ -45,9 +45,10 @@ template <class Deform, class P, class S>
     const T h(S(half.h.v));
     Vec<T, deform_size<Deform>> b;
     for (int i = 0; i < deform_size<Deform>; ++i) b[i] = i == k ? along : T(S(parameters.b[i]));
+    const DeformBy<Deform, T> deform(h, b);
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];
-      const Vec3<T> moved = Deform::template apply<T>({T(jet.s[0]), T(jet.s[1]), T(jet.s[2])}, h, b);
+      const Vec3<T> moved = deform({T(jet.s[0]), T(jet.s[1]), T(jet.s[2])});
       for (int r = 0; r < 3; ++r) {
         jet.s[r] = moved[r].v;
         take(jet, r, moved[r]);
@@ -81,9 +82,10 @@ template <class Deform, class P, class S>
     moving += parameters.dynamic[k] ? 1 : 0;
   }
   if (batch.level == Level::position || (batch.n_columns == 0 && moving == 0)) {
+    const DeformBy<Deform, S> deform(h, b);
     for (int i = 0; i < batch.count; ++i) {
       Vec3<S>& s = batch.jet[i].s;
-      s = Deform::template apply<S>(Vec3<S>(s), h, b);
+      s = deform(Vec3<S>(s));
     }
     return;
   }
@@ -99,6 +101,8 @@ template <class Deform, class P, class S>
     b_t[k] = parameters.dynamic[k] ? T(b[k], S(parameters.b_dot[k]), S(0.0)) : T(b[k]);
     b_d[k] = D::variable(b[k], 4 + k);
   }
+  const DeformBy<Deform, T> deform_t(h_t, b_t);
+  const DeformBy<Deform, D> deform_d(h_d, b_d);
   const int n_shape = static_cast<int>(half.slope.size());
   // Both in one pass: what they have in common is computed once.
   auto each = [&](auto rates) {
@@ -107,11 +111,9 @@ template <class Deform, class P, class S>
       const Vec3<S> s = jet.s;
       Vec3<T> along;
       if constexpr (rates)
-        along = Deform::template apply<T>(
-            {T(s[0], jet.s1[0], jet.s2[0]), T(s[1], jet.s1[1], jet.s2[1]), T(s[2], jet.s1[2], jet.s2[2])},
-            h_t, b_t);
-      const Vec3<D> moved = Deform::template apply<D>(
-          {D::variable(s[0], 0), D::variable(s[1], 1), D::variable(s[2], 2)}, h_d, b_d);
+        along = deform_t(
+            {T(s[0], jet.s1[0], jet.s2[0]), T(s[1], jet.s1[1], jet.s2[1]), T(s[2], jet.s1[2], jet.s2[2])});
+      const Vec3<D> moved = deform_d({D::variable(s[0], 0), D::variable(s[1], 1), D::variable(s[2], 2)});
       for (int r = 0; r < 3; ++r) {
         jet.s[r] = moved[r].v;
         if constexpr (rates) {
