@@ -10,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// Edges along a quarter of a great circle.
+/// Edges along an eighth of a great circle.
 constexpr int kSurfaceResolution = 6;
 /// The same of few points that tell how far the part reaches, and by how much it may reach beyond them.
 constexpr int kFewEdges = 2;

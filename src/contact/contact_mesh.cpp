@@ -8,7 +8,7 @@
 namespace pliant {
 
 namespace {
-/// Edges along a quarter of a great circle, of the mesh over a part that has none of its own.
+/// Edges along an eighth of a great circle, of the mesh over a part that has none of its own.
 constexpr int kMeshResolution = 6;
 /// The same of few points that tell how far such a part reaches and how fast it changes, and by how much the
 /// others may go beyond them.

@@ -54,12 +54,11 @@ schema::Record local_record() {
                 "What displacements are made of.", "\"nodes\""),
        optional("degree", integer(between(1, 10)), "Of the polynomials.", "4"),
        optional("modes", integer(between(1, 2000)), "How many of the lowest.", "20"),
-       optional("resolution", integer(between(1, 64)),
-                "Edges along a quarter circle: 48 n^2 triangles of a shell (a torus 64 n^2), some 48 n^3 "
-                "tetrahedra "
-                "of a solid. "
-                "Polynomials are shown by that surface.",
-                "8"),
+       optional(
+           "resolution", integer(between(1, 64)),
+           "Edges along an eighth of a circle: 48 n^2 triangles of a shell (a torus 64 n^2), some 48 n^3 "
+           "tetrahedra of a solid. Polynomials are shown by that surface.",
+           "8"),
        optional(
            "order", integer(between(1, 2)),
            "Of the elements of a solid: 1 straight with 4 nodes, 2 curved, with 15 nodes (10 for modes).",

@@ -57,7 +57,7 @@ struct LocalSettings {
   Basis basis = Basis::nodes;
   int degree = 4;      ///< of the polynomials, 1 to 10
   int modes = 20;      ///< how many
-  int resolution = 8;  ///< edges along a quarter of a great circle, see Surface and Solid
+  int resolution = 8;  ///< edges along an eighth of a great circle, see Surface and Solid
   int order = 1;       ///< of the elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes (of modes 10)
   using Law = LocalLaw;
   std::vector<Law> energies;

@@ -18,7 +18,7 @@ class Solid {
  public:
   enum class Order { linear, quadratic, enriched };
 
-  /// resolution: edges along a quarter of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
+  /// resolution: edges along an eighth of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
   /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and where an
   /// element is turned inside out or flat at the rest shape.
   Solid(const Part& part, int resolution, Order order = Order::linear);

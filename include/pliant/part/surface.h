@@ -12,7 +12,7 @@ namespace pliant {
 /// Which material points and triangles cover a part; laid once, at the rest shape.
 class Surface {
  public:
-  /// resolution: edges along a quarter of a great circle, at least 1. A ball has 24 resolution^2 + 2 vertices
+  /// resolution: edges along an eighth of a great circle, at least 1. A ball has 24 resolution^2 + 2 vertices
   /// and 48 resolution^2 triangles; a torus 32 resolution^2 vertices. Throws std::invalid_argument outside
   /// [1, 512].
   Surface(const Part& part, int resolution);
@@ -21,7 +21,7 @@ class Surface {
   /// Where ShapeFace::mesh_label() took each of them from.
   const std::vector<Vec3<double>>& places() const { return places_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
-  /// Edges along a quarter circle that give about this many triangles.
+  /// Edges along an eighth of a circle that give about this many triangles.
   static int resolution_for(const Part& part, int triangles);
 
   /// The mesh in the body frame, at these values, with its normals.
