@@ -127,7 +127,8 @@ void print_forces(const pliant::Scene& scene, const pliant::Simulation& simulati
     std::cout << "\n";
   }
   for (const auto& torque : scene.body.torques())
-    std::cout << "torque " << torque->name << ": " << torque->part->name() << "\n";
+    std::cout << "torque " << torque->name << ": " << torque->part->name()
+              << (torque->against == nullptr ? "" : " against " + torque->against->name()) << "\n";
   for (const pliant::Track& track : scene.tracks) {
     std::cout << "track " << track.name << ": ";
     print_point(simulation, track.point);

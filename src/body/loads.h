@@ -70,13 +70,20 @@ void apply_loads(const Model& model, double t, Workspace<S>& work) {
     push(f.at, force, 1);
     if (moves(f.at)) work.power[static_cast<int>(Work::forces)] += force.dot(at.x_dot);
   }
-  for (const TorqueModel& m : model.torques()) {
-    PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(m.part)];
-    if (parts[static_cast<std::size_t>(m.part)].q0 < 0) continue;
-    Vec3<S> torque = m.torque->torque.value(t).template cast<S>();
-    if (m.torque->frame == Frame::world) torque = (w.R.transpose() * torque).eval();
+  auto turn = [&](int part, Vec3<S> torque, Frame frame) {
+    PartWorkspace<S>& w = work.parts[static_cast<std::size_t>(part)];
+    if (parts[static_cast<std::size_t>(part)].q0 < 0) return;
+    if (frame == Frame::world) torque = (w.R.transpose() * torque).eval();
     w.f.template segment<3>(3) += torque;
     work.power[static_cast<int>(Work::forces)] += torque.dot(w.v_r.template segment<3>(3));
+  };
+  for (const TorqueModel& m : model.torques()) {
+    Vec3<S> torque = m.torque->torque.value(t).template cast<S>();
+    turn(m.part, torque, m.torque->frame);
+    if (m.against < 0) continue;
+    if (m.torque->frame == Frame::body)
+      torque = (work.parts[static_cast<std::size_t>(m.part)].R * torque).eval();
+    turn(m.against, -torque, Frame::world);
   }
 }
 

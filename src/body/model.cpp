@@ -68,8 +68,12 @@ Model::Model(MultiBody& body) : body_(&body) {
     forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
   }
   for (const auto& torque : body.torques()) {
-    if (torque->part == nullptr) throw std::invalid_argument("torque '" + torque->name + "' acts on no part");
-    torques_.push_back({torque.get(), body.index(*torque->part)});
+    const std::string what = "torque '" + torque->name + "'";
+    if (torque->part == nullptr) throw std::invalid_argument(what + " acts on no part");
+    if (torque->against == torque->part)
+      throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
+    torques_.push_back({torque.get(), body.index(*torque->part),
+                        torque->against == nullptr ? -1 : body.index(*torque->against)});
   }
   body.stabilization.check();
   for (const auto& joint : body.joints()) {
@@ -95,7 +99,9 @@ void Model::note_loaded_parts() {
     for (const PortRef& ref : {spring.a, spring.b})
       if (ref.part >= 0) parts_[static_cast<std::size_t>(ref.part)].loaded = true;
   for (const ForceModel& force : forces_) parts_[static_cast<std::size_t>(force.at.part)].loaded = true;
-  for (const TorqueModel& torque : torques_) parts_[static_cast<std::size_t>(torque.part)].loaded = true;
+  for (const TorqueModel& torque : torques_)
+    for (const int part : {torque.part, torque.against})
+      if (part >= 0) parts_[static_cast<std::size_t>(part)].loaded = true;
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i].loaded) {
       loaded_parts_.push_back(static_cast<int>(i));

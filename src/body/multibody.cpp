@@ -41,7 +41,8 @@ PointForce& MultiBody::force(
 }
 
 Torque& MultiBody::torque(std::string name, const Part& part, TimeVector torque, Frame frame) {
-  torques_.push_back(std::make_unique<Torque>(Torque{std::move(name), &part, std::move(torque), frame}));
+  torques_.push_back(
+      std::make_unique<Torque>(Torque{std::move(name), &part, std::move(torque), frame, nullptr}));
   return *torques_.back();
 }
 

@@ -26,12 +26,22 @@ bool differs(const TimeVector& x, double t, double h) {
 bool by_hand(const Point& point) {
   return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
 }
-bool moves(const Point& point, double t, double h) {
-  if (point.part == nullptr) return differs(point.world, t, h);
-  const PrescribedMotion* motion = point.part->motion();
+bool moves(const Part& part, double t, double h) {
+  const PrescribedMotion* motion = part.motion();
   if (motion == nullptr) return false;
   const MovingFrame now = motion->at(t), half = motion->at(t + 0.5 * h), then = motion->at(t + h);
   return now.c != then.c || now.R != then.R || now.c != half.c || now.R != half.R;
+}
+bool moves(const Point& point, double t, double h) {
+  return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
+}
+
+/// Whether a torque changes by itself: in time, or with the axes of a part that hands turn.
+bool by_hand(const Torque& torque) {
+  return !torque.torque.is_constant() || (torque.frame == Frame::body && torque.part->motion() != nullptr);
+}
+bool changes(const Torque& torque, double t, double h) {
+  return differs(torque.torque, t, h) || (torque.frame == Frame::body && moves(*torque.part, t, h));
 }
 
 }  // namespace
@@ -93,8 +103,9 @@ void Sleeping::note_drives() {
       drives_.push_back({f.at.part, [&f](double t, double h) { return differs(f.force->force, t, h); }});
   }
   for (const TorqueModel& of : model_.torques())
-    if (has(of.part) && !of.torque->torque.is_constant())
-      drives_.push_back({of.part, [&of](double t, double h) { return differs(of.torque->torque, t, h); }});
+    for (const int end : {of.part, of.against})
+      if (has(end) && by_hand(*of.torque))
+        drives_.push_back({end, [&of](double t, double h) { return changes(*of.torque, t, h); }});
   for (const SpringModel& s : model_.springs())
     for (const auto& [end, other] : {std::pair(s.a.part, &s.spring->b), std::pair(s.b.part, &s.spring->a)})
       if (has(end) && by_hand(*other))
@@ -223,6 +234,8 @@ Sleeping::Sets Sleeping::sets_of(const std::vector<Contact>& contacts) const {
     for (const int i : island.parts) sets.join(i, island.parts.front());
   for (const SpringModel& s : model_.springs())
     if (has(s.a.part) && has(s.b.part)) sets.join(s.a.part, s.b.part);
+  for (const TorqueModel& of : model_.torques())
+    if (has(of.part) && has(of.against)) sets.join(of.part, of.against);
   return sets;
 }
 

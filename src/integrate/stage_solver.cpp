@@ -76,6 +76,7 @@ StageSolver::StageSolver(const Model& model) : model_(model), difference_(model.
     set[at(leader(set, std::max(a, b)))] = leader(set, std::min(a, b));
   };
   for (const SpringModel& spring : model.springs()) tie(spring.a.part, spring.b.part);
+  for (const TorqueModel& torque : model.torques()) tie(torque.part, torque.against);
   for (const Island& island : model.islands())
     for (const int part : island.parts) tie(island.parts.front(), part);
   std::vector<int> cluster(at(n), -1);

@@ -2,8 +2,9 @@
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
 // by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, of the derivatives A_q and A_v of v_dot, is
 // only formed where the iteration without it is slow, by differences, once a step, and again where stiff
-// parts turn so far on each other in it that it no longer helps; parts that neither joints nor springs tie
-// together have one each. It stands in the frames of the parts, with which stiff directions turn.
+// parts turn so far on each other in it that it no longer helps; parts that no joint, spring or torque
+// against each other ties together have one each. It stands in the frames of the parts, with which stiff
+// directions turn.
 #pragma once
 
 #include <string>

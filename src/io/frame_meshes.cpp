@@ -9,6 +9,19 @@ namespace pliant {
 
 namespace {
 
+/// A rectangle about the origin, across a normal.
+ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
+  constexpr double kLevel = 1e-9;
+  const Vec3<double> level(-normal[1], normal[0], 0);  // across z and the normal
+  const Vec3<double> along = level.norm() > kLevel ? level.normalized() : Vec3<double>(Vec3<double>::UnitX());
+  const Vec3<double> x = 0.5 * look.width * along, y = 0.5 * look.height * normal.cross(along);
+  Eigen::Matrix3Xd corners(3, 4);
+  corners << -x - y, x - y, x + y, y - x;
+  Eigen::Matrix3Xi triangles(3, 2);
+  triangles << 0, 0, 1, 2, 2, 3;
+  return {corners, triangles};
+}
+
 /// The triangles with a normal each; of an open mesh both sides.
 TriangleMesh faceted(const ObstacleMesh& obstacle) {
   const Eigen::Index n = obstacle.triangles().cols(), all = obstacle.closed() ? n : 2 * n;
@@ -53,6 +66,7 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
       shown.values.emplace(scene.coloring->by, shown.nodes.of(part.local()->mesh().X), shown.nodes.triangles);
   }
   lay_obstacles(scene, values);
+  lay_planes(scene, values);
 }
 
 void FrameMeshes::lay_obstacles(const Scene& scene, Values values) {
@@ -62,7 +76,16 @@ void FrameMeshes::lay_obstacles(const Scene& scene, Values values) {
     const ObstacleMesh mesh(obstacles[k].vertices, obstacles[k].triangles);
     NamedMesh named{obstacles[k].name, scene.obstacles[k].color, faceted(mesh)};
     if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
-    obstacles_.push_back({k, std::move(named)});
+    obstacles_.push_back({&obstacles[k], std::move(named)});
+  }
+}
+
+void FrameMeshes::lay_planes(const Scene& scene, Values values) {
+  for (const PlaneLook& look : scene.planes) {
+    const ContactPlane& plane = model_->body().contact.planes.at(look.plane);
+    NamedMesh named{plane.name, look.color, faceted(rectangle(look, plane.normal))};
+    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    planes_.push_back({&plane, std::move(named)});
   }
 }
 
@@ -97,15 +120,19 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there = shown_.size();  // obstacles come and go
-  for (const ShownObstacle& shown : obstacles_) {
-    if (!model_->body().contact.obstacles[shown.number].acts_at(state.time())) continue;
-    if (there == meshes_.size() || meshes_[there].name != shown.mesh.name) {
+  std::size_t there = shown_.size();  // obstacles and planes come and go
+  auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
+    if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);
-      meshes_.push_back(shown.mesh);
+      meshes_.push_back(mesh);
     }
-    ++there;
-  }
+    return meshes_[there++];
+  };
+  for (const auto& [obstacle, mesh] : obstacles_)
+    if (obstacle->acts_at(state.time())) show(mesh);
+  for (const auto& [plane, mesh] : planes_)
+    if (plane->acts_at(state.time()))
+      show(mesh).mesh.x = mesh.mesh.x.colwise() + plane->point.value(state.time());
   meshes_.resize(there);
   return meshes_;
 }
@@ -119,9 +146,15 @@ Eigen::AlignedBox3d FrameMeshes::bounds(const State& state) const {
     box.extend(Vec3<double>(x.rowwise().minCoeff()));
     box.extend(Vec3<double>(x.rowwise().maxCoeff()));
   }
-  for (const ShownObstacle& shown : obstacles_) {
-    box.extend(Vec3<double>(shown.mesh.mesh.x.rowwise().minCoeff()));
-    box.extend(Vec3<double>(shown.mesh.mesh.x.rowwise().maxCoeff()));
+  for (const auto& [obstacle, mesh] : obstacles_) {
+    box.extend(Vec3<double>(mesh.mesh.x.rowwise().minCoeff()));
+    box.extend(Vec3<double>(mesh.mesh.x.rowwise().maxCoeff()));
+  }
+  for (const auto& [plane, mesh] : planes_) {
+    if (!plane->acts_at(state.time())) continue;
+    const Vec3<double> point = plane->point.value(state.time());
+    box.extend(point + mesh.mesh.x.rowwise().minCoeff());
+    box.extend(point + mesh.mesh.x.rowwise().maxCoeff());
   }
   return box;
 }
@@ -143,7 +176,8 @@ std::int64_t FrameMeshes::triangles() const {
   std::int64_t sum = 0;
   for (const Shown& shown : shown_)
     sum += shown.surface ? shown.surface->triangles().cols() : shown.nodes.triangles.cols();
-  for (const ShownObstacle& shown : obstacles_) sum += shown.mesh.mesh.triangles.cols();
+  for (const auto& [obstacle, mesh] : obstacles_) sum += mesh.mesh.triangles.cols();
+  for (const auto& [plane, mesh] : planes_) sum += mesh.mesh.triangles.cols();
   return sum;
 }
 

@@ -33,6 +33,8 @@ void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, c
     for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
       if (scene.obstacles[i].visible)
         colors.push_back({scene.body.contact.obstacles[i].name, scene.obstacles[i].color, {}});
+    for (const PlaneLook& look : scene.planes)
+      colors.push_back({scene.body.contact.planes.at(look.plane).name, look.color, {}});
     const std::string text = mtl_text(colors);
     write_whole_file(folder / kMaterialFile, text.data(), text.size());
   }

@@ -8,12 +8,19 @@
 #include <pliant/part/local_deformation.h>
 #include <pliant/scene/time_value.h>
 
+#include "color_reader.h"
 #include "direction_reader.h"
 
 namespace pliant {
 
 schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
   using namespace schema;
+  const Record shown{
+      "shown",
+      "A rectangle about the point of a plane.",
+      {required("width", number(above(0), "m"), "Its level sides; along x of a level plane.", "1"),
+       required("height", number(above(0), "m"), "Its other sides.", "1"),
+       optional("color", color, "Colour in pictures.", "\"#9a9488\"")}};
   const Record plane{
       "plane",
       "What lies behind a plane is solid.",
@@ -21,7 +28,10 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
        optional("point", time_vector("m"), "A point on it; it may move in time.", "[0, 0, 0]"),
        optional("normal", vector3("1"), "Its direction, away from what is solid.", "[0, 0, 1]"),
        optional("on", number(at_least(0), "s"), "When it appears.", "0"),
-       optional("off", number(above(0), "s"), "When it goes; never when not given.")}};
+       optional("off", number(above(0), "s"), "When it goes; never when not given."),
+       optional("shown", record(shown),
+                "What pictures and meshes show of it while it is there, which is all solid; nothing when not "
+                "given.")}};
   const Record pair{
       "pair",
       "How two parts, or a part and a plane or an obstacle, touch; a group stands for all of its members.",
@@ -57,7 +67,8 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
 namespace {
 
 void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, const TimeReader& times,
-                SceneFaults& faults, MultiBody& body) {
+                SceneFaults& faults, Scene& scene) {
+  MultiBody& body = scene.body;
   const std::optional<TimeVector> point =
       r.given("point") ? times.vector(r, "point", Needs::value_and_rate) : TimeVector(Vec3<double>(0, 0, 0));
   const Vec3<double> normal =
@@ -73,6 +84,11 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
   ContactPlane& plane = body.plane(r.text("name"), *point, normal);
   plane.on = r.number("on");
   if (r.given("off")) plane.off = r.number("off");
+  if (!r.given("shown")) return;
+  const Reader shown = r.object("shown");
+  if (shown.complete())
+    scene.planes.push_back({body.contact.planes.size() - 1, shown.number("width"), shown.number("height"),
+                            read_color(shown.at("color"))});
 }
 
 /// Whether all names of a list are among those known; faults tell which are not.
@@ -138,7 +154,7 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
     const Reader sleep = contact.object("sleep");
     if (sleep.complete()) settings.sleep = Sleep{sleep.number("speed"), sleep.number("after")};
   }
-  for (const Reader& r : contact.objects("planes")) read_plane(r, parts, times, faults, body);
+  for (const Reader& r : contact.objects("planes")) read_plane(r, parts, times, faults, scene);
   std::vector<std::string> names;
   for (const auto& [name, part] : parts) names.push_back(name);
   for (const ContactPlane& plane : settings.planes) names.push_back(plane.name);

@@ -58,18 +58,18 @@ std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>
 
 }  // namespace
 
-const NamedPart* PointReader::named(const Reader& r) const {
-  if (!r.given("part")) return nullptr;
-  const auto found = parts_.find(r.text("part"));
+const NamedPart* PointReader::named(const Reader& r, const char* key) const {
+  if (!r.given(key)) return nullptr;
+  const auto found = parts_.find(r.text(key));
   if (found != parts_.end()) return &found->second;
   std::vector<std::string> names;
   for (const auto& [name, part] : parts_) names.push_back(name);
-  faults_.unknown(r.at("part"), "part", names);
+  faults_.unknown(r.at(key), "part", names);
   return nullptr;
 }
 
-Part* PointReader::part(const Reader& r) const {
-  const NamedPart* found = named(r);
+Part* PointReader::part(const Reader& r, const char* key) const {
+  const NamedPart* found = named(r, key);
   return found != nullptr ? found->part : nullptr;
 }
 

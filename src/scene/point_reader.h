@@ -26,8 +26,8 @@ class PointReader {
   PointReader(const std::map<std::string, NamedPart>& parts, double end, SceneFaults& faults)
       : parts_(parts), times_(end, faults), faults_(faults) {}
 
-  /// The part that a key "part" names; null, with a fault if nobody is called so.
-  Part* part(const Reader& r) const;
+  /// The part that a key names; null, with a fault if nobody is called so.
+  Part* part(const Reader& r, const char* key = "part") const;
   /// {"part", "at"}; none when it could not be resolved.
   std::optional<Point> on_part(const Reader& r) const;
   /// {"part", "at"} or {"world"}.
@@ -39,7 +39,7 @@ class PointReader {
   std::optional<double> jump(const Point& point, double after, double until) const;
 
  private:
-  const NamedPart* named(const Reader& r) const;
+  const NamedPart* named(const Reader& r, const char* key = "part") const;
   std::optional<Material<double>> material(const Part& part, const JsonValue& at) const;
 
   const std::map<std::string, NamedPart>& parts_;

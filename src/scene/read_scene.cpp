@@ -229,10 +229,14 @@ class SceneReader {
       scene_->body.force(name_of(r, "force", scene_->body.forces().size()), *at, *force, frame(r));
   }
   void read_torque(const Reader& r, const PointReader& points) {
-    const Part* part = points.part(r);
+    const Part *part = points.part(r), *against = points.part(r, "against");
     const std::optional<TimeVector> torque = times().vector(r, "torque", Needs::value);
-    if (part != nullptr && torque)
-      scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, *torque, frame(r));
+    if (part == nullptr) return;
+    if (part == against)
+      return faults_.value(r.at("against"), "this is the same part as \"part\"; expected another");
+    if (torque)
+      scene_->body.torque(name_of(r, "torque", scene_->body.torques().size()), *part, *torque, frame(r))
+          .against = against;
   }
   void read_track(const Reader& r, const PointReader& points) {
     const std::optional<Point> at = points.on_part(r);

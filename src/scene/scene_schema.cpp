@@ -141,7 +141,7 @@ Record part_record() {
        optional("motion", record(motion), "The part moves as prescribed, and has no degrees of freedom."),
        optional("color", color(), "Colour in pictures; from a palette when not given."),
        optional("resolution", integer(between(1, 128)),
-                "Edges along a quarter circle of its surface mesh (48 n^2 triangles).", "8"),
+                "Edges along an eighth of a circle of its surface mesh (48 n^2 triangles).", "8"),
        optional("visible", boolean(), "Whether pictures and meshes show it.", "true")});
   part.exclusive = {{{"density", "mass", "inertia"}}, {{"fixed", "motion"}}};
   return part;
@@ -188,6 +188,9 @@ Record make_scene_record() {
                       "A torque on a part.",
                       {optional("name", name(), "Name in the outputs."),
                        required("part", name(), "Name of the part.", "\"ball\""),
+                       optional("against", name(),
+                                "Name of the part on which the opposite torque acts, as of a motor or a "
+                                "muscle between the two; when not given, the torque is from outside."),
                        required("torque", time_vector("N m"), "The torque.", "[0, 0, 1]"),
                        optional("frame", frame, "Axes of its components.", "\"world\"")}};
   const Record track{"track",

@@ -38,6 +38,8 @@ void busy_scene(MultiBody& body) {
   });
   body.torque("turn", b, TimeVector(1, test::wave(2, 3, 4), 0));
   body.torque("spin", a, TimeVector(0, 2, test::wave(0, 4, 5)), Frame::body);
+  body.torque("muscle", b, TimeVector(1, 0, test::wave(3, 2, 4)), Frame::body).against = &a;
+  body.torque("motor", a, TimeVector(test::wave(0, 5, 2), 1, 0)).against = &fixed;
 }
 
 }  // namespace
@@ -139,6 +141,82 @@ TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it 
   const Vec3<double> p = part.s({where}, part.parameters().rest()).col(0);
   const Vec3<double> torque = (p - centre).cross(R.transpose() * F);
   CHECK((about_centre * alpha - torque).norm() <= 1e-12 * torque.norm());
+}
+
+TEST_CASE("a torque of one part against another leaves their momenta, and its work is that of both ends",
+          "[dynamics]") {
+  const TimeVector torque(20, test::wave(10, 20, 3), 30);
+  for (const bool rigid : {false, true})
+    for (const Frame frame : {Frame::world, Frame::body}) {
+      CAPTURE(rigid, frame == Frame::world);
+      MultiBody body;
+      body.gravity.setZero();
+      Part& a = test::add(body, "a", "ellipsoid", {}, 1000);
+      a.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.25}}).move({0.2, 0.3, 0.1}, {0, 0, 0});
+      Part& b = test::add(body, "b", "ellipsoid", {}, 1000);
+      b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).place({0.5, 0, 0}).move({0.2, 0.3, 0.1}, {0, 0, 0});
+      if (rigid) {
+        body.ball("hold", point(a, 0, 0), point(b, 0, kPi));  // an island of its own evaluation
+      } else {
+        a.stiffness({{"a1", 1e5}});
+        body.hinge("hold", point(a, 0, 0), point(b, 0, kPi), {0, 0.6, 0.8});
+      }
+      Torque& muscle = body.torque("muscle", a, torque, frame);
+      auto change = [&](const Part* against) {
+        muscle.against = against;
+        Simulation simulation(body, "dop853");
+        CHECK(simulation.model().rigid_islands().size() == (rigid ? 1 : 0));
+        const Ledger start = simulation.ledger();
+        test::run(simulation, 0.5, 500);
+        const Ledger end = simulation.ledger();
+        CHECK((end.momentum - start.momentum).norm() <= 1e-12 * start.momentum.norm());
+        CHECK(std::abs(end.work[static_cast<int>(Work::forces)]) > 1e-2 * start.kinetic);
+        CHECK(std::abs(end.balance) <= 1e-11 * start.kinetic);
+
+        const State& state = simulation.state();
+        Workspace<double> work;
+        simulation.dynamics().accelerations(simulation.time(), state.q, state.v, state, work);
+        auto omega = [&](int i) {
+          const int v0 = simulation.model().parts()[static_cast<std::size_t>(i)].v0;
+          return Vec3<double>(simulation.model().orientation(state, i) * state.v.segment<3>(v0 + 3));
+        };
+        Vec3<double> in_world = torque.value(simulation.time());
+        if (frame == Frame::body) in_world = simulation.model().orientation(state, 0) * in_world;
+        const double power = in_world.dot(omega(0) - (against == nullptr ? Vec3<double>(0, 0, 0) : omega(1)));
+        CHECK(work.power[static_cast<int>(Work::forces)] == Approx(power).epsilon(1e-12));
+        return (end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm();
+      };
+      CHECK(change(&b) <= 1e-12);
+      CHECK(change(nullptr) > 1e-1);
+    }
+}
+
+TEST_CASE("a torque against a part that does not move is one from outside, and one against itself is none",
+          "[dynamics]") {
+  for (const Frame frame : {Frame::world, Frame::body}) {
+    MultiBody body;
+    Part& part = test::add(body, "part", "box", {}, 1000);
+    part.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).move({0, 0, 0}, {1, 2, 3});
+    Part& post = test::add(body, "post", "cylinder", {}, 1000);
+    post.place({1, 0, 0}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).fix();
+    Torque& torque = body.torque("turn", part, TimeVector(1, 2, 3), frame);
+    auto end = [&] {
+      Simulation simulation(body, "rk4");
+      test::run(simulation, 0.1, 10);
+      CHECK(std::abs(simulation.ledger().balance) < 1e-6);
+      return hash(simulation.state());
+    };
+    const auto alone = end();
+    torque.against = &post;
+    CHECK(end() == alone);
+    // The other way round, and by components along the axes of what stands still.
+    torque.part = &post;
+    torque.against = &part;
+    torque.torque = TimeVector(Vec3<double>(-1, -2, -3));
+    if (frame == Frame::world) CHECK(end() == alone);
+    torque.against = &post;
+    CHECK_THROWS_WITH(Model(body), "torque 'turn' acts on part 'post' against itself");
+  }
 }
 
 TEST_CASE("the ledger of a state: energies and momenta from their definitions", "[dynamics]") {

@@ -159,6 +159,24 @@ TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
     body.torque("turn", *body.parts()[0], TimeVector(0., 0., late));
     CHECK(wakes_at_half(body));
   }
+  SECTION("a torque against it") {
+    MultiBody body;
+    tower(body, 2);
+    Part& post = cube(body, "post", {3, 0, 1}).fix();
+    body.torque("turn", post, TimeVector(0., 0., late)).against = body.parts()[0].get();
+    CHECK(wakes_at_half(body));
+  }
+  SECTION("a hand that turns the axes of a torque against it") {
+    MultiBody body;
+    tower(body, 2);
+    PrescribedMotion motion;
+    motion.position = Vec3<double>(3, 0, 1);
+    motion.axis = {1, 0, 0};
+    motion.angle = late;
+    Part& hand = cube(body, "hand", {3, 0, 1}).prescribe(motion);
+    body.torque("turn", hand, {0, 0, 0.1}, Frame::body).against = body.parts()[0].get();
+    CHECK(wakes_at_half(body));
+  }
   SECTION("gravity") {
     MultiBody body;
     tower(body, 2);
@@ -247,6 +265,18 @@ TEST_CASE("bodies sleep together or not at all", "[sleep][contact]") {
   CHECK(sleeps(simulation.state(), 2));
   CHECK_FALSE(sleeps(simulation.state(), 0));
   CHECK_FALSE(sleeps(simulation.state(), 1));
+}
+
+TEST_CASE("what a torque turns against each other sleeps together or not at all", "[sleep][contact]") {
+  MultiBody body;
+  tower(body, 2);
+  Part& top = test::add(body, "top", "sphere", {}, 500);
+  top.rest({{"r", 0.1}}).place({3, 0, 5}, Eigen::Quaterniond::Identity());
+  body.ball("hold", point(top, 0, 0, 0), world(3, 0, 5));
+  body.torque("turn", top, {0, 0, 0.01}).against = body.parts()[0].get();
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.5, 250);
+  CHECK(none_sleeps(simulation));
 }
 
 TEST_CASE("under error control, and in long steps between which a joint begins to act", "[sleep][contact]") {

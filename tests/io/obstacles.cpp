@@ -1,4 +1,4 @@
-// Obstacles in the files of a run: the mesh beside the scene, and the surfaces of frames.
+// Obstacles in the files of a run: the mesh beside the scene, and the surfaces of frames, of planes too.
 #include "catch.h"
 
 #include <memory>
@@ -100,6 +100,42 @@ TEST_CASE("obstacles are among the surfaces of a frame while they are there, ope
   CHECK(frame.at(state).size() == 2);
   state.start = 0;
   CHECK(frame.at(state).size() == 3);
+}
+
+TEST_CASE("planes that are shown are among the surfaces of a frame while they are there, about their point") {
+  Diagnostics diagnostics;
+  const std::unique_ptr<Scene> scene = parse_scene("s.json", R"json({
+    "time": {"end": 1},
+    "parts": [{"name": "ball", "shape": "sphere", "parameters": {"r": 0.1}, "position": [0, 0, 1]}],
+    "contact": {"planes": [
+      {"name": "floor", "shown": {"width": 4, "height": 2}},
+      {"name": "unseen", "point": [0, 0, -9]},
+      {"name": "swatter", "point": ["t - 2", 1, 0.5], "normal": [3, 0, 0], "on": 0.5, "off": 0.9,
+       "shown": {"width": 2, "height": 1, "color": "#ff0000"}}
+    ]}
+  })json",
+                                                   {}, diagnostics);
+  const Simulation simulation(scene->body, scene->integrator);
+  FrameMeshes frame(*scene, simulation.model());
+  State state = simulation.state();
+  REQUIRE(frame.at(state).size() == 2);
+  CHECK(frame.at(state)[1].name == "floor");
+  CHECK(frame.bounds(state).min() == Eigen::Vector3d(-2, -1, 0));
+  CHECK(frame.triangles() == 48 * 64 + 8);
+  state.start = 0.75;
+  const std::vector<NamedMesh>& meshes = frame.at(state);
+  REQUIRE(meshes.size() == 3);
+  const NamedMesh& swatter = meshes[2];
+  CHECK(swatter.name == "swatter");
+  CHECK(swatter.color == Color{1, 0, 0});
+  CHECK(swatter.mesh.x.rowwise().minCoeff() == Eigen::Vector3d(-1.25, 0, 0));
+  CHECK(swatter.mesh.x.rowwise().maxCoeff() == Eigen::Vector3d(-1.25, 2, 1));
+  CHECK(swatter.mesh.normals.col(0) == Eigen::Vector3d::UnitX());
+  CHECK(swatter.mesh.normals.col(2) == -Eigen::Vector3d::UnitX());
+  CHECK(frame.bounds(state).min() == Eigen::Vector3d(-2, -1, 0));
+  CHECK(frame.bounds(state).max() == Eigen::Vector3d(2, 2, 1.1));
+  state.start = 0.9;
+  CHECK(frame.at(state).size() == 2);
 }
 
 }  // namespace obstacles_test

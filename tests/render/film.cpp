@@ -5,6 +5,7 @@
 #include "../io/new_folder.h"
 #include "../io/test_scenes.h"
 #include "catch.h"
+#include "scenes.h"
 
 #include <pliant/io/run.h>
 
@@ -158,6 +159,54 @@ TEST_CASE("parts that deform are coloured on one scale in all frames") {
   CHECK(picture.bodies[1].values->isZero(0));
   filmed.scene->appearance[1].visible = false;
   CHECK_FALSE(filmed.film().at(0.1).scale);  // nothing is coloured
+}
+
+TEST_CASE("a plane is seen where it is and while it is there, if it is shown") {
+  Filmed filmed;
+  Scene& scene = *filmed.scene;
+  scene.width = 160;
+  scene.height = 120;
+  scene.camera.eye = Vec3<double>(0, -6, 2);
+  scene.camera.target = Vec3<double>(0, 0, 1);
+  scene.ground.visible = scene.light.shadows = false;
+  scene.ground.height = 0;
+  ContactPlane& plane =
+      scene.body.plane("sheet", TimeVector(TimeFunction::formula("1 - 10 * t"), -1, 1.5), {0, -1, 0});
+  plane.off = 0.15;
+  Renderer renderer(scene.width, scene.height);
+  auto seen = [&](double time) {
+    Film film = filmed.film();
+    return renderer.draw(film.at(time));
+  };
+  for (const double time : {0.0, 0.1, 0.15}) {
+    CAPTURE(time);
+    const bool there = time < 0.15;
+    scene.planes.clear();
+    const Image without = seen(time);
+    scene.planes.push_back({0, 0.8, 0.6, {1, 0, 0}});
+    const Image with = seen(time);
+    const Camera camera = filmed.film().camera();
+    Eigen::AlignedBox2d around;  // what is seen of the rectangle, and the pixel beside it
+    for (const double x : {-0.4, 0.4})
+      for (const double z : {-0.3, 0.3})
+        around.extend(test::pixel_of({1 - 10 * time + x, -1, 1.5 + z}, camera, scene.width, scene.height));
+    around.min().array() -= 1;
+    around.max().array() += 1;
+    auto change = [&](int x, int y) {
+      const std::array<int, 3> a = test::pixel(with, x, y), b = test::pixel(without, x, y);
+      return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+    };
+    int changed = 0, beside = 0;
+    for (int y = 0; y < scene.height; ++y)
+      for (int x = 0; x < scene.width; ++x)
+        if (around.contains(Eigen::Vector2d(x + 0.5, y + 0.5)))
+          changed += change(x, y) > 60;
+        else
+          beside = std::max(beside, change(x, y));
+    CHECK(beside <= (there ? 4 : 0));  // the light from the ground depends a little on all that is shown
+    CHECK((changed > 0.8 * (around.sizes().array() - 2).prod()) == there);
+    if (!there) CHECK(with.rgb == without.rgb);
+  }
 }
 
 TEST_CASE("a camera that looks straight down has y at the top") {

@@ -390,6 +390,48 @@ TEST_CASE("colouring of parts is read") {
         std::string::npos);
 }
 
+TEST_CASE("a torque against another part is read, and leaves the momenta of both") {
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::parse_scene("s.json", R"json({
+    "gravity": [0, 0, 0],
+    "parts": [{"name": "a", "shape": "ellipsoid", "parameters": {"a1": 0.3, "a2": 0.1, "a3": 0.1}, "velocity": [0, 1, 0]},
+              {"name": "b", "shape": "ellipsoid", "parameters": {"a1": 0.2, "a2": 0.1, "a3": 0.1}, "position": [0.5, 0, 0],
+               "velocity": [0, 1, 0]}],
+    "joints": [{"type": "hinge", "from": {"part": "a", "at": {"u": 0, "v": 0}}, "to": {"part": "b", "at": {"u": 0, "v": 3.141592653589793}},
+                "axis": [0, 0, 1]}],
+    "torques": [{"part": "a", "against": "b", "torque": [0, 0.5, "cos(3 * t)"], "frame": "body"}, {"part": "b", "torque": [0, 0, 0]}]
+  })json",
+                                         {}, diagnostics);
+  CHECK(diagnostics.text().empty());
+  REQUIRE(scene->body.torques().size() == 2);
+  CHECK(scene->body.torques()[0]->against == scene->body.parts()[1].get());
+  CHECK(scene->body.torques()[1]->against == nullptr);
+  Simulation simulation(scene->body, "rk4");
+  const pliant::Ledger start = simulation.ledger();
+  for (int i = 0; i < 500; ++i) simulation.step(1e-3);
+  const pliant::Ledger end = simulation.ledger();
+  CHECK((end.momentum - start.momentum).norm() <= 1e-12 * start.momentum.norm());
+  CHECK((end.angular_momentum - start.angular_momentum).norm() <= 1e-12 * start.angular_momentum.norm());
+  CHECK(std::abs(end.balance) <= 1e-11 * start.kinetic);
+  CHECK(end.work[static_cast<int>(pliant::Work::forces)] > 1e-2);
+}
+
+TEST_CASE("what is shown of a plane is read") {
+  pliant::Diagnostics diagnostics;
+  const auto scene = pliant::parse_scene("s.json", R"json({
+    "parts": [{"name": "a", "shape": "sphere"}],
+    "contact": {"planes": [{"name": "floor", "point": [0, 0, -2]},
+                           {"name": "wall", "point": [-2, 0, 0], "normal": [1, 0, 0], "shown": {"width": 2, "height": 3, "color": "#ff0000"}}]}
+  })json",
+                                         {}, diagnostics);
+  CHECK(diagnostics.text().empty());
+  REQUIRE(scene->planes.size() == 1);
+  CHECK(scene->planes[0].plane == 1);
+  CHECK(scene->planes[0].width == 2);
+  CHECK(scene->planes[0].height == 3);
+  CHECK(scene->planes[0].color == pliant::Color{1, 0, 0});
+}
+
 TEST_CASE("whether bodies sleep is read") {
   pliant::Diagnostics diagnostics;
   const std::string start = R"json({"parts": [{"name": "a", "shape": "sphere"}], "contact": {)json";
@@ -492,6 +534,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
                                         "tolerance_of_rk4",
                                         "too_many_dynamic_parameters",
                                         "too_many_steps",
+                                        "torque_against",
                                         "torus_closed",
                                         "track_of_unknown_part",
                                         "unknown_material",

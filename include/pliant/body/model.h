@@ -72,6 +72,7 @@ struct ForceModel {
 struct TorqueModel {
   const Torque* torque;
   int part;
+  int against;  ///< -1: nothing
 };
 
 /// A side of a joint that is on a moving part. A joint whose sides are on the same part has one.

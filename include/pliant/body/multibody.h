@@ -46,12 +46,14 @@ struct PointForce {
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
-/// A torque on the rotation of a part's frame.
+/// A torque on the rotation of a part's frame; against another part, on which its opposite acts, it is from
+/// inside, as of a motor or a muscle, and leaves their momenta as they are.
 struct Torque {
   std::string name;
   const Part* part = nullptr;
-  TimeVector torque;  ///< N m
-  Frame frame = Frame::world;
+  TimeVector torque;              ///< N m
+  Frame frame = Frame::world;     ///< body: of `part`
+  const Part* against = nullptr;  ///< nullptr: it is from outside
 };
 
 class MultiBody {

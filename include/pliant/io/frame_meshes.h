@@ -1,5 +1,5 @@
-// The surfaces of all visible parts and obstacles at a state: what meshes and pictures of a frame are made
-// of.
+// The surfaces of all visible parts, obstacles and planes at a state: what meshes and pictures of a frame are
+// made of.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 namespace pliant {
 
 struct NamedMesh {
-  std::string name;  ///< of the part or obstacle
+  std::string name;  ///< of the part, obstacle or plane
   Color color{};
   TriangleMesh mesh;       ///< world
   VecX<double> values{};   ///< of its vertices, what the scene's coloring tells; empty without
@@ -28,12 +28,13 @@ class FrameMeshes {
   /// Whether the values of vertices are told that the scene's coloring asks for.
   enum class Values { told, left_out };
 
-  /// Lays the surfaces of the visible parts and obstacles, these from both sides when they are open. Both
-  /// must outlive it. Throws std::invalid_argument on a bad resolution.
+  /// Lays the surfaces of the visible parts, obstacles and planes, these from both sides when they are open.
+  /// Both must outlive it. Throws std::invalid_argument on a bad resolution.
   FrameMeshes(const Scene& scene, const Model& model, Values values = Values::told);
 
-  /// The meshes at a state, in the order of the parts, the obstacles that are there after them; the reference
-  /// is valid until the next call. Meshes of rigid parts are evaluated once and then only moved.
+  /// The meshes at a state, in the order of the parts, the obstacles and planes that are there after them;
+  /// the reference is valid until the next call. Meshes of rigid parts are evaluated once and then only
+  /// moved.
   const std::vector<NamedMesh>& at(const State& state);
   /// The box around all vertices at a state.
   Eigen::AlignedBox3d bounds(const State& state) const;
@@ -53,16 +54,20 @@ class FrameMeshes {
     std::optional<SurfaceValues> values;
   };
   void lay_obstacles(const Scene& scene, Values values);
+  void lay_planes(const Scene& scene, Values values);
   Eigen::Matrix3Xd vertices(const Shown& shown, const State& state) const;
   TriangleMesh body_mesh(const Shown& shown, const State& state) const;
 
   const Model* model_;
-  struct ShownObstacle {
-    std::size_t number;
+  /// An obstacle; or a plane, whose mesh is about its point.
+  template <class Thing>
+  struct ShownThing {
+    const Thing* thing;
     NamedMesh mesh;
   };
   std::vector<Shown> shown_;
-  std::vector<ShownObstacle> obstacles_;
+  std::vector<ShownThing<ContactObstacle>> obstacles_;
+  std::vector<ShownThing<ContactPlane>> planes_;
   std::vector<NamedMesh> meshes_;
 };
 

@@ -32,6 +32,14 @@ struct ObstacleLook {
   MeshFile mesh;  ///< as the file has it, neither scaled nor placed; empty of a plate
 };
 
+/// A rectangle about the point of a plane, which pictures and meshes show while the plane is there. Its width
+/// is level, along x of a level plane.
+struct PlaneLook {
+  std::size_t plane = 0;         ///< its number among the body's
+  double width = 1, height = 1;  ///< m
+  Color color{0.6, 0.58, 0.53};
+};
+
 /// A material point whose path is drawn and recorded (the paper's Fig. 6b).
 struct Track {
   std::string name;
@@ -60,6 +68,7 @@ struct Scene {
   MultiBody body;
   std::vector<Appearance> appearance;
   std::vector<ObstacleLook> obstacles;
+  std::vector<PlaneLook> planes;  ///< those that are shown
   std::vector<Track> tracks;
 
   double end = 1;        ///< s
