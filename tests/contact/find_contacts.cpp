@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <pliant/contact/box_tree.h>
 #include <pliant/contact/ellipsoid_points.h>
@@ -59,6 +60,53 @@ TEST_CASE("the lowest point of an ellipsoid over a plane", "[contact]") {
     const Model model(body);
     CHECK((model.world_point(model.initial_state(), 0, found[0].a.material) - lowest).norm() < 1e-14);
   }
+}
+
+TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane", "[contact]") {
+  // A rim is met at a point of the mesh or between two: up to 3e-4 of the part above its lowest point.
+  struct Kind {
+    const char* shape;
+    Part::Named rest;
+    std::function<double(double, double)> depth;  // below the centre; along the axis and across it
+    double above;
+  };
+  const std::vector<Kind> kinds{
+      {"supertoroid",
+       {{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.05}, {"a4", 3}},
+       [](double, double across) { return 0.05 + 0.15 * across; },
+       1e-15},
+      {"capsule",
+       {{"r", 0.05}, {"l", 0.4}},
+       [](double along, double) { return 0.05 + 0.2 * std::abs(along); },
+       1e-15},
+      {"cylinder",
+       {{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.15}},
+       [](double along, double across) { return 0.15 * std::abs(along) + 0.1 * across; },
+       1e-4},
+      {"cone",
+       {{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.15}, {"t", -0.5}},
+       [](double along, double across) {
+         return std::max(0.05 * across - 0.15 * along, 0.15 * across + 0.15 * along);
+       },
+       1e-4}};
+  Draws draws(16);
+  for (const Kind& kind : kinds)
+    for (int trial = 0; trial < 60; ++trial) {
+      CAPTURE(kind.shape, trial);
+      const Eigen::Quaterniond R = turn(draws);
+      const Vec3<double> n = R.conjugate() * Vec3<double>::UnitZ();
+      MultiBody body;
+      body.add(make_part("part", kind.shape, {}, 1000))
+          .rest(kind.rest)
+          .place({0, 0, kind.depth(n[2], n.head<2>().norm())}, R);
+      body.plane("plane", Vec3<double>(0, 0, 0), {0, 0, 1});
+      const std::vector<Contact> found = contacts_of(body, 1e-3);
+      REQUIRE_FALSE(found.empty());
+      double lowest = 1;
+      for (const Contact& contact : found) lowest = std::min(lowest, contact.gap);
+      CHECK(lowest > -1e-15);
+      CHECK(lowest < kind.above);
+    }
 }
 
 TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, whoever is first", "[contact]") {

@@ -6,8 +6,9 @@
 #include <functional>
 #include <string>
 
-#include <pliant/part/local_laws.h>
 #include <Eigen/Cholesky>
+
+#include <pliant/part/local_laws.h>
 
 #include "draws.h"
 #include "motion.h"

@@ -175,6 +175,52 @@ TEST_CASE("what gives way gains no energy in inelastic contact beyond the error 
     }
 }
 
+TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no energy", "[contact]") {
+  // Pushed ahead of its centre at an angle, a thin rod has no motion with finite forces that obeys Coulomb's
+  // law where 3 mu sin cos > 1 + 3 cos^2, or more than one where it spins away from the floor. An impulse
+  // without a collision is the way out: the tip, sliding at a speed v, stops at once by m v (1 + 3 cos^2, 3
+  // sin cos) / 4.
+  const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
+  for (const char* method : {"rk4", "semi_implicit_euler"})
+    for (const double angle : {kPi / 4, std::atan(2.0), 1.3})
+      for (const double spin : {0.0, 8.0}) {
+        CAPTURE(method, angle, spin);
+        const double s = std::sin(angle), c = std::cos(angle), mu = 2.5;
+        REQUIRE(3 * mu * s * c > 1 + 3 * c * c);
+        MultiBody body;
+        body.contact.friction = mu;
+        floor(body);
+        Part& rod = test::add(body, "rod", "capsule", {}, 1000);
+        rod.rest({{"r", radius}, {"l", 2 * (half - radius)}});
+        const Eigen::Quaterniond R(Eigen::AngleAxisd(kPi / 2 - angle, Vec3<double>::UnitY()));
+        const Vec3<double> omega(0, spin, 0);
+        rod.place({0, 0, (half - radius) * s + radius}, R);
+        rod.move(Vec3<double>(-speed, 0, 0) + omega.cross(Vec3<double>(half * c, 0, half * s)),
+                 R.conjugate() * omega);
+        Simulation simulation(body, method);
+        const double start = simulation.ledger().energy();
+        double energy = start;
+        for (int i = 0; i < 100; ++i) {
+          simulation.step(h);
+          REQUIRE(simulation.ledger().energy() < energy + 2e-5 * start);
+          energy = simulation.ledger().energy();
+          for (const Contact& contact :
+               ContactFinder(simulation.model()).find(simulation.state(), simulation.time(), 0))
+            REQUIRE(contact.gap > -1e-4 * half);
+          if (i > 0 || spin > 0) continue;
+          Vec3<double> jam = Vec3<double>::Zero();
+          for (const Vec3<double>& p : simulation.contact()->impulses()) jam += p;
+          const double unit = rod.total_mass() * speed / 4;
+          CHECK(jam[0] == Approx(unit * (1 + 3 * c * c)).epsilon(0.03));
+          CHECK(jam[2] == Approx(unit * 3 * s * c).epsilon(0.03));
+          CHECK(start - energy == Approx(0.5 * unit * speed * (1 + 3 * c * c)).epsilon(0.03));
+        }
+        CHECK(energy < (1 + 2e-5) * start);
+        CHECK(simulation.step_counters().contact_residual < 5e-11);
+        CHECK(simulation.step_counters().contact_fallbacks == 0);
+      }
+}
+
 TEST_CASE("N59: the blow of a ball on a springboard is that of the closed form", "[contact][joints]") {
   const double radius = 0.05, x = 0.6, speed = 3;
   for (const double e : {0.0, 0.5, 1.0}) {
