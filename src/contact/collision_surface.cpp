@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -27,9 +28,37 @@ constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
 /// Size of the stencil, in spacings, that tells whether a point is lowest already; and heights, in sizes,
 /// that differ by rounding alone: on a flat face nothing is sought among them.
 constexpr double kCorner = 1e-3, kRounding = 1e-14;
+/// Heights of a stencil that bend by less, in sizes, are those of a flat surface.
+constexpr double kFlat = 1e-13;
 /// The search ends when its stencil is this small, in spacings.
 constexpr double kSmallest = 1e-8;
+/// Nearer to a pole than this, as the sine of the angle, directions have no clear latitude and longitude.
+constexpr double kNearPole = 0.2;
 constexpr int kMostHalvings = 60;
+
+/// Where quadratics through the heights of a stencil are lowest, in its radii: along each of its axes, as
+/// rims and lines on which a surface lies flat have it, and of both. What bends by less than `flat` tells
+/// nothing.
+std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
+  std::vector<Eigen::Vector2d> steps;
+  auto add = [&](const Eigen::Vector2d& step) {
+    const double most = step.lpNorm<Eigen::Infinity>();
+    steps.push_back(most > 1 ? Eigen::Vector2d(step / most) : step);
+  };
+  for (const auto& [before, after, axis] : {std::tuple{3, 5, 0}, std::tuple{1, 7, 1}}) {
+    const double curvature = h[before] + h[after] - 2 * h[4];
+    if (curvature > flat) add((h[before] - h[after]) / (2 * curvature) * Eigen::Vector2d::Unit(axis));
+  }
+  // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
+  const Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
+                          (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
+  Eigen::Matrix2d H;
+  H(0, 0) = (h[0] + h[2] + h[3] + h[5] + h[6] + h[8] - 2 * (h[1] + h[4] + h[7])) / 3;
+  H(1, 1) = (h[0] + h[1] + h[2] + h[6] + h[7] + h[8] - 2 * (h[3] + h[4] + h[5])) / 3;
+  H(0, 1) = H(1, 0) = (h[0] + h[8] - h[2] - h[6]) / 4;
+  if (H.trace() > 0 && H.determinant() > flat * H.trace()) add(-H.inverse() * g);
+  return steps;
+}
 
 /// The outermost of some points: the first, the farthest from it, the farthest from that, and the farthest
 /// from the line through them to either side.
@@ -108,24 +137,33 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
 
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
-  // A stencil of three by three places about the best so far; a quadratic through its heights tells the next.
+  // A stencil of three by three places about the best so far, along latitude and longitude of a ball, as rims
+  // and edges run, or u and v of a torus; about the poles along any two axes.
   const bool ball = part_->shape().mesh() == MeshPattern::ball;
   const Vec3<double> start = laid().surface.places()[static_cast<std::size_t>(i)];
+  const double across = start.head<2>().norm();
+  const bool by_angles = ball && across > kNearPole * start.norm();
+  const double latitude = std::atan2(start[2], across), longitude = std::atan2(start[1], start[0]);
+  const double widening = start.norm() / across;
   Vec3<double> e1{1, 0, 0}, e2{0, 1, 0};
   if (ball) {
     e1 = start.unitOrthogonal();
     e2 = start.normalized().cross(e1);
   }
-  auto material = [&](double x, double y) {
-    const Vec3<double> place = start + x * e1 + y * e2;
-    return part_->shape().mesh_label(place, values.b.data());
+  auto place = [&](double x, double y) -> Vec3<double> {
+    if (!by_angles || (x == 0 && y == 0)) return start + x * e1 + y * e2;
+    const double u = latitude + x, v = longitude + widening * y;
+    return {std::cos(u) * std::cos(v), std::cos(u) * std::sin(v), std::sin(u)};
+  };
+  auto material = [&](const Eigen::Vector2d& x) {
+    return part_->shape().mesh_label(place(x[0], x[1]), values.b.data());
   };
   Eigen::Vector2d at(0, 0);
   LowPoint best;
   std::vector<Material<double>> stencil(9);
   auto lay = [&](double size) {
     for (int j = 0; j < 9; ++j)
-      stencil[static_cast<std::size_t>(j)] = material(at[0] + size * (j % 3 - 1), at[1] + size * (j / 3 - 1));
+      stencil[static_cast<std::size_t>(j)] = material(at + size * Eigen::Vector2d(j % 3 - 1, j / 3 - 1));
     return part_->s(stencil, values);
   };
   using Heights = Vec<double, 9>;
@@ -134,46 +172,42 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
     for (int k = 0; k < 9; ++k) h[k] = field.descent(p.col(k));
     return h;
   };
+  const double rounding = kRounding * part_->size();
   double radius = 0.5 * spacing_;
   {  // Corners, edges and faces have their lowest points among those of the mesh.
     const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
     const Heights h = heights(p);
     best = {stencil[4], p.col(4), h[4]};
-    if (h.minCoeff() >= h[4] - kRounding * part_->size()) return best;
+    if (h.minCoeff() >= h[4] - rounding) return best;
   }
+  std::vector<Material<double>> next_materials;
   for (int k = 0; k < kMostHalvings && radius > kSmallest * spacing_; ++k) {
     const Eigen::Matrix3Xd p = lay(radius);
     const Heights h = heights(p);
-    // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
-    Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
-                      (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
-    Eigen::Matrix2d H;
-    H(0, 0) = (h[0] + h[2] + h[3] + h[5] + h[6] + h[8] - 2 * (h[1] + h[4] + h[7])) / 3;
-    H(1, 1) = (h[0] + h[1] + h[2] + h[6] + h[7] + h[8] - 2 * (h[3] + h[4] + h[5])) / 3;
-    H(0, 1) = H(1, 0) = (h[0] + h[8] - h[2] - h[6]) / 4;
-    Eigen::Vector2d step(0, 0);
-    if (H.determinant() > 0 && H.trace() > 0) step = -H.inverse() * g;
-    const double most = step.cwiseAbs().maxCoeff();
-    if (most > 1) step /= most;
+    Eigen::Vector2d next = at;
+    bool good = false;
+    auto take = [&](const Material<double>& m, const Vec3<double>& p_there, double height,
+                    const Eigen::Vector2d& there) {
+      best = {m, p_there, height};
+      next = there;
+    };
     Eigen::Index lowest = 4;
     h.minCoeff(&lowest);
-    Eigen::Vector2d next = at;
-    if (h[lowest] < best.height) {
-      best = {stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest]};
-      next = at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
-                                           static_cast<double>(lowest / 3) - 1);
-    }
-    bool good = false;
-    if (step != Eigen::Vector2d::Zero()) {
-      const Eigen::Vector2d there = at + radius * step;
-      const Material<double> m = material(there[0], there[1]);
-      const Eigen::Matrix3Xd p_there = part_->s({m}, values);
-      const double height = field.descent(p_there.col(0));
-      if (height <= best.height) {
-        best = {m, p_there.col(0), height};
-        next = there;
-        good = most < 0.5;
-      }
+    if (h[lowest] < best.height - rounding)
+      take(stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest],
+           at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
+                                         static_cast<double>(lowest / 3) - 1));
+    const std::vector<Eigen::Vector2d> steps = steps_to_lowest(h, kFlat * part_->size());
+    if (steps.empty() && next == at) break;
+    next_materials.clear();
+    for (const Eigen::Vector2d& step : steps) next_materials.push_back(material(at + radius * step));
+    const Eigen::Matrix3Xd p_next = part_->s(next_materials, values);
+    for (std::size_t j = 0; j < steps.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      const double height = field.descent(p_next.col(column));
+      if (height > best.height + rounding) continue;
+      take(next_materials[j], p_next.col(column), height, at + radius * steps[j]);
+      good = steps[j].lpNorm<Eigen::Infinity>() < 0.5;
     }
     next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
     const bool stays = (next - at).norm() <= 0.5 * radius;

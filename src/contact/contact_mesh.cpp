@@ -55,13 +55,20 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     else
       few_ = Surface(*m.part, kFewMeshEdges).material();
   }
+  if (rigid_.cols() > 0) rigid_reach_ = rigid_.colwise().norm().maxCoeff();
   edges_ = mesh_edges(triangles_);
   thickness_ = (p.rowwise().maxCoeff() - p.rowwise().minCoeff()).minCoeff();
 }
 
 Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, int number) const {
   if (rigid_.cols() > 0) return rigid_;
-  if (part_->local == nullptr) return part_->part->s(material_, model.values(state, number));
+  if (part_->local == nullptr) {
+    const auto q_s = state.q.segment(part_->q0 + 7, part_->n_s);
+    if (last_q_s_.size() == 0 || last_q_s_ != q_s)
+      last_ = part_->part->s(material_, model.values(state, number));
+    last_q_s_ = q_s;
+    return last_;
+  }
   const bool at_rest = rest_.cols() > 0;
   const Nodes all = at_rest ? part_->local->displacements(state.q.data() + part_->q0 + 7)
                             : model.node_positions(state, number);
@@ -73,6 +80,7 @@ Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, 
 }
 
 double ContactMesh::reach(const Model& model, const State& state, int number) const {
+  if (rigid_.cols() > 0) return rigid_reach_;
   if (!few_.empty())
     return kBeyondFewVertices * part_->part->s(few_, model.values(state, number)).colwise().norm().maxCoeff();
   return positions(model, state, number).colwise().norm().maxCoeff();

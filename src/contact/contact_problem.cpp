@@ -44,7 +44,7 @@ void ContactProblem::add_side(const ContactSide& side, const Contact& contact, d
   if (m.q0 < 0) return;
   const Mat3<double> to_contact = sign * axes(contact).transpose();
   const PartWorkspace<double>& w = work_.parts[at(side.part)];
-  if (moves_by_nodes(m, w)) {
+  if (side.at_nodes() && moves_by_nodes(m, w)) {
     for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
       sides_.push_back({side.part,
                         movers_.of_node(side.part, side.node[k]),
@@ -72,7 +72,7 @@ void ContactProblem::add_side(const ContactSide& side, const Contact& contact, d
   sides_.push_back(std::move(s));
 }
 
-/// A side of a part that does not move by nodes: zero.
+/// A side of a part that moves as a whole: zero.
 ContactProblem::Side ContactProblem::side_of(int part) {
   const int mover = movers_.of_part(part);
   Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
@@ -200,9 +200,10 @@ void ContactProblem::add_response(const Mover& mover, const Side& side, int rows
     return;
   }
   for (int r = 0; r < rows; ++r) {
-    VecX<double> force = side.J.row(r).transpose();
+    VecX<double> force = VecX<double>::Zero(m.n_x());  // and none at points where joints hold it
+    force.head(side.J.cols()) = side.J.row(r).transpose();
     work_.parts[at(side.part)].solve_mass(force);
-    Y.col(r).segment(side.first, side.J.cols()) += force;
+    Y.col(r).segment(side.first, m.n_x()) += force;
   }
 }
 

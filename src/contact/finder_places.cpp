@@ -21,13 +21,15 @@ bool ContactFinder::is_still(int i) const {
 void ContactFinder::place(const State& state, double t, int i) const {
   const PartModel& m = model_->parts()[at(i)];
   ParameterValues<double>& values = scratch_->values[at(i)];
+  Placed& placed = scratch_->parts[at(i)];
   if (!is_still(i))
     for (int k = 0; k < m.n_s; ++k) {
       const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
-      values.b[parameter] = state.q[m.q0 + 7 + k];
+      const double value = state.q[m.q0 + 7 + k];
+      if (values.b[parameter] != value) placed.has_points = false;
+      values.b[parameter] = value;
       values.b_dot[parameter] = state.v[m.v0 + 6 + k];
     }
-  Placed& placed = scratch_->parts[at(i)];
   placed.c = model_->position(state, i, t);
   placed.R = model_->orientation(state, i, t).toRotationMatrix();
   if (m.motion != nullptr) {
@@ -37,7 +39,6 @@ void ContactFinder::place(const State& state, double t, int i) const {
   }
   placed.axes = surfaces_[at(i)]->semi_axes(values);
   placed.reach = surfaces_[at(i)]->reach(values);
-  placed.has_points = false;
 }
 
 const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {

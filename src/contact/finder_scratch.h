@@ -18,7 +18,7 @@ struct ContactFinder::Placed {
   Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
   double reach;  ///< radius of a ball about c that it is in, m
   std::optional<Vec3<double>> axes;
-  bool has_points;  ///< whether those of Scratch are of now
+  bool has_points = false;  ///< whether those of Scratch are of its parameters now
 
   Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
@@ -35,7 +35,12 @@ struct ContactFinder::Scratch {
   MeshSearch mesh_search;
   struct Ball {
     Vec3<double> c, c_dot;
-    double speed, reach;  ///< of any point against the frame's origin, m/s; the ball and the way, m
+    Vec3<double> c_dot_gained;  ///< in the mean of a step, m/s
+    double speed, gained;       ///< of any point against the frame's origin, m/s
+    double reach;               ///< the ball and the way, m
+
+    /// Of any point, m/s.
+    double fastest() const { return c_dot.norm() + c_dot_gained.norm() + speed + gained; }
   };
   std::vector<Ball> balls;
   std::vector<Eigen::AlignedBox3d> boxes;

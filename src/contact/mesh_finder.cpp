@@ -79,7 +79,7 @@ std::map<int, MeshFinder::Around> MeshFinder::balls(const State& state, double t
   std::map<int, Around> all;
   for (const auto& [part, mesh] : meshes_) {
     Around ball{part, model_->position(state, part, t), 0, {}};
-    if (mesh.reaches_by_few()) {
+    if (!mesh.reach_takes_all()) {
       ball.reach = mesh.reach(*model_, state, part);
     } else {
       ball.p = mesh.positions(*model_, state, part);
@@ -178,6 +178,13 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     touches.clear();
     const PlacedMesh &a = mesh_of(one.part), &b = mesh_of(other.part);
     find_touches(a, b, touches);
+    auto add = [&](Contact contact) {
+      contact.carried = carries(other.part, t, contact.x) - carries(one.part, t, contact.x);
+      contact.friction = rule.friction;
+      contact.restitution = rule.restitution;
+      found.push_back(contact);
+    };
+    if (are_deep(state, t, one, other, a, b, touches)) return add(way_out(state, t, one, other, a, b));
     for (const MeshTouch& touch : touches) {
       Contact contact;
       contact.a = side(a, one.part, state, touch.a, touch.x);
@@ -185,34 +192,42 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
       contact.x = touch.x;
       contact.normal = touch.normal;
       contact.gap = touch.gap;
-      contact.carried = carries(other.part, t, touch.x) - carries(one.part, t, touch.x);
-      contact.friction = rule.friction;
-      contact.restitution = rule.restitution;
-      found.push_back(contact);
+      add(contact);
     }
   });
 }
 
-void MeshFinder::approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const {
+void MeshFinder::approach(const State& state, const State* after, double t, double h, double reach,
+                          ContactFinder::Neighbourhood& near) const {
   struct Swept {
     int part;
     Vec3<double> c;
-    double speed, reach;  // of any point in the world, m/s; about c, with the way of a step, m
+    double way, gained;  // of any point in the world, m: at the velocities of the start, and as they change
+    Vec3<double> fall;   // what gravity adds to that, m
+    double reach;        // about c, with the way, m
   };
+  const Vec3<double> g = model_->body().gravity_at(t);
   std::map<int, Swept> all;
   for (const auto& [part, mesh] : meshes_) {
     const PartModel& m = model_->parts()[at(part)];
-    Swept swept{part, model_->position(state, part, t), 0, mesh.reach(*model_, state, part)};
+    Swept swept{
+        part, model_->position(state, part, t), 0, 0, Vec3<double>::Zero(), mesh.reach(*model_, state, part)};
     if (m.q0 >= 0) {
-      const auto v = state.v.segment(m.v0, m.n_v());
-      swept.speed = v.head<3>().norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(state);
-      swept.reach += h * (swept.speed + model_->body().gravity_at(t).norm() * h);
+      auto speed = [&, &mesh = mesh](const State& of, const Vec3<double>& fallen) {
+        const auto v = of.v.segment(m.v0, m.n_v());
+        return (v.head<3>() - fallen).norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(of);
+      };
+      const bool falls = !sleeps(state, part);
+      swept.way = h * speed(state, Vec3<double>::Zero());
+      if (falls) swept.fall = reach * h * h * g;
+      if (after != nullptr && falls) swept.gained = std::max(0.0, h * speed(*after, h * g) - swept.way);
+      swept.reach += swept.way + swept.gained + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
     } else if (m.motion != nullptr) {
       for (const double when : {t, t + h}) {
         const MovingFrame frame = m.motion->at(when);
-        swept.speed = std::max(swept.speed, frame.c_dot.norm() + swept.reach * frame.omega.norm());
+        swept.way = std::max(swept.way, h * (frame.c_dot.norm() + swept.reach * frame.omega.norm()));
       }
-      swept.reach += h * swept.speed;
+      swept.reach += swept.way;
     }
     all.emplace(part, swept);
   }
@@ -222,23 +237,23 @@ void MeshFinder::approach(const State& state, double t, double h, ContactFinder:
     if (sleeps(state, on.part) && plane.point.is_constant()) continue;
     const Swept& a = all.at(on.part);
     for (const double when : {t, t + h})
-      if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.empty = false;
+      if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.soft = true;
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
     if ((!obstacle.acts_at(t) && !obstacle.acts_at(t + h)) || sleeps(state, on.part)) continue;
     const Swept& a = all.at(on.part);
     if (!on.mesh->comes_near(a.c, a.reach)) continue;
-    near.empty = false;
-    const double way = h * a.speed, thin = kStepShare * meshes_.at(on.part).thickness();
-    if (way > thin) near.h = std::min(near.h, h * thin / way);
+    near.soft = true;
+    near.keep_within(a.way, a.gained + a.fall.norm(), kStepShare * meshes_.at(on.part).thickness(), h,
+                     after != nullptr);
   }
   each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
-    near.empty = false;
-    const double way = h * (a.speed + b.speed);
+    near.soft = true;
     const double thin = kThinStep * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
-    if (way > thin) near.h = std::min(near.h, h * thin / way);
+    near.keep_within(a.way + b.way, a.gained + b.gained + (a.fall - b.fall).norm(), thin, h, after != nullptr);
   });
+  near.empty = near.empty && !near.soft;
 }
 
 }  // namespace pliant

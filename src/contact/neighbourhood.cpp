@@ -1,5 +1,6 @@
 // What a step comes near to, by balls about the parts and their way.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <pliant/body/multibody.h>
@@ -15,38 +16,91 @@ namespace {
 constexpr double kThinShare = 0.4;
 /// Most that a part may turn in a step over a plane, rad.
 constexpr double kMostTurn = 0.5;
+/// Ways that are so many times as long as they may be do not take a step back.
+constexpr double kLittleMore = 1.125;
+
+/// A bound of the speed of any point of a part against its frame's origin, m/s; reach: its radius, m.
+double speed_about(const PartModel& m, const State& state, double reach) {
+  const auto v = state.v.segment(m.v0, m.n_v());
+  return reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
+}
 
 }  // namespace
 
-ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h) const {
-  Neighbourhood near;
-  near.h = h;
-  Scratch& s = *scratch_;
-  s.balls.resize(model_->parts().size());
-  const double free_fall = model_->body().gravity_at(t).norm() * h;
-  double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
+void ContactFinder::Neighbourhood::keep_within(double way, double gained, double most, double whole,
+                                               bool taken) {
+  const double little_more = kLittleMore * most;
+  spare = std::min(spare, 0.5 * (little_more - std::min(way + gained, most)));
+  if (!(way + gained > (taken ? little_more : most))) return;
+  // In a share x of the step they go way x + gained x^2.
+  h = std::min(h, whole * 2 * most / (way + std::sqrt(way * way + 4 * gained * most)));
+}
+
+void ContactFinder::place_ball(const State& state, const State* after, double t, double h, double reach,
+                               int i) const {
+  const PartModel& m = model_->parts()[at(i)];
+  place(state, t, i);
+  Scratch::Ball& ball = scratch_->balls[at(i)];
+  // A parameter may be larger than at rest: the ball is about where the surface is.
+  ball = {scratch_->parts[at(i)].c, Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
+          scratch_->parts[at(i)].reach};
+  if (m.motion != nullptr) {
+    const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
+    ball.c_dot = (then.c - now.c) / h;
+    ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
+                 std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
+  }
+  double spare = 0;
+  if (m.q0 >= 0) {
+    const Vec3<double> gravity = model_->body().gravity_at(t);
+    ball.c_dot = state.v.segment<3>(m.v0);
+    ball.speed = speed_about(m, state, ball.reach);
+    if (after != nullptr) {
+      ball.c_dot_gained = (after->q.segment<3>(m.q0) - state.q.segment<3>(m.q0)) / h - ball.c_dot;
+      ball.gained = std::max(0.0, speed_about(m, *after, ball.reach) - ball.speed);
+    } else if (!sleeps(state, i)) {
+      ball.c_dot_gained = reach * h * gravity;
+      spare = h * gravity.norm();
+    }
+  }
+  ball.reach += h * (ball.fastest() + spare);
+}
+
+ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h,
+                                                          double reach) const {
+  return neighbourhood(state, nullptr, t, h, reach);
+}
+
+ContactFinder::Neighbourhood ContactFinder::neighbourhood_of(const State& state, const State& after, double t,
+                                                             double h, double reach,
+                                                             const Neighbourhood& foreseen) const {
+  const Vec3<double> fall = reach * h * h * model_->body().gravity_at(t);
+  double further = 0;
   for (const int i : smooth_) {
     const PartModel& m = model_->parts()[at(i)];
-    place(state, t, i);
-    Scratch::Ball& ball = s.balls[at(i)];
-    // A parameter may be larger than at rest: the ball is about where the surface is.
-    ball = {s.parts[at(i)].c, Vec3<double>::Zero(), 0, s.parts[at(i)].reach};
+    if (m.q0 < 0 || sleeps(state, i)) continue;
+    const double about = scratch_->parts[at(i)].reach;
+    const Vec3<double> way = after.q.segment<3>(m.q0) - state.q.segment<3>(m.q0);
+    further = std::max(further, (way - h * state.v.segment<3>(m.v0) - fall).norm() +
+                                    h * std::max(0.0, speed_about(m, after, about) -
+                                                          speed_about(m, state, about)));
+  }
+  return further > foreseen.spare ? neighbourhood(state, &after, t, h, reach) : foreseen;
+}
+
+ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, const State* after, double t,
+                                                          double h, double reach) const {
+  Neighbourhood near;
+  near.h = h;
+  near.spare = h * h * model_->body().gravity_at(t).norm();
+  Scratch& s = *scratch_;
+  s.balls.resize(model_->parts().size());
+  const bool taken = after != nullptr;
+  double fastest = 0, thinnest = std::numeric_limits<double>::infinity();
+  for (const int i : smooth_) {
+    place_ball(state, after, t, h, reach, i);
     thinnest = std::min(thinnest, surfaces_[at(i)]->thickness());
-    if (m.motion != nullptr) {
-      const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
-      ball.c_dot = (then.c - now.c) / h;
-      ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
-                   std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
-      ball.reach += h * (ball.c_dot.norm() + ball.speed);
-      fastest = std::max(fastest, ball.c_dot.norm() + ball.speed);
-    }
-    if (m.q0 < 0) continue;
-    const auto v = state.v.segment(m.v0, m.n_v());
-    ball.c_dot = v.head<3>();
-    ball.speed = ball.reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
-    const double speed = ball.c_dot.norm() + ball.speed;
-    ball.reach += h * (speed + (sleeps(state, i) ? 0 : free_fall));
-    fastest = std::max(fastest, speed);
+    fastest = std::max(fastest, s.balls[at(i)].fastest());
   }
   const auto& planes = model_->body().contact.planes;
   for (std::size_t k = 0; k < planes.size(); ++k) {
@@ -61,8 +115,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
           continue;
         near.empty = false;
         // None is thin, but what spins may come round with its other end.
-        if (const double turn = h * ball.speed / s.parts[at(i)].reach; turn > kMostTurn)
-          near.h = std::min(near.h, h * kMostTurn / turn);
+        near.keep_within(h * ball.speed, h * ball.gained, kMostTurn * s.parts[at(i)].reach, h, taken);
       }
     }
   }
@@ -73,16 +126,21 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
       if (sleeps(state, i)) continue;
       const Scratch::Ball& ball = s.balls[at(i)];
       const double way = h * (ball.c_dot.norm() + ball.speed),
+                   gained = h * (ball.c_dot_gained.norm() + ball.gained),
                    thin = kThinShare * surfaces_[at(i)]->thickness();
-      if (!near.empty && way <= thin) continue;  // it would change nothing
-      if (!on_obstacles_[at(i) * obstacles.size() + k].touch || !obstacles_[k].comes_near(ball.c, ball.reach))
+      const bool changes = near.empty || way + gained > thin;
+      if (changes && (!on_obstacles_[at(i) * obstacles.size() + k].touch ||
+                      !obstacles_[k].comes_near(ball.c, ball.reach)))
         continue;
       near.empty = false;
-      if (way > thin) near.h = std::min(near.h, h * thin / way);
+      near.keep_within(way, gained, thin, h, taken);
     }
   }
   if (!any_pairs_) return near;
-  if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) return near;  // pairs would change nothing
+  if (!near.empty && 2 * h * fastest <= kThinShare * thinnest) {  // pairs would change nothing
+    near.keep_within(2 * h * fastest, 0, kThinShare * thinnest, h, taken);
+    return near;
+  }
   s.boxes.clear();
   for (const int i : smooth_) {
     const Scratch::Ball& ball = s.balls[at(i)];
@@ -97,9 +155,10 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, do
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
-    const double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed);
-    const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
-    if (way > thin) near.h = std::min(near.h, h * thin / way);
+    near.keep_within(h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed),
+                     h * ((a.c_dot_gained - b.c_dot_gained).norm() + a.gained + b.gained),
+                     kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness()), h,
+                     taken);
   }
   return near;
 }

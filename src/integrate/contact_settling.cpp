@@ -9,6 +9,7 @@
 #include <pliant/math/index.h>
 
 #include "contact_pairs.h"
+#include "load_work.h"
 #include "pushed_parts.h"
 
 namespace pliant {
@@ -102,8 +103,10 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   const bool broken = hands || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   Workspace<double> scratch;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
+  LoadWork loads(dynamics_, state);
   move_by(problem, dynamics_.model(), work, state);
   if (h > 0) reconcile(parts, state, t, work, counters);
+  state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
   if (h > 0) part_overlaps(most + thrown, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
@@ -199,8 +202,10 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     ContactProblem parting(dynamics_.model(), state, work, found);
     parting.part_bodies(left, enough);
     left -= std::min(deepest, left);
+    LoadWork loads(dynamics_, state);
     move_by(parting, dynamics_.model(), work, state);
     reconcile(parts, state, t, work, counters);
+    state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
   }

@@ -81,14 +81,17 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     stage += std::chrono::duration<double>(at_lap - last).count();
     last = at_lap;
   };
+  double most = h;     // of a stage: in a longer one parts went further than was foreseen
+  bool touch = false;  // likewise: what deforms locally came near something
+  State before;
   for (double now = state.time(); now < end - near;) {
     sleeping_.begin_motion(now, end - now, state);
-    ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, end - now);
+    const double whole = std::min(end - now, most), fall = method.local_is_implicit() ? 1 : method.reach();
+    ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, whole, fall);
     if (!meshes_.empty()) {
-      ContactFinder::Neighbourhood of_meshes{true, around.h};
-      meshes_.approach(state, now, end - now, of_meshes);
-      method.expect_touch(!of_meshes.empty);
-      around = {around.empty && of_meshes.empty, of_meshes.h};
+      meshes_.approach(state, nullptr, now, whole, fall, around);
+      around.soft = around.soft || touch;
+      method.expect_touch(around.soft);
     }
     const double reach = method.reach();
     if (!(around.h > (end - now) / kMostParts)) {
@@ -100,18 +103,25 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     const double length = around.h >= end - now - near ? end - now : around.h;
     if (now != start + static_cast<double>(number) * h || length != h) set_step(state, now, length);
     lap(times_.finding);
-    if (around.empty) {
-      method.step(dynamics_, state, work, counters);
-      sleeping_.restore(state);
-      lap(times_.motion);
-      now += length;
-      continue;
-    }
-    const State before = state;
+    before = state;
     method.step(dynamics_, state, work, counters);
     sleeping_.restore(state);
     lap(times_.motion);
     if (!state.q.allFinite() || !state.v.allFinite()) break;
+    ContactFinder::Neighbourhood went = finder_.neighbourhood_of(before, state, now, length, fall, around);
+    if (!meshes_.empty()) meshes_.approach(before, &state, now, length, fall, went);
+    lap(times_.finding);
+    touch = went.soft && !around.soft;
+    if (touch || went.h < length - near) {
+      most = std::min(went.h, length);
+      state = before;
+      continue;
+    }
+    most = std::max(most, 2 * length);
+    if (around.empty && went.empty) {
+      now += length;
+      continue;
+    }
     const double after = now + length;
     const std::vector<Contact> resting = resting_.at_rest(before, now, slow);
     const Pairs rest(resting);

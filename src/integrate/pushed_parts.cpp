@@ -71,18 +71,21 @@ bool are_driven(const Model& model, const std::vector<int>& parts) {
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work) {
   const Model& model = dynamics.model();
-  std::set<int> alone, islands;
+  std::set<int> alone, islands, at_once;
   for (const Contact& contact : contacts)
     for (const ContactSide& side : {contact.a, contact.b}) {
       if (side.part < 0) continue;
       const PartModel& m = model.parts()[at(side.part)];
-      if (m.q0 < 0 || moves_by_nodes(m, work.parts[at(side.part)])) continue;
+      if (m.q0 < 0 || (side.at_nodes() && moves_by_nodes(m, work.parts[at(side.part)]))) continue;
       if (m.island < 0)
         alone.insert(side.part);
       else
         islands.insert(m.island);
+      if (m.island < 0 && moves_by_nodes(m, work.parts[at(side.part)])) at_once.insert(side.part);
     }
   dynamics.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
+  for (const int i : at_once)
+    model.parts()[at(i)].local->compliance(model.parts()[at(i)].shared, *work.parts[at(i)].local);
   for (const int i : islands)
     dynamics.factor_joints(t, state.q, state.v, state.joints, model.islands()[at(i)], work);
 }

@@ -273,22 +273,47 @@ void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double
   sum_over<double>(part, points, q_s, q_s_dot, omega, out, counters);
 }
 
+LinearInertia take_linear_inertia(const Part& part, const MassPoints& points) {
+  const int n = part.parameters().n_dynamic();
+  const VecMax<double> zero = VecMax<double>::Zero(n);
+  const ParameterValues<double> values = part.parameters().expand<double>(zero, zero);
+  LinearInertia moments(n);
+  Jet<Pack> jet;
+  Eigen::Matrix3Xd s(3, 1 + n);
+  for (std::size_t i = 0; i < points.at.size(); ++i) {
+    JetBatch<Pack> batch{&jet, 1, 0, Level::jacobian};
+    part.jets(values, &points.at[i], batch);
+    for (int lane = 0; lane < static_cast<int>(Pack::kLanes); ++lane) {
+      for (int r = 0; r < 3; ++r) {
+        s(r, 0) = jet.s[r][lane];
+        for (int k = 0; k < n; ++k) s(r, 1 + k) = jet.J[static_cast<std::size_t>(k)][r][lane];
+      }
+      moments.add(s, points.mass[i][lane]);
+    }
+  }
+  return moments;
+}
+
+template <class P>
+void Part::moving_inertia(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
+                          Inertia<P>& out, Counters& counters) const {
+  if (rigid()) return rigid_inertia<P>(rest_inertia_, omega, out, counters);
+  if (!linear_inertia_) return sum_over<P>(*this, mass_points_, q_s, q_s_dot, omega, out, counters);
+  linear_inertia_->inertia(q_s, q_s_dot, omega, out);
+  ++counters.mass_matrices;
+  counters.inertial_forces += all_zero(q_s_dot) && all_zero(omega) ? 0 : 1;
+}
+
 void Part::inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                    Inertia<double>& out, Counters& counters) const {
-  if (rigid())
-    rigid_inertia<double>(rest_inertia_, omega, out, counters);
-  else
-    sum_over<double>(*this, mass_points_, q_s, q_s_dot, omega, out, counters);
+  moving_inertia(q_s, q_s_dot, omega, out, counters);
 }
 void Part::rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters) {
   gyroscopic_force<double>(omega, out, counters);
 }
 void Part::inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const Vec3<Dual<1>>& omega,
                    Inertia<Dual<1>>& out, Counters& counters) const {
-  if (rigid())
-    rigid_inertia<Dual<1>>(rest_inertia_, omega, out, counters);
-  else
-    sum_over<Dual<1>>(*this, mass_points_, q_s, q_s_dot, omega, out, counters);
+  moving_inertia(q_s, q_s_dot, omega, out, counters);
 }
 
 void Part::points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,

@@ -31,6 +31,7 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   inertia_.resize(3 * n_nodes() + own.size());
   inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
   mobility_ = inertia_.cwiseInverse();
+  if (part.linear()) linear_ = lay_linear(part);
   auto at_nodes = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of) {
     VecX<double> values = VecX<double>::Zero(inertia_.size());
     for (Eigen::Index k = 0; of && k < n_nodes(); ++k)
@@ -40,6 +41,22 @@ NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settin
   initial_ = at_nodes(settings.displacement);
   initial_rate_ = at_nodes(settings.velocity);
   check_start(part, nodes(initial_, n_nodes()), initial_rate_);
+}
+
+NodalDeformation::Linear NodalDeformation::lay_linear(const Part& part) const {
+  const int n_s = part.parameters().n_dynamic();
+  const Eigen::Index n = n_nodes();
+  const VecMax<double> zero = VecMax<double>::Zero(n_s);
+  Linear linear{Nodes(n, 3), MatX<double>(3 * n, n_s), LinearInertia(n_s)};
+  Counters unused;
+  store_jets(part, zero, zero, packs_, {n, linear.s_0.data(), nullptr, nullptr, linear.J.data()}, unused);
+  Eigen::Matrix3Xd s(3, 1 + n_s);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    s.col(0) = linear.s_0.row(i);
+    for (int k = 0; k < n_s; ++k) s.col(1 + k) = nodes(linear.J.col(k), n).row(i);
+    linear.inertia.add(s, inertia_[i]);
+  }
+  return linear;
 }
 
 std::string NodalDeformation::coordinate_name(Eigen::Index k) const {

@@ -121,6 +121,23 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
   w.x.resize(n_d());
   if (n_s == 0) {
     if (w.s.rows() != n) w.s = mesh_.X;
+  } else if (linear_) {
+    if (w.J.rows() != 3 * n) w.J = linear_->J;
+    const VecX<double> q_s_dot = v_r.tail(n_s);
+    w.s.resize(n, 3);
+    w.s1.resize(n, 3);
+    w.u.resize(n, 3);
+    for_each_four(n, [&](const auto& four) {
+      Vec3<Pack> s = four.load(linear_->s_0.data(), n), s1 = Vec3<Pack>::Constant(Pack(0.0));
+      for (int k = 0; k < n_s; ++k) {
+        const Vec3<Pack> J = four.load(column(w, n, k), n);
+        s = plus(s, times(Pack(q_s[k]), J));
+        s1 = plus(s1, times(Pack(q_s_dot[k]), J));
+      }
+      four.store(w.s.data(), n, s);
+      four.store(w.s1.data(), n, s1);
+      four.store(w.u.data(), n, plus(s1, four.load(w.d_dot.data(), n)));
+    });
   } else {
     w.s.resize(n, 3);
     w.J.resize(3 * n, n_s);
@@ -142,7 +159,10 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
   const Eigen::Index n = n_nodes();
   const auto n_s = static_cast<int>(q_s.size());
   const double* mass = inertia_.data();
-  if (n_s > 0 || w.H0.rows() == 0) w.H0 = still_inertia(w.s.data(), mass, w, n, n_s);
+  if (linear_)
+    w.H0 = linear_->inertia.mass_matrix(q_s);
+  else if (n_s > 0 || w.H0.rows() == 0)
+    w.H0 = still_inertia(w.s.data(), mass, w, n, n_s);
   w.moment = Vec3<double>(w.H0(5, 1), w.H0(3, 2), w.H0(4, 0)) + w.m_d;
   w.unmet.resize(6 + n_s);
   w.unmet.head<3>() = w.m_d;
@@ -161,7 +181,7 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
       for_each_four(n, [&](const auto& four) {
         const Pack m = four.load(mass);
         s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
-        s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
+        if (!linear_) s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
       });
     for (int k = 0; k < n_s; ++k) {
       OuterSum dJ;
@@ -174,7 +194,7 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
       P.block<3, 1>(3, 6 + k) = -axial(d_J);
     }
     if (moving) w.rates.segment<3>(3) = 2 * axial(s1v.total()) + axial(s2d.total());
-    shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
+    if (!linear_) shape_rates(part, *this, q_s, q_s_dot, w, P, w.rates);
   }
   K -= P.transpose();
   w.scale = w.H0.diagonal().cwiseSqrt().cwiseInverse();

@@ -299,6 +299,13 @@ void Part::check_elasticity() const {
   }
 }
 
+bool Part::linear() const {
+  const std::vector<int>& dynamic = parameters_.dynamic();
+  return !dynamic.empty() && parameters_.links().empty() && shape_->linear_lengths() &&
+         std::all_of(dynamic.begin(), dynamic.end(),
+                     [&](int i) { return parameters_[i].spec->quantity == Quantity::length; });
+}
+
 void Part::prepare() {
   if (prepared_) return;
   parameters_.update();
@@ -359,6 +366,8 @@ void Part::prepare() {
     for (Pack& m : mass_points_.mass) m *= Pack(factor);
     rest_inertia_ = take();
   }
+  linear_inertia_.reset();
+  if (linear()) linear_inertia_ = take_linear_inertia(*this, mass_points_);
   if (local_settings_) local_ = make_local_deformation(*this, *local_settings_);
   continuum_.reset();
   if (continuum_settings_ && n > 0)

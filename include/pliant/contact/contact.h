@@ -8,7 +8,7 @@
 namespace pliant {
 
 /// The side of a contact that is on a part: a material point, or of a part that deforms locally a point
-/// between up to three nodes of its mesh.
+/// between up to three nodes of its mesh; or all of it, where it leaves another one that it is deep in.
 struct ContactSide {
   int part = -1;                                ///< number of the part; -1: a plane or an obstacle
   Material<double> material;                    ///< the point of it

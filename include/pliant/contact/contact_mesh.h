@@ -32,8 +32,8 @@ class ContactMesh {
   /// Radius of a ball about the origin of the part's frame that it is in, m; of a part without nodes that
   /// changes estimated by few points.
   double reach(const Model& model, const State& state, int number) const;
-  /// Whether it is estimated.
-  bool reaches_by_few() const { return !few_.empty(); }
+  /// Whether that takes all vertices.
+  bool reach_takes_all() const { return part_->local != nullptr; }
   /// No point of it moves faster against the frame of the part, m/s; estimated likewise.
   double speed(const State& state) const;
 
@@ -44,8 +44,11 @@ class ContactMesh {
   std::vector<int> nodes_;
   std::vector<Material<double>> material_;
   std::vector<Material<double>> few_;  // of a part without nodes that changes: where it reaches the farthest
-  Eigen::Matrix3Xd rigid_;             // vertices of a part that does not change
-  Eigen::Matrix3Xd rest_;              // and of one that changes by local deformation alone, without it
+  Eigen::Matrix3Xd rigid_;             // vertices of a part that does not change, and how far they reach
+  double rigid_reach_ = 0;
+  mutable Eigen::Matrix3Xd last_;  // vertices of a part without nodes that changes, when they were last
+  mutable VecX<double> last_q_s_;  // asked for, with these parameters
+  Eigen::Matrix3Xd rest_;          // and of one that changes by local deformation alone, without it
   double thickness_;
 };
 

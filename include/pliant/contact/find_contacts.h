@@ -32,9 +32,21 @@ class ContactFinder {
   /// What a step of h seconds from a state comes near to.
   struct Neighbourhood {
     bool empty = true;  ///< nothing touches in it
+    bool soft = false;  ///< parts that deform locally may touch something
     double h = 0;       ///< so long that no part passes through another, s
+    /// How much further than foreseen each part may go without that changing, m.
+    double spare = 0;
+
+    /// Shortens h where sides go more than `most` against each other in a step of `whole` seconds: by `way`
+    /// at the velocities of its start and by `gained` as these change. In a step that is taken already they
+    /// may do so by a little.
+    void keep_within(double way, double gained, double most, double whole, bool taken);
   };
-  Neighbourhood neighbourhood(const State& state, double t, double h) const;
+  /// reach: how far a force moves a body in the step (Integrator); of forces only gravity is foreseen.
+  Neighbourhood neighbourhood(const State& state, double t, double h, double reach = 0.5) const;
+  /// Of a step that has led to `after`; foreseen: what was told of one as long or longer.
+  Neighbourhood neighbourhood_of(const State& state, const State& after, double t, double h, double reach,
+                                 const Neighbourhood& foreseen) const;
   /// The least gap of a part over another, a plane or an obstacle, m; no more than `most`.
   double least_gap(const State& state, double t, const Contact& of, double most) const;
 
@@ -45,6 +57,9 @@ class ContactFinder {
   void place(const State& state, double t, int part) const;
   bool is_still(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
+  /// after: of a step that is taken; nullptr of one to come.
+  Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;
+  void place_ball(const State& state, const State* after, double t, double h, double reach, int part) const;
   Eigen::AlignedBox3d body_box(int part) const;
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;

@@ -23,8 +23,10 @@ class MeshFinder {
   bool empty() const { return meshes_.empty(); }
   /// Where surfaces have gone through each other at a state and a time, s. Appends.
   void find(const State& state, double t, std::vector<Contact>& found) const;
-  /// What a step from a state comes near to, on top of what is in `near` already.
-  void approach(const State& state, double t, double h, ContactFinder::Neighbourhood& near) const;
+  /// What a step from a state comes near to, on top of what is in `near` already. after: the state that it
+  /// has led to; nullptr of one to come.
+  void approach(const State& state, const State* after, double t, double h, double reach,
+                ContactFinder::Neighbourhood& near) const;
 
  private:
   struct OnPlane {
@@ -54,6 +56,13 @@ class MeshFinder {
   template <class Thing, class F>
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
   Vec3<double> carries(int part, double t, const Vec3<double>& x) const;
+  double own_way(const State& state, double t, const Around& ball) const;
+  /// Whether parts are deeper in each other than a step leads them; touches: of their meshes.
+  bool are_deep(const State& state, double t, const Around& one, const Around& other, const PlacedMesh& a,
+                const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
+  /// The way on which such parts leave each other as wholes.
+  Contact way_out(const State& state, double t, const Around& one, const Around& other, const PlacedMesh& a,
+                  const PlacedMesh& b) const;
 
   const Model* model_;
   std::map<int, ContactMesh> meshes_;  // of each part that needs one

@@ -9,6 +9,7 @@
 // with G = [I, -[p]x, J], p = s + d, and W = m G at d = 0. No matrix of mesh size is formed.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -25,7 +26,7 @@ struct NodalWorkspace final : LocalWorkspace {
   Nodes s;             ///< reference shape
   Nodes u;             ///< velocity J q_s_dot + d_dot; none where no parameter is dynamic, see rates_of_p()
   MatX<double> J;      ///< of all nodes along x, y, z of the first parameter, then of the second
-  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot
+  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot; s2 none of a linear part
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
   // mass
@@ -134,7 +135,16 @@ class NodalDeformation final : public LocalDeformation {
   /// f and f_d of the energies, and their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
 
+  /// Of a linear part: s = s_0 + J q_s at the nodes, and its inertia at d = 0.
+  struct Linear {
+    Nodes s_0;
+    MatX<double> J;
+    LinearInertia inertia;
+  };
+  Linear lay_linear(const Part& part) const;
+
   std::vector<Material<Pack>> packs_;
+  std::optional<Linear> linear_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
   bool of_positions_ = false;  // whether one of them is

@@ -13,6 +13,7 @@
 
 #include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
+#include <pliant/part/linear_inertia.h>
 #include <pliant/part/local_deformation.h>
 #include <pliant/part/mass_points.h>
 #include <pliant/part/parameters.h>
@@ -107,6 +108,9 @@ class Part {
   int n_v() const { return fixed_ ? 0 : 6 + n_s() + n_d(); }
   int n_q() const { return fixed_ ? 0 : 7 + n_s() + n_d(); }
   bool rigid() const { return parameters_.n_dynamic() == 0 && !local_settings_; }
+  /// Whether s is linear in q_s, so that J never changes: all dynamic parameters are lengths in which the
+  /// shape is linear, and no link acts.
+  bool linear() const;
 
   /// Held by a Model for as long as it runs the part.
   using Use = std::shared_ptr<const int>;
@@ -198,6 +202,9 @@ class Part {
   virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
  private:
+  template <class P>
+  void moving_inertia(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega, Inertia<P>& out,
+                      Counters& counters) const;
   /// The undeformed point that the chain takes to p.
   Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Before every change: refuses while in use, and has prepare() do its work again.
@@ -224,6 +231,7 @@ class Part {
   Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
 
   MassPoints mass_points_;
+  std::optional<LinearInertia> linear_inertia_;
   MatX<double> K_s_;
   Inertia<double> rest_inertia_;
   double size_ = 0;

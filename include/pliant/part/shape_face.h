@@ -38,6 +38,8 @@ class ShapeFace {
 
   /// Whether a changing exponent strains the material by bounded amounts (physics 1.5).
   virtual bool bounded_exponents() const = 0;
+  /// Whether e is linear in the parameters that are lengths.
+  virtual bool linear_lengths() const = 0;
 
   // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same
   // solid).
@@ -85,6 +87,7 @@ PLIANT_HAS_MEMBER(ring)
 PLIANT_HAS_MEMBER(ring_exponent)
 PLIANT_HAS_MEMBER(section)
 PLIANT_HAS_MEMBER(bounded_exponents)
+PLIANT_HAS_MEMBER(linear_lengths)
 #undef PLIANT_HAS_MEMBER
 
 }  // namespace detail
@@ -148,6 +151,7 @@ class ShapeFaceOf final : public ShapeFace {
     return Shape::template e<Dual<3>>(m, lift<Dual<3>>(a));
   }
   bool bounded_exponents() const override { return detail::has_bounded_exponents<Shape>; }
+  bool linear_lengths() const override { return detail::has_linear_lengths<Shape>; }
   Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const override {
     return RestMap::template e<Dual<3>>(m, lift<Dual<3>>(a));
   }

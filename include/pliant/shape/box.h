@@ -17,6 +17,7 @@ struct Box {
       length("a3", 1, "half size along z"),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 3>& a) {

@@ -18,6 +18,7 @@ struct Capsule {
       length("l", 1, "length of the straight part", Follows::ring),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 2>& a) {

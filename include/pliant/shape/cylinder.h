@@ -16,6 +16,7 @@ struct Cylinder {
       length("a3", 1, "half height along z"),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   /// The point of the unit cylinder in the direction of m.
   template <class U>

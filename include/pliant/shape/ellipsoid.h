@@ -14,6 +14,7 @@ struct Ellipsoid {
       length("a3", 1, "semi-axis along z"),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 3>& a) {

@@ -14,6 +14,7 @@
 //   of
 //                     length 1, is y times these, entry by entry
 //   bounded_exponents true: a changing exponent strains the material by bounded amounts
+//   linear_lengths true: e is linear in the parameters that are lengths, whatever the others are
 //   section(zeta, gap, a), section_panels(a)  area and mean squares of the section at zeta, gap = 1 - |zeta|,
 //                     of the solid, and panels along zeta between which it is smooth
 #pragma once

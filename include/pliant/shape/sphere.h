@@ -10,6 +10,7 @@ struct Sphere {
   static constexpr const char* formula = "w r (C_u C_v, C_u S_v, S_u)";
   static constexpr std::array<ParameterSpec, 1> parameters{{length("r", 1, "radius")}};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 1>& a) {

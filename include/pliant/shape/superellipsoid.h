@@ -19,6 +19,7 @@ struct Superellipsoid {
       exponent("eps2", "squareness in the x-y plane: 1 round, 0.1 square, 2 pointed", Follows::free),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 5>& a) {

@@ -21,6 +21,7 @@ struct SuperellipsoidRadial {
       exponent("eps2", "squareness in the x-y plane: 1 round, 0.1 square, 2 pointed", Follows::free),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
+  static constexpr bool linear_lengths = true;
   static constexpr bool bounded_exponents = true;
 
   template <class T, class U>

@@ -21,6 +21,7 @@ struct Supertoroid {
       exponent("eps2", "squareness of the ring", Follows::free),
   }};
   static constexpr MeshPattern mesh = MeshPattern::torus;
+  static constexpr bool linear_lengths = true;
 
   template <class T, class U>
   static Vec3<T> e(const Material<U>& m, const Vec<T, 6>& a) {

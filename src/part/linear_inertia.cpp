@@ -1,0 +1,95 @@
+#include <pliant/part/linear_inertia.h>
+
+#include <Eigen/Geometry>
+
+namespace pliant {
+
+namespace {
+/// sum a x b for sum a b^T.
+template <class P>
+Vec3<P> axial(const Mat3<P>& ab) {
+  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
+}
+}  // namespace
+
+LinearInertia::LinearInertia(int n)
+    : n_(n), first_(Eigen::Matrix3Xd::Zero(3, 1 + n)), second_(MatX<double>::Zero(3 + 3 * n, 3 + 3 * n)) {}
+
+void LinearInertia::add(const Eigen::Matrix3Xd& s, double m) {
+  const Eigen::Map<const VecX<double>> all(s.data(), s.size());
+  mass_ += m;
+  first_ += m * s;
+  second_ += m * all * all.transpose();
+}
+
+template <class P>
+LinearInertia::Blocks<P> LinearInertia::with_s(const VecMax<P>& q_s) const {
+  Blocks<P> blocks = second_.topRows<3>().cast<P>();
+  for (int k = 0; k < n_; ++k) blocks += second_.middleRows<3>(3 + 3 * k).cast<P>() * q_s[k];
+  return blocks;
+}
+
+template <class P>
+Mat3<P> LinearInertia::fill_mass_matrix(const VecMax<P>& q_s, const Blocks<P>& s_sk, Inertia<P>& out) const {
+  Vec3<P> moment = first_.col(0).cast<P>();
+  Mat3<P> ss = s_sk.template leftCols<3>();
+  for (int k = 0; k < n_; ++k) {
+    moment += first_.col(1 + k).cast<P>() * q_s[k];
+    ss += s_sk.template middleCols<3>(3 + 3 * k) * q_s[k];
+  }
+  out.mass = mass_;
+  out.moment = moment;
+  out.M.resize(6 + n_, 6 + n_);
+  out.M.template topLeftCorner<3, 3>() = Mat3<P>::Identity() * P(mass_);
+  out.M.template block<3, 3>(3, 0) = skew(moment);
+  out.M.template block<3, 3>(3, 3) = Mat3<P>::Identity() * ss.trace() - ss;
+  for (int k = 0; k < n_; ++k) {
+    out.M.template block<1, 3>(6 + k, 0) = first_.col(1 + k).transpose().cast<P>();
+    out.M.template block<1, 3>(6 + k, 3) = axial<P>(s_sk.template middleCols<3>(3 + 3 * k)).transpose();
+    for (int j = 0; j <= k; ++j) out.M(6 + k, 6 + j) = P(second_.block<3, 3>(3 + 3 * k, 3 + 3 * j).trace());
+  }
+  out.M.template triangularView<Eigen::StrictlyUpper>() = out.M.transpose();
+  return ss;
+}
+
+template <class P>
+void LinearInertia::fill(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
+                         Inertia<P>& out) const {
+  const Blocks<P> s_sk = with_s(q_s);
+  const Mat3<P> ss = fill_mass_matrix(q_s, s_sk, out);
+  // b = omega x (omega x s) + 2 omega x s1, s1 = sum s_k q_k_dot
+  const Mat3<P> spin = skew(omega), spin2 = spin * spin;
+  Vec3<P> s1 = Vec3<P>::Constant(P(0.0));
+  Mat3<P> s_s1 = Mat3<P>::Constant(P(0.0));
+  Blocks<P> s1_sk = Blocks<P>::Constant(3, 3 + 3 * n_, P(0.0));
+  for (int k = 0; k < n_; ++k) {
+    s1 += first_.col(1 + k).cast<P>() * q_s_dot[k];
+    s_s1 += s_sk.template middleCols<3>(3 + 3 * k) * q_s_dot[k];
+    s1_sk += second_.middleRows<3>(3 + 3 * k).cast<P>() * q_s_dot[k];
+  }
+  const P two(2.0);
+  out.g_q.resize(6 + n_);
+  out.g_q.template head<3>() = -(spin2 * out.moment + spin * s1 * two);
+  out.g_q.template segment<3>(3) = -axial<P>(ss * spin2.transpose() + s_s1 * spin.transpose() * two);
+  for (int k = 0; k < n_; ++k) {
+    const Mat3<P> b_sk =
+        spin2 * s_sk.template middleCols<3>(3 + 3 * k) + spin * s1_sk.template middleCols<3>(3 + 3 * k) * two;
+    out.g_q[6 + k] = -b_sk.trace();
+  }
+}
+
+MatX<double> LinearInertia::mass_matrix(const VecMax<double>& q_s) const {
+  Inertia<double> at;
+  fill_mass_matrix(q_s, with_s(q_s), at);
+  return at.M;
+}
+void LinearInertia::inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
+                            const Vec3<double>& omega, Inertia<double>& out) const {
+  fill<double>(q_s, q_s_dot, omega, out);
+}
+void LinearInertia::inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
+                            const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out) const {
+  fill<Dual<1>>(q_s, q_s_dot, omega, out);
+}
+
+}  // namespace pliant

@@ -1,0 +1,169 @@
+// About five thousand contacts at once: balls packed close in a box of planes, and what it takes to solve
+// them as they become more.
+#include "catch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+#include <pliant/contact/contact_problem.h>
+
+#include "motion.h"
+
+namespace stress_heaps_test {
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kG = 9.81, kStep = 2e-3, kRadius = 0.1;
+
+/// A square layer of balls that touch their neighbours, its first one at a place.
+void layer(MultiBody& body, int across, const Vec3<double>& first) {
+  for (int i = 0; i < across; ++i)
+    for (int j = 0; j < across; ++j)
+      body.add(make_part("ball" + std::to_string(body.parts().size()), "sphere", {}, 1000))
+          .rest({{"r", kRadius}})
+          .place(first + 2 * kRadius * Vec3<double>(i, j, 0));
+}
+void floor(MultiBody& body) {
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+/// Five layers, each in the dents of the one below, between four walls.
+void pack(MultiBody& body, int across) {
+  for (int k = 0; k < 5; ++k) {
+    const double in = kRadius * (1 + k % 2);
+    layer(body, across - k % 2, {in, in, kRadius * (1 + k * std::sqrt(2.0))});
+  }
+  floor(body);
+  const double width = 2 * kRadius * across;
+  body.plane("west", Vec3<double>(0, 0, 0), {1, 0, 0});
+  body.plane("east", Vec3<double>(width, 0, 0), {-1, 0, 0});
+  body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
+  body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
+}
+/// Contacts of that: within layers, between them, on the floor and the walls.
+std::size_t contacts_of_pack(int across) {
+  const int n = across, m = n - 1;
+  return static_cast<std::size_t>(3 * 2 * n * (n - 1) + 2 * 2 * m * (m - 1) + 4 * 4 * m * m + n * n +
+                                  4 * 3 * n);
+}
+/// Layers that become smaller towards the top.
+void pile(MultiBody& body, int across) {
+  for (int k = 0; k < across; ++k)
+    layer(body, across - k, kRadius * Vec3<double>(k, k, 1 + k * std::sqrt(2.0)));
+  floor(body);
+}
+/// What the process has in memory, bytes.
+double resident() {
+  double all = 0, held = 0;
+  std::ifstream("/proc/self/statm") >> all >> held;
+  return held * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+/// The least processor time of a step, s.
+double least_time(Simulation& simulation, int steps) {
+  double least = kInfinity;
+  for (int i = 0; i < steps; ++i) {
+    const std::clock_t start = std::clock();
+    simulation.step(kStep);
+    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("N55: five thousand contacts of balls packed in a box are solved to rounding", "[contact]") {
+  MultiBody body;
+  pack(body, 14);
+  Simulation simulation(body, "rk4");
+  const VecX<double> start = simulation.state().q;
+  double weight = 0;
+  for (const auto& part : body.parts()) weight += kG * part->total_mass();
+  for (int i = 0; i < 4; ++i) {
+    simulation.step(kStep);
+    const ContactRecord& record = simulation.contact()->record();
+    REQUIRE(record.contacts.size() == contacts_of_pack(14));
+    REQUIRE(record.contacts.size() > 4700);
+    double carried = 0;
+    for (std::size_t k = 0; k < record.contacts.size(); ++k) {
+      if (record.contacts[k].plane >= 0) carried += record.impulses[k][2];  // walls rub
+    }
+    CHECK(carried == Approx(weight * kStep).epsilon(1e-11));
+  }
+  CHECK((simulation.state().q - start).lpNorm<Eigen::Infinity>() < 1e-14);
+  CHECK(simulation.state().v.lpNorm<Eigen::Infinity>() < 5e-14);
+  CHECK(simulation.step_counters().contact_residual < 1e-14);  // m/s; 3e-15 has been seen
+  CHECK(simulation.step_counters().contact_fallbacks == 0);
+}
+
+TEST_CASE("N55: what is missed of a pile that is not solved is told", "[contact]") {
+  for (const int across : {3, 5, 9, 14}) {
+    MultiBody body;
+    body.contact.friction = 1;
+    pile(body, across);
+    const Model model(body);
+    const Dynamics dynamics(model);
+    State state = model.initial_state();
+    std::vector<int> all;
+    for (const PartModel& m : model.parts()) {
+      all.push_back(static_cast<int>(all.size()));
+      state.v[m.v0 + 2] = -kG * kStep;
+    }
+    Workspace<double> work;
+    dynamics.accelerations(0, state.q, state.v, state, work);
+    dynamics.evaluate_masses(state.q, state.v, all, work);
+    const std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
+    ContactProblem problem(model, state, work, contacts);
+    const ContactSolution solution = problem.solve(0);
+    double worst = 0;  // of the conditions on velocities, m/s
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+      const Vec3<double>&p = solution.impulse[k], &u = solution.velocity[k], &n = contacts[k].normal;
+      const double p_n = p.dot(n), u_n = u.dot(n), p_t = (p - p_n * n).norm();
+      REQUIRE(p_n >= -1e-9);
+      REQUIRE(p_t <= contacts[k].friction * p_n * (1 + 1e-9) + 1e-6);
+      worst = std::max(worst, -u_n);
+      if (p_n > 1e-6) worst = std::max(worst, u_n);
+      if (p_t < (1 - 1e-6) * contacts[k].friction * p_n - 1e-6) worst = std::max(worst, (u - u_n * n).norm());
+    }
+    CAPTURE(across, contacts.size(), solution.residual);
+    CHECK(worst < 3 * solution.residual + 1e-9);
+    CHECK(solution.residual < 0.5 * kG * kStep);
+    CHECK((solution.residual <= 1e-6) == (solution.fallbacks == 0));
+    if (across == 3) CHECK(solution.residual < 1e-15);
+  }
+}
+
+TEST_CASE("N55: memory and time of five thousand contacts", "[contact][long]") {
+  MultiBody few, many;
+  pack(few, 7);
+  pack(many, 14);
+  Simulation small(few, "rk4");
+  small.step(kStep);
+  const double before = resident();
+  Simulation large(many, "rk4");
+  least_time(large, 5);
+  const double after = resident();
+  CHECK(after - before < 110e6);  // 40 MB have been seen, 8 kB a contact
+  double time_small = kInfinity, time_large = kInfinity;
+  for (int i = 0; i < 4; ++i) {
+    time_small = std::min(time_small, least_time(small, 5));
+    time_large = std::min(time_large, least_time(large, 5));
+  }
+  CHECK(resident() - after < 2e6);  // steps that come later take no more
+  const double growth = static_cast<double>(many.parts().size()) / static_cast<double>(few.parts().size());
+  CAPTURE(growth, time_small, time_large);
+  // As the number to a power of 1.2 has been seen.
+  CHECK(time_large < std::pow(growth, 1.5) * time_small);
+  const auto sweeps = [](const Simulation& simulation) {
+    return static_cast<double>(simulation.step_counters().contact_sweeps) /
+           static_cast<double>(simulation.step_counters().steps);
+  };
+  CHECK(sweeps(large) < std::pow(growth, 0.3) * sweeps(small));
+}
+
+}  // namespace stress_heaps_test
