@@ -1,6 +1,7 @@
 #include <pliant/contact/collision_surface.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
@@ -35,6 +36,63 @@ constexpr double kSmallest = 1e-8;
 /// Nearer to a pole than this, as the sine of the angle, directions have no clear latitude and longitude.
 constexpr double kNearPole = 0.2;
 constexpr int kMostHalvings = 60;
+
+/// Nine places, rows of three along the first axis.
+using Stencil = std::array<Vec3<double>, 9>;
+
+/// Places of a mesh pattern about one of them by two coordinates: latitude and longitude of a ball, along
+/// which rims and edges run, or u and v of a torus; about the poles of a ball any two axes. Mesh points are
+/// whole spacings apart.
+class Chart {
+ public:
+  Chart(const Vec3<double>& start, bool ball) : start_(start) {
+    const double across = start.head<2>().norm();
+    by_angles_ = ball && across > kNearPole * start.norm();
+    if (by_angles_) {
+      latitude_ = std::atan2(start[2], across);
+      longitude_ = std::atan2(start[1], start[0]);
+      widening_ = std::max(1.0, 0.25 * kPi / (0.5 * kPi - std::abs(latitude_)));
+    } else if (ball) {
+      e1_ = start.unitOrthogonal();
+      e2_ = start.normalized().cross(e1_);
+    }
+  }
+  Vec3<double> place(const Eigen::Vector2d& x) const {
+    if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
+    return towards(up(x[0]), round(x[1]));
+  }
+  Stencil stencil(const Eigen::Vector2d& at, double size) const {
+    Stencil places;
+    std::array<Direction, 3> ups, rounds;
+    for (std::size_t k = 0; k < 3 && by_angles_; ++k) {
+      const double offset = size * (static_cast<double>(k) - 1);
+      ups[k] = up(at[0] + offset);
+      rounds[k] = round(at[1] + offset);
+    }
+    for (std::size_t j = 0; j < 9; ++j)
+      places[j] = by_angles_ ? towards(ups[j % 3], rounds[j / 3])
+                             : place(at + size * Eigen::Vector2d(static_cast<double>(j % 3) - 1,
+                                                                 static_cast<double>(j / 3) - 1));
+    if (at.isZero(0)) places[4] = start_;
+    return places;
+  }
+
+ private:
+  struct Direction {
+    double cos, sin;
+  };
+  Direction up(double x) const { return {std::cos(latitude_ + x), std::sin(latitude_ + x)}; }
+  Direction round(double y) const {
+    return {std::cos(longitude_ + widening_ * y), std::sin(longitude_ + widening_ * y)};
+  }
+  static Vec3<double> towards(const Direction& up, const Direction& round) {
+    return {up.cos * round.cos, up.cos * round.sin, up.sin};
+  }
+
+  Vec3<double> start_, e1_{1, 0, 0}, e2_{0, 1, 0};
+  bool by_angles_;
+  double latitude_ = 0, longitude_ = 0, widening_ = 1;
+};
 
 /// Where quadratics through the heights of a stencil are lowest, in its radii: along each of its axes, as
 /// rims and lines on which a surface lies flat have it, and of both. What bends by less than `flat` tells
@@ -137,33 +195,18 @@ double CollisionSurface::reach(const ParameterValues<double>& values) const {
 
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
-  // A stencil of three by three places about the best so far, along latitude and longitude of a ball, as rims
-  // and edges run, or u and v of a torus; about the poles along any two axes.
-  const bool ball = part_->shape().mesh() == MeshPattern::ball;
-  const Vec3<double> start = laid().surface.places()[static_cast<std::size_t>(i)];
-  const double across = start.head<2>().norm();
-  const bool by_angles = ball && across > kNearPole * start.norm();
-  const double latitude = std::atan2(start[2], across), longitude = std::atan2(start[1], start[0]);
-  const double widening = start.norm() / across;
-  Vec3<double> e1{1, 0, 0}, e2{0, 1, 0};
-  if (ball) {
-    e1 = start.unitOrthogonal();
-    e2 = start.normalized().cross(e1);
-  }
-  auto place = [&](double x, double y) -> Vec3<double> {
-    if (!by_angles || (x == 0 && y == 0)) return start + x * e1 + y * e2;
-    const double u = latitude + x, v = longitude + widening * y;
-    return {std::cos(u) * std::cos(v), std::cos(u) * std::sin(v), std::sin(u)};
-  };
-  auto material = [&](const Eigen::Vector2d& x) {
-    return part_->shape().mesh_label(place(x[0], x[1]), values.b.data());
+  // A stencil of three by three places about the best so far; quadratics through its heights tell the next.
+  const Chart chart(laid().surface.places()[static_cast<std::size_t>(i)],
+                    part_->shape().mesh() == MeshPattern::ball);
+  auto material = [&](const Vec3<double>& place) {
+    return part_->shape().mesh_label(place, values.b.data());
   };
   Eigen::Vector2d at(0, 0);
   LowPoint best;
   std::vector<Material<double>> stencil(9);
   auto lay = [&](double size) {
-    for (int j = 0; j < 9; ++j)
-      stencil[static_cast<std::size_t>(j)] = material(at + size * Eigen::Vector2d(j % 3 - 1, j / 3 - 1));
+    const Stencil places = chart.stencil(at, size);
+    for (std::size_t j = 0; j < 9; ++j) stencil[j] = material(places[j]);
     return part_->s(stencil, values);
   };
   using Heights = Vec<double, 9>;
@@ -174,12 +217,14 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
   };
   const double rounding = kRounding * part_->size();
   double radius = 0.5 * spacing_;
-  {  // Corners, edges and faces have their lowest points among those of the mesh.
+  // Corners, edges and faces have their lowest points among those of the mesh.
+  auto is_lowest = [&] {
     const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
     const Heights h = heights(p);
     best = {stencil[4], p.col(4), h[4]};
-    if (h.minCoeff() >= h[4] - rounding) return best;
-  }
+    return h.minCoeff() >= h[4] - rounding;
+  };
+  if (is_lowest()) return best;
   std::vector<Material<double>> next_materials;
   for (int k = 0; k < kMostHalvings && radius > kSmallest * spacing_; ++k) {
     const Eigen::Matrix3Xd p = lay(radius);
@@ -200,7 +245,8 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
     const std::vector<Eigen::Vector2d> steps = steps_to_lowest(h, kFlat * part_->size());
     if (steps.empty() && next == at) break;
     next_materials.clear();
-    for (const Eigen::Vector2d& step : steps) next_materials.push_back(material(at + radius * step));
+    for (const Eigen::Vector2d& step : steps)
+      next_materials.push_back(material(chart.place(at + radius * step)));
     const Eigen::Matrix3Xd p_next = part_->s(next_materials, values);
     for (std::size_t j = 0; j < steps.size(); ++j) {
       const auto column = static_cast<Eigen::Index>(j);
@@ -210,6 +256,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       good = steps[j].lpNorm<Eigen::Infinity>() < 0.5;
     }
     next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
+    if (next == at && at.cwiseAbs().isConstant(spacing_, 0) && is_lowest()) return best;
     const bool stays = (next - at).norm() <= 0.5 * radius;
     at = next;
     if (good)

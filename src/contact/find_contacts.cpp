@@ -26,6 +26,8 @@ constexpr double kInner = 0.02, kEdgeCosine = 0.9;
 constexpr double kFlush = 1e-4;
 /// Gaps over an obstacle are told up to this, in sizes of the part.
 constexpr double kSeen = 0.1;
+/// How well the way out of a thin body is told, in thicknesses.
+constexpr double kAcross = 1e-12;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
 
@@ -36,13 +38,14 @@ constexpr double kOneContactNormal = 0.2;
 class ContactFinder::OverPart final : public CollisionSurface::Field {
  public:
   OverPart(const Placed& a, const Placed& b, const Part& part, const ParameterValues<double>& values,
-           double thickness)
+           double thickness, int thin_axis)
       : R_(b.R.transpose() * a.R),
         d_(b.R.transpose() * (a.c - b.c)),
         part_(part),
         values_(values),
         axes_(b.axes),
-        thickness_(thickness) {}
+        thickness_(thickness),
+        thin_axis_(thin_axis) {}
 
   const Mat3<double>& R() const { return R_; }
   const Vec3<double>& d() const { return d_; }
@@ -55,7 +58,9 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
       return (w - 1) / gradient.norm();
     }
     gradient = part_.inside_outside_gradient(in_b, values_);
-    return part_.inside_outside(in_b, values_) / gradient.norm();
+    const double height = part_.inside_outside(in_b, values_) / gradient.norm();
+    // Nothing is deeper in a body than half its thickness: w has told the way out at a far side.
+    return height < -0.5 * thickness_ ? across(in_b, gradient) : height;
   }
   double height(const Vec3<double>& p) const override {
     Vec3<double> gradient;
@@ -67,12 +72,25 @@ class ContactFinder::OverPart final : public CollisionSurface::Field {
   }
 
  private:
+  /// The height of a point in b under its nearer side across the thin axis, and the gradient there.
+  double across(const Vec3<double>& in_b, Vec3<double>& gradient) const {
+    const Vec3<double> out = (in_b[thin_axis_] < 0 ? -1.0 : 1.0) * Vec3<double>::Unit(thin_axis_);
+    double inside = 0, outside = thickness_;
+    while (outside - inside > kAcross * thickness_) {
+      const double middle = 0.5 * (inside + outside);
+      (part_.inside_outside(in_b + middle * out, values_) < 0 ? inside : outside) = middle;
+    }
+    gradient = part_.inside_outside_gradient(in_b + outside * out, values_);
+    return -outside * std::abs(gradient.normalized().dot(out));
+  }
+
   Mat3<double> R_;
   Vec3<double> d_;
   const Part& part_;
   const ParameterValues<double>& values_;
   const std::optional<Vec3<double>>& axes_;
   double thickness_;
+  int thin_axis_;  // along which b extends least
 };
 
 ContactFinder::~ContactFinder() = default;
@@ -166,7 +184,10 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
   const Part &part_a = *model_->parts()[at(a)].part, &part_b = *model_->parts()[at(b)].part;
   const ParameterValues<double>&values = scratch_->values[at(a)], &values_b = scratch_->values[at(b)];
   const CollisionSurface& surface = *surfaces_[at(a)];
-  const OverPart field(on, over, part_b, values_b, surfaces_[at(b)]->thickness());
+  const Eigen::AlignedBox3d box = body_box(b);
+  int thin_axis = 0;
+  box.sizes().minCoeff(&thin_axis);
+  const OverPart field(on, over, part_b, values_b, surfaces_[at(b)]->thickness(), thin_axis);
   auto add = [&](const CollisionSurface::LowPoint& low, double gap, const Vec3<double>& gradient) {
     Contact contact;
     contact.gap = gap;
@@ -192,7 +213,7 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
   const Eigen::Matrix3Xd& p = points_of(a);
   const double size = part_a.size() + part_b.size(),
                reach = most + 0.1 * std::min(part_a.size(), part_b.size());
-  const Eigen::AlignedBox3d box = body_box(b), around(box.min().array() - reach, box.max().array() + reach);
+  const Eigen::AlignedBox3d around(box.min().array() - reach, box.max().array() + reach);
   VecX<double> heights = VecX<double>::Constant(p.cols(), size);
   bool any = false;
   Vec3<double> gradient;

@@ -106,7 +106,9 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   LoadWork loads(dynamics_, state);
   move_by(problem, dynamics_.model(), work, state);
   if (h > 0) reconcile(parts, state, t, work, counters);
-  state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
+  // Methods that go by the velocities at a step's end book what forces do by those at its start: to what
+  // rests they do nothing.
+  if (since_of_limits < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
   if (h > 0) part_overlaps(most + thrown, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)

@@ -202,4 +202,33 @@ TEST_CASE("N53: a body of thousands of lengths a step is refused, and a hundredt
     }
 }
 
+TEST_CASE("N53: thin plates that fall from rest or are pushed do not pass through thin tables", "[contact]") {
+  // From rest no velocity tells how far a step goes.
+  for (const double h : {1e-2, 2e-2, 3e-2})
+    for (const double gap : {1e-4, 3e-4, 2e-3})
+      for (const bool pushed : {false, true}) {
+        CAPTURE(h, gap, pushed);
+        MultiBody body;
+        if (pushed) body.gravity.setZero();
+        body.contact.active = true;
+        body.add(make_part("table", "box", {}, 1000))
+            .rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 5e-4}})
+            .place({0, 0, -5e-4})
+            .fix();
+        Part& plate = body.add(make_part("plate", "box", {}, 1000));
+        plate.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 5e-4}}).place({0, 0, 5e-4 + gap});
+        plate.prepare();
+        const double weight = 9.81 * plate.total_mass();
+        if (pushed) body.force("push", point(plate, 0, 0, 0), Vec3<double>(0, 0, -weight));
+        Simulation simulation(body, "rk4");
+        for (int i = 0; i < 20; ++i) {
+          simulation.step(h);
+          REQUIRE(simulation.state().q[2] > 5e-4 - 1e-6);
+          REQUIRE(simulation.state().q[2] < 5e-4 + gap + 1e-6);
+          REQUIRE(simulation.ledger().kinetic < 1.05 * weight * (gap + 1e-6));
+        }
+        CHECK(simulation.state().q[2] == Approx(5e-4).margin(1e-6));
+      }
+}
+
 }  // namespace stress_fast_contacts_test

@@ -131,4 +131,42 @@ TEST_CASE("friction between parts takes what their speeds against each other los
   }
 }
 
+TEST_CASE("forces and torques that press a body on a floor do no work on it, and none is booked",
+          "[contact]") {
+  for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit", "implicit_midpoint", "dop853"})
+    for (const bool moves : {false, true}) {
+      CAPTURE(method, moves);
+      MultiBody body;
+      floor(body);
+      Part& block = box(body, "block", {0.1, 0.12, 0.1}, {0, 0, 0.1});
+      if (moves) block.move({0.8, 0, 0}, {0, 0, 0});
+      body.force("pressed", point(block, 0, 0, 0), Vec3<double>(0, 0, -94.2));
+      body.torque("turned", block, Vec3<double>(0.3, 0.2, 0));
+      Simulation simulation(body, method);
+      test::run(simulation, 0.3, 300);
+      // 94 N times 1e-10 of what counts as resting has been seen, of 3 J.
+      CHECK(std::abs(work(simulation, Work::forces)) < 1e-7);
+      CHECK(std::abs(work(simulation, Work::contact)) < 1e-7);
+      CHECK(std::abs(simulation.ledger().balance) < 1e-9);
+    }
+}
+
+TEST_CASE("a force that pulls a block over a floor does its work along the way that the block goes",
+          "[contact]") {
+  MultiBody body;
+  floor(body);
+  Part& block = box(body, "block", {0.3, 0.2, 0.1}, {0, 0, 0.1});
+  block.prepare();
+  const double pull = 1.5 * kMu * block.total_mass() * kG;
+  body.force("pull", point(block, 0, 0, 0), Vec3<double>(pull, 0, -30));
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 0.3, 150);
+  const double way = simulation.state().q[0];
+  CHECK(way > 0.05);
+  CHECK(work(simulation, Work::forces) == Approx(pull * way).epsilon(1e-11));
+  CHECK(work(simulation, Work::friction) ==
+        Approx(-kMu * (block.total_mass() * kG + 30) * way).epsilon(1e-11));
+  CHECK(std::abs(simulation.ledger().balance) < 1e-11);
+}
+
 }  // namespace stress_friction_test
