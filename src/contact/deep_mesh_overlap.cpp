@@ -22,7 +22,7 @@ namespace {
 /// many ways that the step has moved the parts against each other.
 constexpr double kDeep = 0.06, kWays = 2;
 /// Centres nearer than this, in sizes, tell no way out.
-constexpr double kOneCentre = 1e-9;
+constexpr double kSameCentre = 1e-9;
 
 /// Whether a point is in a closed mesh: it sees the whole of it all around.
 bool holds(const PlacedMesh& m, const Vec3<double>& x) {
@@ -70,7 +70,7 @@ Contact MeshFinder::way_out(const State& state, double t, const Around& one, con
                             const PlacedMesh& a, const PlacedMesh& b) const {
   const Vec3<double> d = one.c - other.c;
   std::vector<Vec3<double>> ways;
-  if (d.norm() > kOneCentre * (one.reach + other.reach)) ways.push_back(d.normalized());
+  if (d.norm() > kSameCentre * (one.reach + other.reach)) ways.push_back(d.normalized());
   for (const int part : {one.part, other.part}) {
     const Mat3<double> R = model_->orientation(state, part, t).toRotationMatrix();
     for (int k = 0; k < 3; ++k)

@@ -251,7 +251,8 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
   each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
     near.soft = true;
     const double thin = kThinStep * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
-    near.keep_within(a.way + b.way, a.gained + b.gained + (a.fall - b.fall).norm(), thin, h, after != nullptr);
+    near.keep_within(a.way + b.way, a.gained + b.gained + (a.fall - b.fall).norm(), thin, h,
+                     after != nullptr);
   });
   near.empty = near.empty && !near.soft;
 }

@@ -42,7 +42,7 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   place(state, t, i);
   Scratch::Ball& ball = scratch_->balls[at(i)];
   // A parameter may be larger than at rest: the ball is about where the surface is.
-  ball = {scratch_->parts[at(i)].c, Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
+  ball = {scratch_->parts[at(i)].c,    Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
           scratch_->parts[at(i)].reach};
   if (m.motion != nullptr) {
     const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
@@ -81,9 +81,9 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood_of(const State& state,
     if (m.q0 < 0 || sleeps(state, i)) continue;
     const double about = scratch_->parts[at(i)].reach;
     const Vec3<double> way = after.q.segment<3>(m.q0) - state.q.segment<3>(m.q0);
-    further = std::max(further, (way - h * state.v.segment<3>(m.v0) - fall).norm() +
-                                    h * std::max(0.0, speed_about(m, after, about) -
-                                                          speed_about(m, state, about)));
+    further =
+        std::max(further, (way - h * state.v.segment<3>(m.v0) - fall).norm() +
+                              h * std::max(0.0, speed_about(m, after, about) - speed_about(m, state, about)));
   }
   return further > foreseen.spare ? neighbourhood(state, &after, t, h, reach) : foreseen;
 }
