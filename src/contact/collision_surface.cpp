@@ -57,6 +57,8 @@ class Chart {
       e2_ = start.normalized().cross(e1_);
     }
   }
+  /// To its neighbours in every direction, in spacings; circles of latitude are shorter than others.
+  Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
   Vec3<double> place(const Eigen::Vector2d& x) const {
     if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
     return towards(up(x[0]), round(x[1]));
@@ -216,6 +218,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
     return h;
   };
   const double rounding = kRounding * part_->size();
+  const Eigen::Vector2d farthest = spacing_ * chart.farthest();
   double radius = 0.5 * spacing_;
   // Corners, edges and faces have their lowest points among those of the mesh.
   auto is_lowest = [&] {
@@ -255,8 +258,9 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       take(next_materials[j], p_next.col(column), height, at + radius * steps[j]);
       good = steps[j].lpNorm<Eigen::Infinity>() < 0.5;
     }
-    next = next.cwiseMax(-spacing_).cwiseMin(spacing_);
-    if (next == at && at.cwiseAbs().isConstant(spacing_, 0) && is_lowest()) return best;
+    next = next.cwiseMax(-farthest).cwiseMin(farthest);
+    const Eigen::Array2d spacings = at / spacing_;
+    if (next == at && (spacings == spacings.round()).all() && is_lowest()) return best;
     const bool stays = (next - at).norm() <= 0.5 * radius;
     at = next;
     if (good)
