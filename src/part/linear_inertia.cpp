@@ -2,15 +2,9 @@
 
 #include <Eigen/Geometry>
 
-namespace pliant {
+#include "axial.h"
 
-namespace {
-/// sum a x b for sum a b^T.
-template <class P>
-Vec3<P> axial(const Mat3<P>& ab) {
-  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
-}
-}  // namespace
+namespace pliant {
 
 LinearInertia::LinearInertia(int n)
     : n_(n), first_(Eigen::Matrix3Xd::Zero(3, 1 + n)), second_(MatX<double>::Zero(3 + 3 * n, 3 + 3 * n)) {}
@@ -29,26 +23,26 @@ LinearInertia::Blocks<P> LinearInertia::with_s(const VecMax<P>& q_s) const {
   return blocks;
 }
 
-template <class P>
-Mat3<P> LinearInertia::fill_mass_matrix(const VecMax<P>& q_s, const Blocks<P>& s_sk, Inertia<P>& out) const {
-  Vec3<P> moment = first_.col(0).cast<P>();
+template <class P, class Matrix>
+Mat3<P> LinearInertia::fill_mass_matrix(const VecMax<P>& q_s, const Blocks<P>& s_sk, Matrix& M,
+                                        Vec3<P>& moment) const {
+  moment = first_.col(0).cast<P>();
   Mat3<P> ss = s_sk.template leftCols<3>();
   for (int k = 0; k < n_; ++k) {
     moment += first_.col(1 + k).cast<P>() * q_s[k];
     ss += s_sk.template middleCols<3>(3 + 3 * k) * q_s[k];
   }
-  out.mass = mass_;
-  out.moment = moment;
-  out.M.resize(6 + n_, 6 + n_);
-  out.M.template topLeftCorner<3, 3>() = Mat3<P>::Identity() * P(mass_);
-  out.M.template block<3, 3>(3, 0) = skew(moment);
-  out.M.template block<3, 3>(3, 3) = Mat3<P>::Identity() * ss.trace() - ss;
+  M.resize(6 + n_, 6 + n_);
+  M.template topLeftCorner<3, 3>() = Mat3<P>::Identity() * P(mass_);
+  M.template block<3, 3>(3, 0) = skew(moment);
+  M.template block<3, 3>(3, 3) = Mat3<P>::Identity() * ss.trace() - ss;
   for (int k = 0; k < n_; ++k) {
-    out.M.template block<1, 3>(6 + k, 0) = first_.col(1 + k).transpose().cast<P>();
-    out.M.template block<1, 3>(6 + k, 3) = axial<P>(s_sk.template middleCols<3>(3 + 3 * k)).transpose();
-    for (int j = 0; j <= k; ++j) out.M(6 + k, 6 + j) = P(second_.block<3, 3>(3 + 3 * k, 3 + 3 * j).trace());
+    M.template block<1, 3>(6 + k, 0) = first_.col(1 + k).transpose().cast<P>();
+    M.template block<1, 3>(6 + k, 3) = axial<P>(s_sk.template middleCols<3>(3 + 3 * k)).transpose();
+    for (int j = 0; j <= k; ++j) M(6 + k, 6 + j) = P(second_.block<3, 3>(3 + 3 * k, 3 + 3 * j).trace());
   }
-  out.M.template triangularView<Eigen::StrictlyUpper>() = out.M.transpose();
+  for (Eigen::Index j = 1; j < M.cols(); ++j)
+    for (Eigen::Index i = 0; i < j; ++i) M(i, j) = M(j, i);
   return ss;
 }
 
@@ -56,7 +50,8 @@ template <class P>
 void LinearInertia::fill(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                          Inertia<P>& out) const {
   const Blocks<P> s_sk = with_s(q_s);
-  const Mat3<P> ss = fill_mass_matrix(q_s, s_sk, out);
+  const Mat3<P> ss = fill_mass_matrix(q_s, s_sk, out.M, out.moment);
+  out.mass = mass_;
   // b = omega x (omega x s) + 2 omega x s1, s1 = sum s_k q_k_dot
   const Mat3<P> spin = skew(omega), spin2 = spin * spin;
   Vec3<P> s1 = Vec3<P>::Constant(P(0.0));
@@ -78,10 +73,11 @@ void LinearInertia::fill(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const V
   }
 }
 
-MatX<double> LinearInertia::mass_matrix(const VecMax<double>& q_s) const {
-  Inertia<double> at;
-  fill_mass_matrix(q_s, with_s(q_s), at);
-  return at.M;
+MatMax<double> LinearInertia::mass_matrix(const VecMax<double>& q_s) const {
+  MatMax<double> M;
+  Vec3<double> moment;
+  fill_mass_matrix(q_s, with_s(q_s), M, moment);
+  return M;
 }
 void LinearInertia::inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot,
                             const Vec3<double>& omega, Inertia<double>& out) const {

@@ -16,8 +16,6 @@
 
 namespace pliant {
 
-using node_sums::axial;
-
 double ModalWorkspace::condition() const {
   return 1 / factor.rcond();
 }

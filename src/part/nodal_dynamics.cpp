@@ -123,7 +123,7 @@ void NodalDeformation::positions(const Part& part, const VecX<double>& q_s, cons
     if (w.s.rows() != n) w.s = mesh_.X;
   } else if (linear_) {
     if (w.J.rows() != 3 * n) w.J = linear_->J;
-    const VecX<double> q_s_dot = v_r.tail(n_s);
+    const VecMax<double> q_s_dot = v_r.tail(n_s);
     w.s.resize(n, 3);
     w.s1.resize(n, 3);
     w.u.resize(n, 3);
@@ -179,9 +179,11 @@ void NodalDeformation::masses(const Part& part, const VecX<double>& q_s, const V
     const bool moving = any(q_s_dot);
     if (moving)
       for_each_four(n, [&](const auto& four) {
-        const Pack m = four.load(mass);
-        s1v.add(four.load(w.s1.data(), n), times(m, four.load(w.d_dot.data(), n)));
-        if (!linear_) s2d.add(four.load(w.s2.data(), n), times(m, four.load(w.d.data(), n)));
+        s1v.add(four.load(w.s1.data(), n), times(four.load(mass), four.load(w.d_dot.data(), n)));
+      });
+    if (moving && !linear_)
+      for_each_four(n, [&](const auto& four) {
+        s2d.add(four.load(w.s2.data(), n), times(four.load(mass), four.load(w.d.data(), n)));
       });
     for (int k = 0; k < n_s; ++k) {
       OuterSum dJ;

@@ -6,6 +6,8 @@
 #include <pliant/local/four_nodes.h>
 #include <pliant/part/nodal_deformation.h>
 
+#include "axial.h"
+
 namespace pliant::node_sums {
 
 /// sum a b^T over nodes, and sums of vectors, four lanes wide.
@@ -46,10 +48,6 @@ inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
 /// Of Packs, whose product by Eigen compilers do not inline.
 [[gnu::always_inline]] inline Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-/// The axial vector of a matrix: sum of a x b for sum a b^T.
-inline Vec3<double> axial(const Mat3<double>& ab) {
-  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
 }
 
 inline bool any(const Eigen::Ref<const VecX<double>>& x) {

@@ -133,7 +133,8 @@ TEST_CASE("friction between parts takes what their speeds against each other los
 
 TEST_CASE("forces and torques that press a body on a floor do no work on it, and none is booked",
           "[contact]") {
-  for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit", "implicit_midpoint", "dop853"})
+  for (const char* method :
+       {"rk4", "semi_implicit_euler", "linearly_implicit", "implicit_midpoint", "dop853"})
     for (const bool moves : {false, true}) {
       CAPTURE(method, moves);
       MultiBody body;

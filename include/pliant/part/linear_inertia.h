@@ -16,7 +16,7 @@ class LinearInertia {
   void add(const Eigen::Matrix3Xd& s, double m);
 
   /// M at q_s.
-  MatX<double> mass_matrix(const VecMax<double>& q_s) const;
+  MatMax<double> mass_matrix(const VecMax<double>& q_s) const;
   /// Mass matrix and inertial forces, as Part::inertia().
   void inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
                Inertia<double>& out) const;
@@ -31,8 +31,8 @@ class LinearInertia {
   template <class P>
   Blocks<P> with_s(const VecMax<P>& q_s) const;
   /// Returns sum m s s^T.
-  template <class P>
-  Mat3<P> fill_mass_matrix(const VecMax<P>& q_s, const Blocks<P>& s_sk, Inertia<P>& out) const;
+  template <class P, class Matrix>
+  Mat3<P> fill_mass_matrix(const VecMax<P>& q_s, const Blocks<P>& s_sk, Matrix& M, Vec3<P>& moment) const;
   template <class P>
   void fill(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega, Inertia<P>& out) const;
 
