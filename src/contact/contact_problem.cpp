@@ -145,8 +145,8 @@ void ContactProblem::add_strings() {
 /// Gives the contact added last its sides, and what it pushes while joints hold.
 void ContactProblem::complete() {
   const int contact = system_.size() - 1, rows = system_.rows(contact);
-  for (std::size_t i = 0; i < movers_.all().size(); ++i)
-    if (static_cast<int>(i) >= system_.movers()) system_.add_mover(movers_.all()[i].size);
+  while (system_.movers() < static_cast<int>(movers_.all().size()))
+    system_.add_mover(movers_[system_.movers()].size);
   for (const Side& side : sides_) {
     system_.add_side(side.mover, side.first, static_cast<int>(side.J.cols())) = side.J;
     for (const Side::Local& local : side.local)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 
 #include <pliant/body/multibody.h>
 #include <pliant/contact/ellipsoid_points.h>
@@ -28,6 +29,8 @@ constexpr double kFlush = 1e-4;
 constexpr double kSeen = 0.1;
 /// How well the way out of a thin body is told, in thicknesses.
 constexpr double kAcross = 1e-12;
+/// Pairs are looked for among boxes that are wider by this share of the size of a part.
+constexpr double kMargin = 0.05;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
 
@@ -289,12 +292,42 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
   found.insert(found.end(), ours.begin(), ours.end());
 }
 
-std::vector<Contact> ContactFinder::find(const State& state, double t, double most) const {
+/// Pairs of parts, of which one at least is marked, whose boxes are no farther from each other than `most`.
+/// While boxes stay within wider ones, only pairs of which these meet are looked at.
+void ContactFinder::find_near_pairs(double most, const std::vector<bool>* of) const {
+  Scratch& s = *scratch_;
+  s.boxes.clear();
+  for (const int i : smooth_) s.boxes.push_back(world_box(i));
+  const Vec3<double> reach = Vec3<double>::Constant(0.5 * most);
+  bool within = s.wide.size() == s.boxes.size();
+  for (std::size_t k = 0; within && k < s.boxes.size(); ++k)
+    within = s.wide[k].contains(Eigen::AlignedBox3d(s.boxes[k].min() - reach, s.boxes[k].max() + reach));
+  if (!within) {
+    s.wide.clear();
+    for (std::size_t k = 0; k < smooth_.size(); ++k) {
+      const Vec3<double> margin = reach.array() + kMargin * model_->parts()[at(smooth_[k])].part->size();
+      s.wide.emplace_back(s.boxes[k].min() - margin, s.boxes[k].max() + margin);
+    }
+    s.tree.build(s.wide);
+    s.tree.near_pairs(0, s.wide_pairs);
+  }
+  s.pairs.clear();
+  for (const auto& [one, other] : s.wide_pairs) {
+    const int i = smooth_[at(one)], j = smooth_[at(other)];
+    if (of != nullptr && !(*of)[at(i)] && !(*of)[at(j)]) continue;
+    if (s.boxes[at(one)].squaredExteriorDistance(s.boxes[at(other)]) <= most * most)
+      s.pairs.emplace_back(i, j);
+  }
+}
+
+std::vector<Contact> ContactFinder::find(const State& state, double t, double most,
+                                         const std::vector<bool>* of) const {
   Scratch& s = *scratch_;
   place_planes(t);
   std::vector<Contact> found;
   for (const int i : smooth_) {
     place(state, t, i);
+    if (of != nullptr && !(*of)[at(i)]) continue;
     const bool asleep = sleeps(state, i);
     for (std::size_t k = 0; k < s.planes.size(); ++k) {
       const bool at_rest = asleep && model_->body().contact.planes[k].point.is_constant();
@@ -305,17 +338,20 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double mo
       if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, most, found);
   }
   if (!any_pairs_) return found;
-  s.boxes.clear();
-  for (const int i : smooth_) s.boxes.push_back(world_box(i));
-  s.tree.build(s.boxes);
-  s.tree.near_pairs(most, s.pairs);
-  for (const auto& [one, other] : s.pairs) {
-    const int i = smooth_[at(one)], j = smooth_[at(other)];
+  find_near_pairs(most, of);
+  for (const auto& [i, j] : s.pairs) {
     if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
     const ContactRule rule = rules_.of_parts(i, j);
     if (rule.touch) find_between(i, j, rule, most, found);
   }
   return found;
+}
+
+bool ContactFinder::precedes(const Contact& one, const Contact& other) {
+  auto place = [](const Contact& c) {
+    return std::tuple(c.b.part >= 0, c.a.part, c.b.part, c.obstacle, c.plane);
+  };
+  return place(one) < place(other);
 }
 
 double ContactFinder::least_gap(const State& state, double t, const Contact& of, double most) const {

@@ -46,6 +46,8 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::AlignedBox3d> boxes;
   BoxTree tree;
   std::vector<std::pair<int, int>> pairs;
+  std::vector<Eigen::AlignedBox3d> wide;  ///< of the smooth parts, in which their boxes may move
+  std::vector<std::pair<int, int>> wide_pairs;
   std::vector<Contact> ours, theirs;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -101,8 +102,7 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   // move joints, on which impulses push back, and of impulses at one moment.
   const bool hands = are_driven(dynamics_.model(), parts), moment = &before == &state;
   const bool broken = hands || moment || state.at_limit != before.at_limit || state.joints != before.joints;
-  Workspace<double> scratch;
-  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch) : 0;
+  const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch_) : 0;
   LoadWork loads(dynamics_, state);
   move_by(problem, dynamics_.model(), work, state);
   if (h > 0) reconcile(parts, state, t, work, counters);
@@ -113,7 +113,7 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
-        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;
     record_.contacts.push_back(contacts[k]);
@@ -154,25 +154,42 @@ double ContactSettling::may_overlap(const Contact& contact) const {
   return of_meshes(contact) ? kMeshOverlap * resting_.gap(contact) : kLeftOverlap * resting_.gap();
 }
 
-/// What parting the deep ones of some contacts moves: of meshes alone others of the same pairs, and those of
-/// bodies that move as a whole.
+/// What parting the deep ones of some contacts moves: bodies that move as a whole, with all such that touch
+/// them, and of meshes others of the same pairs.
 void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const {
+  const Model& model = dynamics_.model();
+  std::vector<int> leader(model.parts().size());
+  std::iota(leader.begin(), leader.end(), 0);
+  auto leader_of = [&](int i) {
+    while (leader[at(i)] != i) i = leader[at(i)] = leader[at(leader[at(i)])];
+    return i;
+  };
+  auto is_whole = [&](const ContactSide& side) {
+    return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
+           !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
+  };
+  // Of what joints tie together the first part.
+  auto body_of = [&](int part) {
+    const int island = model.parts()[at(part)].island;
+    return leader_of(island < 0 ? part : model.islands()[at(island)].parts.front());
+  };
+  for (const Contact& contact : contacts)
+    if (is_whole(contact.a) && is_whole(contact.b))
+      leader[at(body_of(contact.b.part))] = body_of(contact.a.part);
   std::set<std::pair<int, int>> pairs;
-  std::set<int> bodies;
+  std::vector<bool> concerned(model.parts().size(), false);
   for (const Contact& contact : contacts) {
     if (!(contact.gap < -may_overlap(contact))) continue;
-    if (!of_meshes(contact)) return;
-    pairs.insert({contact.a.part, contact.b.part});
-    for (const int part : {contact.a.part, contact.b.part})
-      if (part >= 0 && !moves_by_nodes(dynamics_.model().parts()[at(part)], work.parts[at(part)]))
-        bodies.insert(part);
+    if (of_meshes(contact)) pairs.insert({contact.a.part, contact.b.part});
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      if (is_whole(*side)) concerned[at(body_of(side->part))] = true;
   }
+  auto moves = [&](int part) { return part >= 0 && concerned[at(body_of(part))]; };
   contacts.erase(
-      std::remove_if(
-          contacts.begin(), contacts.end(),
-          [&](const Contact& c) {
-            return pairs.count({c.a.part, c.b.part}) + bodies.count(c.a.part) + bodies.count(c.b.part) == 0;
-          }),
+      std::remove_if(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) {
+                       return !moves(c.a.part) && !moves(c.b.part) && pairs.count({c.a.part, c.b.part}) == 0;
+                     }),
       contacts.end());
 }
 
@@ -198,8 +215,7 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     for (const Contact& contact : found)
       enough = std::min(enough, of_meshes(contact) ? kMeshLeft * may_overlap(contact) : 0);
     const std::vector<int> parts = parts_touched(dynamics_.model(), found);
-    Workspace<double> scratch;
-    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch), booked = state.work.sum();
+    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_), booked = state.work.sum();
     evaluate_touched(dynamics_, state, t, found, work);
     ContactProblem parting(dynamics_.model(), state, work, found);
     parting.part_bodies(left, enough);
@@ -209,7 +225,7 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     reconcile(parts, state, t, work, counters);
     state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
     state.work[static_cast<int>(Work::contact)] +=
-        dynamics_.energy(t, state.q, state.v, parts, scratch) - energy - (state.work.sum() - booked);
+        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
   }
 }
 

@@ -1,7 +1,6 @@
 #include "pushed_parts.h"
 
 #include <algorithm>
-#include <set>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/math/index.h>
@@ -9,6 +8,12 @@
 namespace pliant {
 
 namespace {
+
+/// In order, each once.
+void keep_once(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
 
 /// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
 template <class F>
@@ -46,17 +51,22 @@ void move_locally(const PartModel& m, const PartWorkspace<double>& w, const VecX
 }  // namespace
 
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts) {
-  std::set<int> touched;
+  std::vector<int> touched;
+  std::vector<bool> islands(model.islands().size(), false);
   for (const Contact& contact : contacts)
     for (const int part : {contact.a.part, contact.b.part}) {
       if (part < 0 || model.parts()[at(part)].q0 < 0) continue;
       const int island = model.parts()[at(part)].island;
-      if (island < 0)
-        touched.insert(part);
-      else
-        touched.insert(model.islands()[at(island)].parts.begin(), model.islands()[at(island)].parts.end());
+      if (island < 0) {
+        touched.push_back(part);
+      } else if (!islands[at(island)]) {
+        islands[at(island)] = true;
+        const std::vector<int>& parts = model.islands()[at(island)].parts;
+        touched.insert(touched.end(), parts.begin(), parts.end());
+      }
     }
-  return std::vector<int>(touched.begin(), touched.end());
+  keep_once(touched);
+  return touched;
 }
 
 bool are_driven(const Model& model, const std::vector<int>& parts) {
@@ -71,19 +81,20 @@ bool are_driven(const Model& model, const std::vector<int>& parts) {
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work) {
   const Model& model = dynamics.model();
-  std::set<int> alone, islands, at_once;
+  std::vector<int> alone, islands, at_once;
   for (const Contact& contact : contacts)
     for (const ContactSide& side : {contact.a, contact.b}) {
       if (side.part < 0) continue;
       const PartModel& m = model.parts()[at(side.part)];
       if (m.q0 < 0 || (side.at_nodes() && moves_by_nodes(m, work.parts[at(side.part)]))) continue;
       if (m.island < 0)
-        alone.insert(side.part);
+        alone.push_back(side.part);
       else
-        islands.insert(m.island);
-      if (m.island < 0 && moves_by_nodes(m, work.parts[at(side.part)])) at_once.insert(side.part);
+        islands.push_back(m.island);
+      if (m.island < 0 && moves_by_nodes(m, work.parts[at(side.part)])) at_once.push_back(side.part);
     }
-  dynamics.evaluate_masses(state.q, state.v, std::vector<int>(alone.begin(), alone.end()), work);
+  for (std::vector<int>* numbers : {&alone, &islands, &at_once}) keep_once(*numbers);
+  dynamics.evaluate_masses(state.q, state.v, alone, work);
   for (const int i : at_once)
     model.parts()[at(i)].local->compliance(model.parts()[at(i)].shared, *work.parts[at(i)].local);
   for (const int i : islands)

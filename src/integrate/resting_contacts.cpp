@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <pliant/math/index.h>
 
 namespace pliant {
 
@@ -9,6 +13,8 @@ namespace {
 
 /// How near surfaces that rest on each other are, in sizes of the smaller part.
 constexpr double kResting = 1e-6;
+/// Up to this share of all parts are looked at by themselves where the others have not moved.
+constexpr double kFew = 0.7;
 
 }  // namespace
 
@@ -23,14 +29,39 @@ double RestingContacts::gap(const Contact& contact) const {
   return kResting * (contact.b.part < 0 ? a : std::min(a, size(contact.b.part)));
 }
 
-const std::vector<Contact>& RestingContacts::near(const State& state, double t) {
-  if (last_q_.size() != state.q.size() || last_q_ != state.q || last_t_ != t ||
-      !same_sleepers(last_at_rest_, state.at_rest)) {
-    last_ = finder_.find(state, t, gap_);
-    last_q_ = state.q;
-    last_at_rest_ = state.at_rest;
-    last_t_ = t;
+/// Marks parts that are not where they were looked at last; whether these are few.
+bool RestingContacts::few_moved(const State& state) {
+  moved_.assign(model_.parts().size(), false);
+  int count = 0;
+  for (int i = 0; i < static_cast<int>(model_.parts().size()); ++i) {
+    const PartModel& m = model_.parts()[at(i)];
+    if (m.q0 < 0 || state.q.segment(m.q0, m.n_q()) == last_q_.segment(m.q0, m.n_q())) continue;
+    moved_[at(i)] = true;
+    ++count;
   }
+  return count <= kFew * static_cast<double>(model_.parts().size());
+}
+
+const std::vector<Contact>& RestingContacts::near(const State& state, double t) {
+  const bool same_time =
+      last_q_.size() == state.q.size() && last_t_ == t && same_sleepers(last_at_rest_, state.at_rest);
+  if (same_time && last_q_ == state.q) return last_;
+  if (same_time && few_moved(state)) {
+    last_.erase(std::remove_if(last_.begin(), last_.end(),
+                               [&](const Contact& c) {
+                                 return moved_[at(c.a.part)] || (c.b.part >= 0 && moved_[at(c.b.part)]);
+                               }),
+                last_.end());
+    const std::vector<Contact> kept = std::move(last_), found = finder_.find(state, t, gap_, &moved_);
+    last_.clear();
+    std::merge(kept.begin(), kept.end(), found.begin(), found.end(), std::back_inserter(last_),
+               ContactFinder::precedes);
+  } else {
+    last_ = finder_.find(state, t, gap_);
+  }
+  last_q_ = state.q;
+  last_at_rest_ = state.at_rest;
+  last_t_ = t;
   return last_;
 }
 

@@ -20,8 +20,8 @@ constexpr double kExactOfPoints = 1e-6;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
-/// Most contacts that are solved as one system.
-constexpr int kMostDense = 100;
+/// More contacts than this are many.
+constexpr int kMany = 100;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.
@@ -61,7 +61,7 @@ void CoulombCluster::set_scale() {
   }
   exact_ = std::max({(points_ ? kExactOfPoints : kExact) * scale,
                      kUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
-  allowed_ = std::max(exact_, (points_ || size_ > kMostDense ? kLeftOfMany : kLeft) * scale);
+  allowed_ = std::max(exact_, (points_ || size_ > kMany ? kLeftOfMany : kLeft) * scale);
 }
 
 /// Contacts give way by this share of W.
@@ -221,15 +221,14 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
 /// Returns whether it found the solution.
 bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
-  const bool dense = size_ <= kMostDense;
+  const bool many = size_ > kMany;
   const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
   const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
   for (const auto* round = first; round != last; ++round) {
     const auto& [most, history] = *round;
-    if (!dense && history == 0) continue;  // it would take too long
-    if (relax(most, history, sweeps)) return true;
-    if (points_ && (residual() <= exact_ || (dense && newton_of_points()))) return true;
-    if (!points_ && dense && newton() && residual() <= exact_) return true;
+    if (many && history == 0) continue;  // it would take too long, as Newton's method would with many points
+    if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
+    if (!(many && points_) && newton()) return true;
   }
   return false;
 }

@@ -18,7 +18,7 @@ struct LinearContactLaw {
   Mat3<double> T = Mat3<double>::Zero(), D = T;
 };
 
-/// What Newton's method solves for each cluster of points, and where what contacts push and their sides are
+/// What Newton's method solves for each cluster, and where what contacts push and their sides are
 /// in it.
 struct Coupling {
   std::vector<MoverSystem> clusters;
@@ -71,7 +71,6 @@ class CoulombCluster {
   MoverSystem& couple_movers();
   void solve_linear(MoverSystem& movers);
   bool newton();
-  bool newton_of_points();
   bool search(int& sweeps);
 
   CoulombSystem& system_;

@@ -1,6 +1,14 @@
-// Newton's method on Coulomb's law of all contacts of a cluster at once in the form of Alart and Curnier
+// Newton's method on Coulomb's law of all contacts of a cluster at once, in the form of Alart and Curnier
 // (1991),
 //   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t.
+// Contacts couple what they push to few others each, often by more rows than that can move. Linear at each
+// contact that pushes,
+//   F + T du + D dp = 0,
+// and with du = S dx, dx = sum Y dp of all contacts what they push changes by
+//   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
+#include <algorithm>
+#include <limits>
+
 #include <Eigen/LU>
 
 #include "coulomb_cluster.h"
@@ -8,76 +16,205 @@
 namespace pliant {
 
 namespace {
-constexpr int kMostNewton = 20;
-/// Of these, in a row, that may make nothing better in clusters of more contacts than this, where they are
-/// dear.
-constexpr int kMostFutile = 4, kDear = 30;
-/// Share of the step so far in u, so that impulses that depend on each other stay as near as they can.
-constexpr double kProximal = 1e-9;
+constexpr int kMostNewton = 30;
+/// What is found is made better while that is one step's work, to this share of what counts as exact.
+constexpr double kBeyondExact = 0.1;
+/// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
+/// factor from step to step, from the first to the least, below which rounding outweighs the gain.
+constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kLeastProximal = 3e-8;
+constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
+/// Where so many steps have led away, by this factor, the search goes on from the best with shares that are
+/// greater by that one.
+constexpr int kMostFutile = 4;
+constexpr double kFarOff = 1e3, kBack = 10;
+
+/// Adds Y T S to a block of N velocities pushed and N at a side.
+template <int N>
+void add_product(const double* Y, const Eigen::Matrix3Xd& TS, const MoverSystem::Block& block,
+                 MoverSystem& movers) {
+  movers.add(block, Eigen::Map<const Eigen::Matrix<double, N, 3>>(Y).lazyProduct(
+                        Eigen::Map<const Eigen::Matrix<double, 3, N>>(TS.data())));
+}
+
 }  // namespace
 
-/// Leaves the best it has seen; returns whether that is better than what it began with.
-bool CoulombCluster::newton() {
-  const Eigen::Index n = 3 * size_;
-  MatX<double> A(n, n);  // takes the impulses to their velocities
-  for (int i = 0; i < size_; ++i)
-    for (int j = 0; j < size_; ++j) A.block<3, 3>(3 * i, 3 * j) = system_.effect(contacts_[i], contacts_[j]);
-  if (softness_ > 0)
-    for (int i = 0; i < size_; ++i) A.diagonal().segment<3>(3 * i) += softness_ * point(i).W.diagonal();
-  VecX<double> best, F(n);
-  take(best);
-  const double start = residual();
-  double best_left = start;
-  MatX<double> K(n, n);
-  int futile = 0;
-  const int most_futile = size_ > kDear ? kMostFutile : kMostNewton;
-  for (int step = 0; step < kMostNewton && futile < most_futile && best_left > exact_; ++step) {
-    K.setZero();
-    for (int i = 0; i < size_; ++i) {
-      const Eigen::Index row = 3 * i;
-      const Vec3<double> u = velocity(i);
-      const double r = 1 / point(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0], mu = point(i).mu;
-      const auto U = A.middleRows<3>(row);
-      if (is_fixed(i) || !(ahead > 0)) {
-        K.block<3, 3>(row, row).setIdentity();
-        F.segment<3>(row) = p(i);
-        continue;
-      }
-      K.row(row) = r * U.row(0);
-      K(row, row) += kProximal;
-      F[row] = r * u[0];
-      auto tangents = K.middleRows<2>(row + 1);
-      const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
-      const double radius = mu * ahead;
-      if (point(i).rows == 1 || radius == 0) {
-        K.block<2, 2>(row + 1, row + 1).setIdentity();
-        F.segment<2>(row + 1) = p(i).tail<2>();
-      } else if (pull.norm() <= radius) {
-        tangents = r * U.bottomRows<2>();
-        K.block<2, 2>(row + 1, row + 1) += kProximal * Eigen::Matrix2d::Identity();
-        F.segment<2>(row + 1) = r * u.tail<2>();
-      } else {
-        const Eigen::Vector2d e = pull.normalized();
-        const Eigen::Matrix2d turn = radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
-        tangents = r * mu * e * U.row(0) + r * turn * U.bottomRows<2>();
-        tangents.block<2, 1>(0, row) -= mu * e;
-        tangents.block<2, 2>(0, row + 1) += Eigen::Matrix2d::Identity() - turn;
-        F.segment<2>(row + 1) = p(i).tail<2>() - radius * e;
-      }
+/// The laws of all contacts, linear about the present impulses. What lifts off goes to zero, and so does
+/// friction without a force on it.
+void CoulombCluster::linearise(double proximal) {
+  auto& [open, drop] = scratch_.linear;
+  open.clear();
+  drop.clear();
+  for (int i = 0; i < size_; ++i) {
+    const Vec3<double> u = velocity(i);
+    const double r = 1 / point(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0],
+                 radius = point(i).mu * ahead;
+    if (is_fixed(i) || !(ahead > 0)) {
+      drop.push_back({i, -p(i)});
+      continue;
     }
-    const VecX<double> change = -K.partialPivLu().solve(F);
-    if (!change.allFinite()) break;
-    for (int i = 0; i < size_; ++i) push(i, change.segment<3>(3 * i));
-    const double left = residual();
-    ++futile;
-    if (left < best_left) {
-      futile = 0;
-      take(best);
-      best_left = left;
+    LinearContactLaw law;
+    law.contact = i;
+    law.u = u;
+    law.T = r * Mat3<double>::Identity();
+    law.D = proximal * Mat3<double>::Identity();
+    law.F = r * u;
+    const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
+    if (point(i).rows == 1 || radius == 0) {  // it pushes along its normal
+      drop.push_back({i, {0, -p(i)[1], -p(i)[2]}});
+      law.T.bottomRows<2>().setZero();
+      law.F.tail<2>().setZero();
+    } else if (pull.norm() > radius) {
+      const Eigen::Vector2d e = pull.normalized();
+      const Eigen::Matrix2d turn = radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
+      law.T.block<2, 1>(1, 0) = r * point(i).mu * e;
+      law.T.block<2, 2>(1, 1) = r * turn;
+      law.D.block<2, 1>(1, 0) = -point(i).mu * e;
+      law.D.block<2, 2>(1, 1) += Eigen::Matrix2d::Identity() - turn;
+      law.F.tail<2>() = p(i).tail<2>() - radius * e;
+    }
+    if (softness_ > 0) law.D += softness_ * law.T * point(i).W.diagonal().asDiagonal();
+    open.push_back(law);
+  }
+}
+
+/// The changes of the impulses of open contacts, by equations for what they push.
+void CoulombCluster::solve_linear(MoverSystem& movers) {
+  const Coupling& coupling = scratch_.coupling;
+  Eigen::Matrix3Xd& TS = scratch_.TS;
+  const double* numbers = system_.numbers_.data();
+  using Y = Eigen::Map<const MatX<double>>;
+  movers.clear();
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
+    const Mat3<double> inverse = law.D.inverse();
+    law.F = (inverse * law.F).eval();
+    law.T = (inverse * law.T).eval();
+    for (int r = contact_at.first_push; r < contact_at.last_push; ++r) {
+      const CoulombSystem::Term& push = system_.pushes_[at(r)];
+      movers.add(coupling.push_rows[at(r)], Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
+    }
+    const MoverSystem::Block* block =
+        coupling.blocks.data() + coupling.first_block[at(contacts_[law.contact])];
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      if (coupling.side_rows[at(s)] < 0) continue;
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
+      TS = law.T.lazyProduct(S);
+      for (int r = contact_at.first_push; r < contact_at.last_push; ++r, ++block) {
+        const CoulombSystem::Term& push = system_.pushes_[at(r)];
+        if (side.size == 3 && push.size == 3)
+          add_product<3>(numbers + push.numbers, TS, *block, movers);
+        else if (side.size == 6 && push.size == 6)
+          add_product<6>(numbers + push.numbers, TS, *block, movers);
+        else
+          movers.add(*block, Y(numbers + push.numbers, push.size, 3).lazyProduct(TS));
+      }
     }
   }
+  movers.solve();
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
+    Vec3<double> du = Vec3<double>::Zero();
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      const int row = coupling.side_rows[at(s)];
+      if (row < 0) continue;
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
+      du += S.lazyProduct(movers.change(row, side.size));
+    }
+    law.dp = -law.F - law.T * du;
+  }
+}
+
+/// Contacts couple what each of them pushes with all at its sides that any contact pushes. That is found
+/// once for each cluster.
+MoverSystem& CoulombCluster::couple_movers() {
+  Coupling& coupling = scratch_.coupling;
+  if (coupling.clusters.empty()) {
+    coupling.clusters.resize(system_.clusters_.size() - 1);
+    coupling.numbers.resize(at(system_.movers()), -1);
+    coupling.push_rows.resize(system_.pushes_.size(), -1);
+    coupling.side_rows.resize(system_.sides_.size(), -1);
+    coupling.first_block.resize(system_.contacts_.size(), 0);
+  }
+  MoverSystem& movers = coupling.clusters[at(number_)];
+  if (!movers.empty()) return movers;
+  for (int i = 0; i < size_; ++i)
+    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+      const int mover = system_.pushes_[at(r)].mover;
+      int& number = coupling.numbers[at(mover)];
+      if (number < 0) number = movers.add_mover(system_.mover_size(mover));
+    }
+  auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
+  auto for_each_pair = [&](int i, auto&& act) {
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const int column = number_at(side);
+      if (column < 0) continue;
+      for (int r = point(i).first_push; r < point(i).last_push; ++r)
+        act(number_at(system_.pushes_[at(r)]), column, side);
+    }
+  };
+  for (int i = 0; i < size_; ++i)
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
+  movers.order();
+  auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
+  for (int i = 0; i < size_; ++i) {
+    coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
+      MoverSystem::Block block = movers.block(row, column);
+      block.first += at(in_mover(side) * block.stride);
+      coupling.blocks.push_back(block);
+    });
+    for (int r = point(i).first_push; r < point(i).last_push; ++r)
+      coupling.push_rows[at(r)] = movers.row(number_at(system_.pushes_[at(r)]));
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      if (const int number = number_at(side); number >= 0)
+        coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+    }
+  }
+  return movers;
+}
+
+/// Leaves the best it has seen; returns whether that is exact.
+bool CoulombCluster::newton() {
+  auto& [open, drop] = scratch_.linear;
+  VecX<double>& best = scratch_.best;
+  take(best);
+  double best_left = residual(), proximal = kFirstProximal,
+         least = points_ ? kLeastProximalOfPoints : kLeastProximal;
+  const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
+  MoverSystem& movers = couple_movers();
+  int futile = 0;
+  for (int step = 0; step < kMostNewton && best_left > kBeyondExact * exact_; ++step) {
+    linearise(proximal);
+    for (const auto& [i, dp] : drop) push(i, dp);
+    for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
+    solve_linear(movers);
+    const bool finite =
+        std::all_of(open.begin(), open.end(), [](const LinearContactLaw& law) { return law.dp.allFinite(); });
+    double left = std::numeric_limits<double>::infinity();
+    if (finite) {
+      for (const LinearContactLaw& law : open) push(law.contact, law.dp);
+      left = residual();
+    }
+    if (left < best_left) {
+      take(best);
+      best_left = left;
+      futile = 0;
+    } else if (best_left <= exact_) {
+      break;
+    } else if (++futile; !finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
+      futile = 0;
+      set(best);
+      proximal = least = std::min(kFirstProximal, kBack * proximal);
+      continue;
+    }
+    proximal = std::max(factor * proximal, least);
+  }
   set(best);
-  return best_left < start;
+  return residual() <= exact_;
 }
 
 }  // namespace pliant

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include <Eigen/LU>
 
 namespace pliant {
 
 namespace {
-
-using Block3 = Eigen::Map<Mat3<double>>;
 
 void insert(std::vector<int>& sorted, int i) {
   const auto place = std::lower_bound(sorted.begin(), sorted.end(), i);
@@ -30,46 +30,40 @@ void MoverSystem::couple(int i, int j) {
 }
 
 void MoverSystem::order() {
-  std::vector<int> left, merged;
-  for (int i = 0; i < static_cast<int>(movers_.size()); ++i) {
-    movers_[at(i)].turn = -1;
-    if (is_point(i)) {
-      left.push_back(i);
-      continue;
-    }
-    movers_[at(i)].row = n_others_;
-    n_others_ += movers_[at(i)].size;
-  }
-  int row = n_others_;
-  std::size_t numbers = at(n_others_) * at(n_others_), targets = 0;
+  std::set<std::pair<std::size_t, int>> left;  // by the number of their neighbours
+  for (int i = 0; i < static_cast<int>(movers_.size()); ++i) left.insert({movers_[at(i)].near.size(), i});
+  std::vector<int> merged;
+  int row = 0;
+  std::size_t numbers = 0, targets = 0;
   while (!left.empty()) {
-    const auto next = std::min_element(left.begin(), left.end(), [&](int i, int j) {
-      return movers_[at(i)].near.size() < movers_[at(j)].near.size();
-    });
-    const int k = *next;
-    left.erase(next);
+    const int k = left.begin()->second;
+    left.erase(left.begin());
     Mover& eliminated = movers_[at(k)];
-    eliminated.turn = static_cast<int>(points_.size());
+    eliminated.turn = static_cast<int>(turns_.size());
     eliminated.row = row;
-    row += 3;
+    row += eliminated.size;
     eliminated.numbers = numbers;
-    numbers += 9;
+    numbers += at(eliminated.size * eliminated.size);
     for (const int i : eliminated.near) {
-      numbers += at(2 * 3 * movers_[at(i)].size);
+      const int size = movers_[at(i)].size;
+      eliminated.even = eliminated.even && size == eliminated.size;
+      numbers += at(2 * eliminated.size * size);
       std::vector<int>& near = movers_[at(i)].near;
+      left.erase({near.size(), i});
       merged.clear();
       std::set_union(near.begin(), near.end(), eliminated.near.begin(), eliminated.near.end(),
                      std::back_inserter(merged));
       merged.erase(std::remove_if(merged.begin(), merged.end(), [&](int j) { return j == i || j == k; }),
                    merged.end());
       near.swap(merged);
+      left.insert({near.size(), i});
     }
     eliminated.targets = targets;
     targets += eliminated.near.size() * eliminated.near.size();
-    points_.push_back(k);
+    turns_.push_back(k);
   }
   targets_.reserve(targets);
-  for (const int k : points_)
+  for (const int k : turns_)
     for (const int j : movers_[at(k)].near)
       for (const int i : movers_[at(k)].near) targets_.push_back(block(i, j).first);
   numbers_.resize(static_cast<Eigen::Index>(numbers));
@@ -78,81 +72,75 @@ void MoverSystem::order() {
 
 MoverSystem::Block MoverSystem::block(int i, int j) const {
   const Mover &one = movers_[at(i)], &other = movers_[at(j)];
-  if (one.turn < 0 && other.turn < 0) return {at(other.row) * at(n_others_) + at(one.row), n_others_};
-  if (i == j) return {one.numbers, 3};
-  const bool above = other.turn < 0 || (one.turn >= 0 && one.turn < other.turn);
+  if (i == j) return {one.numbers, one.size};
+  const bool above = one.turn < other.turn;
   const Mover& first = above ? one : other;
-  std::size_t numbers = first.numbers + 9;
+  std::size_t numbers = first.numbers + at(first.size * first.size);
   auto k = first.near.begin();
-  for (; *k != (above ? j : i); ++k) numbers += at(2 * 3 * movers_[at(*k)].size);
-  return {numbers + (above ? 0 : at(3 * movers_[at(*k)].size)), one.size};
+  for (; *k != (above ? j : i); ++k) numbers += at(2 * first.size * movers_[at(*k)].size);
+  return {numbers + (above ? 0 : at(first.size * movers_[at(*k)].size)), one.size};
 }
 
 void MoverSystem::clear() {
   numbers_.setZero();
   b_.setZero();
-  for (int i = 0; i < n_others_; ++i) numbers_[i * (n_others_ + 1)] = 1;
-  for (const int k : points_) Block3(numbers_.data() + movers_[at(k)].numbers).setIdentity();
+  for (const Mover& mover : movers_)
+    Eigen::Map<MatX<double>>(numbers_.data() + mover.numbers, mover.size, mover.size).setIdentity();
 }
 
 /// x_k = b_k - sum of A_kj x_j over the neighbours that are left.
+template <int N>
 void MoverSystem::eliminate(const Mover& k) {
+  using Numbers = Eigen::Matrix<double, N, N>;
+  using Part = Eigen::Map<Numbers>;
   double* numbers = numbers_.data();
-  const Mat3<double> inverse = Block3(numbers + k.numbers).inverse();
-  const Vec3<double> b = inverse * b_.segment<3>(k.row);
-  b_.segment<3>(k.row) = b;
+  const Numbers inverse = Part(numbers + k.numbers, k.size, k.size).inverse();
+  const Eigen::Matrix<double, N, 1> b = inverse * b_.segment<N>(k.row, k.size);
+  b_.segment<N>(k.row, k.size) = b;
   const std::size_t* target = targets_.data() + k.targets;
-  double* above = numbers + k.numbers + 9;
+  double *const beside = numbers + k.numbers + at(k.size * k.size), *above = beside;
   for (const int j : k.near) {
-    const int size = movers_[at(j)].size;
-    Eigen::Map<Eigen::Matrix3Xd> U(above, 3, size);
-    for (Eigen::Index c = 0; c < size; ++c) U.col(c) = (inverse * U.col(c)).eval();
-    const double* left = numbers + k.numbers + 9;
+    const int columns = movers_[at(j)].size;
+    Part U(above, k.size, columns);
+    U = (inverse * U).eval();
+    double* left = beside;
     for (const int i : k.near) {
       const int rows = movers_[at(i)].size;
-      left += 3 * rows;
-      if (size == 3 && rows == 3) {
-        Block3(numbers + *target).noalias() -=
-            Eigen::Map<const Mat3<double>>(left).lazyProduct(Block3(above));
-      } else {
-        const int stride = size == 3 || rows == 3 ? rows : n_others_;
-        Eigen::Map<MatX<double>, 0, Eigen::OuterStride<>>(numbers + *target, rows, size,
-                                                          Eigen::OuterStride<>(stride))
-            .noalias() -= Eigen::Map<const MatX<double>>(left, rows, 3).lazyProduct(U);
-      }
-      left += 3 * rows;
+      left += k.size * rows;
+      Part(numbers + *target, rows, columns).noalias() -= Part(left, rows, k.size).lazyProduct(U);
+      left += k.size * rows;
       ++target;
     }
-    above += 6 * size;
+    above += 2 * k.size * columns;
   }
-  const double* left = numbers + k.numbers + 9;
+  double* left = beside;
   for (const int i : k.near) {
     const Mover& one = movers_[at(i)];
-    left += 3 * one.size;
-    b_.segment(one.row, one.size) -= Eigen::Map<const MatX<double>>(left, one.size, 3).lazyProduct(b);
-    left += 3 * one.size;
+    left += k.size * one.size;
+    b_.segment<N>(one.row, one.size) -= Part(left, one.size, k.size).lazyProduct(b);
+    left += k.size * one.size;
   }
-}
-
-void MoverSystem::solve_others() {
-  if (n_others_ == 0) return;
-  Eigen::Map<MatX<double>> A(numbers_.data(), n_others_, n_others_);
-  const Eigen::PartialPivLU<Eigen::Ref<MatX<double>>> factor(A);
-  b_.head(n_others_) = factor.solve(b_.head(n_others_)).eval();
 }
 
 void MoverSystem::solve() {
-  for (const int k : points_) eliminate(movers_[at(k)]);
-  solve_others();
-  for (auto k = points_.rbegin(); k != points_.rend(); ++k) {
-    const Mover& point = movers_[at(*k)];
-    auto x = b_.segment<3>(point.row);
-    const double* above = numbers_.data() + point.numbers + 9;
-    for (const int j : point.near) {
+  for (const int number : turns_) {
+    const Mover& k = movers_[at(number)];
+    if (k.even && k.size == 3)
+      eliminate<3>(k);
+    else if (k.even && k.size == 6)
+      eliminate<6>(k);
+    else
+      eliminate<Eigen::Dynamic>(k);
+  }
+  for (auto number = turns_.rbegin(); number != turns_.rend(); ++number) {
+    const Mover& k = movers_[at(*number)];
+    auto x = b_.segment(k.row, k.size);
+    const double* above = numbers_.data() + k.numbers + at(k.size * k.size);
+    for (const int j : k.near) {
       const Mover& other = movers_[at(j)];
-      x -= Eigen::Map<const Eigen::Matrix3Xd>(above, 3, other.size)
+      x -= Eigen::Map<const MatX<double>>(above, k.size, other.size)
                .lazyProduct(b_.segment(other.row, other.size));
-      above += 6 * other.size;
+      above += 2 * k.size * other.size;
     }
   }
 }

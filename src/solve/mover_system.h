@@ -1,6 +1,5 @@
-// (1 + A) x = b for the velocities of movers that contacts couple. Points, of which there may be many and
-// each coupled to few others, are eliminated first, the one with the fewest neighbours next; the others at
-// once.
+// (1 + A) x = b for the velocities of movers that contacts couple, of which there may be many and each
+// coupled to few others: they are eliminated one after the other, the one with the fewest neighbours next.
 #pragma once
 
 #include <vector>
@@ -13,7 +12,7 @@ class MoverSystem {
  public:
   // The pattern, in this order.
 
-  /// Returns the number of the mover. One of three velocities is a point.
+  /// Returns the number of the mover.
   int add_mover(int size);
   /// Two that A couples.
   void couple(int i, int j);
@@ -55,21 +54,21 @@ class MoverSystem {
 
  private:
   struct Mover {
-    int size = 3, row = 0, turn = 0;  ///< turn: when it is eliminated, -1 of those that are not
+    int size = 3, row = 0, turn = 0;  ///< turn: when it is eliminated
+    bool even = true;                 ///< whether those that are left near it then are of its size
     std::vector<int> near;            ///< neighbours that are left then, in ascending order
     std::size_t numbers = 0;          ///< where those of its block begin, then of those above and left of it
     std::size_t targets = 0;          ///< where those begin that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-  bool is_point(int i) const { return movers_[at(i)].size == 3; }
+  /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
+  template <int N>
   void eliminate(const Mover& k);
-  void solve_others();
 
   std::vector<Mover> movers_;
-  std::vector<int> points_;           // in the order of elimination
-  int n_others_ = 0;                  // velocities of the others, whose rows are the first
+  std::vector<int> turns_;            // movers in the order of elimination
   std::vector<std::size_t> targets_;  // blocks of pairs of neighbours, columns first
-  VecX<double> numbers_;              // of A: of the others, then as points are eliminated
+  VecX<double> numbers_;              // of A, in the order of elimination
   VecX<double> b_;
 };
 

@@ -25,8 +25,12 @@ class ContactFinder {
   /// Meshes of the obstacles, in their order; they stay where they are as long as this does.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Contacts at a state and a time (s) whose gap is at most `most` (m).
-  std::vector<Contact> find(const State& state, double t, double most) const;
+  /// Contacts at a state and a time (s) whose gap is at most `most` (m); of: only those of parts that it
+  /// marks. Planes come before obstacles and these before other parts, each by the numbers of the parts.
+  std::vector<Contact> find(const State& state, double t, double most,
+                            const std::vector<bool>* of = nullptr) const;
+  /// Whether one contact comes before another in that order.
+  static bool precedes(const Contact& one, const Contact& other);
   /// Velocity of side a against side b at a contact, m/s, world.
   Vec3<double> velocity(const State& state, const Contact& contact) const;
   /// What a step of h seconds from a state comes near to.
@@ -63,6 +67,7 @@ class ContactFinder {
   Eigen::AlignedBox3d body_box(int part) const;
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;
+  void find_near_pairs(double most, const std::vector<bool>* of) const;
   void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
   void find_on_obstacle(int a, std::size_t obstacle, double t, double most,
                         std::vector<Contact>& found) const;

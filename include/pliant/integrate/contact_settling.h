@@ -49,6 +49,7 @@ class ContactSettling {
   MeshFinder& meshes_;
   RestingContacts& resting_;
   ContactRecord& record_;
+  Workspace<double> scratch_;
 };
 
 }  // namespace pliant

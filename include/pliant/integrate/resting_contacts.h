@@ -26,6 +26,7 @@ class RestingContacts {
               double slow) const;
 
  private:
+  bool few_moved(const State& state);
   bool rests(const Contact& contact, double gap, double velocity, double slow) const;
 
   const Model& model_;
@@ -36,6 +37,7 @@ class RestingContacts {
   std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
+  std::vector<bool> moved_;  // parts that are elsewhere now
 };
 
 }  // namespace pliant
