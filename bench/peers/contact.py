@@ -6,6 +6,7 @@ usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--
 import argparse
 import csv
 import importlib.metadata
+import logging
 import math
 import multiprocessing
 import os
@@ -25,7 +26,8 @@ DENSITY, FRICTION, GRAVITY = 1000, 0.5, [0, 0, -9.81]
 # The problems of contact_bench: layers.
 HEAPS = {"rigid": 1, "rigid, heap": 5}
 STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps from one look at the contacts to the next
-# Those of balloon_bench, and the nine of the balloon that is dropped, too. beta, s: of its stiffness; drag: of all motion, 1/s
+# Those of balloon_bench, and nine of the balloon that is dropped there. beta: damping by its stiffness, s; drag: of
+# all motion, 1/s; balloon, count, duration in s, triangles.
 POISSON, RADIUS, LONGEST, SMALLEST = 0.45, 0.1, 2**-10, 2**-20  # the longest and the smallest step tried, s
 FIRM = SimpleNamespace(E=1e7, thickness=1e-3, pressure=0, beta=0, drag=0)
 THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
@@ -100,6 +102,7 @@ def bullet_ellipsoids(bodies):
 
 def drake_ellipsoids(bodies):
     """Point contact, solver SAP."""
+    logging.getLogger("drake").setLevel(logging.ERROR)
     from pydrake.common.eigen_geometry import Quaternion
     from pydrake.geometry import Ellipsoid, HalfSpace
     from pydrake.math import RigidTransform
@@ -260,7 +263,11 @@ def rows(engines, most, rounds):
     for engine in engines:
         for problem, layers in HEAPS.items():
             for count in (n for n in (10, 100, 1000) if n <= most):
-                seconds, deep = least(rigid_run, RIGID[engine], count, layers, rounds=rounds)
+                try:
+                    seconds, deep = least(rigid_run, RIGID[engine], count, layers, rounds=rounds)
+                except Exception as fault:  # whatever an engine throws
+                    print(f"{engine}, {problem}, {count}: FAILED, {fault}", flush=True)
+                    continue
                 yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",
                        f"{DURATION / seconds:.4g}", f"{deep:.3e}", ""]
     if "mujoco" not in engines:
@@ -289,6 +296,7 @@ def main():
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[variable] = "1"
     multiprocessing.set_start_method("spawn")
+    options.folder.mkdir(parents=True, exist_ok=True)
     versions = {}
     for engine in options.engines:
         try:

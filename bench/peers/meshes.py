@@ -39,8 +39,8 @@ def deepest_inside(points, corners):
     to = [corners[:, k] - points[:, None] for k in range(3)]
     a, b, c = to
     la, lb, lc = (np.linalg.norm(side, axis=2) for side in to)
-    solid_angle = 2 * np.arctan2(dot(a, np.cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
-    inside = solid_angle.sum(axis=1) > 2 * math.pi
+    below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    inside = np.arctan2(dot(a, np.cross(b, c)), below).sum(axis=1) > math.pi  # halves of solid angles
     if not inside.any():
         return 0.0
     a, b, c = (side[inside] for side in to)
