@@ -102,7 +102,6 @@ def bullet_ellipsoids(bodies):
 
 def drake_ellipsoids(bodies):
     """Point contact, solver SAP."""
-    logging.getLogger("drake").setLevel(logging.ERROR)
     from pydrake.common.eigen_geometry import Quaternion
     from pydrake.geometry import Ellipsoid, HalfSpace
     from pydrake.math import RigidTransform
@@ -110,6 +109,7 @@ def drake_ellipsoids(bodies):
     from pydrake.multibody.tree import SpatialInertia
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder
+    logging.getLogger("drake").setLevel(logging.ERROR)  # half spaces do not touch soft bodies
     friction = CoulombFriction(FRICTION, FRICTION)
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlant(MultibodyPlantConfig(
