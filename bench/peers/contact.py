@@ -1,0 +1,317 @@
+#!/usr/bin/env python3
+"""What contact costs in other engines, one thread: the problems of bench/contact_bench.cpp and balloon_bench.cpp.
+
+usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--most 1000] [--rounds 3]
+"""
+import argparse
+import csv
+import importlib.metadata
+import logging
+import math
+import multiprocessing
+import os
+import time
+import warnings
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+
+from meshes import deepest_inside, sphere
+from run import in_child
+
+COLUMNS = ("engine,problem,count_or_triangles,step_s,us_per_body_and_step,real_time_factor,deepest_m,"
+           "string_error_m").split(",")
+DENSITY, FRICTION, GRAVITY = 1000, 0.5, [0, 0, -9.81]
+# The problems of contact_bench: layers.
+HEAPS = {"rigid": 1, "rigid, heap": 5}
+STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps from one look at the contacts to the next
+# Those of balloon_bench, and nine of the balloon that is dropped there. beta: damping by its stiffness, s; drag: of
+# all motion, 1/s; balloon, count, duration in s, triangles.
+POISSON, RADIUS, LONGEST, SMALLEST = 0.45, 0.1, 2**-10, 2**-20  # the longest and the smallest step tried, s
+FIRM = SimpleNamespace(E=1e7, thickness=1e-3, pressure=0, beta=0, drag=0)
+THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
+BALLOONS = {"drop": (FIRM, 1, 0.5, [320, 1280, 5120]), "nine on strings": (THIN, 9, 1, [320]),
+            "nine firm ones on strings": (FIRM, 9, 1, [320])}
+PATIENCE = 60  # CPU s, after which a configuration is not run again
+
+
+def ellipsoids(count, layers):
+    """(semi-axes, mass, centre, quaternion w x y z): side by side, or on top of each other."""
+    across = math.ceil(math.sqrt(count / layers))
+    for i in range(count):
+        a, b, c = ((i + 1) * ratio % 1 for ratio in (0.6180339887498949, 0.7548776662466927, 0.5698402909980532))
+        layer, place = divmod(i, across * across)
+        axis = np.array([a - 0.5, b - 0.5, c - 0.4])
+        size = 0.06 + 0.04 * np.array([a, b, c])
+        yield (size, DENSITY * 4 / 3 * math.pi * size.prod(),
+               [0.25 * (place % across) + 0.02 * a, 0.25 * (place // across) + 0.02 * b, 0.15 + 0.1 * c + 0.35 * layer],
+               [math.cos(3 * a), *math.sin(3 * a) * axis / np.linalg.norm(axis)])
+
+
+def mujoco_contact(step):
+    """The stiffest that the documentation calls stable, which is also the fastest here: default 0.02 s."""
+    return {"solref": [2 * step, 1], "friction": [FRICTION, 0.005, 0.0001]}
+
+
+def mujoco_depth(data):
+    return max(0, -data.contact.dist.min()) if data.ncon else 0
+
+
+def mujoco_ellipsoids(bodies):
+    import mujoco
+    spec = mujoco.MjSpec()
+    spec.option.timestep, spec.option.gravity = STEP, GRAVITY
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **mujoco_contact(STEP))
+    for size, mass, centre, quaternion in bodies:
+        body = spec.worldbody.add_body(pos=centre, quat=quaternion)
+        body.add_freejoint()
+        body.add_geom(type=mujoco.mjtGeom.mjGEOM_ELLIPSOID, size=size, mass=mass, **mujoco_contact(STEP))
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    return (lambda count: mujoco.mj_step(model, data, nstep=count), lambda: mujoco_depth(data),
+            lambda: data.xpos[1:, 2])
+
+
+def bullet_ellipsoids(bodies):
+    """It has no ellipsoids: hulls of 100 points, spread evenly over them along a spiral."""
+    import pybullet
+    pybullet.connect(pybullet.DIRECT)
+    pybullet.setGravity(*GRAVITY)
+    pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP)
+    plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
+    pybullet.changeDynamics(plane, -1, lateralFriction=1)  # the coefficients are multiplied
+    z = 1 - (2 * np.arange(100) + 1) / 100
+    turn = math.pi * (1 + math.sqrt(5)) * (np.arange(100) + 0.5)
+    across = np.sqrt(1 - z * z)
+    points = np.stack([across * np.cos(turn), across * np.sin(turn), z], axis=1)
+    made = []
+    for size, mass, centre, (w, *xyz) in bodies:
+        hull = pybullet.createCollisionShape(pybullet.GEOM_MESH, vertices=(points * size).tolist())
+        made.append(pybullet.createMultiBody(mass, hull, basePosition=centre, baseOrientation=[*xyz, w]))
+        pybullet.changeDynamics(made[-1], -1, lateralFriction=FRICTION, linearDamping=0,
+                                angularDamping=0, localInertiaDiagonal=mass / 5 * (size @ size - size * size))
+
+    def advance(count):
+        for _ in range(count):
+            pybullet.stepSimulation()
+
+    return (advance, lambda: max([0, *(-point[8] for point in pybullet.getContactPoints())]),
+            lambda: [pybullet.getBasePositionAndOrientation(body)[0][2] for body in made])
+
+
+def drake_ellipsoids(bodies):
+    """Point contact, solver SAP."""
+    from pydrake.common.eigen_geometry import Quaternion
+    from pydrake.geometry import Ellipsoid, HalfSpace
+    from pydrake.math import RigidTransform
+    from pydrake.multibody.plant import AddMultibodyPlant, CoulombFriction, MultibodyPlantConfig
+    from pydrake.multibody.tree import SpatialInertia
+    from pydrake.systems.analysis import Simulator
+    from pydrake.systems.framework import DiagramBuilder
+    logging.getLogger("drake").setLevel(logging.ERROR)  # half spaces do not touch soft bodies
+    friction = CoulombFriction(FRICTION, FRICTION)
+    builder = DiagramBuilder()
+    plant, _ = AddMultibodyPlant(MultibodyPlantConfig(
+        time_step=STEP, contact_model="point", discrete_contact_approximation="sap"), builder)
+    plant.mutable_gravity_field().set_gravity_vector(GRAVITY)
+    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "floor", friction)
+    made = []
+    for i, (size, mass, centre, quaternion) in enumerate(bodies):
+        body = plant.AddRigidBody(f"body{i}", SpatialInertia.SolidEllipsoidWithMass(mass, *size))
+        plant.RegisterCollisionGeometry(body, RigidTransform(), Ellipsoid(*size), f"body{i}", friction)
+        made.append((body, RigidTransform(Quaternion(quaternion), centre)))
+    plant.Finalize()
+    simulator = Simulator(builder.Build())
+    context = plant.GetMyContextFromRoot(simulator.get_context())
+    for body, pose in made:
+        plant.SetFreeBodyPose(plant.GetMyMutableContextFromRoot(simulator.get_mutable_context()), body, pose)
+    simulator.Initialize()
+
+    def deepest():
+        found = plant.get_contact_results_output_port().Eval(context)
+        return max([0, *(found.point_pair_contact_info(i).point_pair().depth
+                         for i in range(found.num_point_pair_contacts()))])
+
+    return (lambda count: simulator.AdvanceTo(simulator.get_context().get_time() + count * STEP), deepest,
+            lambda: [plant.EvalBodyPoseInWorld(context, body).translation()[2] for body, _ in made])
+
+
+def rigid_run(make, count, layers):
+    """(CPU s, deepest)"""
+    advance, deepest, heights = make(ellipsoids(count, layers))
+    seconds, deep = 0, 0
+    for _ in range(round(DURATION / STEP / SAMPLED)):
+        begin = time.process_time()
+        advance(SAMPLED)
+        seconds += time.process_time() - begin
+        deep = max(deep, deepest())
+    if not (min(heights()) > 0.05 and max(heights()) < 0.06 + 0.2 * layers):
+        raise RuntimeError("they do not lie on the plane")
+    return seconds, deep
+
+
+def balloons(balloon, count, triangles, step, integrator):
+    """A flex that resists by its membrane alone, dropped, or nine on tendons from hooks to their topmost vertices."""
+    import mujoco
+    points, faces = sphere(triangles)
+    text = lambda numbers: " ".join(map(str, np.ravel(numbers)))
+    mass = DENSITY * balloon.thickness * 4 * math.pi * RADIUS**2
+    hooks, parts = [], []
+    for i in range(count):
+        at = np.array([0.22 * (i % 3 - 1), 0.22 * (i // 3 - 1), 0]) if count > 1 else np.zeros(3)
+        away, turn = np.linalg.norm(at), np.zeros(4)
+        out, angle = (at / away, 0.5) if away else (at, 0)
+        up = [0, 0, math.cos(angle)] - math.sin(angle) * out
+        matrix = np.zeros(9)
+        mujoco.mju_quatZ2Vec(turn, up)
+        mujoco.mju_quat2Mat(matrix, turn)
+        centre = at - (1 + RADIUS) * up if count > 1 else [0, 0, 1.5 * RADIUS]
+        hooks.append(at)
+        parts.append(
+            f'<flexcomp name="balloon{i}" type="direct" dim="2" radius="{balloon.thickness / 2}" mass="{mass}"'
+            f' point="{text(centre + RADIUS * points @ matrix.reshape(3, 3).T)}" element="{text(faces)}">'
+            f'<elasticity young="{balloon.E}" poisson="{POISSON}" thickness="{balloon.thickness}"'
+            f' damping="{balloon.beta}" elastic2d="stretch"/><contact selfcollide="none"/></flexcomp>')
+    spec = mujoco.MjSpec.from_string(f"<mujoco><worldbody>{''.join(parts)}</worldbody></mujoco>")
+    option = spec.option
+    option.timestep, option.gravity = step, GRAVITY
+    if integrator != "euler":  # and CG, which is the faster solver there
+        option.integrator, option.solver = mujoco.mjtIntegrator.mjINT_DISCRETE, mujoco.mjtSolver.mjSOL_CG
+    if integrator == "ipc":
+        option.enableflags |= mujoco.mjtEnableBit.mjENBL_IPC
+    for flex in spec.flexes:
+        flex.solref, flex.friction = mujoco_contact(step).values()
+    if count == 1:
+        spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **mujoco_contact(step))
+    else:
+        for i, at in enumerate(hooks):
+            spec.worldbody.add_site(name=f"hook{i}", pos=at)
+            spec.body(f"balloon{i}_0").add_site(name=f"top{i}")
+            string = spec.add_tendon(limited=True, range=[0, 1], solref_limit=[2 * step, 1],
+                                     solimp_limit=[0.9999, 0.9999, 0.001, 0.5, 2])
+            string.wrap_site(f"hook{i}")
+            string.wrap_site(f"top{i}")
+    model = spec.compile()
+    model.dof_damping[:] = balloon.drag * model.body_mass[model.dof_bodyid]
+    return model, np.concatenate([faces + i * len(points) for i in range(count)])
+
+
+def deepest_balloon(data, faces, count):
+    """What contacts say, but for those that slipped through: vertices behind the floor or another's surface too."""
+    each, corners = data.flexvert_xpos.reshape(count, -1, 3), data.flexvert_xpos[faces].reshape(count, -1, 3, 3)
+    if count == 1:
+        return max(mujoco_depth(data), -each[0, :, 2].min())
+    return max(mujoco_depth(data), *(deepest_inside(each[i], corners[j])
+                                     for i in range(count) for j in range(count) if i != j))
+
+
+def push(model, data, faces, pressure):
+    """The force of a pressure inside; flexes have none."""
+    a, b, c = data.flexvert_xpos[faces.T]
+    forces = np.zeros((model.nflexvert, 3))
+    for corner in faces.T:
+        np.add.at(forces, corner, pressure / 6 * np.cross(b - a, c - a))
+    data.qfrc_applied[:] = forces.ravel()  # joints are the vertices' x, y, z
+
+
+def balloon_run(balloon, count, duration, triangles, step, integrator):
+    """(CPU s, deepest, greatest stretch of a string), or None where it is not stable. Pressure is not timed."""
+    import mujoco
+    mujoco.set_mju_user_warning(lambda _: None)
+    warnings.simplefilter("ignore")
+    model, faces = balloons(balloon, count, triangles, step, integrator)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    seconds, deep, stretch = 0, 0, 0
+    for i in range(round(duration / step)):
+        if balloon.pressure:
+            push(model, data, faces, balloon.pressure)
+        begin = time.process_time()
+        try:
+            mujoco.mj_step(model, data)
+        except mujoco.FatalError:  # no memory for the contacts of what burst
+            return None
+        seconds += time.process_time() - begin
+        if i % SAMPLED == 0:
+            deep = max(deep, deepest_balloon(data, faces, count))
+        stretch = max(stretch, *data.ten_length - 1, 0) if count > 1 else 0
+        extent = np.ptp(data.flexvert_xpos.reshape(count, -1, 3), axis=1)
+        if any(warning.number for warning in data.warning) or not extent.max() < 4 * RADIUS:
+            return None
+    return seconds, deep, stretch
+
+
+def least(run, *args, rounds):
+    """The run of least CPU time, each in a process of its own."""
+    best = in_child(run, *args)
+    spent = best[0] if best else 0
+    for _ in range(rounds - 1):
+        if not best or spent > PATIENCE:
+            break
+        again = in_child(run, *args)
+        spent += again[0]
+        best = min(best, again)
+    return best
+
+
+RIGID = {"mujoco": mujoco_ellipsoids, "bullet": bullet_ellipsoids, "drake": drake_ellipsoids}
+DISTRIBUTIONS = {"mujoco": "mujoco", "bullet": "pybullet", "drake": "drake"}
+
+
+def rows(engines, most, rounds):
+    for engine in engines:
+        for problem, layers in HEAPS.items():
+            for count in (n for n in (10, 100, 1000) if n <= most):
+                try:
+                    seconds, deep = least(rigid_run, RIGID[engine], count, layers, rounds=rounds)
+                except Exception as fault:  # whatever an engine throws
+                    print(f"{engine}, {problem}, {count}: FAILED, {fault}", flush=True)
+                    continue
+                yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",
+                       f"{DURATION / seconds:.4g}", f"{deep:.3e}", ""]
+    if "mujoco" not in engines:
+        return
+    for problem, (balloon, count, duration, sizes) in BALLOONS.items():
+        for triangles in sizes:
+            for integrator in ("euler", "discrete", "ipc"):
+                step, found = LONGEST, None
+                while step >= SMALLEST and not found:
+                    found = least(balloon_run, balloon, count, duration, triangles, step, integrator, rounds=rounds)
+                    step /= 2
+                if found:
+                    seconds, deep, stretch = found
+                    yield [f"mujoco {integrator}", problem, triangles, 2 * step, "", f"{duration / seconds:.4g}",
+                           f"{deep:.3e}", f"{stretch:.3e}" if count > 1 else ""]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--out", type=Path, help="default: FOLDER/contact_peers.csv")
+    parser.add_argument("--engines", type=lambda s: s.split(","), default=list(RIGID))
+    parser.add_argument("--most", type=int, default=1000, help="bodies")
+    parser.add_argument("--rounds", type=int, default=3, help="of which the least time counts")
+    options = parser.parse_args()
+    for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ[variable] = "1"
+    multiprocessing.set_start_method("spawn")
+    options.folder.mkdir(parents=True, exist_ok=True)
+    versions = {}
+    for engine in options.engines:
+        try:
+            versions[engine] = importlib.metadata.version(DISTRIBUTIONS[engine])
+        except importlib.metadata.PackageNotFoundError as fault:
+            print(f"{engine}: SKIPPED, {fault}", flush=True)
+    with open(options.out or options.folder / "contact_peers.csv", "w", newline="") as file:
+        file.write("# " + ", ".join(f"{engine} {version}" for engine, version in versions.items()) + "\n")
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(COLUMNS)
+        for row in rows(versions, options.most, options.rounds):
+            table.writerow(row)
+            file.flush()
+            print(*row, flush=True)
+
+
+if __name__ == "__main__":
+    main()
