@@ -48,24 +48,17 @@ bool ContactFinder::find_deep(int a, int b, const ContactRule& rule, std::vector
       const Vec3<double> axis = placed->R.col(k);
       ways.push_back(axis.dot(d) < 0 ? Vec3<double>(-axis) : axis);
     }
-  Contact contact;
-  contact.gap = -std::numeric_limits<double>::infinity();
-  Vec3<double> of_a(0, 0, 0);
+  double widest = -std::numeric_limits<double>::infinity();
+  Vec3<double> normal(0, 0, 1), of_a(0, 0, 0);
   for (const Vec3<double>& n : ways) {
     const Vec3<double> from = farthest(a, -n), to = farthest(b, n);
     const double gap = n.dot(d + one.R * from - other.R * to);
-    if (!(gap > contact.gap)) continue;
-    contact.gap = gap;
-    contact.normal = n;
+    if (!(gap > widest)) continue;
+    widest = gap;
+    normal = n;
     of_a = from;
   }
-  contact.x = one.c + one.R * of_a;
-  contact.a = {a, part_a.label(of_a, scratch_->values[at(a)])};
-  contact.b = {b, part_b.label(other.R.transpose() * (contact.x - other.c), scratch_->values[at(b)])};
-  contact.carried = other.carries(contact.x) - one.carries(contact.x);
-  contact.friction = rule.friction;
-  contact.restitution = rule.restitution;
-  found.push_back(contact);
+  found.push_back(contact_at(one.c + one.R * of_a, normal, widest, a, b, rule));
   return true;
 }
 

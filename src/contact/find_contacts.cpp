@@ -157,6 +157,12 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
     low.height = field.height(low.p);
     return add(low);
   }
+  if (placed.half) {
+    for (const Vec3<double>& p : box_corners(*placed.half))
+      if (const double height = field.height(p); height <= most)
+        add({model_->parts()[at(a)].part->label(p, values), p, height});
+    return;
+  }
   const Eigen::Matrix3Xd& p = points_of(a);
   const VecX<double> heights = (p.transpose() * n).array() + offset;
   const std::size_t first = found.size();
@@ -250,6 +256,39 @@ void ContactFinder::find_on_part(int a, int b, const ContactRule& rule, double m
   }
 }
 
+/// A contact of two parts at a point of the world.
+Contact ContactFinder::contact_at(const Vec3<double>& x, const Vec3<double>& normal, double gap, int a, int b,
+                                  const ContactRule& rule) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  auto label = [&](int part, const Placed& placed) {
+    return model_->parts()[at(part)].part->label(placed.R.transpose() * (x - placed.c),
+                                                 scratch_->values[at(part)]);
+  };
+  Contact contact;
+  contact.x = x;
+  contact.normal = normal;
+  contact.gap = gap;
+  contact.a = {a, label(a, one)};
+  contact.b = {b, label(b, other)};
+  contact.carried = other.carries(x) - one.carries(x);
+  contact.friction = rule.friction;
+  contact.restitution = rule.restitution;
+  return contact;
+}
+
+void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, double most,
+                                       std::vector<Contact>& found) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  std::vector<BoxTouch>& touches = scratch_->of_boxes;
+  touches.clear();
+  touch_boxes({one.c, one.R, *one.half}, {other.c, other.R, *other.half}, most, touches);
+  const std::size_t first = found.size();
+  for (const BoxTouch& touch : touches)
+    found.push_back(contact_at(touch.x, touch.normal, touch.gap, a, b, rule));
+  keep_outline(found, first,
+               std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
+}
+
 /// Whether a plane across the line of their centres parts two bodies, by more than `most`.
 bool ContactFinder::are_apart(int a, int b, double most) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -264,6 +303,8 @@ bool ContactFinder::are_apart(int a, int b, double most) const {
 void ContactFinder::find_between(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
   if (are_apart(a, b, most) || find_deep(a, b, rule, found)) return;
+  if (scratch_->parts[at(a)].half && scratch_->parts[at(b)].half)
+    return find_between_boxes(a, b, rule, most, found);
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();
   theirs.clear();

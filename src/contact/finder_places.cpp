@@ -38,6 +38,7 @@ void ContactFinder::place(const State& state, double t, int i) const {
     placed.omega = frame.omega;
   }
   placed.axes = surfaces_[at(i)]->semi_axes(values);
+  placed.half = surfaces_[at(i)]->half_sizes(values);
   placed.reach = surfaces_[at(i)]->reach(values);
 }
 

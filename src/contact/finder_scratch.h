@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/contact/box_contacts.h>
 #include <pliant/contact/box_tree.h>
 #include <pliant/contact/find_contacts.h>
 #include <pliant/contact/find_on_mesh.h>
@@ -16,9 +17,10 @@ struct ContactFinder::Placed {
   Vec3<double> c;
   Mat3<double> R;
   Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
-  double reach;  ///< radius of a ball about c that it is in, m
-  std::optional<Vec3<double>> axes;
-  bool has_points = false;  ///< whether those of Scratch are of its parameters now
+  double reach;                      ///< radius of a ball about c that it is in, m
+  std::optional<Vec3<double>> axes;  ///< of an ellipsoid
+  std::optional<Vec3<double>> half;  ///< sizes of a box
+  bool has_points = false;           ///< whether those of Scratch are of its parameters now
 
   Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
@@ -49,6 +51,7 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::AlignedBox3d> wide;  ///< of the smooth parts, in which their boxes may move
   std::vector<std::pair<int, int>> wide_pairs;
   std::vector<Contact> ours, theirs;
+  std::vector<BoxTouch> of_boxes;
   std::vector<Material<double>> material{1};
   std::vector<PointJet<double>> jets;
   std::vector<int> nodes;

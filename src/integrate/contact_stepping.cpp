@@ -126,11 +126,17 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     const std::vector<Contact> resting = resting_.at_rest(before, now, slow);
     const Pairs rest(resting);
     // Those that meet at the end, and of those that rested on each other all that are near: rounding may have
-    // parted them.
-    std::vector<Contact> contacts = finder_.find(state, after, resting.empty() ? 0 : resting_.gap());
+    // parted them, or what they are about to be held against.
+    double near_by = resting.empty() ? 0 : resting_.gap();
+    for (const Contact& contact : resting)
+      near_by = std::max(
+          near_by, resting_.gap() + reach * length * finder_.velocity(state, contact).dot(contact.normal));
+    std::vector<Contact> contacts = finder_.find(state, after, near_by);
     contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
                                   [&](const Contact& c) {
-                                    return c.gap > 0 && (c.gap > resting_.gap(c) || !rest.has(c));
+                                    return c.gap > 0 && (!rest.has(c) ||
+                                                         (c.gap > resting_.gap(c) &&
+                                                          !resting_.rested(c, before, state, reach, slow)));
                                   }),
                    contacts.end());
     // Sleepers that are met wake at the start of the step.

@@ -20,8 +20,6 @@ constexpr double kExactOfPoints = 1e-6;
 /// Rounds of so many sweeps, which are extrapolated from so many before them.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
-/// More contacts than this are many.
-constexpr int kMany = 100;
 /// Extrapolation starts anew when it has made things worse by this factor.
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.

@@ -11,6 +11,9 @@
 
 namespace pliant {
 
+/// More contacts than this are many.
+inline constexpr int kMany = 100;
+
 /// The law of a contact, linear about its impulse: F + T du + D dp = 0.
 struct LinearContactLaw {
   int contact = 0;
@@ -68,7 +71,7 @@ class CoulombCluster {
   void set(const VecX<double>& impulses);
   bool relax(int most, int history, int& sweeps);
   void linearise(double proximal);
-  MoverSystem& couple_movers();
+  MoverSystem* couple_movers();
   void solve_linear(MoverSystem& movers);
   bool newton();
   bool search(int& sweeps);

@@ -17,6 +17,9 @@ namespace pliant {
 
 namespace {
 constexpr int kMostNewton = 30;
+/// Where many bodies are packed all around, sweeps take less time, and memory, than equations that have this
+/// many times the numbers of the bodies' own.
+constexpr double kMostFill = 40;
 /// What is found is made better while that is one step's work, to this share of what counts as exact.
 constexpr double kBeyondExact = 0.1;
 /// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
@@ -127,8 +130,8 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
 }
 
 /// Contacts couple what each of them pushes with all at its sides that any contact pushes. That is found
-/// once for each cluster.
-MoverSystem& CoulombCluster::couple_movers() {
+/// once for each cluster; nullptr where there is too much of it.
+MoverSystem* CoulombCluster::couple_movers() {
   Coupling& coupling = scratch_.coupling;
   if (coupling.clusters.empty()) {
     coupling.clusters.resize(system_.clusters_.size() - 1);
@@ -138,7 +141,7 @@ MoverSystem& CoulombCluster::couple_movers() {
     coupling.first_block.resize(system_.contacts_.size(), 0);
   }
   MoverSystem& movers = coupling.clusters[at(number_)];
-  if (!movers.empty()) return movers;
+  if (!movers.empty()) return movers.is_ordered() ? &movers : nullptr;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
       const int mover = system_.pushes_[at(r)].mover;
@@ -157,7 +160,7 @@ MoverSystem& CoulombCluster::couple_movers() {
   };
   for (int i = 0; i < size_; ++i)
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
-  movers.order();
+  if (!movers.order(size_ > kMany ? kMostFill : std::numeric_limits<double>::infinity())) return nullptr;
   auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
   for (int i = 0; i < size_; ++i) {
     coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
@@ -174,24 +177,25 @@ MoverSystem& CoulombCluster::couple_movers() {
         coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
     }
   }
-  return movers;
+  return &movers;
 }
 
 /// Leaves the best it has seen; returns whether that is exact.
 bool CoulombCluster::newton() {
+  MoverSystem* movers = couple_movers();
+  if (movers == nullptr) return false;
   auto& [open, drop] = scratch_.linear;
   VecX<double>& best = scratch_.best;
   take(best);
   double best_left = residual(), proximal = kFirstProximal,
          least = points_ ? kLeastProximalOfPoints : kLeastProximal;
   const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
-  MoverSystem& movers = couple_movers();
   int futile = 0;
   for (int step = 0; step < kMostNewton && best_left > kBeyondExact * exact_; ++step) {
     linearise(proximal);
     for (const auto& [i, dp] : drop) push(i, dp);
     for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
-    solve_linear(movers);
+    solve_linear(*movers);
     const bool finite =
         std::all_of(open.begin(), open.end(), [](const LinearContactLaw& law) { return law.dp.allFinite(); });
     double left = std::numeric_limits<double>::infinity();

@@ -29,13 +29,16 @@ void MoverSystem::couple(int i, int j) {
   insert(movers_[at(j)].near, i);
 }
 
-void MoverSystem::order() {
+bool MoverSystem::order(double most) {
   std::set<std::pair<std::size_t, int>> left;  // by the number of their neighbours
   for (int i = 0; i < static_cast<int>(movers_.size()); ++i) left.insert({movers_[at(i)].near.size(), i});
   std::vector<int> merged;
   int row = 0;
   std::size_t numbers = 0, targets = 0;
+  double most_numbers = 0;
+  for (const Mover& mover : movers_) most_numbers += most * mover.size * mover.size;
   while (!left.empty()) {
+    if (static_cast<double>(numbers) > most_numbers) return false;
     const int k = left.begin()->second;
     left.erase(left.begin());
     Mover& eliminated = movers_[at(k)];
@@ -68,6 +71,7 @@ void MoverSystem::order() {
       for (const int i : movers_[at(k)].near) targets_.push_back(block(i, j).first);
   numbers_.resize(static_cast<Eigen::Index>(numbers));
   b_.resize(row);
+  return true;
 }
 
 MoverSystem::Block MoverSystem::block(int i, int j) const {

@@ -16,10 +16,12 @@ class MoverSystem {
   int add_mover(int size);
   /// Two that A couples.
   void couple(int i, int j);
-  /// Finds the order of elimination, and where all numbers go.
-  void order();
+  /// Finds the order of elimination, and where all numbers go. Returns false where they would be more than
+  /// `most` times those of the movers' own blocks: nothing can be solved then.
+  bool order(double most);
 
   bool empty() const { return movers_.empty(); }
+  bool is_ordered() const { return b_.size() > 0; }
 
   // Values, as often as wanted.
 

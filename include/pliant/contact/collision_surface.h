@@ -43,6 +43,8 @@ class CollisionSurface {
 
   /// Of a part that is an ellipsoid at these values: its semi-axes, m.
   std::optional<Vec3<double>> semi_axes(const ParameterValues<double>& values) const;
+  /// Of a part that is a box at these values: its half sizes, m.
+  std::optional<Vec3<double>> half_sizes(const ParameterValues<double>& values) const;
   /// The point of an ellipsoid in the direction y, of length 1, of its ball; its height is left to the
   /// caller.
   LowPoint ellipsoid_point(const ParameterValues<double>& values, const Vec3<double>& axes,
@@ -79,6 +81,7 @@ class CollisionSurface {
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
+  bool is_box_;
   mutable std::optional<Laid> laid_;
   double spacing_;  ///< of the points, as mesh_label() counts
   double thickness_;

@@ -72,6 +72,10 @@ class ContactFinder {
   void find_on_obstacle(int a, std::size_t obstacle, double t, double most,
                         std::vector<Contact>& found) const;
   bool are_apart(int a, int b, double most) const;
+  Contact contact_at(const Vec3<double>& x, const Vec3<double>& normal, double gap, int a, int b,
+                     const ContactRule& rule) const;
+  void find_between_boxes(int a, int b, const ContactRule& rule, double most,
+                          std::vector<Contact>& found) const;
   void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   Vec3<double> farthest(int part, const Vec3<double>& direction) const;
   /// The way out of bodies that hold each other's centres; whether they do.
