@@ -14,7 +14,7 @@ namespace {
 /// sizes.
 constexpr double kFaceFirst = 1e-6;
 /// Edges whose directions differ by less than this (sine) are parallel: they cross nowhere.
-constexpr double kParallel = 1e-6;
+constexpr double kParallelEdges = 1e-6;
 /// Corners nearer than this, in sizes, are one.
 constexpr double kOneCorner = 1e-6;
 
@@ -42,7 +42,7 @@ Axis widest_gap(const PlacedBox& a, const PlacedBox& b, double size) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Vec3<double> across = a.R.col(i).cross(b.R.col(j));
-      if (across.norm() > kParallel) look(across.normalized(), i, j);
+      if (across.norm() > kParallelEdges) look(across.normalized(), i, j);
     }
   return best;
 }

@@ -30,7 +30,7 @@ constexpr double kSeen = 0.1;
 /// How well the way out of a thin body is told, in thicknesses.
 constexpr double kAcross = 1e-12;
 /// Pairs are looked for among boxes that are wider by this share of the size of a part.
-constexpr double kMargin = 0.05;
+constexpr double kPairMargin = 0.05;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
 
@@ -346,7 +346,7 @@ void ContactFinder::find_near_pairs(double most, const std::vector<bool>* of) co
   if (!within) {
     s.wide.clear();
     for (std::size_t k = 0; k < smooth_.size(); ++k) {
-      const Vec3<double> margin = reach.array() + kMargin * model_->parts()[at(smooth_[k])].part->size();
+      const Vec3<double> margin = reach.array() + kPairMargin * model_->parts()[at(smooth_[k])].part->size();
       s.wide.emplace_back(s.boxes[k].min() - margin, s.boxes[k].max() + margin);
     }
     s.tree.build(s.wide);

@@ -14,7 +14,7 @@ namespace {
 /// How near surfaces that rest on each other are, in sizes of the smaller part.
 constexpr double kResting = 1e-6;
 /// Up to this share of all parts are looked at by themselves where the others have not moved.
-constexpr double kFew = 0.7;
+constexpr double kFewParts = 0.7;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ bool RestingContacts::few_moved(const State& state) {
     moved_[at(i)] = true;
     ++count;
   }
-  return count <= kFew * static_cast<double>(model_.parts().size());
+  return count <= kFewParts * static_cast<double>(model_.parts().size());
 }
 
 const std::vector<Contact>& RestingContacts::near(const State& state, double t) {
