@@ -54,7 +54,7 @@ Vec3<double> farthest(const PlacedBox& box, const Vec3<double>& n, int along = -
   return box.c + box.R * p;
 }
 
-/// The point of a box that is nearest to another.
+/// The point of a box that is nearest to a point of the world.
 Vec3<double> within(const PlacedBox& box, const Vec3<double>& x) {
   const Vec3<double> in_box = box.R.transpose() * (x - box.c);
   return box.c + box.R * in_box.cwiseMin(box.half).cwiseMax(-box.half);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
@@ -31,6 +32,8 @@ constexpr double kSeen = 0.1;
 constexpr double kAcross = 1e-12;
 /// Pairs are looked for among boxes that are wider by this share of the size of a part.
 constexpr double kPairMargin = 0.05;
+/// And anew where they are wider than needed by this factor.
+constexpr double kWider = 2;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
 
@@ -159,7 +162,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
   }
   if (placed.half) {
     for (const Vec3<double>& p : box_corners(*placed.half))
-      if (const double height = field.height(p); height <= most)
+      if (const double height = field.height(p); height <= std::min(most, offset))
         add({model_->parts()[at(a)].part->label(p, values), p, height});
     return;
   }
@@ -302,9 +305,10 @@ bool ContactFinder::are_apart(int a, int b, double most) const {
 /// Contacts of a pair, each point once though both surfaces are searched.
 void ContactFinder::find_between(int a, int b, const ContactRule& rule, double most,
                                  std::vector<Contact>& found) const {
-  if (are_apart(a, b, most) || find_deep(a, b, rule, found)) return;
+  if (are_apart(a, b, most)) return;
   if (scratch_->parts[at(a)].half && scratch_->parts[at(b)].half)
     return find_between_boxes(a, b, rule, most, found);
+  if (find_deep(a, b, rule, found)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();
   theirs.clear();
@@ -340,13 +344,17 @@ void ContactFinder::find_near_pairs(double most, const std::vector<bool>* of) co
   s.boxes.clear();
   for (const int i : smooth_) s.boxes.push_back(world_box(i));
   const Vec3<double> reach = Vec3<double>::Constant(0.5 * most);
-  bool within = s.wide.size() == s.boxes.size();
+  bool within = s.wide.size() == s.boxes.size() && s.wide_reach <= kWider * reach[0] + s.wide_margin;
   for (std::size_t k = 0; within && k < s.boxes.size(); ++k)
     within = s.wide[k].contains(Eigen::AlignedBox3d(s.boxes[k].min() - reach, s.boxes[k].max() + reach));
   if (!within) {
     s.wide.clear();
+    s.wide_reach = reach[0];
+    s.wide_margin = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < smooth_.size(); ++k) {
-      const Vec3<double> margin = reach.array() + kPairMargin * model_->parts()[at(smooth_[k])].part->size();
+      const double spare = kPairMargin * model_->parts()[at(smooth_[k])].part->size();
+      const Vec3<double> margin = reach.array() + spare;
+      s.wide_margin = std::min(s.wide_margin, spare);
       s.wide.emplace_back(s.boxes[k].min() - margin, s.boxes[k].max() + margin);
     }
     s.tree.build(s.wide);

@@ -50,6 +50,7 @@ struct ContactFinder::Scratch {
   std::vector<std::pair<int, int>> pairs;
   std::vector<Eigen::AlignedBox3d> wide;  ///< of the smooth parts, in which their boxes may move
   std::vector<std::pair<int, int>> wide_pairs;
+  double wide_reach = 0, wide_margin = 0;  ///< what they were made wider by: to find so far, and at least
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
   std::vector<Material<double>> material{1};

@@ -126,7 +126,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     const std::vector<Contact> resting = resting_.at_rest(before, now, slow);
     const Pairs rest(resting);
     // Those that meet at the end, and of those that rested on each other all that are near: rounding may have
-    // parted them, or what they are about to be held against.
+    // parted them, or their free motion, in which nothing has held them yet.
     double near_by = resting.empty() ? 0 : resting_.gap();
     for (const Contact& contact : resting)
       near_by = std::max(

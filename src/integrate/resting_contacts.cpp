@@ -47,12 +47,13 @@ const std::vector<Contact>& RestingContacts::near(const State& state, double t) 
       last_q_.size() == state.q.size() && last_t_ == t && same_sleepers(last_at_rest_, state.at_rest);
   if (same_time && last_q_ == state.q) return last_;
   if (same_time && few_moved(state)) {
+    const std::vector<Contact> found = finder_.find(state, t, gap_, &moved_);
     last_.erase(std::remove_if(last_.begin(), last_.end(),
                                [&](const Contact& c) {
                                  return moved_[at(c.a.part)] || (c.b.part >= 0 && moved_[at(c.b.part)]);
                                }),
                 last_.end());
-    const std::vector<Contact> kept = std::move(last_), found = finder_.find(state, t, gap_, &moved_);
+    const std::vector<Contact> kept = std::move(last_);
     last_.clear();
     std::merge(kept.begin(), kept.end(), found.begin(), found.end(), std::back_inserter(last_),
                ContactFinder::precedes);
