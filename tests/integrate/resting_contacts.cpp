@@ -61,8 +61,14 @@ TEST_CASE("resting contacts are found again about what has moved", "[contact]") 
   for (const int moving : {0, 1, 2, 5, 20, 41, 43, 60, 1}) {
     for (int k = 0; k < moving; ++k) {
       const PartModel& m = model.parts()[static_cast<std::size_t>((7 * k + moving) % 60)];
-      for (int axis = 0; axis < 3; ++axis) state.q[m.q0 + axis] += draws.uniform(-0.03, 0.03);
+      if (k % 2 == 0)
+        for (int axis = 0; axis < 3; ++axis) state.q[m.q0 + axis] += draws.uniform(-0.03, 0.03);
+      else
+        state.q.segment<4>(m.q0 + 3) =
+            Eigen::Quaterniond(1, draws.uniform(-1, 1), draws.uniform(-1, 1), 0).normalized().coeffs();
+      if (m.n_s > 0) state.q[m.q0 + 7] = draws.uniform(0.08, 0.12);
     }
+    if (moving == 20) finder.find(state, 0.5, 0.3);  // farther than is asked for afterwards
     const std::vector<Contact> before = resting.near(state, 0.5),
                                all = ContactFinder(model).find(state, 0.5, resting.gap());
     REQUIRE(before.size() == all.size());

@@ -26,7 +26,7 @@ class ContactFinder {
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
   /// Contacts at a state and a time (s) whose gap is at most `most` (m); of: only those of parts that it
-  /// marks. Planes come before obstacles and these before other parts, each by the numbers of the parts.
+  /// marks. Of each part in turn those with planes, then with obstacles; after all of them those of pairs.
   std::vector<Contact> find(const State& state, double t, double most,
                             const std::vector<bool>* of = nullptr) const;
   /// Whether one contact comes before another in that order.
