@@ -68,29 +68,37 @@ Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) 
   return p + std::clamp(s, -most, most) * e;
 }
 
-/// A convex polygon, cut to where n . x <= most.
-void cut(std::vector<Vec3<double>>& polygon, const Vec3<double>& n, double most) {
-  std::vector<Vec3<double>> kept;
-  for (std::size_t k = 0; k < polygon.size(); ++k) {
-    const Vec3<double>&p = polygon[k], &q = polygon[(k + 1) % polygon.size()];
+/// A face, and what is left of it when it is cut by four planes: up to eight corners, where rounding takes
+/// nothing for two sides of a plane, and never more than half as many again with each.
+struct Polygon {
+  std::array<Vec3<double>, 20> corners;
+  std::size_t n = 0;
+
+  void add(const Vec3<double>& p) { corners[n++] = p; }
+};
+
+/// A convex polygon, cut to where n . x <= most: it may have one corner more.
+void cut(Polygon& polygon, const Vec3<double>& n, double most) {
+  Polygon kept;
+  for (std::size_t k = 0; k < polygon.n; ++k) {
+    const Vec3<double>&p = polygon.corners[k], &q = polygon.corners[(k + 1) % polygon.n];
     const double at_p = n.dot(p) - most, at_q = n.dot(q) - most;
-    if (at_p <= 0) kept.push_back(p);
-    if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) kept.push_back(p + at_p / (at_p - at_q) * (q - p));
+    if (at_p <= 0) kept.add(p);
+    if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) kept.add(p + at_p / (at_p - at_q) * (q - p));
   }
-  polygon.swap(kept);
+  polygon = kept;
 }
 
 /// The face of a box that looks most against a direction, cut to what lies over face number `number` of
 /// another one, whose normal that is.
-std::vector<Vec3<double>> facing(const PlacedBox& box, const PlacedBox& other, int number,
-                                 const Vec3<double>& n) {
+Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const Vec3<double>& n) {
   const Vec3<double> in_box = box.R.transpose() * n;
   int k = 0;
   in_box.cwiseAbs().maxCoeff(&k);
   const Vec3<double> u = box.half[(k + 1) % 3] * box.R.col((k + 1) % 3),
                      v = box.half[(k + 2) % 3] * box.R.col((k + 2) % 3),
                      middle = box.c - std::copysign(box.half[k], in_box[k]) * box.R.col(k);
-  std::vector<Vec3<double>> polygon{middle + u + v, middle - u + v, middle - u - v, middle + u - v};
+  Polygon polygon{{middle + u + v, middle - u + v, middle - u - v, middle + u - v}, 4};
   for (const int side : {(number + 1) % 3, (number + 2) % 3})
     for (const double sign : {-1.0, 1.0}) {
       const Vec3<double> out = sign * other.R.col(side);
@@ -132,7 +140,8 @@ void touch_boxes(const PlacedBox& a, const PlacedBox& b, double most, std::vecto
       }
     found.push_back(touch);
   };
-  for (const Vec3<double>& p : facing(lies, on, on_a ? axis.of_a : axis.of_b, up)) add(p);
+  const Polygon polygon = facing(lies, on, on_a ? axis.of_a : axis.of_b, up);
+  for (std::size_t k = 0; k < polygon.n; ++k) add(polygon.corners[k]);
   if (found.size() == first) add(farthest(lies, -up));
 }
 
