@@ -68,8 +68,8 @@ Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) 
   return p + std::clamp(s, -most, most) * e;
 }
 
-/// A face, and what is left of it when it is cut by four planes: up to eight corners, where rounding takes
-/// nothing for two sides of a plane, and never more than half as many again with each.
+/// A face, and what is left of it when it is cut by four planes: at most eight corners, and with rounding
+/// never more than half as many again for each plane.
 struct Polygon {
   std::array<Vec3<double>, 20> corners;
   std::size_t n = 0;
