@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <set>
 #include <utility>
 
 #include <pliant/integrate/settle.h>
+#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/index.h>
 
 #include "contact_pairs.h"
@@ -158,12 +158,7 @@ double ContactSettling::may_overlap(const Contact& contact) const {
 /// them, and of meshes others of the same pairs.
 void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const {
   const Model& model = dynamics_.model();
-  std::vector<int> leader(model.parts().size());
-  std::iota(leader.begin(), leader.end(), 0);
-  auto leader_of = [&](int i) {
-    while (leader[at(i)] != i) i = leader[at(i)] = leader[at(leader[at(i)])];
-    return i;
-  };
+  DisjointSets tied(model.parts().size());
   auto is_whole = [&](const ContactSide& side) {
     return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
            !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
@@ -171,11 +166,11 @@ void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Works
   // Of what joints tie together the first part.
   auto body_of = [&](int part) {
     const int island = model.parts()[at(part)].island;
-    return leader_of(island < 0 ? part : model.islands()[at(island)].parts.front());
+    return tied.leader(island < 0 ? part : model.islands()[at(island)].parts.front());
   };
   for (const Contact& contact : contacts)
     if (is_whole(contact.a) && is_whole(contact.b))
-      leader[at(body_of(contact.b.part))] = body_of(contact.a.part);
+      tied.unite(body_of(contact.a.part), body_of(contact.b.part));
   std::set<std::pair<int, int>> pairs;
   std::vector<bool> concerned(model.parts().size(), false);
   for (const Contact& contact : contacts) {

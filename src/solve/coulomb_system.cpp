@@ -1,7 +1,8 @@
 #include <pliant/solve/coulomb_system.h>
 
 #include <algorithm>
-#include <numeric>
+
+#include <pliant/math/disjoint_sets.h>
 
 #include "coulomb_cluster.h"
 
@@ -116,26 +117,19 @@ void CoulombSystem::complete() {
 
 /// Contacts by what they push, those of one cluster after each other, in their order.
 void CoulombSystem::find_clusters() {
-  std::vector<int> leader(movers_.size() - 1);
-  std::iota(leader.begin(), leader.end(), 0);
-  auto leader_of = [&](int i) {
-    while (leader[at(i)] != i) i = leader[at(i)] = leader[at(leader[at(i)])];
-    return i;
-  };
+  DisjointSets tied(movers_.size() - 1);
   std::vector<int> mover(contacts_.size());
   for (int k = 0; k < size(); ++k) {
     const Point& point = contacts_[at(k)];
     if (sides(k) == 0) continue;
     mover[at(k)] = sides_[at(point.first_side)].mover;
-    for (int s = point.first_side + 1; s < point.last_side; ++s) {
-      const int one = leader_of(mover[at(k)]), other = leader_of(sides_[at(s)].mover);
-      leader[at(std::max(one, other))] = std::min(one, other);
-    }
+    for (int s = point.first_side + 1; s < point.last_side; ++s)
+      tied.unite(mover[at(k)], sides_[at(s)].mover);
   }
   order_.clear();
   for (int k = 0; k < size(); ++k)
     if (sides(k) > 0) {
-      mover[at(k)] = leader_of(mover[at(k)]);
+      mover[at(k)] = tied.leader(mover[at(k)]);
       order_.push_back(k);
     }
   std::stable_sort(order_.begin(), order_.end(), [&](int i, int j) { return mover[at(i)] < mover[at(j)]; });
