@@ -332,7 +332,9 @@ void NodalDeformation::accelerations(VecX<double>& f_r, LocalWorkspace& work,
   NodalWorkspace& w = of(work);
   const Eigen::Index n = n_nodes();
   w.kappa = w.solve(w.of_d - f_r);
-  const VecMax<double> a = w.solve_transposed(w.of_all - w.H0 * w.kappa + w.rates);
+  VecMax<double> loads = w.of_all + w.rates;
+  loads.noalias() -= w.H0 * w.kappa;
+  const VecMax<double> a = w.solve_transposed(loads);
   f_r = a;
   const FrameMotion pull(w.kappa, w, n), frame(a, w, n);
   for_each_four(n, [&](const auto& four) {

@@ -22,9 +22,15 @@ long allocations = 0;
 #if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 constexpr bool kCounted = true;
 extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_calloc(std::size_t n, std::size_t size);
 extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
   return __libc_malloc(size);
+}
+// Compilers make one call of malloc and memset.
+extern "C" void* calloc(std::size_t n, std::size_t size) noexcept {
+  ++allocations;
+  return __libc_calloc(n, size);
 }
 #else
 constexpr bool kCounted = false;
