@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <tuple>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-
-#include <pliant/shape/box.h>
 
 namespace pliant {
 
@@ -160,9 +157,7 @@ std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector
 }  // namespace
 
 CollisionSurface::CollisionSurface(const Part& part)
-    : part_(&part),
-      is_box_(part.shape().name() == std::string_view(Box::name)),
-      spacing_(0.5 * kPi / kSurfaceResolution) {
+    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution) {
   if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest()))
     thickness_ = 2 * axes->minCoeff();
   else
@@ -189,8 +184,8 @@ std::optional<Vec3<double>> CollisionSurface::semi_axes(const ParameterValues<do
 }
 
 std::optional<Vec3<double>> CollisionSurface::half_sizes(const ParameterValues<double>& values) const {
-  if (!is_box_ || !part_->parameters().links().empty()) return std::nullopt;
-  return Vec3<double>(values.b[0], values.b[1], values.b[2]);
+  if (!part_->parameters().links().empty()) return std::nullopt;
+  return part_->shape().half_sizes(values.b.data());
 }
 
 CollisionSurface::LowPoint CollisionSurface::ellipsoid_point(const ParameterValues<double>& values,

@@ -81,7 +81,6 @@ class CollisionSurface {
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
-  bool is_box_;
   mutable std::optional<Laid> laid_;
   double spacing_;  ///< of the points, as mesh_label() counts
   double thickness_;

@@ -33,6 +33,8 @@ class ShapeFace {
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
   /// Of a shape that is a stretched ball (shape.h).
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
+  /// Of a shape that is a box (shape.h).
+  virtual std::optional<Vec3<double>> half_sizes(ShapeParameters a) const = 0;
   /// e and its derivatives along three material directions carried by the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
@@ -82,6 +84,7 @@ struct RestMapOf<Shape, std::void_t<typename Shape::RestMap>> {
 PLIANT_HAS_MEMBER(label)
 PLIANT_HAS_MEMBER(mesh_label)
 PLIANT_HAS_MEMBER(semi_axes)
+PLIANT_HAS_MEMBER(half_sizes)
 PLIANT_HAS_MEMBER(profile)
 PLIANT_HAS_MEMBER(ring)
 PLIANT_HAS_MEMBER(ring_exponent)
@@ -144,6 +147,12 @@ class ShapeFaceOf final : public ShapeFace {
   std::optional<Vec3<double>> semi_axes(ShapeParameters a) const override {
     if constexpr (detail::has_semi_axes<Shape>)
       return Shape::semi_axes(vec(a));
+    else
+      return std::nullopt;
+  }
+  std::optional<Vec3<double>> half_sizes(ShapeParameters a) const override {
+    if constexpr (detail::has_half_sizes<Shape>)
+      return Shape::half_sizes(vec(a));
     else
       return std::nullopt;
   }

@@ -34,6 +34,7 @@ struct Box {
     return math::max(math::max(T(math::abs(x[0]) / a[0]), T(math::abs(x[1]) / a[1])),
                      T(math::abs(x[2]) / a[2]));
   }
+  static Vec3<double> half_sizes(const Vec<double, 3>& a) { return a; }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 3>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 3>&) {
     return material_towards(g);

@@ -11,8 +11,8 @@
 //   profile(a, moving), ring(a, moving)  panels along u and v between which e is smooth, for quadrature;
 //                     moving: its exponents are dynamic
 //   semi_axes(a)      of a shape that is a stretched ball: its point in the direction y of the mesh pattern,
-//   of
-//                     length 1, is y times these, entry by entry
+//                     of length 1, is y times these, entry by entry
+//   half_sizes(a)     of a shape that is a box about its origin
 //   bounded_exponents true: a changing exponent strains the material by bounded amounts
 //   linear_lengths true: e is linear in the parameters that are lengths, whatever the others are
 //   section(zeta, gap, a), section_panels(a)  area and mean squares of the section at zeta, gap = 1 - |zeta|,
