@@ -26,8 +26,6 @@ constexpr std::ptrdiff_t kMostLocated = 8;
 /// Most parts of a step, so that nothing passes through anything.
 constexpr double kMostParts = 1e4;
 constexpr int kMostEvents = 200;
-/// Points of one contact at the start and the end of a step are nearer than this, in sizes.
-constexpr double kSamePoint = 0.2;
 /// Where an impact has been told in time, surfaces this near, as a share of what counts as resting, touch.
 constexpr double kTouchAtImpact = 1e-6;
 
@@ -66,156 +64,169 @@ bool ContactStepping::any_lasts() const {
                      [](const Contact& contact) { return contact.since > 0; });
 }
 
+/// Tells how long stages take, one after the other.
+class ContactStepping::StageClock {
+ public:
+  void lap(double& stage) {
+    const Clock::time_point now = Clock::now();
+    stage += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// What a motion of `whole` seconds from now on comes near to; touch: what deforms locally is known to.
+ContactFinder::Neighbourhood ContactStepping::look_ahead(const State& state, double now, double whole,
+                                                         double fall, bool touch) {
+  ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, whole, fall);
+  if (meshes_.empty()) return around;
+  meshes_.approach(state, nullptr, now, whole, fall, around);
+  around.soft = around.soft || touch;
+  return around;
+}
+
+/// Sleepers that what was met touches wake; whether there are any.
+bool ContactStepping::wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state) {
+  if (!sleeping_.any()) return false;
+  std::vector<Contact> of_meshes;
+  meshes_.find(state, motion.end(), of_meshes);
+  if (!sleeping_.is_met(contacts, state) && !sleeping_.is_met(of_meshes, state)) return false;
+  state = motion.before;
+  sleeping_.wake_met(contacts, state);
+  sleeping_.wake_met(of_meshes, state);
+  return true;
+}
+
+/// Whether what meets is so little that the time of its impacts is worth finding; if so these are it.
+bool ContactStepping::are_few(const std::vector<Contact>& contacts, const std::vector<Contact>& resting,
+                              std::vector<Contact>& impacts) const {
+  impacts.clear();
+  if (!few_parts_) return false;
+  const Pairs rest(resting);
+  for (const Contact& contact : contacts)
+    if (impacts.size() <= kMostPairs && !rest.has(contact) && !Pairs(impacts).has(contact))
+      impacts.push_back(contact);
+  return !impacts.empty() && impacts.size() <= kMostPairs;
+}
+
+/// Impulses at an impact that was told in time, the end of a motion.
+void ContactStepping::strike(const FreeMotion& motion, const std::vector<Contact>& resting,
+                             const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
+                             StepCounters& counters, StageClock& clock) {
+  const Pairs rest(resting);
+  const double now = motion.end();
+  // What rests has fallen freely until then as what is in flight has: it is held first.
+  std::vector<Contact> lying = resting_.met(motion, resting, state);
+  lying.erase(std::remove_if(lying.begin(), lying.end(), [](const Contact& c) { return c.since == 0; }),
+              lying.end());
+  meshes_.find(state, now, lying);
+  time_impacts(finder_, motion, state, lying);
+  clock.lap(times_.finding);
+  settling_.settle(motion.before, motion.held(), motion.h, state, now, std::move(lying), work, counters);
+  clock.lap(times_.settling);
+  std::vector<Contact> there = finder_.find(state, now, resting_.gap());
+  there.erase(std::remove_if(there.begin(), there.end(),
+                             [&](const Contact& c) {
+                               return c.gap > resting_.gap(c) || (c.gap > kTouchAtImpact * resting_.gap(c) &&
+                                                                  !rest.has(c) && !Pairs(impacts).has(c));
+                             }),
+              there.end());
+  for (Contact& contact : there) {
+    const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
+    if (!rest.has(contact) && rebound > motion.slow) contact.rebound = rebound;
+  }
+  clock.lap(times_.finding);
+  settling_.settle(state, 0, 0, state, now, std::move(there), work, counters);
+  clock.lap(times_.settling);
+}
+
 double ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
                              StepCounters& counters, bool to_impact) {
   const double start = state.start, h = state.h, begin = state.time(), end = begin + h;
   double taken = h;
   const std::int64_t number = state.step;
   const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
-  const double slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
   int events = 0;
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last = Clock::now();
-  const auto lap = [&last](double& stage) {
-    const Clock::time_point at_lap = Clock::now();
-    stage += std::chrono::duration<double>(at_lap - last).count();
-    last = at_lap;
-  };
-  double most = h;     // of a stage: in a longer one parts went further than was foreseen
+  StageClock clock;
+  double most = h;     // of a motion: in a longer one parts went further than was foreseen
   bool touch = false;  // likewise: what deforms locally came near something
-  State before;
-  for (double now = state.time(); now < end - near;) {
+  FreeMotion motion;
+  motion.slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
+  std::vector<Contact> impacts;
+  for (double now = begin; now < end - near;) {
     sleeping_.begin_motion(now, end - now, state);
     const double whole = std::min(end - now, most), fall = method.local_is_implicit() ? 1 : method.reach();
-    ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, whole, fall);
-    if (!meshes_.empty()) {
-      meshes_.approach(state, nullptr, now, whole, fall, around);
-      around.soft = around.soft || touch;
-      method.expect_touch(around.soft);
-    }
-    const double reach = method.reach();
+    const ContactFinder::Neighbourhood around = look_ahead(state, now, whole, fall, touch);
+    if (!meshes_.empty()) method.expect_touch(around.soft);
     if (!(around.h > (end - now) / kMostParts)) {
       std::ostringstream message;
       message << "parts move so fast past each other that a step of " << h << " s would be " << kMostParts
               << " and more; a smaller step than " << h << " s may cure it";
       throw NumericalFailure(message.str(), now);
     }
-    const double length = around.h >= end - now - near ? end - now : around.h;
-    if (now != start + static_cast<double>(number) * h || length != h) set_step(state, now, length);
-    lap(times_.finding);
-    before = state;
+    motion.begin = now;
+    motion.h = around.h >= end - now - near ? end - now : around.h;
+    motion.reach = method.reach();
+    if (now != start + static_cast<double>(number) * h || motion.h != h) set_step(state, now, motion.h);
+    clock.lap(times_.finding);
+    motion.before = state;
     method.step(dynamics_, state, work, counters);
     sleeping_.restore(state);
-    lap(times_.motion);
+    clock.lap(times_.motion);
     if (!state.q.allFinite() || !state.v.allFinite()) break;
-    ContactFinder::Neighbourhood went = finder_.neighbourhood_of(before, state, now, length, fall, around);
-    if (!meshes_.empty()) meshes_.approach(before, &state, now, length, fall, went);
-    lap(times_.finding);
+    ContactFinder::Neighbourhood went =
+        finder_.neighbourhood_of(motion.before, state, now, motion.h, fall, around);
+    if (!meshes_.empty()) meshes_.approach(motion.before, &state, now, motion.h, fall, went);
+    clock.lap(times_.finding);
     touch = went.soft && !around.soft;
-    if (touch || went.h < length - near) {
-      most = std::min(went.h, length);
-      state = before;
+    if (touch || went.h < motion.h - near) {
+      most = std::min(went.h, motion.h);
+      state = motion.before;
       continue;
     }
-    most = std::max(most, 2 * length);
+    most = std::max(most, 2 * motion.h);
     if (around.empty && went.empty) {
-      now += length;
+      now = motion.end();
       continue;
     }
-    const double after = now + length;
-    const std::vector<Contact> resting = resting_.at_rest(before, now, slow);
-    const Pairs rest(resting);
-    // Those that meet at the end, and of those that rested on each other all that are near: rounding may have
-    // parted them, or their free motion, in which nothing has held them yet.
-    double near_by = resting.empty() ? 0 : resting_.gap();
-    for (const Contact& contact : resting)
-      near_by = std::max(
-          near_by, resting_.gap() + reach * length * finder_.velocity(state, contact).dot(contact.normal));
-    std::vector<Contact> contacts = finder_.find(state, after, near_by);
-    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
-                                  [&](const Contact& c) {
-                                    return c.gap > 0 && (!rest.has(c) ||
-                                                         (c.gap > resting_.gap(c) &&
-                                                          !resting_.rested(c, before, state, reach, slow)));
-                                  }),
-                   contacts.end());
-    // Sleepers that are met wake at the start of the step.
-    std::vector<Contact> of_meshes;
-    if (sleeping_.any()) meshes_.find(state, after, of_meshes);
-    if (sleeping_.is_met(contacts, state) || sleeping_.is_met(of_meshes, state)) {
-      state = before;
-      sleeping_.wake_met(contacts, state);
-      sleeping_.wake_met(of_meshes, state);
-      continue;
-    }
-    std::vector<Contact> impacts;
-    for (Contact& contact : contacts) {
-      const double size = dynamics_.model().parts()[at(contact.a.part)].part->size();
-      if (rest.has(contact,
-                   [&](const Contact& other) {
-                     return contact.gap > 0 || (contact.x - other.x).norm() <= kSamePoint * size;
-                   }) ||
-          (rest.has(contact) && resting_.rested(contact, before, state, reach, slow)))
-        contact.since = reach * length;
-      if (impacts.size() <= kMostPairs && few_parts_ && !rest.has(contact) && !Pairs(impacts).has(contact))
-        impacts.push_back(contact);
-    }
-    lap(times_.finding);
-    if (!impacts.empty() && impacts.size() <= kMostPairs && events < kMostEvents) {
-      const std::optional<double> tau =
-          locate_impact(dynamics_, finder_, method, before, now, length, impacts, state, work, counters);
+    const std::vector<Contact> resting = resting_.at_rest(motion.before, now, motion.slow);
+    std::vector<Contact> contacts = resting_.met(motion, resting, state);
+    if (wake_met(contacts, motion, state)) continue;
+    clock.lap(times_.finding);
+    if (events < kMostEvents && are_few(contacts, resting, impacts)) {
+      const std::optional<double> tau = locate_impact(dynamics_, finder_, method, motion.before, now,
+                                                      motion.h, impacts, state, work, counters);
       sleeping_.restore(state);
-      lap(times_.motion);
+      clock.lap(times_.motion);
       if (tau) {
         ++events;
         ++counters.impacts;
-        now += *tau;
+        motion.h = *tau;
+        now = motion.end();
         const StepResponses responses(method, dynamics_.model(), work);
-        // What rests has fallen freely until then as what is in flight has: it is held first.
-        std::vector<Contact> lying = finder_.find(state, now, resting_.gap());
-        lying.erase(std::remove_if(lying.begin(), lying.end(),
-                                   [&](const Contact& c) { return c.gap > resting_.gap(c) || !rest.has(c); }),
-                    lying.end());
-        for (Contact& contact : lying) contact.since = reach * *tau;
-        meshes_.find(state, now, lying);
-        time_impacts(finder_, before, state, reach, *tau, slow, lying);
-        lap(times_.finding);
-        settling_.settle(before, reach * *tau, *tau, state, now, std::move(lying), work, counters);
-        lap(times_.settling);
-        std::vector<Contact> there = finder_.find(state, now, resting_.gap());
-        there.erase(std::remove_if(there.begin(), there.end(),
-                                   [&](const Contact& c) {
-                                     return c.gap > resting_.gap(c) ||
-                                            (c.gap > kTouchAtImpact * resting_.gap(c) && !rest.has(c) &&
-                                             !Pairs(impacts).has(c));
-                                   }),
-                    there.end());
-        for (Contact& contact : there) {
-          const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
-          if (!rest.has(contact) && rebound > slow) contact.rebound = rebound;
-        }
-        lap(times_.finding);
-        settling_.settle(state, 0, 0, state, now, std::move(there), work, counters);
-        lap(times_.settling);
+        strike(motion, resting, impacts, state, work, counters, clock);
         sleeping_.wake_moved(state);
         if (!to_impact || !(now > begin)) continue;
         taken = now - begin;
         break;
       }
     }
+    now = motion.end();
     const StepResponses responses(method, dynamics_.model(), work);
-    meshes_.find(state, after, contacts);
-    time_impacts(finder_, before, state, reach, length, slow, contacts);
+    meshes_.find(state, now, contacts);
+    time_impacts(finder_, motion, state, contacts);
     // What is stepped implicitly has but one velocity in a step, by which all of it moves.
     if (method.local_is_implicit())
       for (Contact& contact : contacts)
-        if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = reach * length;
-    lap(times_.finding);
-    settling_.settle(before, reach * length, length, state, after, contacts, work, counters);
-    settling_.settle_chain(std::move(contacts), length, slow, state, after, work, counters);
+        if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = motion.held();
+    clock.lap(times_.finding);
+    settling_.settle(motion.before, motion.held(), motion.h, state, now, contacts, work, counters);
+    settling_.settle_chain(std::move(contacts), motion.h, motion.slow, state, now, work, counters);
     sleeping_.wake_moved(state);
-    lap(times_.settling);
-    now = after;
+    clock.lap(times_.settling);
   }
   state.start = start;
   state.step = number;

@@ -82,17 +82,17 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
   return high;
 }
 
-void time_impacts(const ContactFinder& finder, const State& before, const State& state, double reach,
-                  double h, double slow, std::vector<Contact>& contacts) {
+void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
+                  std::vector<Contact>& contacts) {
   for (Contact& contact : contacts) {
     if (contact.since > 0) continue;
     const double u = finder.velocity(state, contact).dot(contact.normal);
-    contact.since = u < 0 && contact.gap < 0 ? std::min(h, contact.gap / u) : reach * h;
-    const double u_start = finder.velocity(before, contact).dot(contact.normal);
-    if (!(u < 0 && contact.gap < 0 && u_start < -slow)) continue;
+    contact.since = u < 0 && contact.gap < 0 ? std::min(motion.h, contact.gap / u) : motion.held();
+    const double u_start = finder.velocity(motion.before, contact).dot(contact.normal);
+    if (!(u < 0 && contact.gap < 0 && u_start < -motion.slow)) continue;
     // What pushes the sides together has done so since then too.
-    const double gained = (u - u_start) / h * contact.since, approach = gained - u;
-    if (contact.restitution * approach > slow)
+    const double gained = (u - u_start) / motion.h * contact.since, approach = gained - u;
+    if (contact.restitution * approach > motion.slow)
       contact.rebound = std::max(0.0, contact.restitution * approach + gained);
   }
 }

@@ -7,6 +7,8 @@
 
 #include <pliant/math/index.h>
 
+#include "contact_pairs.h"
+
 namespace pliant {
 
 namespace {
@@ -15,6 +17,8 @@ namespace {
 constexpr double kResting = 1e-6;
 /// Up to this share of all parts are looked at by themselves where the others have not moved.
 constexpr double kFewParts = 0.7;
+/// Points of one contact at the start and the end of a step are nearer than this, in sizes.
+constexpr double kSamePoint = 0.2;
 
 }  // namespace
 
@@ -82,11 +86,38 @@ std::vector<Contact> RestingContacts::at_rest(const State& state, double t, doub
   return resting;
 }
 
-bool RestingContacts::rested(const Contact& contact, const State& before, const State& state, double reach,
-                             double slow) const {
-  const double u_start = finder_.velocity(before, contact).dot(contact.normal),
-               u = finder_.velocity(state, contact).dot(contact.normal);
-  return rests(contact, contact.gap - state.h * ((1 - reach) * u_start + reach * u), u_start, slow);
+/// Whether a contact at the end of a motion rested at its start, by how its sides have moved in between:
+/// faces that lie on each other may touch at other points of theirs.
+bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, const State& state) const {
+  const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),
+               u = finder_.velocity(state, contact).dot(contact.normal),
+               way = motion.h * ((1 - motion.reach) * u_start + motion.reach * u);
+  return rests(contact, contact.gap - way, u_start, motion.slow);
+}
+
+std::vector<Contact> RestingContacts::met(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                          const State& state) const {
+  double most = resting.empty() ? 0 : gap_;
+  for (const Contact& contact : resting)
+    most = std::max(most, gap_ + motion.held() * finder_.velocity(state, contact).dot(contact.normal));
+  const Pairs rest(resting);
+  auto lay = [&](const Contact& contact) {
+    if (!rest.has(contact)) return false;
+    if (contact.gap > 0 && contact.gap <= gap(contact)) return true;
+    const double same = kSamePoint * model_.parts()[at(contact.a.part)].part->size();
+    return (contact.gap <= 0 &&
+            rest.has(contact, [&](const Contact& other) { return (contact.x - other.x).norm() <= same; })) ||
+           rested(contact, motion, state);
+  };
+  std::vector<Contact> contacts;
+  for (Contact& contact : finder_.find(state, motion.end(), most)) {
+    if (lay(contact))
+      contact.since = motion.held();
+    else if (contact.gap > 0)
+      continue;
+    contacts.push_back(contact);
+  }
+  return contacts;
 }
 
 }  // namespace pliant

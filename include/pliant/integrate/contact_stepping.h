@@ -47,6 +47,16 @@ class ContactStepping {
   const std::vector<Vec3<double>>& impulses() const { return record_.impulses; }
 
  private:
+  class StageClock;
+  ContactFinder::Neighbourhood look_ahead(const State& state, double now, double whole, double fall,
+                                          bool touch);
+  bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
+  bool are_few(const std::vector<Contact>& contacts, const std::vector<Contact>& resting,
+               std::vector<Contact>& impacts) const;
+  void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
+              const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
+              StepCounters& counters, StageClock& clock);
+
   const Dynamics& dynamics_;
   ContactFinder finder_;
   MeshFinder meshes_;

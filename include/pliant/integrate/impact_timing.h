@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pliant/contact/find_contacts.h>
+#include <pliant/integrate/free_motion.h>
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
@@ -23,9 +24,9 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
                                     const std::vector<Contact>& impacts, State& state,
                                     Workspace<double>& work, StepCounters& counters);
 
-/// How long ago each contact of a step of h seconds began, were its sides to meet at the speed they have now,
+/// How long ago each contact at the end of a motion began, were its sides to meet at the speed they have now,
 /// and the velocity it leaves them with. Those that have a `since` rest.
-void time_impacts(const ContactFinder& finder, const State& before, const State& state, double reach,
-                  double h, double slow, std::vector<Contact>& contacts);
+void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
+                  std::vector<Contact>& contacts);
 
 }  // namespace pliant

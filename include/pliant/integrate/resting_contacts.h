@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <pliant/contact/find_contacts.h>
+#include <pliant/integrate/free_motion.h>
 
 namespace pliant {
 
@@ -20,14 +21,16 @@ class RestingContacts {
   const std::vector<Contact>& near(const State& state, double t);
   /// Those of them that neither open nor strike by more than `slow` m/s.
   std::vector<Contact> at_rest(const State& state, double t, double slow);
-  /// Whether a contact at the end of a step rested at its start, by how its sides have moved in between:
-  /// faces that lie on each other may touch at other points of theirs. reach: of the method.
-  bool rested(const Contact& contact, const State& before, const State& state, double reach,
-              double slow) const;
+  /// What meets at the end of a motion, where it has led to `state`: sides that overlap, and of what rested
+  /// on each other at its start all that is near, for rounding may have parted it, or the motion, in which
+  /// nothing held it. What rested did so all along (Contact::since).
+  std::vector<Contact> met(const FreeMotion& motion, const std::vector<Contact>& resting,
+                           const State& state) const;
 
  private:
   bool few_moved(const State& state);
   bool rests(const Contact& contact, double gap, double velocity, double slow) const;
+  bool rested(const Contact& contact, const FreeMotion& motion, const State& state) const;
 
   const Model& model_;
   const ContactFinder& finder_;
