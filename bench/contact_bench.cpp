@@ -1,5 +1,6 @@
 // What contact costs: time per body and step of ellipsoids dropped on a plane, from the first impacts until
-// they lie still, the exponent of its growth with their number, and the share of each stage.
+// they lie still, and of towers of ten boxes that stand; the exponent of its growth with their number, and
+// the share of each stage.
 //
 //   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
 //   standard output; no more than MOST bodies (10000)
@@ -26,10 +27,12 @@ namespace {
 
 constexpr double kStep = 2e-3, kDuration = 1;
 
+enum class Bodies { rigid, soft, boxes };  ///< soft: of three parameters each
+
 struct System {
   const char* name;
-  bool soft;   ///< three parameters each
-  int layers;  ///< dropped on top of each other; 1: side by side
+  Bodies bodies;
+  int layers;  ///< on top of each other; 1: side by side
   int most;    ///< bodies
 };
 
@@ -50,7 +53,18 @@ double spread(int i, double ratio) {
   return std::fmod((i + 1) * ratio, 1.0);
 }
 
-void build(MultiBody& body, const System& system, int n) {
+void build_towers(MultiBody& body, const System& system, int n) {
+  constexpr double half = 0.05;
+  const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n) / system.layers)));
+  for (int i = 0; i < n; ++i) {
+    const int tower = i / system.layers, layer = i % system.layers;
+    Part& part = body.add(make_part("body" + std::to_string(i), "box", {}, 1000));
+    part.rest({{"a1", half}, {"a2", half}, {"a3", half}});
+    part.place({0.25 * (tower % across), 0.25 * (tower / across), (1 + 2 * layer) * half});
+  }
+}
+
+void build_ellipsoids(MultiBody& body, const System& system, int n) {
   const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n) / system.layers)));
   for (int i = 0; i < n; ++i) {
     const double a = spread(i, 0.6180339887498949), b = spread(i, 0.7548776662466927),
@@ -62,8 +76,13 @@ void build(MultiBody& body, const System& system, int n) {
     part.place({0.25 * (place % across) + 0.02 * a, 0.25 * (place / across) + 0.02 * b,
                 0.15 + 0.1 * c + 0.35 * layer},
                Eigen::Quaterniond(Eigen::AngleAxisd(6 * a, axis)));
-    if (system.soft) part.stiffness({{"a1", 3e4}, {"a2", 3e4}, {"a3", 3e4}}).damping(0, 2e-3);
+    if (system.bodies == Bodies::soft)
+      part.stiffness({{"a1", 3e4}, {"a2", 3e4}, {"a3", 3e4}}).damping(0, 2e-3);
   }
+}
+
+void build(MultiBody& body, const System& system, int n) {
+  (system.bodies == Bodies::boxes ? build_towers : build_ellipsoids)(body, system, n);
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
@@ -145,8 +164,10 @@ int main(int argc, char** argv) try {
           "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
   bench::TableFile exponents_file(in_folder("contact_exponents.csv"),
                                   std::string(calibration) + "system,step,still_step\n");
-  const std::vector<System> systems{
-      {"rigid", false, 1, 10000}, {"3 parameters", true, 1, 10000}, {"rigid, heap", false, 5, 1000}};
+  const std::vector<System> systems{{"rigid", Bodies::rigid, 1, 10000},
+                                    {"3 parameters", Bodies::soft, 1, 10000},
+                                    {"rigid, heap", Bodies::rigid, 5, 1000},
+                                    {"towers of ten", Bodies::boxes, 10, 1000}};
   std::printf("microseconds per body and step\n%-14s %6s %8s | %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
               "system", "bodies", "contacts", "step", "still", "motion", "near", "find", "solve", "deepest",
               "residual", "fallbacks");
