@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
+#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
@@ -45,24 +45,6 @@ bool changes(const Torque& torque, double t, double h) {
 }
 
 }  // namespace
-
-/// Sets of parts, joined two by two.
-class Sleeping::Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  /// The least of the set of i.
-  int least(int i) {
-    while (parent_[at(i)] != i) i = parent_[at(i)] = parent_[at(parent_[at(i)])];
-    return i;
-  }
-  void join(int i, int j) {
-    const int a = least(i), b = least(j);
-    parent_[at(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes)
     : dynamics_(dynamics),
@@ -225,17 +207,17 @@ bool Sleeping::is_moved_by_hand(const ContactSide& side, int plane) const {
 }
 
 /// Parts that touch or are tied to each other.
-Sleeping::Sets Sleeping::sets_of(const std::vector<Contact>& contacts) const {
+DisjointSets Sleeping::sets_of(const std::vector<Contact>& contacts) const {
   auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
-  Sets sets(model_.parts().size());
+  DisjointSets sets(model_.parts().size());
   for (const Contact& contact : contacts)
-    if (has(contact.a.part) && has(contact.b.part)) sets.join(contact.a.part, contact.b.part);
+    if (has(contact.a.part) && has(contact.b.part)) sets.unite(contact.a.part, contact.b.part);
   for (const Island& island : model_.islands())
-    for (const int i : island.parts) sets.join(i, island.parts.front());
+    for (const int i : island.parts) sets.unite(i, island.parts.front());
   for (const SpringModel& s : model_.springs())
-    if (has(s.a.part) && has(s.b.part)) sets.join(s.a.part, s.b.part);
+    if (has(s.a.part) && has(s.b.part)) sets.unite(s.a.part, s.b.part);
   for (const TorqueModel& of : model_.torques())
-    if (has(of.part) && has(of.against)) sets.join(of.part, of.against);
+    if (has(of.part) && has(of.against)) sets.unite(of.part, of.against);
   return sets;
 }
 
@@ -245,10 +227,10 @@ void Sleeping::fall_asleep(const std::vector<Contact>& contacts, double t, doubl
   const std::vector<Contact>& near = resting_.near(state, t + h);
   touching.insert(touching.end(), near.begin(), near.end());
   meshes_.find(state, t + h, touching);
-  Sets sets = sets_of(touching);
+  DisjointSets sets = sets_of(touching);
   std::vector<bool> restless(model_.parts().size());
   auto rouse = [&](int part) {
-    if (part >= 0) restless[at(sets.least(part))] = true;
+    if (part >= 0) restless[at(sets.leader(part))] = true;
   };
   // What hands move does not let rest what it touches.
   for (const Contact& contact : touching) {
@@ -264,7 +246,7 @@ void Sleeping::fall_asleep(const std::vector<Contact>& contacts, double t, doubl
     if (state.at_rest[at(i)] >= 0 && state.at_rest[at(i)] < settings_->after) rouse(i);
   std::vector<int> falling;
   for (const int i : moving_) {
-    const int least = sets.least(i);
+    const int least = sets.leader(i);
     if (sleeps(state, i) || restless[at(least)]) continue;
     state.at_rest[at(i)] = -1 - least;
     falling.push_back(i);

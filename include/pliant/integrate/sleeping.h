@@ -8,6 +8,7 @@
 #include <pliant/body/dynamics.h>
 #include <pliant/contact/mesh_finder.h>
 #include <pliant/integrate/resting_contacts.h>
+#include <pliant/math/disjoint_sets.h>
 
 namespace pliant {
 
@@ -41,14 +42,13 @@ class Sleeping {
     int part;                                         ///< -1: all
     std::function<bool(double t, double h)> changes;  ///< within h seconds of t
   };
-  class Sets;
 
   void note_drives();
   void note_switches();
   double speed(const State& state, int part) const;
   bool note_rest(double h, State& state) const;
   bool is_moved_by_hand(const ContactSide& side, int plane) const;
-  Sets sets_of(const std::vector<Contact>& contacts) const;
+  DisjointSets sets_of(const std::vector<Contact>& contacts) const;
 
   const Dynamics& dynamics_;
   const Model& model_;
