@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include <pliant/integrate/step_path.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
@@ -14,8 +16,56 @@ namespace {
 /// step.
 constexpr double kGap = 1e-13, kTime = 1e-15;
 constexpr int kMostTrials = 60;
+/// Sides are apart whose gap is at least this, in sizes.
+constexpr double kApart = 1e-6;
 /// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
 constexpr int kMostHalvings = 20;
+/// The path between the ends of the step is followed to this part of the step.
+constexpr double kOfPath = 1e-4;
+/// Secants that have not led there in so many trials leave it to the bracket.
+constexpr int kMostSecants = 8;
+
+/// Times between which sides meet, with their gaps: above zero at the lower one, at or below at the higher.
+struct Bracket {
+  double low, f_low, high, f_high;
+  int side = 0;  ///< that the last trial was on
+
+  /// Where they would meet if the gap went straight, one that stays being halved (Dowell and Jarratt 1971).
+  double guess() const {
+    const double tau = low + f_low * (high - low) / (f_low - f_high);
+    return tau > low && tau < high ? tau : 0.5 * (low + high);
+  }
+  void narrow(double tau, double f) {
+    const int now = f > 0 ? 1 : -1;
+    if (now > 0) {
+      low = tau;
+      f_low = f;
+      if (side == now) f_high *= 0.5;
+    } else {
+      high = tau;
+      f_high = f;
+      if (side == now) f_low *= 0.5;
+    }
+    side = now;
+  }
+};
+
+/// When sides meet on a path, and how fast their gap opens then (below zero); h: of the step.
+template <class Gap>
+std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
+  double tau = meets.guess(), speed = (meets.f_high - meets.f_low) / (meets.high - meets.low);
+  double f = gap(tau);
+  for (int i = 0; i < kMostTrials; ++i) {
+    meets.narrow(tau, f);
+    const double last = tau, f_last = f;
+    tau = meets.guess();
+    if (tau == last) break;
+    f = gap(tau);
+    speed = (f - f_last) / (tau - last);
+    if (std::abs(tau - last) <= kOfPath * h) break;
+  }
+  return {tau, speed};
+}
 
 }  // namespace
 
@@ -28,6 +78,13 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
     size = std::min(size, dynamics.model().parts()[at(contact.a.part)].part->size());
     largest = std::max(largest, dynamics.model().parts()[at(contact.a.part)].part->size());
   }
+  auto least_gap = [&](const State& of, double at_time) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : impacts)
+      least = std::min(least, finder.least_gap(of, at_time, contact, 4 * largest));
+    return least;
+  };
+  const State end = state;
   double reached = h;  // how far into the step the state is
   auto go_to = [&](double tau) {
     if (tau == reached) return;
@@ -38,48 +95,47 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
   };
   auto gap_at = [&](double tau) {
     go_to(tau);
-    double least = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : impacts)
-      least = std::min(least, finder.least_gap(state, t + tau, contact, 4 * largest));
-    return least;
+    return least_gap(state, t + tau);
   };
-  const bool apart = std::all_of(impacts.begin(), impacts.end(), [&](const Contact& contact) {
-    return finder.least_gap(before, t, contact, 4 * largest) > 0;
-  });
-  double high = h, f_high = gap_at(h), low = h, f_low = f_high;
-  // They were apart after some part of the step.
-  for (int i = 0; i < (apart ? kMostTrials : kMostHalvings) && !(f_low > 0); ++i) {
-    low *= 0.5;
-    f_low = gap_at(low);
-    if (!(f_low > 0)) {
-      high = low;
-      f_high = f_low;
+  const double f_start = least_gap(before, t);
+  Bracket meets{0, f_start, h, gap_at(h)};
+  // Those that part from a touch were apart after some part of the step, if not at its start.
+  if (!(f_start > kApart * size)) meets.f_low = 0;
+  for (int i = 0; i < (f_start > 0 ? kMostTrials : kMostHalvings) && !(meets.f_low > 0); ++i) {
+    const double tau = 0.5 * meets.high, f = gap_at(tau);
+    if (f > 0) {
+      meets.low = tau;
+      meets.f_low = f;
+    } else {
+      meets.high = tau;
+      meets.f_high = f;
     }
   }
-  if (!(f_low > 0)) {
+  if (!(meets.f_low > 0)) {
     go_to(h);
     return std::nullopt;
   }
-  int side = 0;
-  double tau = high;
-  for (int i = 0; i < kMostTrials && high - low > kTime * h && !(std::abs(f_high) <= kGap * size); ++i) {
-    tau = low + f_low * (high - low) / (f_low - f_high);
-    if (!(tau > low && tau < high)) tau = 0.5 * (low + high);
+  // The path between the ends of the step tells nearly when and how fast, steps then exactly when.
+  auto [tau, speed] =
+      on_path(meets, h, [&, path = StepPath(dynamics, before, h, end), there = before](double into) mutable {
+        path.at(into / h, there.q);
+        return least_gap(there, t + into);
+      });
+  double last = 0, f_last = 0;
+  for (int i = 0;
+       i < kMostTrials && meets.high - meets.low > kTime * h && !(std::abs(meets.f_high) <= kGap * size);
+       ++i) {
     const double f = gap_at(tau);
-    if (f > 0) {
-      low = tau;
-      f_low = f;
-      if (side > 0) f_high *= 0.5;
-      side = 1;
-    } else {
-      high = tau;
-      f_high = f;
-      if (side < 0) f_low *= 0.5;
-      side = -1;
-    }
+    if (std::abs(f) <= kGap * size) return tau;
+    if (i > 0) speed = (f - f_last) / (tau - last);
+    meets.narrow(tau, f);
+    last = tau;
+    f_last = f;
+    tau -= f / speed;
+    if (i >= kMostSecants || !(tau > meets.low && tau < meets.high)) tau = meets.guess();
   }
-  go_to(high);
-  return high;
+  go_to(meets.high);
+  return meets.high;
 }
 
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/integrate/advance.h>
+#include <pliant/integrate/step_path.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/run_files.h>
 #include <pliant/io/state_row.h>
@@ -147,20 +149,11 @@ State Recording::state(std::int64_t row) const {
 
 namespace {
 
-/// q at a part x of the way from one state to another by cubic Hermite interpolation.
-VecX<double> cubic(const Model& model, const State& low, const State& high, double x) {
-  const double h01 = x * x * (3 - 2 * x), h00 = 1 - h01, h10 = x * (1 - x) * (1 - x), h11 = -x * x * (1 - x);
-  const Dynamics dynamics(model);
-  VecX<double> low_rate, high_rate;
-  dynamics.coordinate_rates(low.q, low.v, low_rate);
-  dynamics.coordinate_rates(high.q, high.v, high_rate);
-  return h00 * low.q + h01 * high.q + (high.time() - low.time()) * (h10 * low_rate + h11 * high_rate);
-}
-
 /// Rates that jump by more than this part of what they change by in a step have been struck.
 constexpr double kJump = 0.5;
 
-/// The same by a polynomial of degree 5, with the accelerations at both.
+/// q at a part x of the way from one state to another by a polynomial of degree 5, with the accelerations at
+/// both.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
   Workspace<double> work;
@@ -224,9 +217,14 @@ State Recording::at(double t) const {
   if (long_step)
     if (std::optional<State> there = step_between(*model_, low, high, x, quintic(*model_, low, high, 0.5)))
       return *there;
-  low.q = long_step ? quintic(*model_, low, high, x) : cubic(*model_, low, high, x);
-  for (const PartModel& part : model_->parts())
-    if (part.q0 >= 0) low.q.segment<4>(part.q0 + 3).normalize();
+  VecX<double> q;
+  if (long_step) {
+    q = quintic(*model_, low, high, x);
+    normalise_rotations(*model_, q);
+  } else {
+    StepPath(Dynamics(*model_), low, span, high).at(x, q);
+  }
+  low.q.swap(q);
   low.v = (1 - x) * low.v + x * high.v;
   low.work = (1 - x) * low.work + x * high.work;
   low.start = t;
