@@ -15,6 +15,8 @@ namespace {
 constexpr double kFaceFirst = 1e-6;
 /// Edges whose directions differ by less than this (sine) are parallel: they cross nowhere.
 constexpr double kParallelEdges = 1e-6;
+/// A ball's centre that is nearer to a box than this, in radii, is in it.
+constexpr double kInside = 1e-9;
 /// Corners nearer than this, in sizes, are one.
 constexpr double kOneCorner = 1e-6;
 
@@ -143,6 +145,21 @@ void touch_boxes(const PlacedBox& a, const PlacedBox& b, double most, std::vecto
   const Polygon polygon = facing(lies, on, on_a ? axis.of_a : axis.of_b, up);
   for (std::size_t k = 0; k < polygon.n; ++k) add(polygon.corners[k]);
   if (found.size() == first) add(farthest(lies, -up));
+}
+
+BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box) {
+  const Vec3<double> way = centre - within(box, centre);
+  const double distance = way.norm();
+  Vec3<double> normal = way / distance;
+  double gap = distance - radius;
+  if (!(distance > kInside * radius)) {  // out through the nearest face
+    const Vec3<double> in_box = box.R.transpose() * (centre - box.c);
+    int axis = 0;
+    const double depth = (box.half - in_box.cwiseAbs()).minCoeff(&axis);
+    normal = std::copysign(1.0, in_box[axis]) * box.R.col(axis);
+    gap = -depth - radius;
+  }
+  return {centre - radius * normal, normal, gap};
 }
 
 }  // namespace pliant

@@ -292,6 +292,19 @@ void ContactFinder::find_between_boxes(int a, int b, const ContactRule& rule, do
                std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
 }
 
+/// Whether one of a pair is a ball and the other a box; adds where they touch if they do.
+bool ContactFinder::find_ball_on_box(int a, int b, const ContactRule& rule, double most,
+                                     std::vector<Contact>& found) const {
+  const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
+  const Placed &ball = one.half ? other : one, &box = one.half ? one : other;
+  if (!box.half || !ball.axes || !(ball.axes->array() == ball.axes->x()).all()) return false;
+  // The point is on the ball, so that one that rolls keeps its arm.
+  const BoxTouch touch = touch_ball(ball.c, ball.axes->x(), {box.c, box.R, *box.half});
+  if (touch.gap <= most)
+    found.push_back(contact_at(touch.x, one.half ? -touch.normal : touch.normal, touch.gap, a, b, rule));
+  return true;
+}
+
 /// Whether a plane across the line of their centres parts two bodies, by more than `most`.
 bool ContactFinder::are_apart(int a, int b, double most) const {
   const Placed &one = scratch_->parts[at(a)], &other = scratch_->parts[at(b)];
@@ -308,6 +321,7 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
   if (are_apart(a, b, most)) return;
   if (scratch_->parts[at(a)].half && scratch_->parts[at(b)].half)
     return find_between_boxes(a, b, rule, most, found);
+  if (find_ball_on_box(a, b, rule, most, found)) return;
   if (find_deep(a, b, rule, found)) return;
   std::vector<Contact>&ours = scratch_->ours, &theirs = scratch_->theirs;
   ours.clear();

@@ -112,4 +112,37 @@ TEST_CASE("no direction parts boxes by more than their gap, and swapping them tu
   CHECK(overlapping > 50);
 }
 
+TEST_CASE("a ball touches a box at its nearest point: of a face, an edge, a corner, or out of its inside",
+          "[contact]") {
+  const PlacedBox box{{1, 2, 3}, turn(0.7, {1, 2, -1}), {0.5, 0.4, 0.3}};
+  auto touch = [&](const Vec3<double>& in_box) { return touch_ball(box.c + box.R * in_box, 0.2, box); };
+  auto check = [&](const Vec3<double>& in_box, const Vec3<double>& normal, double gap) {
+    const BoxTouch found = touch(in_box);
+    CAPTURE(in_box.transpose());
+    CHECK((box.R.transpose() * found.normal - normal.normalized()).norm() < 1e-14);
+    CHECK(found.gap == Approx(gap).margin(1e-15));
+    CHECK((found.x - (box.c + box.R * (in_box - 0.2 * normal.normalized()))).norm() < 1e-14);
+  };
+  check({0.8, 0.1, -0.2}, {1, 0, 0}, 0.1);
+  check({0.6, 0.1, -0.2}, {1, 0, 0}, -0.1);
+  check({0.53, -0.44, 0.1}, {3, -4, 0}, 0.05 - 0.2);
+  check({0.51, 0.42, -0.32}, {1, 2, -2}, 0.03 - 0.2);
+  check({0.1, 0.1, -0.25}, {0, 0, -1}, -0.05 - 0.2);
+  check({0.5, 0.1, 0.1}, {1, 0, 0}, -0.2);
+  // Nothing of the ball is farther in than the point found: against points all over it.
+  Draws draws(9);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3<double> at(draws.uniform(-0.8, 0.8), draws.uniform(-0.7, 0.7), draws.uniform(-0.6, 0.6));
+    const BoxTouch found = touch(at);
+    if (((at.cwiseAbs() - box.half).array() < 0).all()) continue;
+    const Vec3<double> x = box.R.transpose() * (found.x - box.c),
+                       on_box = x - found.gap * (box.R.transpose() * found.normal);
+    CHECK(((on_box.cwiseAbs() - box.half).array() < 1e-14).all());
+    for (int k = 0; k < 20; ++k) {
+      const Vec3<double> inside(draws.uniform(-0.5, 0.5), draws.uniform(-0.4, 0.4), draws.uniform(-0.3, 0.3));
+      CHECK((at - inside).norm() - 0.2 >= found.gap - 1e-14);
+    }
+  }
+}
+
 }  // namespace box_contacts_test

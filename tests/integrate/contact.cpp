@@ -550,7 +550,7 @@ TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
     simulation.step(4e-3);
     REQUIRE(std::abs(simulation.state().q[2] - 0.1) < 1e-9);
   }
-  CHECK(simulation.state().q[0] == Approx(0).margin(1e-4));
+  CHECK(simulation.state().q[0] == Approx(0).margin(1e-12));
 }
 
 }  // namespace contact_test

@@ -76,6 +76,8 @@ class ContactFinder {
                      const ContactRule& rule) const;
   void find_between_boxes(int a, int b, const ContactRule& rule, double most,
                           std::vector<Contact>& found) const;
+  bool find_ball_on_box(int a, int b, const ContactRule& rule, double most,
+                        std::vector<Contact>& found) const;
   void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
   Vec3<double> farthest(int part, const Vec3<double>& direction) const;
   /// The way out of bodies that hold each other's centres; whether they do.
