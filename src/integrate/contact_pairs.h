@@ -10,11 +10,17 @@
 
 namespace pliant {
 
+/// What touches what: part a, part b, plane, obstacle.
+using PairKey = std::array<int, 4>;
+inline PairKey key_of(const Contact& contact) {
+  return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
+}
+
 class Pairs {
  public:
   /// The contacts must outlive it.
   explicit Pairs(const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts) all_.emplace_back(key(contact), &contact);
+    for (const Contact& contact : contacts) all_.emplace_back(key_of(contact), &contact);
     std::sort(all_.begin(), all_.end());
   }
   bool has(const Contact& contact) const {
@@ -29,18 +35,14 @@ class Pairs {
   }
 
  private:
-  using Key = std::array<int, 4>;
-  using Entry = std::pair<Key, const Contact*>;
-  static Key key(const Contact& contact) {
-    return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
-  }
+  using Entry = std::pair<PairKey, const Contact*>;
   std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
       const Contact& contact) const {
     struct Before {
-      bool operator()(const Entry& entry, const Key& k) const { return entry.first < k; }
-      bool operator()(const Key& k, const Entry& entry) const { return k < entry.first; }
+      bool operator()(const Entry& entry, const PairKey& k) const { return entry.first < k; }
+      bool operator()(const PairKey& k, const Entry& entry) const { return k < entry.first; }
     };
-    return std::equal_range(all_.begin(), all_.end(), key(contact), Before{});
+    return std::equal_range(all_.begin(), all_.end(), key_of(contact), Before{});
   }
   std::vector<Entry> all_;
 };

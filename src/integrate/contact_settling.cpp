@@ -20,9 +20,7 @@ namespace {
 /// Bodies that overlap are parted at most at this speed, in sizes of side a a second, or as fast as they
 /// move.
 constexpr double kPartingSpeed = 1;
-constexpr int kMostPartings = 8;
-/// Less than this share of what bodies may be parted by in a step is none.
-constexpr double kNothingLeft = 1e-3;
+constexpr int kMostPartings = 16;
 /// Most times in a step that bodies which impulses throw meet others.
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
@@ -33,6 +31,14 @@ constexpr double kMeshOverlap = 800, kMeshLeft = 0.03;
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
+}
+
+/// Pairs that overlap by more than `most` m.
+std::set<PairKey> too_deep(const std::vector<Contact>& contacts, double most) {
+  std::set<PairKey> deep;
+  for (const Contact& contact : contacts)
+    if (contact.gap < -most) deep.insert(key_of(contact));
+  return deep;
 }
 
 }  // namespace
@@ -188,23 +194,24 @@ void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Works
       contacts.end());
 }
 
-/// Moves bodies that overlap apart, by at most so many m.
+/// Moves bodies that overlap apart, by at most so many m; those that this pushes into others wholly.
 void ContactSettling::part_overlaps(double most, State& state, double t, Workspace<double>& work,
                                     StepCounters& counters) {
-  double left = most;
+  std::set<PairKey> deep;  // what has been parted by as much as may be: it comes no nearer, that is all
   for (int i = 0; i < kMostPartings; ++i) {
     std::vector<Contact> found = resting_.near(state, t);
     double deepest = 0;
     for (const Contact& contact : found) deepest = std::max(deepest, -contact.gap);
     // Parted by so much, they may meet what is as near.
-    if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, left));
+    if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, most));
     meshes_.find(state, t, found);
     bool any = false;
-    for (const Contact& contact : found) {
+    for (Contact& contact : found) {
+      if (!deep.empty() && deep.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
       any = any || contact.gap < -may_overlap(contact);
-      deepest = std::max(deepest, -contact.gap);
     }
-    if (!any || !(left > kNothingLeft * most)) return;
+    if (!any) return;
+    if (i == 0) deep = too_deep(found, most);
     keep_concerned(found, work);
     double enough = std::numeric_limits<double>::infinity();
     for (const Contact& contact : found)
@@ -213,8 +220,7 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_), booked = state.work.sum();
     evaluate_touched(dynamics_, state, t, found, work);
     ContactProblem parting(dynamics_.model(), state, work, found);
-    parting.part_bodies(left, enough);
-    left -= std::min(deepest, left);
+    parting.part_bodies(most, enough);
     LoadWork loads(dynamics_, state);
     move_by(parting, dynamics_.model(), work, state);
     reconcile(parts, state, t, work, counters);
