@@ -124,6 +124,9 @@ void print_error(const pliant::ErrorEstimate& error) {
   tell("velocity", error.velocity, "m/s");
   tell("angular velocity", error.angular_velocity, "rad/s");
   tell("energy", error.energy, "J");
+  tell("force of joints", error.joint_force, "N");
+  tell("torque of joints", error.joint_torque, "N m");
+  tell("gap of joints", error.gap, "m");
   std::cout << "\n";
 }
 

@@ -29,6 +29,8 @@ ContactRules::ContactRules(const Model& model)
       n_planes_(static_cast<int>(model.body().contact.planes.size())) {
   const ContactSettings& settings = model.body().contact;
   check(settings.friction, settings.restitution);
+  if (!(settings.longest_step > 0))
+    throw std::invalid_argument("contact: the longest step must be a number of seconds > 0");
   std::map<std::string, int> numbers;
   auto add = [&](const std::string& name, const char* what) {
     if (!numbers.emplace(name, static_cast<int>(numbers.size())).second)

@@ -24,8 +24,6 @@ constexpr double kNear = 1e-9, kUlps = 8;
 constexpr double kBeside = 2;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
-/// Longest step to a tolerance in which bodies lie on each other, s.
-constexpr double kTouching = 2e-3;
 /// No step to a tolerance is shorter than this part of the time.
 constexpr double kLeastStep = 16 * std::numeric_limits<double>::epsilon();
 
@@ -264,7 +262,7 @@ StepError Simulation::try_step() {
     integrator_->take_error();
   }
   if (contact_ && result.error <= 1 && contact_->any_lasts()) {
-    result.error = std::max(result.error, h / kTouching);
+    result.error = std::max(result.error, h / model_.body().contact.longest_step);
     result.order = 0;
     if (result.error <= 1) ++step_counters_.uncontrolled;
   }

@@ -382,7 +382,8 @@ bool Run::simulate() {
     save(true);
     if (record_.step_counters.uncontrolled > 0)
       note("bodies lay on each other in " + count_text(record_.step_counters.uncontrolled, "step") +
-           ", whose error is not controlled; they are of at most 0.002 s, and --estimate-error tells it");
+           ", whose error is not controlled; they are of at most " +
+           rounded_text(scene_->body.contact.longest_step) + " s, and --estimate-error tells it");
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });

@@ -128,6 +128,9 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                               {"velocity", e.velocity},
                               {"angular_velocity", e.angular_velocity},
                               {"energy", e.energy},
+                              {"joint_force", e.joint_force},
+                              {"joint_torque", e.joint_torque},
+                              {"gap", e.gap},
                               {"tolerance", e.tolerance},
                               {"step", e.step}};
   }

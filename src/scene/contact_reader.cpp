@@ -52,6 +52,10 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
            optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
                     "0"),
            optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
+           optional("longest_step", number(above(0), "s"),
+                    "Longest step to a tolerance while bodies lie on each other, in which errors are not "
+                    "controlled.",
+                    "0.002"),
            optional("sleep", record(sleep), "Whether bodies at rest sleep; they do not when not given."),
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
            optional("obstacles", array(record(obstacle_record(orientation, color))),
@@ -150,6 +154,7 @@ void read_contact(const Reader& contact, const std::map<std::string, NamedPart>&
   settings.friction = contact.number("friction");
   settings.restitution = contact.number("restitution");
   settings.between_parts = contact.boolean("between_parts");
+  settings.longest_step = contact.number("longest_step");
   if (contact.given("sleep")) {
     const Reader sleep = contact.object("sleep");
     if (sleep.complete()) settings.sleep = Sleep{sleep.number("speed"), sleep.number("after")};

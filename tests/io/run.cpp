@@ -258,6 +258,71 @@ TEST_CASE("the estimated error of a run is its error") {
   measured("step", *fixed);
 }
 
+TEST_CASE("the estimated error tells of joints' forces and gaps, and of contact by half its steps") {
+  const NewFolder folder;
+  Progress silent;
+  auto scene_of = [](const char* name) {
+    auto scene = std::make_unique<Scene>();
+    scene->name = name;
+    scene->end = 0.5;
+    scene->frame_rate = 20;
+    scene->appearance.resize(1);
+    return scene;
+  };
+  auto estimate = [&](Scene& scene) {
+    RunOptions options;
+    options.folder = folder / scene.name;
+    Run session(scene, options, silent);
+    REQUIRE(session.simulate());
+    return session.estimate_error();
+  };
+  // A pendulum: what holds it is m g cos + m v^2 / l, which one more accurate by far tells.
+  auto hang = [](MultiBody& body) {
+    Part& bob = body.add(make_part("bob", "sphere", {}, 1000));
+    bob.rest({{"r", 0.1}}).place({0.5, 0, 0});
+    body.ball("pivot", world(0, 0, 0), point(bob, 0, kPi));
+    bob.place({0.1, 0, 0});
+  };
+  auto pendulum = scene_of("pendulum");
+  hang(pendulum->body);
+  pendulum->integrator = "rk4";
+  pendulum->step = 0.02;
+  const ErrorEstimate of_joint = estimate(*pendulum);
+  MultiBody exact_body;
+  hang(exact_body);
+  Simulation exact(exact_body, "dop853", 1, 1e-12), coarse(pendulum->body, "rk4");
+  Workspace<double> of_exact, of_coarse;
+  double worst = 0;
+  for (int i = 1; i <= 25; ++i) {
+    coarse.step(0.02);
+    while (exact.time() < coarse.time()) exact.step_up_to(coarse.time());
+    exact.dynamics().ledger(exact.state(), of_exact);
+    coarse.dynamics().ledger(coarse.state(), of_coarse);
+    worst = std::max(worst, (exact.dynamics().joint_wrench(exact.time(), 0, of_exact).force -
+                             coarse.dynamics().joint_wrench(coarse.time(), 0, of_coarse).force)
+                                .norm());
+  }
+  CAPTURE(worst, of_joint.joint_force, of_joint.gap);
+  CHECK(of_joint.joint_force > 0.3 * worst);
+  CHECK(of_joint.joint_force < 2 * worst);
+  CHECK(of_joint.joint_torque == 0);
+  CHECK(of_joint.gap < 1e-14);
+  CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == of_joint.joint_force);
+
+  // A box that slides to a stop: to a tolerance its steps are as short as the settings say, and no better.
+  auto box = scene_of("box");
+  box->tolerance = 1e-6;
+  box->integrator = "dop853";
+  Part& part = box->body.add(make_part("box", "box", {}, 1000));
+  part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).move({1, 0, 0}, {0, 0, 0});
+  box->body.contact.active = true;
+  box->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  const ErrorEstimate of_contact = estimate(*box);
+  CHECK(of_contact.place > 1e-8);
+  CHECK(of_contact.place < 1e-3);
+  CHECK(box->body.contact.longest_step == 2e-3);
+}
+
 TEST_CASE("N30: the frame rate does not steer the motion") {
   const NewFolder folder;
   const Model* model = nullptr;

@@ -1,5 +1,5 @@
-// How wrong a run is: it is run again, to a tenth of its tolerance or with half its step, and compared at
-// every recorded time.
+// How wrong a run is: it is run again, to a tenth of its tolerance, with half the steps where bodies lie on
+// each other, or with half its step, and compared at every recorded time.
 #pragma once
 
 #include <string>
@@ -20,6 +20,9 @@ struct ErrorEstimate {
   double velocity = 0;             ///< of frames, m/s
   double angular_velocity = 0;     ///< rad/s
   double energy = 0;               ///< kinetic and potential, J
+  double joint_force = 0;          ///< on the parts of joints, N
+  double joint_torque = 0;         ///< N m
+  double gap = 0;                  ///< of joints of the run that hold, m
   double tolerance = 0, step = 0;  ///< of the run that it was compared with; one of them is 0
 };
 
