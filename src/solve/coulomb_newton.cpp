@@ -19,7 +19,7 @@ namespace {
 constexpr int kMostNewton = 30;
 /// Where many bodies are packed all around, sweeps take less time, and memory, than equations that have this
 /// many times the numbers of the bodies' own.
-constexpr double kMostFill = 40;
+constexpr double kMostFill = 10;
 /// What is found is made better while that is one step's work, to this share of what counts as exact.
 constexpr double kBeyondExact = 0.1;
 /// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
