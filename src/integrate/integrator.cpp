@@ -1,5 +1,6 @@
 #include <pliant/integrate/integrator.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <pliant/integrate/dop853.h>
@@ -18,6 +19,13 @@ template <class Method>
 std::unique_ptr<Integrator> make() {
   return std::make_unique<Method>();
 }
+
+/// A gap that closes decays at the rate of the stabilization (1/s) down to kClosedGap, which is then taken
+/// away at once: what that is wrong by, in place and in velocity, when all that is known is that it was
+/// within the last h s.
+double closing_error(double rate, double h) {
+  return kClosedGap * std::min(1.0, rate * h) * std::max(1.0, rate);
+}
 }  // namespace
 
 void Integrator::settle(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
@@ -30,7 +38,9 @@ void Integrator::settle(const Dynamics& dynamics, double t, State& state, Worksp
   settle_joints(dynamics, t, state, work, counters);
   if (scale_ == nullptr) return;
   for (std::size_t j = 0; j < joints_before_.size(); ++j)
-    if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing) return;
+    if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
+      return note_error(closing_error(dynamics.model().body().stabilization.rate, state.h) /
+                        scale_->tolerance());
   unsettled_ -= state.q;
   note_error(scale_->norm(unsettled_));
 }

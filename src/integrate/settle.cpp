@@ -141,20 +141,22 @@ bool passes(const PartModel& m, State& state) {
   return false;
 }
 
-/// Open joints close whose gap is small, and whose rate is, unless any rate will do; what Baumgarte's
-/// equation cannot close on a turning joint, h |bias| alpha / beta^2 (stress 1.1), is small too. Returns
-/// whether any did.
-bool close_joints(const Model& model, const Island& island, bool any_rate, const Workspace<double>& work,
-                  State& state) {
+/// Open joints close whose gap is small, and whose rate is, unless any rate will do; what a method of first
+/// order leaves of it on a turning joint, h |bias| alpha / beta^2, is small too. Returns whether any did.
+bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
+                  const Workspace<double>& work, State& state) {
+  const Model& model = dynamics.model();
   const double rate = model.body().stabilization.rate;
   const Gains gains = work.joints.gains;
+  const bool first_order = dynamics.hold().step_consistent;
   bool any = false;
   for (const int j : island.joints) {
     if (state.joints[at(j)] != JointMode::closing) continue;
     const JointModel& joint = model.joints()[at(j)];
     auto size = [&](const VecX<double>& rows) { return rows.segment(joint.row, joint.rows).norm(); };
-    const double left =
-        gains.beta > 0 ? 2 * state.h * size(work.joints.bias) * gains.alpha / (gains.beta * gains.beta) : 0;
+    const double left = first_order && gains.beta > 0
+                            ? 2 * state.h * size(work.joints.bias) * gains.alpha / (gains.beta * gains.beta)
+                            : 0;
     const double turning = std::sqrt(size(work.joints.bias) / joint.length);
     const bool near =
         size(work.joints.C) <= std::min(kClosedGap * joint.length + left, kWidest * joint.length);
@@ -238,7 +240,7 @@ void take_hold(const Dynamics& dynamics, double t, const Island& island, State& 
                VecX<double>& impulses) {
   const Model& model = dynamics.model();
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
-  if (dynamics.hold().projected) close_joints(model, island, true, work, state);
+  if (dynamics.hold().projected) close_joints(dynamics, island, true, work, state);
   close_strings(model, island, work, state);
   dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
   settle_group(dynamics, t, Group<double, Eigen::Dynamic>(model, work, island, true), true, state, work,
@@ -261,7 +263,7 @@ void settle_joints(const Dynamics& dynamics, double t, State& state, Workspace<d
     if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||
         std::any_of(island.strings.begin(), island.strings.end(), closing)) {
       dynamics.evaluate_joints(t, state.q, state.v, state.joints, island, work);
-      closed = dynamics.hold().projected && close_joints(model, island, false, work, state);
+      closed = dynamics.hold().projected && close_joints(dynamics, island, false, work, state);
       close_strings(model, island, work, state);
       if (closed) dynamics.factor_joints(t, state.q, state.v, state.joints, island, work);
     }

@@ -7,6 +7,7 @@
 
 #include <pliant/body/joints/string.h>
 #include <pliant/integrate/choose_integrator.h>
+#include <pliant/integrate/settle.h>
 
 #include "motion.h"
 
@@ -174,6 +175,29 @@ TEST_CASE("strings and limits are met as exactly as the tolerance asks", "[error
     CHECK(simulation.state().q[2] == Approx(-0.5 * 9.81 * 0.25).margin(20 * tolerance));
     CHECK(std::abs(simulation.state().v[2]) < 1e-9);
     CHECK(simulation.ledger().balance == Approx(0).margin(100 * tolerance));
+  }
+}
+
+TEST_CASE("joints close as exactly as the tolerance asks", "[error]") {
+  auto closing = [](MultiBody& body) {
+    Part& part = body.add<Primitive<Ellipsoid>>("link");
+    part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.5, 0.2, 0}).move({0, 0.6, 0}, {0, 0, 2});
+    body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
+  };
+  constexpr double opens = 0.5, closes = 2;  // before it has closed, and after
+  for (const std::string& method : controlled_integrators()) {
+    const bool low = make_integrator(method)->order() == 2;
+    for (const double end : {opens, closes}) {
+      const State exact = end_of(closing, "dop853", 1e-12, end);
+      const JointMode mode = end == opens ? JointMode::closing : JointMode::closed;
+      REQUIRE(exact.joints[0] == mode);
+      for (double tolerance = kClosedGap; tolerance > (low ? 2e-6 : 2e-8); tolerance *= 0.1) {
+        const State state = end_of(closing, method, tolerance, end);
+        CAPTURE(method, tolerance, end);
+        CHECK(state.joints[0] == mode);
+        CHECK((state.q - exact.q).norm() < 100 * tolerance);
+      }
+    }
   }
 }
 
