@@ -114,7 +114,7 @@ void print_error(const pliant::ErrorEstimate& error) {
   else
     std::cout << "with steps of " << error.step << " s";
   const auto tell = [](const char* what, double value, const char* unit) {
-    if (value > 0) std::cout << "\n  " << what << " " << pliant::rounded_text(value) << " " << unit;
+    if (value != 0) std::cout << "\n  " << what << " " << pliant::rounded_text(value) << " " << unit;
   };
   tell("place", error.place, "m");
   tell("rotation", error.rotation, "rad");
@@ -124,9 +124,9 @@ void print_error(const pliant::ErrorEstimate& error) {
   tell("velocity", error.velocity, "m/s");
   tell("angular velocity", error.angular_velocity, "rad/s");
   tell("energy", error.energy, "J");
-  tell("force of joints", error.joint_force, "N");
-  tell("torque of joints", error.joint_torque, "N m");
-  tell("gap of joints", error.gap, "m");
+  tell("force of joints, without impulses of contact", error.joint_force, "N");
+  tell("torque of joints, without them", error.joint_torque, "N m");
+  tell("gap of joints, of this run", error.gap, "m");
   std::cout << "\n";
 }
 
@@ -223,8 +223,10 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
                    "Threads [as many as are of use]; results do not depend on it")
       ->check(count_up_to(4096))
       ->type_name("N");
-  command->add_flag("--estimate-error", options->estimate,
-                    "Run again, to a tenth of the tolerance or with half the step, and tell the differences");
+  command->add_flag(
+      "--estimate-error", options->estimate,
+      "Run again, to a tenth of the tolerance or with half the step, and where bodies lie on each "
+      "other with half the step, and tell the differences");
   command->add_flag("--quiet", options->quiet, "Show errors only");
   CLI::Option* force = command->add_flag("--force", options->force, "Replace the run that is in the folder");
   command

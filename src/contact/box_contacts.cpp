@@ -15,8 +15,6 @@ namespace {
 constexpr double kFaceFirst = 1e-6;
 /// Edges whose directions differ by less than this (sine) are parallel: they cross nowhere.
 constexpr double kParallelEdges = 1e-6;
-/// A ball's centre that is nearer to a box than this, in radii, is in it.
-constexpr double kInside = 1e-9;
 /// Corners nearer than this, in sizes, are one.
 constexpr double kOneCorner = 1e-6;
 
@@ -148,17 +146,20 @@ void touch_boxes(const PlacedBox& a, const PlacedBox& b, double most, std::vecto
 }
 
 BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box) {
-  const Vec3<double> way = centre - within(box, centre);
+  const Vec3<double> in_box = box.R.transpose() * (centre - box.c),
+                     way = in_box - in_box.cwiseMin(box.half).cwiseMax(-box.half);
   const double distance = way.norm();
-  Vec3<double> normal = way / distance;
+  Vec3<double> normal = Vec3<double>::Zero();  // in the frame of the box
   double gap = distance - radius;
-  if (!(distance > kInside * radius)) {  // out through the nearest face
-    const Vec3<double> in_box = box.R.transpose() * (centre - box.c);
+  if (distance > 0) {
+    normal = way / distance;
+  } else {  // out through the nearest face
     int axis = 0;
     const double depth = (box.half - in_box.cwiseAbs()).minCoeff(&axis);
-    normal = std::copysign(1.0, in_box[axis]) * box.R.col(axis);
+    normal[axis] = std::copysign(1.0, in_box[axis]);
     gap = -depth - radius;
   }
+  normal = (box.R * normal).eval();
   return {centre - radius * normal, normal, gap};
 }
 

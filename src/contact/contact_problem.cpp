@@ -293,13 +293,13 @@ void ContactProblem::bound_shifts(double since, double most) {
   }
 }
 
-void ContactProblem::part_bodies(double most, double enough) {
+void ContactProblem::part_bodies(const std::vector<double>& most, double enough) {
   for (int k = 0; k < system_.size(); ++k) {
     system_.set_friction(k, 0);
     system_.impulse(k).setZero();
     system_.constant(k).setZero();
     if (k < static_cast<int>(contacts_.size()))
-      system_.constant(k)[0] = std::max(contacts_[at(k)].gap + system_.velocity(k, shift_)[0], -most);
+      system_.constant(k)[0] = std::max(contacts_[at(k)].gap + system_.velocity(k, shift_)[0], -most[at(k)]);
   }
   VecX<double> parted = VecX<double>::Zero(movers_.n_x());
   system_.solve(parted, enough);

@@ -29,7 +29,7 @@ ContactRules::ContactRules(const Model& model)
       n_planes_(static_cast<int>(model.body().contact.planes.size())) {
   const ContactSettings& settings = model.body().contact;
   check(settings.friction, settings.restitution);
-  if (!(settings.longest_step > 0))
+  if (!(settings.longest_step > 0) || !std::isfinite(settings.longest_step))
     throw std::invalid_argument("contact: the longest step must be a number of seconds > 0");
   std::map<std::string, int> numbers;
   auto add = [&](const std::string& name, const char* what) {

@@ -21,9 +21,9 @@ constexpr int kSteps = 24;
 /// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
 /// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 constexpr double kFactorisation = 0.005;
-/// Of a stiffness of nodes, which is sparse and mostly assembled anew, in evaluations: the root of their
-/// number times this. 45 of 168 coordinates of a shell (bench/work_precision, ringing), some 200 of 14 739 of
-/// a solid (bench/implicit_bench).
+/// Of a stiffness of nodes, which is sparse and mostly assembled anew, in evaluations: the root of the number
+/// of their coordinates times this. It lies between what is measured: 45 of 168 coordinates of a shell
+/// (bench/work_precision, ringing), some 200 of 14 739 of a solid (bench/implicit_bench).
 constexpr double kSparseFactorisation = 2.5;
 /// Velocities of parts beyond which stiff ones are not taken all at once.
 constexpr int kMostStiff = 300;
@@ -78,13 +78,19 @@ bool anything_stiff(const Model& model) {
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start) {
   const Model& model = dynamics.model();
   if (!anything_stiff(model)) return {"dop853", "nothing is elastic or damped"};
-  bool nodes = false, modes = false;
-  for (const PartModel& m : model.parts())
-    if (m.local != nullptr) (m.local->oscillators() == nullptr ? nodes : modes) = true;
-  const double sparse = nodes ? kSparseFactorisation * std::sqrt(model.n_v()) : 0;
+  bool modes = false;
+  int nodes = 0;  // coordinates of them
+  for (const PartModel& m : model.parts()) {
+    if (m.local == nullptr) continue;
+    if (m.local->oscillators() == nullptr)
+      nodes += m.n_d();
+    else
+      modes = true;
+  }
+  const double sparse = kSparseFactorisation * std::sqrt(nodes);
   std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
-  if (nodes || modes) candidates.emplace_back("linearly_implicit", sparse);
-  if (!nodes && model.n_v() <= kMostStiff)
+  if (nodes > 0 || modes) candidates.emplace_back("linearly_implicit", sparse);
+  if (nodes == 0 && model.n_v() <= kMostStiff)
     candidates.emplace_back("esdirk", kFactorisation * model.n_v() * model.n_v());
   IntegratorChoice best;
   double fastest = -1;

@@ -33,14 +33,6 @@ bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
 }
 
-/// Pairs that overlap by more than `most` m.
-std::set<PairKey> too_deep(const std::vector<Contact>& contacts, double most) {
-  std::set<PairKey> deep;
-  for (const Contact& contact : contacts)
-    if (contact.gap < -most) deep.insert(key_of(contact));
-  return deep;
-}
-
 }  // namespace
 
 void ContactRecord::clear() {
@@ -72,19 +64,33 @@ double ContactSettling::swing(const ContactSide& side, const Vec3<double>& x, co
   return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
 }
 
+/// How far a contact may be parted in a step of h seconds, m: at kPartingSpeed, and as far as its bodies go.
+double ContactSettling::most_parting(const Contact& contact, double h) const {
+  double most = kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size();
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) most += went_[at(side->part)];
+  return most;
+}
+
 void ContactSettling::settle(const State& before, double since_of_limits, double h, State& state, double t,
                              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
+  parted_enough_.clear();
+  settle_once(before, since_of_limits, h, state, t, std::move(contacts), work, counters);
+}
+
+void ContactSettling::settle_once(const State& before, double since_of_limits, double h, State& state,
+                                  double t, std::vector<Contact> contacts, Workspace<double>& work,
+                                  StepCounters& counters) {
   if (contacts.empty()) return;
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double booked = state.work.sum();
   evaluate_touched(dynamics_, state, t, contacts, work);
-  double most = 0, thrown = 0;  // that they are parted by; that impulses move their sides
   std::vector<double> opening;
+  went_.assign(dynamics_.model().parts().size(), 0);
   for (const Contact& contact : contacts) {
     opening.push_back(finder_.velocity(state, contact).dot(contact.normal));
-    most = std::max(most, kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size() +
-                              h * std::max(0.0, -opening.back()) + swing(contact.a, contact.x, state, h) +
-                              swing(contact.b, contact.x, state, h));
+    went(contact, h * std::max(0.0, -opening.back()) + swing(contact.a, contact.x, state, h) +
+                      swing(contact.b, contact.x, state, h));
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
@@ -98,8 +104,7 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
     const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
     state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
-    const double moved = c.since * (solution.velocity[k].dot(c.normal) - opening[k]);
-    thrown = std::max(thrown, moved);
+    went(c, c.since * (solution.velocity[k].dot(c.normal) - opening[k]));
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(since_of_limits, h);
@@ -115,7 +120,7 @@ void ContactSettling::settle(const State& before, double since_of_limits, double
   // Methods that go by the velocities at a step's end book what forces do by those at its start: to what
   // rests they do nothing.
   if (since_of_limits < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
-  if (h > 0) part_overlaps(most + thrown, state, t, work, counters);
+  if (h > 0) part_overlaps(h, state, t, work, counters);
   settle_limits(dynamics_, t, state, work, counters);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
@@ -150,14 +155,20 @@ void ContactSettling::settle_chain(std::vector<Contact> settled, double h, doubl
     meshes_.find(state, t, contacts);
     for (Contact& contact : contacts)
       if (contact.since == 0) contact.since = earliest;
-    settle(state, 0, h, state, t, contacts, work, counters);
+    settle_once(state, 0, h, state, t, contacts, work, counters);
     settled.insert(settled.end(), contacts.begin(), contacts.end());
   }
 }
 
+/// Sides of a contact go this much farther, m.
+void ContactSettling::went(const Contact& contact, double far) {
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) went_[at(side->part)] = std::max(went_[at(side->part)], far);
+}
+
 /// How deep a contact may be without being parted, m.
 double ContactSettling::may_overlap(const Contact& contact) const {
-  return of_meshes(contact) ? kMeshOverlap * resting_.gap(contact) : kLeftOverlap * resting_.gap();
+  return (of_meshes(contact) ? kMeshOverlap : kLeftOverlap) * resting_.gap(contact);
 }
 
 /// What parting the deep ones of some contacts moves: bodies that move as a whole, with all such that touch
@@ -194,24 +205,30 @@ void ContactSettling::keep_concerned(std::vector<Contact>& contacts, const Works
       contacts.end());
 }
 
-/// Moves bodies that overlap apart, by at most so many m; those that this pushes into others wholly.
-void ContactSettling::part_overlaps(double most, State& state, double t, Workspace<double>& work,
+/// Moves bodies that overlap apart, by what a step of h seconds lets them be; those that this pushes into
+/// others wholly.
+void ContactSettling::part_overlaps(double h, State& state, double t, Workspace<double>& work,
                                     StepCounters& counters) {
-  std::set<PairKey> deep;  // what has been parted by as much as may be: it comes no nearer, that is all
   for (int i = 0; i < kMostPartings; ++i) {
     std::vector<Contact> found = resting_.near(state, t);
-    double deepest = 0;
-    for (const Contact& contact : found) deepest = std::max(deepest, -contact.gap);
+    double deepest = 0, most = 0;
+    for (const Contact& contact : found) {
+      deepest = std::max(deepest, -contact.gap);
+      most = std::max(most, most_parting(contact, h));
+    }
     // Parted by so much, they may meet what is as near.
     if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, most));
     meshes_.find(state, t, found);
+    std::vector<PairKey> deep;
     bool any = false;
     for (Contact& contact : found) {
-      if (!deep.empty() && deep.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
+      // What has been parted as far as the step lets it comes no nearer, and that is all.
+      if (parted_enough_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
+      if (i == 0 && contact.gap < -most_parting(contact, h)) deep.push_back(key_of(contact));
       any = any || contact.gap < -may_overlap(contact);
     }
     if (!any) return;
-    if (i == 0) deep = too_deep(found, most);
+    parted_enough_.insert(deep.begin(), deep.end());
     keep_concerned(found, work);
     double enough = std::numeric_limits<double>::infinity();
     for (const Contact& contact : found)
@@ -220,7 +237,9 @@ void ContactSettling::part_overlaps(double most, State& state, double t, Workspa
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_), booked = state.work.sum();
     evaluate_touched(dynamics_, state, t, found, work);
     ContactProblem parting(dynamics_.model(), state, work, found);
-    parting.part_bodies(most, enough);
+    std::vector<double> limits;
+    for (const Contact& contact : found) limits.push_back(most_parting(contact, h));
+    parting.part_bodies(limits, enough);
     LoadWork loads(dynamics_, state);
     move_by(parting, dynamics_.model(), work, state);
     reconcile(parts, state, t, work, counters);

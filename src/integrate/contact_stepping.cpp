@@ -100,23 +100,25 @@ bool ContactStepping::wake_met(const std::vector<Contact>& contacts, const FreeM
   return true;
 }
 
-/// Whether what meets is so little that the time of its impacts is worth finding; if so these are it.
-bool ContactStepping::are_few(const std::vector<Contact>& contacts, const std::vector<Contact>& resting,
-                              std::vector<Contact>& impacts) const {
-  impacts.clear();
-  if (!few_parts_) return false;
+/// Impacts that are so few that their time is worth finding; otherwise none.
+std::vector<Contact> ContactStepping::few_impacts(const std::vector<Contact>& contacts,
+                                                  const std::vector<Contact>& resting) const {
+  std::vector<Contact> impacts;
+  if (!few_parts_) return impacts;
   const Pairs rest(resting);
-  for (const Contact& contact : contacts)
-    if (impacts.size() <= kMostPairs && !rest.has(contact) && !Pairs(impacts).has(contact))
-      impacts.push_back(contact);
-  return !impacts.empty() && impacts.size() <= kMostPairs;
+  for (const Contact& contact : contacts) {
+    if (rest.has(contact) || Pairs(impacts).has(contact)) continue;
+    if (impacts.size() == kMostPairs) return {};
+    impacts.push_back(contact);
+  }
+  return impacts;
 }
 
 /// Impulses at an impact that was told in time, the end of a motion.
 void ContactStepping::strike(const FreeMotion& motion, const std::vector<Contact>& resting,
                              const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
                              StepCounters& counters, StageClock& clock) {
-  const Pairs rest(resting);
+  const Pairs rest(resting), struck(impacts);
   const double now = motion.end();
   // What rests has fallen freely until then as what is in flight has: it is held first.
   std::vector<Contact> lying = resting_.met(motion, resting, state);
@@ -131,7 +133,7 @@ void ContactStepping::strike(const FreeMotion& motion, const std::vector<Contact
   there.erase(std::remove_if(there.begin(), there.end(),
                              [&](const Contact& c) {
                                return c.gap > resting_.gap(c) || (c.gap > kTouchAtImpact * resting_.gap(c) &&
-                                                                  !rest.has(c) && !Pairs(impacts).has(c));
+                                                                  !rest.has(c) && !struck.has(c));
                              }),
               there.end());
   for (Contact& contact : there) {
@@ -155,7 +157,6 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   bool touch = false;  // likewise: what deforms locally came near something
   FreeMotion motion;
   motion.slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
-  std::vector<Contact> impacts;
   for (double now = begin; now < end - near;) {
     sleeping_.begin_motion(now, end - now, state);
     const double whole = std::min(end - now, most), fall = method.local_is_implicit() ? 1 : method.reach();
@@ -196,7 +197,9 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
     clock.lap(times_.finding);
-    if (events < kMostEvents && are_few(contacts, resting, impacts)) {
+    const std::vector<Contact> impacts =
+        events < kMostEvents ? few_impacts(contacts, resting) : std::vector<Contact>();
+    if (!impacts.empty()) {
       const std::optional<double> tau = locate_impact(dynamics_, finder_, method, motion.before, now,
                                                       motion.h, impacts, state, work, counters);
       sleeping_.restore(state);

@@ -16,8 +16,8 @@ namespace {
 /// step.
 constexpr double kGap = 1e-13, kTime = 1e-15;
 constexpr int kMostTrials = 60;
-/// Sides are apart whose gap is at least this, in sizes.
-constexpr double kApart = 1e-6;
+/// Sides are apart whose gap is more than this, in sizes: clear of what counts as an impact.
+constexpr double kApart = 100 * kGap;
 /// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
 constexpr int kMostHalvings = 20;
 /// The path between the ends of the step is followed to this part of the step.

@@ -6,7 +6,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include <pliant/math/disjoint_sets.h>
 #include <pliant/math/index.h>
 
 namespace pliant {

@@ -11,8 +11,9 @@ namespace {
 
 constexpr double kTighter = 10;
 
+/// What is no number stays.
 void raise(double& most, double value) {
-  if (!(value <= most)) most = value;
+  if (!(value <= most) && !std::isnan(most)) most = value;
 }
 
 void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {

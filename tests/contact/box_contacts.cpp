@@ -129,12 +129,16 @@ TEST_CASE("a ball touches a box at its nearest point: of a face, an edge, a corn
   check({0.51, 0.42, -0.32}, {1, 2, -2}, 0.03 - 0.2);
   check({0.1, 0.1, -0.25}, {0, 0, -1}, -0.05 - 0.2);
   check({0.5, 0.1, 0.1}, {1, 0, 0}, -0.2);
-  // Nothing of the ball is farther in than the point found: against points all over it.
+  // The point of the box that is found is the nearest; from inside, the way out is the shortest.
   Draws draws(9);
   for (int i = 0; i < 200; ++i) {
     const Vec3<double> at(draws.uniform(-0.8, 0.8), draws.uniform(-0.7, 0.7), draws.uniform(-0.6, 0.6));
     const BoxTouch found = touch(at);
-    if (((at.cwiseAbs() - box.half).array() < 0).all()) continue;
+    if (((at.cwiseAbs() - box.half).array() < 0).all()) {
+      CHECK(found.gap == Approx(-(box.half - at.cwiseAbs()).minCoeff() - 0.2).margin(1e-14));
+      CHECK(found.normal.dot(box.R * at) > 0);
+      continue;
+    }
     const Vec3<double> x = box.R.transpose() * (found.x - box.c),
                        on_box = x - found.gap * (box.R.transpose() * found.normal);
     CHECK(((on_box.cwiseAbs() - box.half).array() < 1e-14).all());

@@ -541,16 +541,20 @@ TEST_CASE("what a joint takes up of an impact is the momentum that its part gain
 }
 
 TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
-  MultiBody body;
-  body.contact.active = true;
-  box(body, "table", {1, 1, 0.05}, {0, 0, -0.05}).fix();
-  ball(body, "ball", 0.1, {-0.5, 0, 0.1}).move({0.5, 0, 0}, {0, 5, 0});
-  Simulation simulation(body, "rk4");
-  for (int i = 0; i < 250; ++i) {
-    simulation.step(4e-3);
-    REQUIRE(std::abs(simulation.state().q[2] - 0.1) < 1e-9);
+  for (const bool ball_first : {false, true}) {
+    MultiBody body;
+    body.contact.active = true;
+    auto add_ball = [&] { ball(body, "ball", 0.1, {-0.5, 0, 0.1}).move({0.5, 0, 0}, {0, 5, 0}); };
+    if (ball_first) add_ball();
+    box(body, "table", {1, 1, 0.05}, {0, 0, -0.05}).fix();
+    if (!ball_first) add_ball();
+    Simulation simulation(body, "rk4");
+    for (int i = 0; i < 250; ++i) {
+      simulation.step(4e-3);
+      REQUIRE(std::abs(simulation.state().q[2] - 0.1) < 1e-9);
+    }
+    CHECK(simulation.state().q[0] == Approx(0).margin(1e-12));
   }
-  CHECK(simulation.state().q[0] == Approx(0).margin(1e-12));
 }
 
 }  // namespace contact_test

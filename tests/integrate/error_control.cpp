@@ -8,6 +8,7 @@
 #include <pliant/body/joints/string.h>
 #include <pliant/integrate/choose_integrator.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/part/local_laws.h>
 
 #include "motion.h"
 
@@ -220,6 +221,15 @@ TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
           part.move({0, 0, 0}, {1, 2, 3});
           body.ball("joint", world(0.3, 0, 0), point(part, 0, 0));
         }) == "esdirk");
+  CHECK(chosen([](MultiBody& body) {
+          Part& part = body.add<Primitive<Sphere>>("shell", 1.0);
+          part.rest({{"r", 0.5}}).make_shell();
+          LocalSettings settings;
+          settings.resolution = 3;
+          settings.energies = {local_law("membrane", {1e8, 0.3, 0.01})};
+          settings.beta = 1e-2;
+          part.deform_locally(settings).move({0, 0.5, 0}, {0.1, 0.2, 0.3});
+        }) == "linearly_implicit");
 }
 
 TEST_CASE("impacts are met within the tolerance, whatever the steps", "[error]") {
@@ -262,6 +272,16 @@ TEST_CASE("bodies that lie on each other take short steps, which are counted", "
   CHECK(simulation.state().v.norm() < 1e-9);
   CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
   CHECK(simulation.step_counters().steps < 300);
+  const auto steps = [&](double longest) {
+    body.contact.longest_step = longest;
+    Simulation other(body, "dop853", 1, 1e-6);
+    while (other.time() < 0.1) other.step_up_to(0.1);
+    return other.step_counters().uncontrolled;
+  };
+  const auto usual = steps(2e-3);
+  CHECK(usual >= 50);
+  CHECK(usual < 60);
+  CHECK(steps(5e-4) >= 4 * usual - 20);
 }
 
 }  // namespace error_control_test

@@ -125,6 +125,73 @@ Parting part_balls(Simulation& simulation, double until, double h) {
 
 }  // namespace
 
+TEST_CASE("N54: what is parted pushes others out of its way within the step, all along a row", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  body.contact.active = true;
+  body.plane("wall", Vec3<double>(-kSize, 0, 0), {1, 0, 0});
+  constexpr double h = 1e-2, overlap = 0.5 * kMostSpeed * kSize * h, between = 0.05 * overlap;
+  double at = 0;
+  for (int i = 0; i < 8; ++i) {
+    body_of(body, "ball" + std::to_string(i), "sphere").place({at, 0, 0});
+    at += 2 * kSize + (i == 0 ? -overlap : between);
+  }
+  Simulation simulation(body, "rk4");
+  simulation.step(h);
+  CHECK(deepest(simulation) < 1e-10 * kSize);
+  CHECK(simulation.ledger().kinetic == 0);
+}
+
+TEST_CASE("N54: what is deep is parted at its own speed, whatever moves elsewhere", "[contact]") {
+  MultiBody body;
+  body.gravity.setZero();
+  body.contact.active = true;
+  body_of(body, "deep0", "sphere").place({0, 0, 0});
+  body_of(body, "deep1", "sphere").place({kSize, 0, 0});
+  body_of(body, "shallow0", "sphere").place({0, 5, 0});
+  body_of(body, "shallow1", "sphere").place({2 * kSize - 5e-4, 5, 0});
+  for (int i = 0; i < 6; ++i) body_of(body, "still" + std::to_string(i), "sphere").place({0, 10.0 + i, 0});
+  body_of(body, "fast", "sphere").place({0.55, -5, 0}).move({100, 0, 0}, {0, 0, 0});
+  body.plane("wall", Vec3<double>(1, 0, 0), {-1, 0, 0});
+  constexpr double h = 1e-2;
+  Simulation simulation(body, "rk4");
+  const auto between = [&](int a, int b) {
+    return (simulation.model().position(simulation.state(), a) -
+            simulation.model().position(simulation.state(), b))
+        .norm();
+  };
+  simulation.step(h);
+  REQUIRE(std::abs(simulation.state().v[6 * 10]) < 50);  // it has met the wall
+  CHECK(between(0, 1) == Approx(kSize + kMostSpeed * kSize * h).epsilon(1e-9));
+  CHECK(between(2, 3) == Approx(2 * kSize).epsilon(1e-12));
+  simulation.step(h);
+  CHECK(between(0, 1) == Approx(kSize + 2 * kMostSpeed * kSize * h).epsilon(1e-9));
+}
+
+TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest face", "[contact]") {
+  for (const bool ball_first : {false, true}) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.contact.active = true;
+    auto add_ball = [&] { body_of(body, "ball", "sphere").place({0.05, -0.1, 0.26}); };
+    if (ball_first) add_ball();
+    body.add<Primitive<Box>>("box").rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.3}}).fix();
+    if (!ball_first) add_ball();
+    constexpr double h = 1e-2;
+    Simulation simulation(body, "rk4");
+    const int ball = ball_first ? 0 : 1;
+    for (int i = 0; i < 500; ++i) {
+      const Vec3<double> before = simulation.model().position(simulation.state(), ball);
+      simulation.step(h);
+      const Vec3<double> now = simulation.model().position(simulation.state(), ball);
+      REQUIRE((now - before).norm() < kMostSpeed * 0.5 * h * (1 + 1e-9));  // of the larger, if that is side a
+      REQUIRE((now - before).head<2>().norm() < 1e-15);
+    }
+    CHECK(simulation.model().position(simulation.state(), ball)[2] == Approx(0.3 + kSize).epsilon(1e-9));
+    CHECK(simulation.ledger().kinetic == 0);
+  }
+}
+
 TEST_CASE("N54: parts that deform locally are parted as wholes, however deep they begin in others",
           "[contact]") {
   // The last of the overlap is parted node by node, which dents them a little. That alone takes work.

@@ -39,8 +39,8 @@ class ContactProblem {
   /// seconds, or it counts as moved for a time of `since` by all.
   void bound_shifts(double since, double most);
   /// Adds to the shifts, without friction: what takes the gaps that these leave to zero where they are
-  /// negative, by at most `most` m and but for `enough` m.
-  void part_bodies(double most, double enough = 0);
+  /// negative, each by at most its `most` m, and but for `enough` m.
+  void part_bodies(const std::vector<double>& most, double enough = 0);
 
   const Movers& movers() const { return movers_; }
   /// Velocities of a mover before the impulses and after them, and how far they moved it, see Contact::since.

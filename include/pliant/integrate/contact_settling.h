@@ -1,6 +1,8 @@
 // Impulses of contact: where bodies meet they are stopped, and what still overlaps is parted.
 #pragma once
 
+#include <array>
+#include <set>
 #include <vector>
 
 #include <pliant/contact/contact_problem.h>
@@ -40,9 +42,13 @@ class ContactSettling {
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
   double swing(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
+  void settle_once(const State& before, double since_of_limits, double h, State& state, double t,
+                   std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+  double most_parting(const Contact& contact, double h) const;
+  void went(const Contact& contact, double far);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
-  void part_overlaps(double most, State& state, double t, Workspace<double>& work, StepCounters& counters);
+  void part_overlaps(double h, State& state, double t, Workspace<double>& work, StepCounters& counters);
 
   const Dynamics& dynamics_;
   const ContactFinder& finder_;
@@ -50,6 +56,10 @@ class ContactSettling {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
+  // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
+  // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
+  std::vector<double> went_;
+  std::set<std::array<int, 4>> parted_enough_;
 };
 
 }  // namespace pliant

@@ -51,8 +51,8 @@ class ContactStepping {
   ContactFinder::Neighbourhood look_ahead(const State& state, double now, double whole, double fall,
                                           bool touch);
   bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
-  bool are_few(const std::vector<Contact>& contacts, const std::vector<Contact>& resting,
-               std::vector<Contact>& impacts) const;
+  std::vector<Contact> few_impacts(const std::vector<Contact>& contacts,
+                                   const std::vector<Contact>& resting) const;
   void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
               StepCounters& counters, StageClock& clock);

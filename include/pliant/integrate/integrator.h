@@ -61,7 +61,8 @@ class Integrator {
     if (!(error <= error_)) error_ = error;
   }
   /// What every method does with a state that it has brought to the end of a step, at time t (s): it keeps to
-  /// limits, strings and joints. What that moves is an error of the step too; of joints that close the time is.
+  /// limits, strings and joints. What that moves is an error of the step too; of joints that close the time
+  /// is.
   void settle(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
               StepCounters& counters);
 
