@@ -3,8 +3,9 @@
 //   work_precision [--all] [--only PROBLEM] [FOLDER]
 //
 // writes to FOLDER work_precision.csv (a run a row; bench/plot.py draws it), precision_cost.csv (time at an
-// error) and precision_reference.csv (where bodies are at the end); tables to standard output. --all: the
-// long problems too, and four times as long runs.
+// error), precision_auto.csv (that of auto over that of the best method chosen by hand) and
+// precision_reference.csv (where bodies are at the end); tables to standard output. --all: the long problems
+// too, and four times as long runs.
 //
 // Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
 // others tolerances from 1e-2 on, each a tenth of the one before. error: at the end, of the places of bodies
@@ -20,7 +21,9 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -210,6 +213,54 @@ double cost_of_run(const std::vector<Cost>& runs, double level) {
   return std::isfinite(least) ? least : kNone;
 }
 
+/// What auto takes at an error against the best method of all.
+class Choices {
+ public:
+  explicit Choices(const std::string& path)
+      : file_(path, "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n") {}
+  /// NaN: it does not reach this error.
+  void add(const std::string& method, double error, double cpu_ms) {
+    if (std::isnan(cpu_ms)) return;
+    if (method == kAutomatic)
+      automatic_[error] = cpu_ms;
+    else if (best_.count(error) == 0 || cpu_ms < best_[error].cpu_ms)
+      best_[error] = {method, cpu_ms};
+  }
+  void end_problem(const std::string& name) {
+    for (const auto& [error, cpu_ms] : automatic_) {
+      const auto best = best_.find(error);
+      if (best == best_.end()) continue;
+      const double ratio = cpu_ms / best->second.cpu_ms;
+      file_.row("%s,%g,%.4g,%.4g,%s,%.3f\n", name.c_str(), error, cpu_ms, best->second.cpu_ms,
+                best->second.method.c_str(), ratio);
+      sum_ += std::log(ratio);
+      ++count_;
+      if (!(ratio <= most_)) {
+        most_ = ratio;
+        worst_ = name;
+      }
+    }
+    automatic_.clear();
+    best_.clear();
+  }
+  void tell() const {
+    std::printf("auto over the best method: %.2f in the geometric mean over %d levels, %.2f at most (%s)\n",
+                std::exp(sum_ / std::max(1, count_)), count_, most_, worst_.c_str());
+  }
+
+ private:
+  struct Best {
+    std::string method;
+    double cpu_ms;
+  };
+  bench::TableFile file_;
+  std::map<double, double, std::greater<>> automatic_;  // by error
+  std::map<double, Best> best_;
+  double sum_ = 0, most_ = 0;
+  int count_ = 0;
+  std::string worst_;
+};
+
 /// The settings of a method, from the coarsest on.
 std::vector<Setting> settings_of(const std::string& method, bool controlled, double end) {
   std::vector<Setting> all;
@@ -244,6 +295,7 @@ int main(int argc, char** argv) try {
                              "problem,method,error,cpu_ms_per_s_interpolated,cpu_ms_per_s_of_run\n");
   bench::TableFile reference_file(in_folder("precision_reference.csv"),
                                   "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
+  Choices choices(in_folder("precision_auto.csv"));
   constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
   const double most_ms = all ? 16e3 : 4e3, enough = 0.05;
   std::vector<std::string> methods{kAutomatic};
@@ -307,10 +359,13 @@ int main(int argc, char** argv) try {
                      of = cost_of_run(points, level) / problem.end;
         std::printf("  %g: %.3g (%.3g)", level, between, of);
         cost_file.row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, between, of);
+        choices.add(method, level, of);
       }
       std::printf("\n");
     }
+    choices.end_problem(problem.name);
   }
+  choices.tell();
   return 0;
 } catch (const std::exception& fault) {
   std::fprintf(stderr, "%s\n", fault.what());

@@ -43,6 +43,7 @@ std::uint64_t hash(const State& state) {
   hash.add(&state.h, sizeof state.h);
   hash.add(&state.step, sizeof state.step);
   hash.add(&state.error, sizeof state.error);
+  hash.add(&state.contact_residual, sizeof state.contact_residual);
   hash.add_each(state.q);
   hash.add_each(state.v);
   hash.add_each(state.work);

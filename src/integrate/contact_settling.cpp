@@ -25,9 +25,10 @@ constexpr int kMostPartings = 16;
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kLeftOverlap = 1e-4;
-/// Meshes may overlap by this many times what counts as resting without being parted; and parted ones by this
-/// share of it.
-constexpr double kMeshOverlap = 800, kMeshLeft = 0.03;
+/// Meshes may overlap by this many times what counts as resting without being parted.
+constexpr double kMeshOverlap = 800;
+/// What is parted may overlap by this share of what would be left.
+constexpr double kPartedLeft = 0.03;
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
@@ -98,6 +99,7 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   counters.contact_sweeps += solution.sweeps;
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
+  state.contact_residual = std::max(state.contact_residual, solution.residual);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
     const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
@@ -168,7 +170,7 @@ void ContactSettling::went(const Contact& contact, double far) {
 
 /// How deep a contact may be without being parted, m.
 double ContactSettling::may_overlap(const Contact& contact) const {
-  return (of_meshes(contact) ? kMeshOverlap : kLeftOverlap) * resting_.gap(contact);
+  return (of_meshes(contact) ? kMeshOverlap : kLeftOverlap) * resting_.tight_gap(contact);
 }
 
 /// What parting the deep ones of some contacts moves: bodies that move as a whole, with all such that touch
@@ -231,8 +233,7 @@ void ContactSettling::part_overlaps(double h, State& state, double t, Workspace<
     parted_enough_.insert(deep.begin(), deep.end());
     keep_concerned(found, work);
     double enough = std::numeric_limits<double>::infinity();
-    for (const Contact& contact : found)
-      enough = std::min(enough, of_meshes(contact) ? kMeshLeft * may_overlap(contact) : 0);
+    for (const Contact& contact : found) enough = std::min(enough, kPartedLeft * may_overlap(contact));
     const std::vector<int> parts = parts_touched(dynamics_.model(), found);
     const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_), booked = state.work.sum();
     evaluate_touched(dynamics_, state, t, found, work);

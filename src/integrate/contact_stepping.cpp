@@ -19,6 +19,9 @@ namespace {
 
 /// Impacts of this speed, in units of what gravity gives in a step, do not rebound.
 constexpr double kSlowImpact = 1e-3;
+/// What impulses left of the laws of contact moves what rests in the next step by this many times as much, at
+/// most as gravity would: that much counts as resting.
+constexpr double kLoose = 4;
 /// Most pairs whose impacts in one step are told in time, which takes the step of all parts several times
 /// again; and most moving parts of a body for which that is worth it.
 constexpr std::size_t kMostPairs = 3;
@@ -28,6 +31,16 @@ constexpr double kMostParts = 1e4;
 constexpr int kMostEvents = 200;
 /// Where an impact has been told in time, surfaces this near, as a share of what counts as resting, touch.
 constexpr double kTouchAtImpact = 1e-6;
+
+/// How fast what rests may move, m/s, as impulses left so much of the laws of contact: a power of two, so
+/// that what was found near each other is mostly still good.
+double loose_speed(double residual, double falls) {
+  const double left = std::min(kLoose * residual, falls);
+  if (!(left > kSlowImpact * falls)) return 0;
+  int exponent = 0;
+  std::frexp(left, &exponent);
+  return std::ldexp(1.0, exponent);
+}
 
 }  // namespace
 
@@ -156,7 +169,11 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   double most = h;     // of a motion: in a longer one parts went further than was foreseen
   bool touch = false;  // likewise: what deforms locally came near something
   FreeMotion motion;
-  motion.slow = kSlowImpact * dynamics_.model().body().gravity_at(end).norm() * h;
+  const double falls = dynamics_.model().body().gravity_at(end).norm() * h,
+               left = loose_speed(state.contact_residual, falls);
+  state.contact_residual = 0;
+  motion.slow = std::max(kSlowImpact * falls, left);
+  resting_.loosen(left * h);
   for (double now = begin; now < end - near;) {
     sleeping_.begin_motion(now, end - now, state);
     const double whole = std::min(end - now, most), fall = method.local_is_implicit() ? 1 : method.reach();

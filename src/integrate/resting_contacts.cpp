@@ -27,7 +27,12 @@ RestingContacts::RestingContacts(const Model& model, const ContactFinder& finder
   for (const PartModel& m : model.parts()) gap_ = std::max(gap_, kResting * m.part->size());
 }
 
-double RestingContacts::gap(const Contact& contact) const {
+void RestingContacts::loosen(double loose) {
+  if (loose != loose_) last_q_.resize(0);
+  loose_ = loose;
+}
+
+double RestingContacts::tight_gap(const Contact& contact) const {
   auto size = [&](int part) { return model_.parts()[static_cast<std::size_t>(part)].part->size(); };
   const double a = size(contact.a.part);
   return kResting * (contact.b.part < 0 ? a : std::min(a, size(contact.b.part)));
@@ -51,7 +56,7 @@ const std::vector<Contact>& RestingContacts::near(const State& state, double t) 
       last_q_.size() == state.q.size() && last_t_ == t && same_sleepers(last_at_rest_, state.at_rest);
   if (same_time && last_q_ == state.q) return last_;
   if (same_time && few_moved(state)) {
-    const std::vector<Contact> found = finder_.find(state, t, gap_, &moved_);
+    const std::vector<Contact> found = finder_.find(state, t, gap(), &moved_);
     last_.erase(std::remove_if(last_.begin(), last_.end(),
                                [&](const Contact& c) {
                                  return moved_[at(c.a.part)] || (c.b.part >= 0 && moved_[at(c.b.part)]);
@@ -62,7 +67,7 @@ const std::vector<Contact>& RestingContacts::near(const State& state, double t) 
     std::merge(kept.begin(), kept.end(), found.begin(), found.end(), std::back_inserter(last_),
                ContactFinder::precedes);
   } else {
-    last_ = finder_.find(state, t, gap_);
+    last_ = finder_.find(state, t, gap());
   }
   last_q_ = state.q;
   last_at_rest_ = state.at_rest;
@@ -97,9 +102,9 @@ bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, c
 
 std::vector<Contact> RestingContacts::met(const FreeMotion& motion, const std::vector<Contact>& resting,
                                           const State& state) const {
-  double most = resting.empty() ? 0 : gap_;
+  double most = resting.empty() ? 0 : gap();
   for (const Contact& contact : resting)
-    most = std::max(most, gap_ + motion.held() * finder_.velocity(state, contact).dot(contact.normal));
+    most = std::max(most, gap() + motion.held() * finder_.velocity(state, contact).dot(contact.normal));
   const Pairs rest(resting);
   auto lay = [&](const Contact& contact) {
     if (!rest.has(contact)) return false;

@@ -54,10 +54,12 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
 }
 
 std::vector<Column> mode_columns_of(const Model& model) {
-  std::vector<Column> columns{{"start", "s", "time of step 0"},
-                              {"step_size", "s", "step; where errors are controlled, the next one"},
-                              {"step", "1", "steps since start"},
-                              {"error", "1", "of the last step, in tolerances; 0 where it is not measured"}};
+  std::vector<Column> columns{
+      {"start", "s", "time of step 0"},
+      {"step_size", "s", "step; where errors are controlled, the next one"},
+      {"step", "1", "steps since start"},
+      {"error", "1", "of the last step, in tolerances; 0 where it is not measured"},
+      {"contact_residual", "m/s", "what impulses missed of the laws of contact in the last step"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
@@ -81,6 +83,7 @@ void write_modes(const State& state, std::vector<double>& row) {
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
+  row.push_back(state.contact_residual);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
@@ -89,7 +92,7 @@ void write_modes(const State& state, std::vector<double>& row) {
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
-  constexpr std::size_t first_work = 4, first_limit = first_work + kWorks;
+  constexpr std::size_t first_work = 5, first_limit = first_work + kWorks;
   const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
                     first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
@@ -97,6 +100,7 @@ bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_rest
   state.h = row[1];
   state.step = static_cast<std::int64_t>(row[2]);
   state.error = row[3];
+  state.contact_residual = row[4];
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
   for (std::size_t i = first_limit; i < first_resting; ++i) {

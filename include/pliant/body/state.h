@@ -42,8 +42,10 @@ struct State {
   double h = 0;           ///< step, s; where errors are controlled, the next one
   std::int64_t step = 0;  ///< steps done since start; time is start + step * h
   double error = 0;       ///< of the last step, in tolerances; 0 where it is not measured
-  VecX<double> q;         ///< per part: c (3), quaternion w x y z (4), q_s
-  VecX<double> v;         ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
+  /// What the impulses at contacts missed of their laws in the last step, at the worst of them, m/s.
+  double contact_residual = 0;
+  VecX<double> q;  ///< per part: c (3), quaternion w x y z (4), q_s
+  VecX<double> v;  ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
   Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< done so far
   std::vector<std::int8_t>
       at_limit;                   ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free

@@ -13,10 +13,14 @@ class RestingContacts {
   /// finder: must outlive it, as must its model.
   RestingContacts(const Model& model, const ContactFinder& finder);
 
+  /// What was left of the laws of contact may have parted what rests by so many m more than rounding.
+  void loosen(double loose);
   /// Surfaces that are nearer than this, and do not move apart, rest on each other, m: of this pair, and of
   /// the largest part.
-  double gap(const Contact& contact) const;
-  double gap() const { return gap_; }
+  double gap(const Contact& contact) const { return tight_gap(contact) + loose_; }
+  double gap() const { return gap_ + loose_; }
+  /// Of this pair when nothing was left.
+  double tight_gap(const Contact& contact) const;
   /// What lies near each other at time t (s), within gap().
   const std::vector<Contact>& near(const State& state, double t);
   /// Those of them that neither open nor strike by more than `slow` m/s.
@@ -34,7 +38,7 @@ class RestingContacts {
 
   const Model& model_;
   const ContactFinder& finder_;
-  double gap_ = 0;
+  double gap_ = 0, loose_ = 0;
   // Of the state that was looked at last.
   VecX<double> last_q_;
   std::vector<double> last_at_rest_;
