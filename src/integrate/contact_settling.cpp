@@ -86,11 +86,10 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double booked = state.work.sum();
   evaluate_touched(dynamics_, state, t, contacts, work);
-  std::vector<double> opening;
   went_.assign(dynamics_.model().parts().size(), 0);
   for (const Contact& contact : contacts) {
-    opening.push_back(finder_.velocity(state, contact).dot(contact.normal));
-    went(contact, h * std::max(0.0, -opening.back()) + swing(contact.a, contact.x, state, h) +
+    const double opening = finder_.velocity(state, contact).dot(contact.normal);
+    went(contact, h * std::max(0.0, -opening) + swing(contact.a, contact.x, state, h) +
                       swing(contact.b, contact.x, state, h));
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
@@ -106,7 +105,6 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
     const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
     state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
-    went(c, c.since * (solution.velocity[k].dot(c.normal) - opening[k]));
   }
   problem.add_joint_impulses(record_.joint_impulses);
   problem.bound_shifts(since_of_limits, h);
@@ -117,8 +115,10 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   const bool broken = hands || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch_) : 0;
   LoadWork loads(dynamics_, state);
+  thrown_from_ = state.q;
   move_by(problem, dynamics_.model(), work, state);
   if (h > 0) reconcile(parts, state, t, work, counters);
+  if (h > 0) add_throws(state);
   // Methods that go by the velocities at a step's end book what forces do by those at its start: to what
   // rests they do nothing.
   if (since_of_limits < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
@@ -166,6 +166,17 @@ void ContactSettling::settle_chain(std::vector<Contact> settled, double h, doubl
 void ContactSettling::went(const Contact& contact, double far) {
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) went_[at(side->part)] = std::max(went_[at(side->part)], far);
+}
+
+/// Parts go farther by as much as impulses, at all their contacts and joints, have thrown them.
+void ContactSettling::add_throws(const State& state) {
+  for (std::size_t i = 0; i < went_.size(); ++i) {
+    const PartModel& m = dynamics_.model().parts()[i];
+    if (m.q0 < 0) continue;
+    const auto change = state.q.segment(m.q0, m.n_q()) - thrown_from_.segment(m.q0, m.n_q());
+    went_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * m.part->size();
+    if (m.n_q() > 7) went_[i] += change.tail(m.n_q() - 7).norm();
+  }
 }
 
 /// How deep a contact may be without being parted, m.

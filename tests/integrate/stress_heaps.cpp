@@ -13,6 +13,7 @@
 
 #include <pliant/contact/contact_problem.h>
 
+#include "draws.h"
 #include "motion.h"
 
 namespace stress_heaps_test {
@@ -34,18 +35,21 @@ void layer(MultiBody& body, int across, const Vec3<double>& first) {
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
+/// A box without a lid.
+void walls(MultiBody& body, double width) {
+  floor(body);
+  body.plane("west", Vec3<double>(0, 0, 0), {1, 0, 0});
+  body.plane("east", Vec3<double>(width, 0, 0), {-1, 0, 0});
+  body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
+  body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
+}
 /// Five layers, each in the dents of the one below, between four walls.
 void pack(MultiBody& body, int across) {
   for (int k = 0; k < 5; ++k) {
     const double in = kRadius * (1 + k % 2);
     layer(body, across - k % 2, {in, in, kRadius * (1 + k * std::sqrt(2.0))});
   }
-  floor(body);
-  const double width = 2 * kRadius * across;
-  body.plane("west", Vec3<double>(0, 0, 0), {1, 0, 0});
-  body.plane("east", Vec3<double>(width, 0, 0), {-1, 0, 0});
-  body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
-  body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
+  walls(body, 2 * kRadius * across);
 }
 /// Contacts of that: within layers, between them, on the floor and the walls.
 std::size_t contacts_of_pack(int across) {
@@ -143,6 +147,41 @@ TEST_CASE("N55: what is missed of a pile that is not solved is told", "[contact]
     CHECK((solution.residual <= 1e-6) == (solution.fallbacks == 0));
     if (across == 3) CHECK(solution.residual < 1e-15);
   }
+}
+
+TEST_CASE("N55: a heap that was poured comes to rest, and none of it sinks", "[contact][long]") {
+  MultiBody body;
+  constexpr int across = 4, layers = 10;
+  test::Draws draws(3);
+  for (int k = 0; k < layers; ++k)
+    for (int i = 0; i < across * across; ++i) {
+      const double size = draws.uniform(0.07, 0.09);
+      body.add(make_part("pebble" + std::to_string(body.parts().size()), "ellipsoid", {}, 1000))
+          .rest({{"a1", size}, {"a2", 0.83 * size}, {"a3", 0.65 * size}})
+          .place({0.1 + 0.2 * (i % across) + draws.uniform(0, 5e-3), 0.1 + 0.2 * (i / across), 0.1 + 0.2 * k},
+                 Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(-1, 1), 1)
+                     .normalized());
+    }
+  walls(body, 0.2 * across);
+  body.contact.friction = 0.4;
+  Simulation simulation(body, "rk4");
+  double deepest = 0;
+  const auto speeds = [&] {
+    std::vector<double> all;
+    for (const PartModel& m : simulation.model().parts())
+      all.push_back(simulation.state().v.segment<3>(m.v0).norm());
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  while (simulation.time() < 2) {
+    simulation.step(kStep);
+    for (const Contact& contact : simulation.contact()->overlaps(simulation.state(), simulation.time()))
+      deepest = std::max(deepest, -contact.gap);
+  }
+  const std::vector<double> all = speeds();
+  CAPTURE(deepest, all[all.size() / 2], all[9 * all.size() / 10], all.back());
+  CHECK(deepest < 1e-9);
+  CHECK(all[all.size() / 2] < 1e-4);  // m/s
 }
 
 TEST_CASE("N55: memory and time of five thousand contacts", "[contact][long]") {

@@ -46,6 +46,7 @@ class ContactSettling {
                    std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   double most_parting(const Contact& contact, double h) const;
   void went(const Contact& contact, double far);
+  void add_throws(const State& state);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
   void part_overlaps(double h, State& state, double t, Workspace<double>& work, StepCounters& counters);
@@ -59,6 +60,7 @@ class ContactSettling {
   // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
   // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
   std::vector<double> went_;
+  VecX<double> thrown_from_;
   std::set<std::array<int, 4>> parted_enough_;
 };
 
