@@ -185,8 +185,9 @@ void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const Ve
   }
 }
 
-void RigidIsland::place(const Four& of, const VecX<double>& q, const VecX<double>& v,
-                        const Vec3<Pack>& gravity, RigidWorkspace& now, RigidWorkspace::Four& four) const {
+[[gnu::flatten]] void RigidIsland::place(const Four& of, const VecX<double>& q, const VecX<double>& v,
+                                         const Vec3<Pack>& gravity, RigidWorkspace& now,
+                                         RigidWorkspace::Four& four) const {
   four.R = rotation(gather(q, of.q0, 3), gather(q, of.q0, 4), gather(q, of.q0, 5), gather(q, of.q0, 6));
   four.omega = gather3(v, of.v0, 3);
   four.a = gravity;
@@ -200,7 +201,7 @@ void RigidIsland::place(const Four& of, const VecX<double>& q, const VecX<double
   couple(of, now);
 }
 
-void RigidIsland::couple(const Four& of, RigidWorkspace& now) {
+[[gnu::flatten]] void RigidIsland::couple(const Four& of, RigidWorkspace& now) {
   auto pair = now.mobility.begin() + of.first_pair;
   for (int i = 0; i < of.arms; ++i)
     for (int j = i; j < of.arms; ++j, ++pair) {
@@ -236,7 +237,7 @@ void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspa
   W_c.factor();
 }
 
-void RigidIsland::hold(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
+[[gnu::flatten]] void RigidIsland::hold(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i)
     for (int k = 0; k < fours_[i].arms; ++k) {
       RigidWorkspace::Arm& arm = now.arms[at(fours_[i].first_arm + k)];
@@ -254,7 +255,7 @@ void RigidIsland::hold(const BlockFactor<double>& W_c, RigidWorkspace& now) cons
   }
 }
 
-void RigidIsland::take_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
+[[gnu::flatten]] void RigidIsland::take_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
   W_c.solve(now.lambda);
   for (RigidWorkspace::Arm& arm : now.arms) arm.push.setConstant(Pack(0.0));
   for_each_end([&](const End& end, int row, double sign) {
@@ -262,7 +263,8 @@ void RigidIsland::take_forces(const BlockFactor<double>& W_c, RigidWorkspace& no
   });
 }
 
-std::pair<Vec3<Pack>, Vec3<Pack>> RigidIsland::response(const Four& of, const RigidWorkspace& now) const {
+[[gnu::flatten]] std::pair<Vec3<Pack>, Vec3<Pack>> RigidIsland::response(const Four& of,
+                                                                         const RigidWorkspace& now) const {
   Vec3<Pack> a = Vec3<Pack>::Constant(Pack(0.0)), beta = a;
   for (int k = 0; k < of.arms; ++k) {
     const RigidWorkspace::Arm& arm = now.arms[at(of.first_arm + k)];
@@ -296,7 +298,7 @@ double RigidIsland::widest(const Rounding& most, bool positions, const VecX<doub
 }
 
 template <bool turned>
-void RigidIsland::place_arms(const VecX<double>& q, RigidWorkspace& now) const {
+[[gnu::flatten]] void RigidIsland::place_arms(const VecX<double>& q, RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const Four& of = fours_[i];
     const Mat3<Pack> R =
@@ -312,7 +314,7 @@ void RigidIsland::place_arms(const VecX<double>& q, RigidWorkspace& now) const {
   }
 }
 
-void RigidIsland::move_arms(const VecX<double>& v, RigidWorkspace& now) const {
+[[gnu::flatten]] void RigidIsland::move_arms(const VecX<double>& v, RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const Four& of = fours_[i];
     const Vec3<Pack> c_dot = gather3(v, of.v0, 0), omega = gather3(v, of.v0, 3);
@@ -323,7 +325,7 @@ void RigidIsland::move_arms(const VecX<double>& v, RigidWorkspace& now) const {
   }
 }
 
-void RigidIsland::shift(const RigidWorkspace& now, VecX<double>& q) const {
+[[gnu::flatten]] void RigidIsland::shift(const RigidWorkspace& now, VecX<double>& q) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const Four& of = fours_[i];
     const auto [shift, beta] = response(of, now);
@@ -340,7 +342,7 @@ void RigidIsland::shift(const RigidWorkspace& now, VecX<double>& q) const {
   }
 }
 
-void RigidIsland::push(const RigidWorkspace& now, double time, VecX<double>& v) const {
+[[gnu::flatten]] void RigidIsland::push(const RigidWorkspace& now, double time, VecX<double>& v) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const Four& of = fours_[i];
     const auto [push, beta] = response(of, now);

@@ -1,11 +1,13 @@
 #include <pliant/integrate/explicit_runge_kutta.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/math/index.h>
 
 #include "linear_growth.h"
 
@@ -13,18 +15,40 @@ namespace pliant {
 
 namespace {
 
-/// to = from + h sum of weights_i column_i, in one pass over memory.
+/// to = from + h sum of weights_i column_i, in one pass over memory and four columns at a time.
 void combine(const VecX<double>& from, const MatX<double>& columns, const double* weights, int count,
              double h, VecX<double>& to) {
   constexpr Eigen::Index in_cache = 256;
+  constexpr int kMostStages = 16, kAtOnce = 4;
+  std::array<double, kMostStages> weight;
+  std::array<const double*, kMostStages> column;
+  int used = 0;
+  for (int k = 0; k < count; ++k) {
+    if (weights[k] == 0) continue;
+    weight[at(used)] = h * weights[k];
+    column[at(used++)] = columns.col(k).data();
+  }
   const Eigen::Index n = from.size();
   to.resize(n);
   for (Eigen::Index i = 0; i < n; i += in_cache) {
-    const Eigen::Index length = std::min(in_cache, n - i);
-    auto sum = to.segment(i, length);
-    sum = from.segment(i, length);
-    for (int k = 0; k < count; ++k)
-      if (weights[k] != 0) sum += (h * weights[k]) * columns.col(k).segment(i, length);
+    const Eigen::Index end = std::min(i + in_cache, n);
+    double* sum = to.data();
+    std::copy(from.data() + i, from.data() + end, sum + i);
+    int k = 0;
+    for (; k + kAtOnce <= used; k += kAtOnce) {
+      const double w0 = weight[at(k)], w1 = weight[at(k + 1)], w2 = weight[at(k + 2)], w3 = weight[at(k + 3)];
+      const double *x0 = column[at(k)], *x1 = column[at(k + 1)], *x2 = column[at(k + 2)],
+                   *x3 = column[at(k + 3)];
+#pragma GCC ivdep
+      for (Eigen::Index j = i; j < end; ++j)
+        sum[j] = sum[j] + w0 * x0[j] + w1 * x1[j] + w2 * x2[j] + w3 * x3[j];
+    }
+    for (; k < used; ++k) {
+      const double w = weight[at(k)];
+      const double* x = column[at(k)];
+#pragma GCC ivdep
+      for (Eigen::Index j = i; j < end; ++j) sum[j] += w * x[j];
+    }
   }
 }
 
