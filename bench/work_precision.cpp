@@ -12,9 +12,10 @@
 // over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times; error_v:
 // of velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
 // Time: CPU time of the stepping loop, one thread, the least of several. Reference: dop853 to 1e-12, or the
-// least that rounding lets it hold (to 1e-8 where bodies touch); its difference is that from the method of
-// extrapolation.h, of parts with parameters or nodes from dormand_prince to 1e-11, where bodies touch from
-// rk4 in short steps. Errors below 10 times that count as that.
+// least that rounding lets it hold; its difference is that from the method of extrapolation.h, of parts with
+// parameters or nodes from dormand_prince to 1e-11. Where bodies touch: dop853 to 1e-8 and rk4, each in short
+// steps and half as long ones, extrapolated, as the error of contacts that last is of first order. Errors
+// below 10 times the difference count as that.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,6 +48,7 @@ struct Setting {
   std::string method;
   double tolerance;
   long steps;
+  double in_contact = 0;  ///< longest step of bodies that lie on each other, s; 0: as usual
 };
 
 /// A run: its states at the samples, the forces of joints at the end, what it cost.
@@ -71,6 +73,7 @@ Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) 
   do {
     MultiBody body;
     problem.build(body);
+    if (setting.in_contact > 0) body.contact.longest_step = setting.in_contact;
     Simulation simulation(body, setting.method, 1, setting.tolerance);
     double seconds = 0;
     const bool first = result.states.empty();
@@ -142,6 +145,11 @@ class Meter {
   std::unique_ptr<ErrorScale> scale_;
 };
 
+bool is_rigid(const Model& model) {
+  return std::all_of(model.parts().begin(), model.parts().end(),
+                     [](const PartModel& part) { return part.q0 < 0 || part.n_v() == 6; });
+}
+
 /// By dop853, to the first tolerance from `finest` on, each ten times the one before, that rounding lets it
 /// hold.
 Outcome by_dop853(const Problem& problem, double finest) {
@@ -182,6 +190,17 @@ Outcome extrapolated(const Problem& problem, const Meter& meter) {
     best = now;
   }
   return best;
+}
+
+/// What two runs tend to whose errors are as their steps, those of the second half as long.
+Outcome limit_of(const Outcome& coarse, Outcome fine, const Model& model) {
+  for (std::size_t i = 0; i < fine.states.size(); ++i) {
+    fine.states[i].q = (2 * fine.states[i].q - coarse.states[i].q).eval();
+    fine.states[i].v = (2 * fine.states[i].v - coarse.states[i].v).eval();
+    normalise_rotations(model, fine.states[i].q);
+  }
+  fine.lambda = (2 * fine.lambda - coarse.lambda).eval();
+  return fine;
 }
 
 struct Cost {
@@ -305,11 +324,17 @@ int main(int argc, char** argv) try {
     if (only.empty() ? problem.long_running && !all : only != problem.name) continue;
     const Meter meter(problem);
     const bool touches = meter.model().body().contact.active;
-    const Outcome exact = by_dop853(problem, touches ? 1e-8 : 1e-12);
-    const bool rigid = meter.model().n_limits() == 0 && !touches;
-    const Outcome other = touches ? run(problem, {"rk4", 0, 1L << 15})
-                          : rigid ? extrapolated(problem, meter)
-                                  : run(problem, {"dormand_prince", 1e-11, 0});
+    constexpr double in_contact = 2.5e-4;  // s
+    constexpr long steps = 1L << 14;
+    const auto touching = [&](const Setting& coarse, const Setting& fine) {
+      return limit_of(run(problem, coarse), run(problem, fine), meter.model());
+    };
+    const Outcome exact = touches
+                              ? touching({"dop853", 1e-8, 0, in_contact}, {"dop853", 1e-8, 0, in_contact / 2})
+                              : by_dop853(problem, 1e-12);
+    const Outcome other = touches                   ? touching({"rk4", 0, steps}, {"rk4", 0, 2 * steps})
+                          : is_rigid(meter.model()) ? extrapolated(problem, meter)
+                                                    : run(problem, {"dormand_prince", 1e-11, 0});
     const double difference = meter.along(other, exact);
     std::printf("%s: the two references differ by %.1e; gap %.1e m\n", problem.name.c_str(), difference,
                 exact.gap);

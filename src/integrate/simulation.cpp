@@ -7,6 +7,7 @@
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/choose_integrator.h>
+#include <pliant/integrate/contact_step.h>
 #include <pliant/integrate/settle.h>
 #include <pliant/integrate/step_length.h>
 #include <pliant/local/inverted_element.h>
@@ -262,7 +263,8 @@ StepError Simulation::try_step() {
     integrator_->take_error();
   }
   if (contact_ && result.error <= 1 && contact_->any_lasts()) {
-    result.error = std::max(result.error, h / model_.body().contact.longest_step);
+    result.error =
+        std::max(result.error, h / longest_contact_step(model_.body().contact, scale_->tolerance()));
     result.order = 0;
     if (result.error <= 1) ++step_counters_.uncontrolled;
   }

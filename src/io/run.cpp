@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <pliant/integrate/contact_step.h>
 #include <pliant/integrate/stable_step.h>
 #include <pliant/io/contact_notes.h>
 #include <pliant/io/joint_notes.h>
@@ -383,7 +384,8 @@ bool Run::simulate() {
     if (record_.step_counters.uncontrolled > 0)
       note("bodies lay on each other in " + count_text(record_.step_counters.uncontrolled, "step") +
            ", whose error is not controlled; they are of at most " +
-           rounded_text(scene_->body.contact.longest_step) + " s, and --estimate-error tells it");
+           rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
+           " s, and --estimate-error tells it");
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });

@@ -282,6 +282,11 @@ TEST_CASE("bodies that lie on each other take short steps, which are counted", "
   CHECK(usual >= 50);
   CHECK(usual < 60);
   CHECK(steps(5e-4) >= 4 * usual - 20);
+  body.contact.longest_step = 2e-3;
+  Simulation rough(body, "dop853", 1, 1e-2);
+  while (rough.time() < 0.5) rough.step_up_to(0.5);
+  CHECK(rough.step_counters().uncontrolled <= 27);
+  CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * 9.81)).margin(0.2e-2));
 }
 
 }  // namespace error_control_test
