@@ -15,16 +15,15 @@ namespace pliant {
 
 namespace {
 
-/// Steps of a trial; what counts is how far the second half of them comes, when the steps have grown to what
-/// the motion lets them be.
-constexpr int kSteps = 24;
+/// Steps of a trial. What counts is how far they come: methods that factor do so while their steps grow.
+constexpr int kSteps = 48;
 /// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
 /// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 constexpr double kFactorisation = 0.005;
-/// Of a stiffness of nodes, which is sparse and mostly assembled anew, in evaluations: the root of the number
-/// of their coordinates times this. It lies between what is measured: 45 of 168 coordinates of a shell
-/// (bench/work_precision, ringing), some 200 of 14 739 of a solid (bench/implicit_bench).
-constexpr double kSparseFactorisation = 2.5;
+/// Of a stiffness of nodes, which is sparse, in evaluations: the cube root of the number of their coordinates
+/// times this. It lies between what is measured: 100 of 168 coordinates of a shell (bench/work_precision,
+/// ringing), some 200 of 14 739 of a solid (bench/implicit_bench).
+constexpr double kSparseFactorisation = 13;
 /// Velocities of parts beyond which stiff ones are not taken all at once.
 constexpr int kMostStiff = 300;
 
@@ -49,20 +48,12 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
     const StepError error{method.take_error(), order, state.h};
     return state.q.allFinite() && state.v.allFinite() ? error : none;
   };
-  auto cost = [&] {
-    return static_cast<double>(counters.evaluations) +
-           factorisation * static_cast<double>(counters.factorisations);
-  };
-  double half_time = 0, half_cost = 0;
   state.h = first_step(dynamics, scale, order, state, work, counters);
   for (int i = 0; i < kSteps; ++i) {
-    if (i == kSteps / 2) {
-      half_time = state.time();
-      half_cost = cost();
-    }
-    if (!take_controlled_step(state, far, 0, counters, attempt)) return 0;
+    if (!take_controlled_step(state, far, 0, least_growth(method), counters, attempt)) return 0;
   }
-  return (state.time() - half_time) / (cost() - half_cost);
+  return state.time() / (static_cast<double>(counters.evaluations) +
+                         factorisation * static_cast<double>(counters.factorisations));
 }
 
 /// Whether anything pushes back: elasticity or damping of parts, springs.
@@ -87,7 +78,7 @@ IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& s
     else
       modes = true;
   }
-  const double sparse = kSparseFactorisation * std::sqrt(nodes);
+  const double sparse = kSparseFactorisation * std::cbrt(nodes);
   std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
   if (nodes > 0 || modes) candidates.emplace_back("linearly_implicit", sparse);
   if (nodes == 0 && model.n_v() <= kMostStiff)

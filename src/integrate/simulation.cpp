@@ -228,7 +228,8 @@ void Simulation::step_up_to(double until) {
   const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
   const bool bends = std::isfinite(kink.time);
   const double stop = bends ? before(kink.time) : end;
-  const bool done = take_controlled_step(state_, stop, least, step_counters_, [&] { return try_step(); });
+  const bool done = take_controlled_step(state_, stop, least, least_growth(*integrator_), step_counters_,
+                                         [&] { return try_step(); });
   if (!done) guarded(state_.h, [&] { fail_at_tolerance(); });
   const bool at_kink = bends && state_.start >= stop;
   if (at_kink) state_.start = std::min(kink.time, end);

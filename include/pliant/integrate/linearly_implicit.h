@@ -4,7 +4,7 @@
 // q_dot = v for all coordinates, which costs nothing and makes what swings freely neither grow nor die for h
 // omega < 2.26, and of parts that deform locally the elasticity and damping of their nodes or modes
 // and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit. Its error is
-// estimated by u + h k1, of first order.
+// estimated by u + h k1, of first order; of such parts in place, for velocities as what they move in a step.
 //
 // What strikes something stiff needs velocities that are those by which it moved, and the stiff ones of ROS2
 // are not. Where parts that deform locally may touch, or a string or a limit that was loose stops one of

@@ -24,11 +24,18 @@ struct StepError {
   double length;  ///< of the step as it was taken, s: it may have ended where bodies met
 };
 
+/// The least that steps grow by, where they do: the matrices that a method has factored hold for steps of one
+/// length.
+inline double least_growth(const Integrator& method) {
+  return method.local_is_implicit() ? 1.5 : 1;
+}
+
 /// Takes a step from a state, whose h is the first it tries, which ends at a time at the latest and then
-/// exactly there. attempt(): takes the step in the state, returns its StepError. False when it would have to
-/// be shorter than `least`.
+/// exactly there. attempt(): takes the step in the state, returns its StepError. growth: the next one is as
+/// long, unless it may be so many times longer. False when the step would have to be shorter than `least`.
 template <class Attempt>
-bool take_controlled_step(State& state, double end, double least, StepCounters& counters, Attempt&& attempt) {
+bool take_controlled_step(State& state, double end, double least, double growth, StepCounters& counters,
+                          Attempt&& attempt) {
   constexpr double kNearEnd = 0.99;  // a step that comes so near to the end goes there
   const State begun = state;
   const double now = begun.time();
@@ -42,7 +49,8 @@ bool take_controlled_step(State& state, double end, double least, StepCounters& 
     state.h = taken;
     if (taken <= least && !last) return false;
     const auto [error, order, length] = attempt();
-    const double next = next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1));
+    double next = next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1));
+    if (next > taken && next < growth * taken) next = taken;
     if (error <= 1) {
       const bool cut = length < taken;
       state.start = last && !cut ? end : now + length;
