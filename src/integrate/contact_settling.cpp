@@ -175,7 +175,7 @@ void ContactSettling::add_throws(const State& state) {
     if (m.q0 < 0) continue;
     const auto change = state.q.segment(m.q0, m.n_q()) - thrown_from_.segment(m.q0, m.n_q());
     went_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * m.part->size();
-    if (m.n_q() > 7) went_[i] += change.tail(m.n_q() - 7).norm();
+    if (m.n_q() > 7) went_[i] += change.tail(m.n_q() - 7).lpNorm<Eigen::Infinity>();
   }
 }
 
