@@ -21,7 +21,7 @@ import problems
 
 ENGINES = "pinocchio mujoco simbody exudyn drake multipliers".split()
 QUICK = "A B C8 D4".split()
-REFERENCES = Path(__file__).resolve().parents[1] / "results" / "intel_xeon_portable" / "precision_reference.csv"
+REFERENCES = Path(__file__).resolve().parents[1] / "results" / "amd_epyc_portable" / "precision_reference.csv"
 COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per_s,error,failed".split(",")
 # Nothing finer is run after an error below SMALLEST, after STALLED runs below ROUNDING that did not better the
 # ladder's best, after FAILURES failed runs, after half the limit of time, or, of the runs above a 16th of it,
