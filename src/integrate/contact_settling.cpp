@@ -1,6 +1,7 @@
 #include <pliant/integrate/contact_settling.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
@@ -25,6 +26,8 @@ constexpr int kMostPartings = 16;
 constexpr int kMostLinks = 4;
 /// Overlaps below this share of what counts as resting are left.
 constexpr double kLeftOverlap = 1e-4;
+/// As are those of so many units of rounding of places.
+constexpr double kUlps = 16;
 /// Meshes may overlap by this many times what counts as resting without being parted.
 constexpr double kMeshOverlap = 800;
 /// What is parted may overlap by this share of what would be left.
@@ -174,14 +177,26 @@ void ContactSettling::add_throws(const State& state) {
     const PartModel& m = dynamics_.model().parts()[i];
     if (m.q0 < 0) continue;
     const auto change = state.q.segment(m.q0, m.n_q()) - thrown_from_.segment(m.q0, m.n_q());
-    went_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * m.part->size();
-    if (m.n_q() > 7) went_[i] += change.tail(m.n_q() - 7).lpNorm<Eigen::Infinity>();
+    const double size = m.part->size();
+    went_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * size;
+    for (int k = 0; k < m.n_s; ++k) {
+      const bool length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+      went_[i] += (length ? 1 : size) * std::abs(change[7 + k]);
+    }
+    if (m.n_d() == 0) continue;
+    const double unit = m.local->oscillators() != nullptr ? 1 / std::sqrt(m.part->total_mass()) : 1;
+    went_[i] += unit * change.tail(m.n_d()).lpNorm<Eigen::Infinity>();
   }
 }
 
 /// How deep a contact may be without being parted, m.
 double ContactSettling::may_overlap(const Contact& contact) const {
-  return (of_meshes(contact) ? kMeshOverlap : kLeftOverlap) * resting_.tight_gap(contact);
+  if (of_meshes(contact)) return kMeshOverlap * resting_.tight_gap(contact);
+  double size = 0;
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
+  const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
+  return std::max(kLeftOverlap * resting_.tight_gap(contact), kUlps * rounding);
 }
 
 /// What parting the deep ones of some contacts moves: bodies that move as a whole, with all such that touch

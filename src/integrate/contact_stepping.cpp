@@ -39,7 +39,7 @@ double loose_speed(double residual, double falls) {
   if (!(left > kSlowImpact * falls)) return 0;
   int exponent = 0;
   std::frexp(left, &exponent);
-  return std::ldexp(1.0, exponent);
+  return std::ldexp(1.0, exponent - 1);
 }
 
 }  // namespace
@@ -172,7 +172,8 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   const double falls = dynamics_.model().body().gravity_at(end).norm() * h,
                left = loose_speed(state.contact_residual, falls);
   state.contact_residual = 0;
-  motion.slow = std::max(kSlowImpact * falls, left);
+  motion.slow = kSlowImpact * falls;
+  motion.loose = std::max(motion.slow, left);
   resting_.loosen(left * h);
   for (double now = begin; now < end - near;) {
     sleeping_.begin_motion(now, end - now, state);
@@ -210,7 +211,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
       now = motion.end();
       continue;
     }
-    const std::vector<Contact> resting = resting_.at_rest(motion.before, now, motion.slow);
+    const std::vector<Contact> resting = resting_.at_rest(motion.before, now, motion.loose);
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
     clock.lap(times_.finding);

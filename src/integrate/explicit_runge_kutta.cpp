@@ -32,21 +32,19 @@ void combine(const VecX<double>& from, const MatX<double>& columns, const double
   to.resize(n);
   for (Eigen::Index i = 0; i < n; i += in_cache) {
     const Eigen::Index end = std::min(i + in_cache, n);
-    double* sum = to.data();
+    double* __restrict sum = to.data();
     std::copy(from.data() + i, from.data() + end, sum + i);
     int k = 0;
     for (; k + kAtOnce <= used; k += kAtOnce) {
       const double w0 = weight[at(k)], w1 = weight[at(k + 1)], w2 = weight[at(k + 2)], w3 = weight[at(k + 3)];
       const double *x0 = column[at(k)], *x1 = column[at(k + 1)], *x2 = column[at(k + 2)],
                    *x3 = column[at(k + 3)];
-#pragma GCC ivdep
       for (Eigen::Index j = i; j < end; ++j)
         sum[j] = sum[j] + w0 * x0[j] + w1 * x1[j] + w2 * x2[j] + w3 * x3[j];
     }
     for (; k < used; ++k) {
       const double w = weight[at(k)];
       const double* x = column[at(k)];
-#pragma GCC ivdep
       for (Eigen::Index j = i; j < end; ++j) sum[j] += w * x[j];
     }
   }

@@ -1,6 +1,8 @@
 #include <pliant/integrate/integrator.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <pliant/integrate/dop853.h>
@@ -23,8 +25,9 @@ std::unique_ptr<Integrator> make() {
 /// A gap that closes decays at the rate of the stabilization (1/s) down to kClosedGap, which is then taken
 /// away at once: what that is wrong by, in place and in velocity, when all that is known is that it was
 /// within the last h s.
-double closing_error(double rate, double h) {
-  return kClosedGap * std::min(1.0, rate * h) * std::max(1.0, rate);
+double closing_error(double rate, double h, double t) {
+  const double known = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // no better, s
+  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - known)) * std::max(1.0, rate);
 }
 }  // namespace
 
@@ -39,7 +42,7 @@ void Integrator::settle(const Dynamics& dynamics, double t, State& state, Worksp
   if (scale_ == nullptr) return;
   for (std::size_t j = 0; j < joints_before_.size(); ++j)
     if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
-      return note_error(closing_error(dynamics.model().body().stabilization.rate, state.h) /
+      return note_error(closing_error(dynamics.model().body().stabilization.rate, state.h, t) /
                         scale_->tolerance());
   unsettled_ -= state.q;
   note_error(scale_->norm(unsettled_));

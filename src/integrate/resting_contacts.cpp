@@ -15,6 +15,8 @@ namespace {
 
 /// How near surfaces that rest on each other are, in sizes of the smaller part.
 constexpr double kResting = 1e-6;
+/// What was left of the laws of contact may make that so many times as much at most.
+constexpr double kMostLoose = 1000;
 /// Up to this share of all parts are looked at by themselves where the others have not moved.
 constexpr double kFewParts = 0.7;
 /// Points of one contact at the start and the end of a step are nearer than this, in sizes.
@@ -30,6 +32,10 @@ RestingContacts::RestingContacts(const Model& model, const ContactFinder& finder
 void RestingContacts::loosen(double loose) {
   if (loose != loose_) last_q_.resize(0);
   loose_ = loose;
+}
+
+double RestingContacts::loosened(double tight) const {
+  return tight + std::min(loose_, kMostLoose * tight);
 }
 
 double RestingContacts::tight_gap(const Contact& contact) const {
@@ -97,7 +103,7 @@ bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, c
   const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),
                u = finder_.velocity(state, contact).dot(contact.normal),
                way = motion.h * ((1 - motion.reach) * u_start + motion.reach * u);
-  return rests(contact, contact.gap - way, u_start, motion.slow);
+  return rests(contact, contact.gap - way, u_start, motion.loose);
 }
 
 std::vector<Contact> RestingContacts::met(const FreeMotion& motion, const std::vector<Contact>& resting,

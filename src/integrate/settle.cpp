@@ -148,7 +148,7 @@ bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
   const Model& model = dynamics.model();
   const double rate = model.body().stabilization.rate;
   const Gains gains = work.joints.gains;
-  const bool first_order = dynamics.hold().step_consistent;
+  const bool first_order = dynamics.hold().first_order;
   bool any = false;
   for (const int j : island.joints) {
     if (state.joints[at(j)] != JointMode::closing) continue;

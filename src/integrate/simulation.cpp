@@ -116,7 +116,10 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
   }
   if (!automatic) take_method(make_integrator(integrator));
   const bool projected = body.stabilization.projection.value_or(true);
-  dynamics_.set_hold({!automatic && integrator_->order() == 1, projected});
+  const bool first = !automatic && integrator_->order() == 1;
+  // Its steps are of first order where something touches; to a tolerance they are short enough.
+  const bool at_times = !automatic && integrator_->local_is_implicit() && !scale_;
+  dynamics_.set_hold({first, projected, first || at_times});
   at_time(0, [&] {
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     settle_frames(dynamics_, 0, state_, output_work_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pliant/integrate/contact_step.h>
 #include <pliant/integrate/simulation.h>
 
 namespace pliant {
@@ -48,18 +49,22 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// While it lives, steps in which bodies lie on each other are half as long.
+/// While it lives, steps to a tolerance in which bodies lie on each other are half as long as those to
+/// another.
 class HalfStepsInContact {
  public:
-  explicit HalfStepsInContact(ContactSettings& settings) : settings_(settings) {
-    settings_.longest_step /= 2;
+  HalfStepsInContact(ContactSettings& settings, double tolerance, double of)
+      : settings_(settings), longest_(settings.longest_step) {
+    const double half = longest_contact_step(settings, of) / 2;
+    settings_.longest_step = half * longest_ / longest_contact_step(settings, tolerance);
   }
-  ~HalfStepsInContact() { settings_.longest_step *= 2; }
+  ~HalfStepsInContact() { settings_.longest_step = longest_; }
   HalfStepsInContact(const HalfStepsInContact&) = delete;
   HalfStepsInContact& operator=(const HalfStepsInContact&) = delete;
 
  private:
   ContactSettings& settings_;
+  double longest_;
 };
 
 /// On to a time, in steps of one length as near to `step` as lets it be met.
@@ -83,7 +88,7 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   error.tolerance = scene.tolerance > 0 ? std::max(least, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
   // Where bodies lie on each other the tolerance says nothing: half the step does.
-  const HalfStepsInContact half(scene.body.contact);
+  const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();
   Workspace<double> of_run, of_better;

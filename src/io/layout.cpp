@@ -47,7 +47,7 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
                   const std::vector<Column>& trajectory, bool contacts) {
   Json layout;
   layout["format"] = "pliant recording";
-  layout["version"] = 1;
+  layout["version"] = kRecordingVersion;
   layout["rows"] =
       "one state a row, the same row in every table; the number of states is that of the shortest .npy table";
   layout["frames"] = {

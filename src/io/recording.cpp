@@ -47,9 +47,9 @@ void compare_layout(const std::filesystem::path& file, const Model& model) {
   if (!stream) throw RecordingMismatch("there is no recording: cannot read " + file.string());
   try {
     const nlohmann::json layout = nlohmann::json::parse(stream);
-    if (layout.at("version") != 1)
+    if (layout.at("version") != kRecordingVersion)
       throw RecordingMismatch(file.string() + " is of version " + layout.at("version").dump() +
-                              ", expected 1");
+                              ", expected " + std::to_string(kRecordingVersion));
     compare_columns(layout, kCoordinatesFile, model.n_q(), file,
                     [&](int i) { return model.coordinate_name(i); });
     compare_columns(layout, kVelocitiesFile, model.n_v(), file,

@@ -99,6 +99,7 @@ class Dynamics {
   struct Hold {
     bool step_consistent = true;  ///< what the rule `automatic` means for the method of integration
     bool projected = false;       ///< closed joints are projected after each step: they need no Baumgarte
+    bool first_order = true;      ///< steps may be so, and leave a gap on joints that turn as they close
   };
   void set_hold(const Hold& hold) { hold_ = hold; }
   const Hold& hold() const { return hold_; }

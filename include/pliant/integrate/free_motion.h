@@ -13,6 +13,8 @@ struct FreeMotion {
   /// Speeds below this are none, m/s: what rests has been given as much by rounding, and by gravity in a part
   /// of a step.
   double slow = 0;
+  double loose =
+      0;  ///< and what rests is no faster than this, m/s: impulses left as much (State::contact_residual)
 
   double end() const { return begin + h; }
   /// Impulses at its end that stand for forces over all of it move bodies by their change of velocity times

@@ -17,8 +17,8 @@ class RestingContacts {
   void loosen(double loose);
   /// Surfaces that are nearer than this, and do not move apart, rest on each other, m: of this pair, and of
   /// the largest part.
-  double gap(const Contact& contact) const { return tight_gap(contact) + loose_; }
-  double gap() const { return gap_ + loose_; }
+  double gap(const Contact& contact) const { return loosened(tight_gap(contact)); }
+  double gap() const { return loosened(gap_); }
   /// Of this pair when nothing was left.
   double tight_gap(const Contact& contact) const;
   /// What lies near each other at time t (s), within gap().
@@ -32,6 +32,7 @@ class RestingContacts {
                            const State& state) const;
 
  private:
+  double loosened(double tight) const;
   bool few_moved(const State& state);
   bool rests(const Contact& contact, double gap, double velocity, double slow) const;
   bool rested(const Contact& contact, const FreeMotion& motion, const State& state) const;

@@ -13,6 +13,7 @@ inline constexpr const char* kLayoutFile = "layout.json";  ///< the columns of t
 inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
+inline constexpr int kRecordingVersion = 2;             ///< of what they hold
 inline constexpr const char* kModesFile = "modes.npy";  ///< what else a state holds
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
 // Of a run that tells what touches, recorded and for people:
