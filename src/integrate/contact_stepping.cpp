@@ -21,7 +21,7 @@ namespace {
 constexpr double kSlowImpact = 1e-3;
 /// What impulses left of the laws of contact moves what rests in the next step by this many times as much, at
 /// most as gravity would: that much counts as resting.
-constexpr double kLoose = 4;
+constexpr double kLoose = 8;
 /// Most pairs whose impacts in one step are told in time, which takes the step of all parts several times
 /// again; and most moving parts of a body for which that is worth it.
 constexpr std::size_t kMostPairs = 3;
