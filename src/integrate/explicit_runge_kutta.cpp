@@ -71,6 +71,17 @@ void ExplicitRungeKutta::take_rates(const Dynamics& dynamics, double t, int stag
   powers_.col(stage) = work.power;
 }
 
+/// Whether the rates at the end of the step taken last are those of a state at a time. Baumgarte's terms may
+/// follow the length of the step, and the rates with them.
+bool ExplicitRungeKutta::ended_at(const Dynamics& dynamics, double t, const State& state) const {
+  auto gains = [&](double step) {
+    return dynamics.model().body().stabilization.gains(step, dynamics.hold().step_consistent);
+  };
+  return last_t_ == t && last_.q.size() == state.q.size() && gains(last_.h) == gains(state.h) &&
+         last_.q == state.q && last_.v == state.v && last_.at_limit == state.at_limit &&
+         last_.joints == state.joints && same_sleepers(last_.at_rest, state.at_rest);
+}
+
 void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<double>& work,
                               StepCounters& counters) {
   const ButcherTableau& of = *of_;
@@ -78,19 +89,13 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
   const int n = of.stages;
   if (q_rates_.rows() != state.q.size()) {
     last_.q.resize(0);
-    q_rates_.resize(state.q.size(), n + 1);
-    v_rates_.resize(state.v.size(), n + 1);
-    powers_.resize(kWorks, n + 1);
+    const int more = of.between == nullptr ? 0 : of.between->stages;
+    q_rates_.resize(state.q.size(), n + 1 + more);
+    v_rates_.resize(state.v.size(), n + 1 + more);
+    powers_.resize(kWorks, n + 1 + more);
   }
   free_.prepare(dynamics.model(), of, h);
-  // Baumgarte's terms may follow the length of the step, and the rates with them.
-  auto gains = [&](double step) {
-    return dynamics.model().body().stabilization.gains(step, dynamics.hold().step_consistent);
-  };
-  const bool known = last_t_ == t && gains(last_.h) == gains(h) && last_.q.size() == state.q.size() &&
-                     last_.q == state.q && last_.v == state.v && last_.at_limit == state.at_limit &&
-                     last_.joints == state.joints && same_sleepers(last_.at_rest, state.at_rest);
-  if (known) {
+  if (ended_at(dynamics, t, state)) {
     q_rates_.col(0) = q_rates_.col(n);
     v_rates_.col(0) = v_rates_.col(n);
     powers_.col(0) = powers_.col(n);
@@ -126,6 +131,32 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
     last_t_ = t + h;
   }
   note_error(error_of(h, v_start_));
+}
+
+StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const State& low, double h, const State& high,
+                                  StepCounters& counters) {
+  const ContinuousExtension* between = of_->between;
+  if (between == nullptr || free_.any()) return Integrator::path(dynamics, low, h, high, counters);
+  const double t = low.time();
+  const int n = of_->stages, all = n + 1 + between->stages;
+  if (!ended_at(dynamics, t + h, high)) {
+    q_ = high.q;
+    v_ = high.v;
+    take_rates(dynamics, t + h, n, RankRule::decide, high, between_work_, counters);
+  }
+  const double* a = between->a;
+  for (int k = n + 1; k < all; a += k, ++k) {
+    combine(low.q, q_rates_, a, k, h, q_);
+    combine(low.v, v_rates_, a, k, h, v_);
+    take_rates(dynamics, t + between->c[k - n - 1] * h, k, RankRule::keep, high, between_work_, counters);
+  }
+  const Eigen::Map<const MatX<double>> d(between->d, all, between->terms);
+  auto polynomial = [&](const VecX<double>& start, const MatX<double>& rates, const VecX<double>& end) {
+    StepPolynomial u{start, hermite_terms(start, rates.col(0), h, end, rates.col(n), between->terms)};
+    u.terms.rightCols(between->terms).noalias() = h * rates * d;
+    return u;
+  };
+  return {dynamics.model(), polynomial(low.q, q_rates_, high.q), polynomial(low.v, v_rates_, high.v)};
 }
 
 double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include <pliant/integrate/step_path.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
@@ -21,7 +20,7 @@ constexpr double kApart = 100 * kGap;
 /// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
 constexpr int kMostHalvings = 20;
 /// The path between the ends of the step is followed to this part of the step.
-constexpr double kOfPath = 1e-4;
+constexpr double kOfPath = 1e-9;
 /// Secants that have not led there in so many trials leave it to the bracket.
 constexpr int kMostSecants = 8;
 
@@ -84,7 +83,7 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
       least = std::min(least, finder.least_gap(of, at_time, contact, 4 * largest));
     return least;
   };
-  const State end = state;
+  const StepPath path = method.path(dynamics, before, h, state, counters);
   double reached = h;  // how far into the step the state is
   auto go_to = [&](double tau) {
     if (tau == reached) return;
@@ -116,11 +115,10 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
     return std::nullopt;
   }
   // The path between the ends of the step tells nearly when and how fast, steps then exactly when.
-  auto [tau, speed] =
-      on_path(meets, h, [&, path = StepPath(dynamics, before, h, end), there = before](double into) mutable {
-        path.at(into / h, there.q);
-        return least_gap(there, t + into);
-      });
+  auto [tau, speed] = on_path(meets, h, [&, there = before](double into) mutable {
+    path.at(into / h, there.q);
+    return least_gap(there, t + into);
+  });
   double last = 0, f_last = 0;
   for (int i = 0;
        i < kMostTrials && meets.high - meets.low > kTime * h && !(std::abs(meets.f_high) <= kGap * size);

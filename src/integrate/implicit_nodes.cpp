@@ -184,7 +184,9 @@ void ImplicitNodes::lay_border(const NodalWorkspace& at, double c) {
   }
   for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
   T_ = B_;
-  factor_->solve(T_);
+  factor_->solve(T_.leftCols(n_r()));
+  if (follows_) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // what is between is zero
+  if (n_gas > 0) factor_->solve(T_.rightCols(n_gas));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_gas).array() -= 1;
   if (part_->shared.empty()) return;

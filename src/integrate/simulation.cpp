@@ -21,8 +21,6 @@ namespace pliant {
 namespace {
 /// Times that differ by less than this part of a step, or this many units of their last place, are the same.
 constexpr double kNear = 1e-9, kUlps = 8;
-/// Steps end and begin so many units of the last place beside a kink of a path, on the side that is theirs.
-constexpr double kBeside = 2;
 /// A step at which joints do not close is tried again in so many.
 constexpr int kShorter = 16;
 /// No step to a tolerance is shorter than this part of the time.
@@ -59,29 +57,6 @@ std::string endless_gap(const Model& model, const Workspace<double>& work) {
   return {};
 }
 
-double before(double kink) {
-  return kink - kBeside * std::numeric_limits<double>::epsilon() * std::abs(kink);
-}
-double after(double kink) {
-  return kink + kBeside * std::numeric_limits<double>::epsilon() * std::abs(kink);
-}
-
-/// An impulse of a joint that is below this part of the momenta of its lightest part is rounding.
-constexpr double kImpulseRounding = 1e-9;
-
-/// The momentum (N s) of the lightest part of a joint if it moved as fast as any of them, or as the joint
-/// closes.
-double momentum(const Model& model, const JointModel& joint, const VecX<double>& v) {
-  double mass = std::numeric_limits<double>::infinity(),
-         speed = model.body().stabilization.rate * joint.length;
-  for (const JointSide& side : joint.sides) {
-    const PartModel& m = model.parts()[static_cast<std::size_t>(side.part)];
-    mass = std::min(mass, m.part->total_mass());
-    speed = std::max(speed, v.segment<3>(m.v0).norm() + m.part->size() * v.segment<3>(m.v0 + 3).norm());
-  }
-  return mass * speed;
-}
-
 void require_tolerance(double tolerance) {
   constexpr double kLeast = 1e-12, kMost = 0.1;
   if (tolerance >= kLeast && tolerance <= kMost) return;
@@ -105,6 +80,7 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
     : model_(body),
       pool_(threads > 1 ? std::make_unique<ThreadPool>(threads) : nullptr),
       dynamics_(model_, pool_.get()),
+      switching_(dynamics_),
       contact_(body.contact.active ? std::make_unique<ContactStepping>(dynamics_) : nullptr),
       state_(model_.initial_state()),
       held_(static_cast<std::size_t>(model_.n_v())) {
@@ -124,7 +100,8 @@ Simulation::Simulation(MultiBody& body, const std::string& integrator, int threa
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     settle_frames(dynamics_, 0, state_, output_work_);
     if (!model_.joints().empty()) dynamics_.accelerations(0, state_.q, state_.v, state_, output_work_);
-    take_hold(std::vector<bool>(model_.islands().size(), true), 0, output_work_);
+    switching_.take_hold(std::vector<bool>(model_.islands().size(), true), 0, state_, output_work_,
+                         step_counters_);
     if (automatic) {
       choice_ = choose_integrator(dynamics_, *scale_, state_);
       take_method(make_integrator(choice_.integrator));
@@ -177,7 +154,7 @@ void Simulation::step(double h) {
 /// Remembers where the step began.
 void Simulation::begin_step() {
   last_good_ = state_;
-  last_good_impulses_ = hold_impulses_.size();
+  switching_.begin_step();
 }
 
 /// Does what a step of h seconds does; where it fails, the last good state is back, and the failure says what
@@ -222,22 +199,27 @@ void Simulation::step_up_to(double until) {
   state_.start = now;
   state_.step = 0;
   begin_step();
-  if (!times.empty()) switch_joints(now, least);
-  state_.start = after_kink(now, least);
+  if (!times.empty()) switching_.switch_at(now, least, state_, work_, step_counters_);
+  state_.start = switching_.after_kink(now, least);
   const int order = integrator_->error_order();
   if (!(state_.h > 0)) state_.h = first_step(dynamics_, *scale_, order, state_, work_, step_counters_);
   // A step that ends near `end` goes there, which is not further than this many steps.
   constexpr double further = 1.1;
   const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
   const bool bends = std::isfinite(kink.time);
-  const double stop = bends ? before(kink.time) : end;
-  const bool done = take_controlled_step(state_, stop, least, least_growth(*integrator_), step_counters_,
+  const double stop = bends ? just_before(kink.time) : end;
+  const bool done = take_controlled_step(state_, stop, least, growth_of(*integrator_), step_counters_,
                                          [&] { return try_step(); });
   if (!done) guarded(state_.h, [&] { fail_at_tolerance(); });
   const bool at_kink = bends && state_.start >= stop;
   if (at_kink) state_.start = std::min(kink.time, end);
-  if (!times.empty()) switch_joints(at_kink ? after(kink.time) : state_.start, least);
-  if (at_kink) guarded(state_.h, [&] { follow_paths(kink.time, least, after(kink.time)); });
+  if (!times.empty())
+    switching_.switch_at(at_kink ? just_after(kink.time) : state_.start, least, state_, work_,
+                         step_counters_);
+  if (at_kink)
+    guarded(state_.h, [&] {
+      switching_.follow_paths(kink.time, least, just_after(kink.time), state_, work_, step_counters_);
+    });
   ++step_counters_.steps;
   check(last_good_);
   note_held();
@@ -245,7 +227,7 @@ void Simulation::step_up_to(double until) {
 
 void Simulation::give_up_step() {
   state_ = last_good_;
-  hold_impulses_.resize(std::min(hold_impulses_.size(), last_good_impulses_));
+  switching_.undo_step();
   if (contact_) contact_->undo_step();
 }
 
@@ -322,14 +304,14 @@ void Simulation::advance(double h) {
   const double near = std::max(kNear * h, kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;
   const std::int64_t step = state_.step;
-  double now = state_.time(), from = after_kink(now, near);
-  if (!times.empty()) switch_joints(from, near);
+  double now = state_.time(), from = switching_.after_kink(now, near);
+  if (!times.empty()) switching_.switch_at(from, near, state_, work_, step_counters_);
   while (now < end - near) {
     const auto next = std::upper_bound(times.begin(), times.end(), now + near);
     const double stop = next == times.end() || *next > end - near ? end : *next;
     const Kink kink = model_.next_kink(now + near, stop + near);
     const bool bends = std::isfinite(kink.time);
-    const double to = bends ? before(kink.time) : stop;
+    const double to = bends ? just_before(kink.time) : stop;
     if (from != state_.time() || to != end) {
       state_.start = from;
       state_.step = 0;
@@ -337,91 +319,13 @@ void Simulation::advance(double h) {
     }
     take_step();
     now = bends && kink.time < stop - near ? kink.time : stop;
-    from = bends ? after(kink.time) : now;
-    if (!times.empty()) switch_joints(from, near);
-    if (bends) follow_paths(kink.time, near, from);
+    from = bends ? just_after(kink.time) : now;
+    if (!times.empty()) switching_.switch_at(from, near, state_, work_, step_counters_);
+    if (bends) switching_.follow_paths(kink.time, near, from, state_, work_, step_counters_);
   }
   state_.start = start;
   state_.step = step;
   state_.h = h;
-}
-
-/// A time; where a path has a kink there, that just after it.
-double Simulation::after_kink(double t, double near) const {
-  const Kink kink = model_.next_kink(t - near, t + near);
-  return std::isfinite(kink.time) ? std::max(t, after(kink.time)) : t;
-}
-
-/// Joints act or do not, as they are to at a time t; times nearer than `near` are the same.
-void Simulation::switch_joints(double t, double near) {
-  if (!state_.q.allFinite() || !state_.v.allFinite()) return;
-  std::vector<bool> more(model_.islands().size());
-  for (std::size_t j = 0; j < model_.joints().size(); ++j) {
-    const JointModel& joint = model_.joints()[j];
-    const bool on = joint.joint->acts_at(t + near), was_on = state_.joints[j] != JointMode::off;
-    if (on == was_on) continue;
-    state_.joints[j] = on ? JointMode::closing : JointMode::off;
-    wake(state_, model_.islands()[static_cast<std::size_t>(joint.island)].parts.front());
-    if (on) more[static_cast<std::size_t>(joint.island)] = true;
-  }
-  if (std::find(more.begin(), more.end(), true) != more.end()) take_hold(more, t, work_);
-}
-
-/// Joints begin to act in some islands.
-void Simulation::take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work) {
-  const VecX<double> v_before = state_.v;
-  VecX<double> impulses = VecX<double>::Zero(model_.n_rows());
-  Workspace<double> scratch;
-  for (std::size_t i = 0; i < islands.size(); ++i) {
-    if (!islands[i]) continue;
-    pliant::take_hold(dynamics_, t, model_.islands()[i], state_, work, scratch, step_counters_, impulses);
-    note_impulses(model_.islands()[i], t, false, v_before, impulses, work);
-  }
-}
-
-/// Joints follow the paths of their ends, which have a kink at a time or nearer to it than `near`, from a
-/// time t after it on.
-void Simulation::follow_paths(double kink, double near, double t) {
-  if (!state_.q.allFinite() || !state_.v.allFinite()) return;
-  std::vector<bool> moved(model_.islands().size());
-  for (const int j : model_.driven_joints()) {
-    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
-    const JointMode mode = state_.joints[static_cast<std::size_t>(j)];
-    const Kink of_joint = model_.next_kink(joint, kink - near, kink + near);
-    if (mode == JointMode::off || !std::isfinite(of_joint.time)) continue;
-    if (of_joint.jumps && mode == JointMode::closed) {
-      std::ostringstream message;
-      message
-          << "at t = " << kink << " s " << joint.joint->type() << " '" << joint.joint->name()
-          << "' would be torn open: the path of its end jumps in place; expected one whose rate alone may "
-             "jump";
-      throw UnsatisfiableModel(message.str(), kink);
-    }
-    moved[static_cast<std::size_t>(joint.island)] = true;
-  }
-  const VecX<double> v_before = state_.v;
-  VecX<double> impulses = VecX<double>::Zero(model_.n_rows());
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (!moved[i]) continue;
-    pliant::follow_paths(dynamics_, t, model_.islands()[i], state_, work_, step_counters_, impulses);
-    note_impulses(model_.islands()[i], t, true, v_before, impulses, work_);
-  }
-}
-
-/// work: of an evaluation of the island at t.
-void Simulation::note_impulses(const Island& island, double t, bool of_path, const VecX<double>& v_before,
-                               const VecX<double>& impulses, Workspace<double>& work) {
-  auto note = [&](int j) {
-    const JointModel& joint = model_.joints()[static_cast<std::size_t>(j)];
-    if (impulses.segment(joint.row, joint.rows).isZero(0)) return;
-    const Wrench impulse = dynamics_.joint_wrench(t, j, work, impulses);
-    const double size = impulse.force.norm() + impulse.torque.norm() / joint.length;
-    if (size >
-        kImpulseRounding * std::max(momentum(model_, joint, v_before), momentum(model_, joint, state_.v)))
-      hold_impulses_.push_back({t, j, impulse, of_path});
-  };
-  std::for_each(island.joints.begin(), island.joints.end(), note);
-  std::for_each(island.strings.begin(), island.strings.end(), note);
 }
 
 void Simulation::check(const State& before) {
@@ -480,10 +384,7 @@ void Simulation::set_state(State state) {
       state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting())
     throw std::invalid_argument("this state belongs to another model");
   state_ = std::move(state);
-  const double now = time() + kNear * state_.h;
-  const auto later = [&](const HoldImpulse& impulse) { return impulse.time > now; };
-  hold_impulses_.erase(std::remove_if(hold_impulses_.begin(), hold_impulses_.end(), later),
-                       hold_impulses_.end());
+  switching_.forget_after(time() + kNear * state_.h);
   if (contact_) contact_->begin_step();  // nothing has touched yet
 }
 

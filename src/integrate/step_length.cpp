@@ -6,7 +6,7 @@
 namespace pliant {
 
 namespace {
-constexpr double kSafety = 0.8, kMostGrowth = 6, kMostCut = 0.2;
+constexpr double kSafety = 0.8, kMostCut = 0.2;
 /// Of order 0 is what is known beforehand, not estimated.
 constexpr double kSafetyOfKnown = 0.99;
 /// The share of the integral part.
@@ -15,15 +15,16 @@ constexpr double kIntegral = 0.2;
 constexpr double kLeastError = 1e-6;
 }  // namespace
 
-double next_step(double h, double error, double last_error, int order, bool rejected) {
+double next_step(double h, double error, double last_error, int order, bool rejected, double most) {
   if (!std::isfinite(error)) return kMostCut * h;
+  if (order == 0 && error > 1) return kSafetyOfKnown / error * h;
   const double safety = order > 0 ? kSafety : kSafetyOfKnown;
   const double power = 1.0 / (order + 1), now = std::max(error, kLeastError);
   double factor = safety * std::pow(now, -power);
   if (!rejected && last_error > 0)
     factor = safety * std::pow(now, -power * (1 - 0.75 * kIntegral)) *
              std::pow(std::max(last_error, kLeastError), power * kIntegral);
-  return h * std::clamp(factor, kMostCut, rejected ? 1 : kMostGrowth);
+  return h * std::clamp(factor, kMostCut, rejected ? 1 : most);
 }
 
 double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, const State& state,

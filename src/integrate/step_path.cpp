@@ -1,19 +1,42 @@
 #include <pliant/integrate/step_path.h>
 
+#include <utility>
+
 #include <pliant/integrate/advance.h>
 
 namespace pliant {
 
-StepPath::StepPath(const Dynamics& dynamics, const State& low, double h, const State& high)
-    : model_(dynamics.model()), low_(low), high_(high), h_(h) {
-  dynamics.coordinate_rates(low.q, low.v, low_rate_);
-  dynamics.coordinate_rates(high.q, high.v, high_rate_);
+void StepPolynomial::at(double x, VecX<double>& u) const {
+  Eigen::Index k = terms.cols() - 1;
+  u = terms.col(k);
+  while (k-- > 0) u = terms.col(k) + (k % 2 == 0 ? 1 - x : x) * u;
+  u = start + x * u;
 }
 
+MatX<double> hermite_terms(const VecX<double>& low, const Eigen::Ref<const VecX<double>>& low_rate, double h,
+                           const VecX<double>& high, const Eigen::Ref<const VecX<double>>& high_rate,
+                           int more) {
+  MatX<double> terms(low.size(), 3 + more);
+  terms.col(0) = high - low;
+  terms.col(1) = h * low_rate - terms.col(0);
+  terms.col(2) = terms.col(0) - h * high_rate - terms.col(1);
+  return terms;
+}
+
+StepPath::StepPath(const Dynamics& dynamics, const State& low, double h, const State& high)
+    : model_(&dynamics.model()), v_{low.v, high.v - low.v} {
+  VecX<double> low_rate, high_rate;
+  dynamics.coordinate_rates(low.q, low.v, low_rate);
+  dynamics.coordinate_rates(high.q, high.v, high_rate);
+  q_ = {low.q, hermite_terms(low.q, low_rate, h, high.q, high_rate)};
+}
+
+StepPath::StepPath(const Model& model, StepPolynomial q, StepPolynomial v)
+    : model_(&model), q_(std::move(q)), v_(std::move(v)) {}
+
 void StepPath::at(double x, VecX<double>& q) const {
-  const double y = 1 - x, of_high = x * x * (3 - 2 * x), of_low = 1 - of_high;
-  q = of_low * low_.q + of_high * high_.q + (h_ * x * y * y) * low_rate_ - (h_ * x * x * y) * high_rate_;
-  normalise_rotations(model_, q);
+  q_.at(x, q);
+  normalise_rotations(*model_, q);
 }
 
 }  // namespace pliant

@@ -21,9 +21,29 @@ class EigenFactor final : public SparseFactor {
     return true;
   }
 
-  void do_solve(Eigen::Ref<Eigen::MatrixXd> x) override { x = ldlt_.solve(x).eval(); }
+  /// All right-hand sides together, a row each of y: an entry of L serves all of them.
+  void do_solve(Eigen::Ref<Eigen::MatrixXd> x) override {
+    if (x.cols() == 1) {
+      x = ldlt_.solve(x).eval();
+      return;
+    }
+    const SparseMatrix& L = ldlt_.matrixL().nestedExpression();
+    const Eigen::VectorXd pivots = ldlt_.vectorD();
+    y_ = (ldlt_.permutationP() * x).transpose();
+    for (int j = 0; j < size(); ++j) {
+      for (SparseMatrix::InnerIterator entry(L, j); entry; ++entry)
+        y_.col(entry.row()) -= entry.value() * y_.col(j);
+    }
+    for (int j = static_cast<int>(size()); j-- > 0;) {
+      y_.col(j) /= pivots[j];
+      for (SparseMatrix::InnerIterator entry(L, j); entry; ++entry)
+        y_.col(j) -= entry.value() * y_.col(entry.row());
+    }
+    x = ldlt_.permutationPinv() * y_.transpose();
+  }
 
   Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
+  Eigen::MatrixXd y_;
 };
 
 }  // namespace

@@ -20,11 +20,15 @@ class ExplicitRungeKutta : public Integrator {
   int error_order() const override { return of_->error_order; }
   void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
+  /// By its continuous extension; where something oscillates freely as other methods do.
+  StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
+                StepCounters& counters) override;
 
  private:
   /// The rates at (t, q_, v_), in the columns of a stage.
   void take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank, const State& modes,
                   Workspace<double>& work, StepCounters& counters);
+  bool ended_at(const Dynamics& dynamics, double t, const State& state) const;
   /// Of the step that was taken, in tolerances; v: velocities at its start.
   double error_of(double h, const VecX<double>& v);
 
@@ -36,6 +40,7 @@ class ExplicitRungeKutta : public Integrator {
   // Where the rates at the end were taken, which are those at the start of the next step.
   State last_;
   double last_t_ = 0;
+  Workspace<double> between_work_;  ///< of rates that are taken after a step
 };
 
 }  // namespace pliant

@@ -19,6 +19,7 @@ class FreeStages {
  public:
   /// For steps of h (s); at once when it is for those already.
   void prepare(const Model& model, const ButcherTableau& of, double h);
+  bool any() const { return !parts_.empty(); }
   /// Keeps n of a stage, at (q, v), and leaves v_dot of these coordinates zero; and their q_dot.
   void take(int stage, const VecX<double>& q, const VecX<double>& v, VecX<double>& v_dot);
   void still(VecX<double>& q_dot) const;

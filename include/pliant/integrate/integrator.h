@@ -8,6 +8,7 @@
 
 #include <pliant/body/dynamics.h>
 #include <pliant/integrate/error_scale.h>
+#include <pliant/integrate/step_path.h>
 
 namespace pliant {
 
@@ -47,6 +48,13 @@ class Integrator {
   /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
   /// the step free.
   virtual bool local_is_implicit() const { return false; }
+
+  /// What the step that was taken last, of h seconds between two states, is in between: as well as the method
+  /// knows, which may take some evaluations; else without one.
+  virtual StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
+                        StepCounters&) {
+    return {dynamics, low, h, high};
+  }
 
   /// The error that is estimated of a step is O(h^(this + 1)); 0: none is.
   virtual int error_order() const { return 0; }

@@ -13,19 +13,11 @@
 #include <pliant/integrate/contact_stepping.h>
 #include <pliant/integrate/error_scale.h>
 #include <pliant/integrate/integrator.h>
+#include <pliant/integrate/joint_switching.h>
 #include <pliant/integrate/step_failure.h>
 #include <pliant/integrate/step_length.h>
 
 namespace pliant {
-
-/// What a joint does to its first side (a part, or the world) when it, or another of its island, begins to
-/// act on parts whose velocities do not agree with it, or when the rate jumps at which one's ends are moved.
-struct HoldImpulse {
-  double time;           ///< s
-  int joint;             ///< its number in the model
-  Wrench impulse;        ///< N s and N m s, about its first point
-  bool of_path = false;  ///< whether by a path whose rate jumped
-};
 
 class Simulation {
  public:
@@ -72,7 +64,7 @@ class Simulation {
   const StepCounters& step_counters() const { return step_counters_; }
   /// The impulses of joints that took hold of moving parts, or of which a path's rate jumped, in the order of
   /// time; those that are mere rounding are left out.
-  const std::vector<HoldImpulse>& hold_impulses() const { return hold_impulses_; }
+  const std::vector<HoldImpulse>& hold_impulses() const { return switching_.impulses(); }
   /// Work of the kernels, summed over parts.
   Counters counters() const;
   /// Parameters that once had no inertia and were held: "part.parameter".
@@ -86,12 +78,6 @@ class Simulation {
   StepError try_step();
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
-  double after_kink(double t, double near) const;
-  void switch_joints(double t, double near);
-  void take_hold(const std::vector<bool>& islands, double t, Workspace<double>& work);
-  void follow_paths(double kink, double near, double t);
-  void note_impulses(const Island& island, double t, bool of_path, const VecX<double>& v_before,
-                     const VecX<double>& impulses, Workspace<double>& work);
   void begin_step();
   void give_up_step();
   void check(const State& before);
@@ -100,6 +86,7 @@ class Simulation {
   Model model_;
   std::unique_ptr<ThreadPool> pool_;
   Dynamics dynamics_;
+  JointSwitching switching_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<ErrorScale> scale_;  ///< with a tolerance
   IntegratorChoice choice_;
@@ -108,9 +95,7 @@ class Simulation {
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
-  std::vector<HoldImpulse> hold_impulses_;
-  std::size_t last_good_impulses_ = 0;  ///< how many there were at the last good state
-  std::vector<bool> held_;              ///< by velocity
+  std::vector<bool> held_;  ///< by velocity
   double start_energy_ = 0;
 };
 

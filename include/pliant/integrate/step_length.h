@@ -3,15 +3,26 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <pliant/integrate/integrator.h>
 
 namespace pliant {
 
+/// What steps grow by, from one to the next, where they do.
+struct StepGrowth {
+  double least, most;
+};
+/// Matrices that a method has factored hold for steps of one length.
+inline StepGrowth growth_of(const Integrator& method) {
+  return method.local_is_implicit() ? StepGrowth{2, 40} : StepGrowth{1, 6};
+}
+
 /// The next step after one of h that made an error, in tolerances. order: of the estimate. last_error: of the
-/// step before it, 0 where there was none. rejected: whether the step is to be taken again, or was so.
-double next_step(double h, double error, double last_error, int order, bool rejected);
+/// step before it, 0 where there was none. rejected: whether the step is to be taken again, or was so. most:
+/// times h that it is at most.
+double next_step(double h, double error, double last_error, int order, bool rejected, double most);
 
 /// A first step at a state. work: any.
 double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, const State& state,
@@ -24,19 +35,15 @@ struct StepError {
   double length;  ///< of the step as it was taken, s: it may have ended where bodies met
 };
 
-/// The least that steps grow by, where they do: the matrices that a method has factored hold for steps of one
-/// length.
-inline double least_growth(const Integrator& method) {
-  return method.local_is_implicit() ? 1.5 : 1;
-}
-
 /// Takes a step from a state, whose h is the first it tries, which ends at a time at the latest and then
-/// exactly there. attempt(): takes the step in the state, returns its StepError. growth: the next one is as
-/// long, unless it may be so many times longer. False when the step would have to be shorter than `least`.
+/// exactly there. attempt(): takes the step in the state, returns its StepError. growth: where there is a
+/// least, above 1, the next one is as long, unless it may be so many times longer. False when the step would
+/// have to be shorter than `least`.
 template <class Attempt>
-bool take_controlled_step(State& state, double end, double least, double growth, StepCounters& counters,
+bool take_controlled_step(State& state, double end, double least, StepGrowth growth, StepCounters& counters,
                           Attempt&& attempt) {
   constexpr double kNearEnd = 0.99;  // a step that comes so near to the end goes there
+  constexpr double kFewSteps = 1e3;
   const State begun = state;
   const double now = begun.time();
   bool rejected = false;
@@ -49,12 +56,20 @@ bool take_controlled_step(State& state, double end, double least, double growth,
     state.h = taken;
     if (taken <= least && !last) return false;
     const auto [error, order, length] = attempt();
-    double next = next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1));
-    if (next > taken && next < growth * taken) next = taken;
+    double next =
+        next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1), growth.most);
+    if (error <= 1 && growth.least > 1) {
+      // Steps of one length as far as they can, to the end too.
+      const double steps = (end - now - length) / next;
+      if (next < growth.least * taken)
+        next = taken;
+      else if (steps < kFewSteps)
+        next = (end - now - length) / std::ceil(steps);
+    }
     if (error <= 1) {
       const bool cut = length < taken;
       state.start = last && !cut ? end : now + length;
-      state.h = last || cut ? std::max(h, next) : next;  // one that was cut short says little about the next
+      state.h = cut ? h : last ? std::max(h, next) : next;  // one that was cut short says little of the next
       state.error = error;
       return true;
     }
