@@ -9,7 +9,7 @@
 //   solid      free tumbling superellipsoid, tapered, twisted and bent, all its parameters elastic
 //   four-bars  40 windows of rods on hinges in a row that turn (IFToMM A02)
 //   assembly   five stretching ellipsoids, apart, while their joints draw them together (Baumgarte)
-//   ringing    free balloon of 108 triangles that rings and tumbles
+//   ringing    free balloon of 432 triangles that rings and tumbles
 //   stiff      the same, a thousand times as stiff and damped, on a string
 //   bounce     a ball that rebounds from a plane, 0.8 times as fast each time
 //   see-saw    a ball that falls onto the end of a board on a pivot and throws up another
