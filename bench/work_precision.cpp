@@ -9,9 +9,11 @@
 //
 // Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
 // others tolerances from 0.1 on, each a tenth of the one before. error: at the end, of the places of bodies
-// over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times; error_v:
-// of velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
-// Time: CPU time of the stepping loop, one thread, the least of several, in runs that stop nowhere before.
+// over their length, or of all coordinates (error_scale.h); error_along: the worst at eight times, of a run
+// that stops at each, as are gaps and energies; error_v: of velocities at the end, over the fastest;
+// error_lambda: of the forces of joints there, over the largest.
+// Time: CPU time of the stepping loop, one thread, the least of several, in runs that stop nowhere before,
+// without the trial by which auto chooses.
 // Reference: dop853 to 1e-12, or the least that rounding lets it hold; its difference is that from the method
 // of extrapolation.h, of parts with parameters or nodes from dormand_prince to 1e-11. Where bodies touch:
 // dop853 to 1e-8 and rk4, each in short steps and half as long ones, extrapolated, as the error of contacts
@@ -91,19 +93,12 @@ double go(const Problem& problem, const Setting& setting, int parts, F&& after_p
   return seconds;
 }
 
-/// Once with samples, then timed until so many seconds are spent, to the end at once: steps to a tolerance
-/// would be cut short by samples. Throws StepFailure.
+/// Once with samples, then timed until so many seconds are spent: steps to a tolerance would be cut short by
+/// samples, and go to the end at once then. What is told of the end is of the runs that are timed. Throws
+/// StepFailure.
 Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) {
   Outcome result;
-  double least = go(problem, setting, kSamples, [&](Simulation& simulation) {
-    const Ledger ledger = simulation.ledger();
-    result.balance = std::max(result.balance, std::abs(ledger.balance));
-    result.kinetic = std::max(result.kinetic, ledger.kinetic);
-    result.gap = std::max(result.gap, worst_gap(simulation.model(), simulation.state()));
-    result.states.push_back(simulation.state());
-  });
   auto at_end = [&](const Simulation& simulation) {
-    if (result.steps > 0) return;
     result.end = simulation.state();
     result.evaluations = simulation.step_counters().evaluations;
     result.steps = simulation.step_counters().steps;
@@ -111,8 +106,20 @@ Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) 
     simulation.dynamics().accelerations(result.end.time(), result.end.q, result.end.v, result.end, work);
     result.lambda = work.joints.lambda;
   };
-  if (setting.tolerance > 0) least = std::numeric_limits<double>::infinity();
-  for (double spent = 0; result.steps == 0 || spent < repeats;) {
+  double least = go(problem, setting, kSamples, [&](Simulation& simulation) {
+    const Ledger ledger = simulation.ledger();
+    result.balance = std::max(result.balance, std::abs(ledger.balance));
+    result.kinetic = std::max(result.kinetic, ledger.kinetic);
+    result.gap = std::max(result.gap, worst_gap(simulation.model(), simulation.state()));
+    result.states.push_back(simulation.state());
+    at_end(simulation);
+  });
+  double spent = least;
+  if (setting.tolerance > 0 && repeats > 0) {
+    least = std::numeric_limits<double>::infinity();
+    spent = 0;
+  }
+  while (spent < repeats) {
     const double seconds = go(problem, setting, 1, at_end);
     least = std::min(least, seconds);
     spent += seconds;

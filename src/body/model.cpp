@@ -76,10 +76,17 @@ Model::Model(MultiBody& body) : body_(&body) {
                         torque->against == nullptr ? -1 : body.index(*torque->against)});
   }
   body.stabilization.check();
+  auto note_times = [&](double on, double off) {
+    for (const double time : {on, off})
+      if (time > 0 && std::isfinite(time)) switch_times_.push_back(time);
+  };
   for (const auto& joint : body.joints()) {
     add_joint(*joint);
-    for (const double time : {joint->on(), joint->off()})
-      if (std::isfinite(time)) switch_times_.push_back(time);
+    note_times(joint->on(), joint->off());
+  }
+  if (body.contact.active) {
+    for (const ContactPlane& plane : body.contact.planes) note_times(plane.on, plane.off);
+    for (const ContactObstacle& obstacle : body.contact.obstacles) note_times(obstacle.on, obstacle.off);
   }
   std::sort(switch_times_.begin(), switch_times_.end());
   lay_sides();

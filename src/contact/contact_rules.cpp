@@ -23,6 +23,11 @@ std::pair<int, int> in_order(int a, int b) {
 
 }  // namespace
 
+double smaller_size(const Model& model, const Contact& contact) {
+  const double a = model.parts()[at(contact.a.part)].part->size();
+  return contact.b.part < 0 ? a : std::min(a, model.parts()[at(contact.b.part)].part->size());
+}
+
 ContactRules::ContactRules(const Model& model)
     : model_(&model),
       n_parts_(static_cast<int>(model.parts().size())),

@@ -175,7 +175,7 @@ void ContactFinder::find_on_plane(int a, std::size_t number, double most, std::v
 
 void ContactFinder::find_on_obstacle(int a, std::size_t number, double t, double most,
                                      std::vector<Contact>& found) const {
-  if (!model_->body().contact.obstacles[number].acts_at(t)) return;
+  if (!model_->body().contact.obstacles[number].acts_before(t)) return;
   const Placed& placed = scratch_->parts[at(a)];
   const std::size_t first = found.size();
   find_on_mesh({*model_->parts()[at(a)].part, *surfaces_[at(a)], scratch_->values[at(a)], placed.c, placed.R,

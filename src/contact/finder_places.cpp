@@ -78,8 +78,9 @@ void ContactFinder::place_planes(double t) const {
   scratch_->planes.clear();
   for (const ContactPlane& plane : model_->body().contact.planes) {
     const Vec3<Taylor2<double>> moving = plane.point.at(t);
-    scratch_->planes.push_back(
-        {plane.acts_at(t), {moving[0].v, moving[1].v, moving[2].v}, {moving[0].d, moving[1].d, moving[2].d}});
+    scratch_->planes.push_back({plane.acts_before(t),
+                                {moving[0].v, moving[1].v, moving[2].v},
+                                {moving[0].d, moving[1].d, moving[2].d}});
   }
 }
 

@@ -14,8 +14,6 @@ namespace pliant {
 
 namespace {
 
-/// Share of the thinner of two parts that they may move against each other in a step.
-constexpr double kThinStep = 0.4;
 /// An obstacle holds what is no deeper behind it than this share of the part's thickness: beyond may be the
 /// far side of the part, over a plate that it lies on. In a step it moves by less.
 constexpr double kDeepest = 0.25, kStepShare = 0.2;
@@ -133,7 +131,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   };
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
-    if (!plane.acts_at(t) || (sleeps(state, on.part) && plane.point.is_constant())) continue;
+    if (!plane.acts_before(t) || (sleeps(state, on.part) && plane.point.is_constant())) continue;
     const Vec3<Taylor2<double>> moving = plane.point.at(t);
     const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v);
     const Around& ball = balls.at(on.part);
@@ -156,7 +154,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   }
   std::vector<MeshTouch> touches;
   for (const OnObstacle& on : on_obstacles_) {
-    if (!model_->body().contact.obstacles[on.obstacle].acts_at(t) || sleeps(state, on.part)) continue;
+    if (!model_->body().contact.obstacles[on.obstacle].acts_before(t) || sleeps(state, on.part)) continue;
     touches.clear();
     const Around& ball = balls.at(on.part);
     if (!on.mesh->comes_near(ball.c, ball.reach)) continue;
@@ -223,17 +221,15 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
       if (after != nullptr && falls) swept.gained = std::max(0.0, h * speed(*after, h * g) - swept.way);
       swept.reach += swept.way + swept.gained + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
     } else if (m.motion != nullptr) {
-      for (const double when : {t, t + h}) {
-        const MovingFrame frame = m.motion->at(when);
-        swept.way = std::max(swept.way, h * (frame.c_dot.norm() + swept.reach * frame.omega.norm()));
-      }
+      const PrescribedMotion::Mean mean = m.motion->over(t, h, swept.reach);
+      swept.way = h * (mean.c_dot.norm() + mean.beside);
       swept.reach += swept.way;
     }
     all.emplace(part, swept);
   }
   for (const OnPlane& on : planes_) {
     const ContactPlane& plane = model_->body().contact.planes[on.plane];
-    if (!plane.acts_at(t) && !plane.acts_at(t + h)) continue;
+    if (!plane.acts_before(t) && !plane.acts_before(t + h)) continue;
     if (sleeps(state, on.part) && plane.point.is_constant()) continue;
     const Swept& a = all.at(on.part);
     for (const double when : {t, t + h})
@@ -241,7 +237,7 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
-    if ((!obstacle.acts_at(t) && !obstacle.acts_at(t + h)) || sleeps(state, on.part)) continue;
+    if ((!obstacle.acts_before(t) && !obstacle.acts_before(t + h)) || sleeps(state, on.part)) continue;
     const Swept& a = all.at(on.part);
     if (!on.mesh->comes_near(a.c, a.reach)) continue;
     near.soft = true;
@@ -250,7 +246,8 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
   }
   each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
     near.soft = true;
-    const double thin = kThinStep * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
+    const double thin =
+        ContactFinder::kThinShare * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
     near.keep_within(a.way + b.way, a.gained + b.gained + (a.fall - b.fall).norm(), thin, h,
                      after != nullptr);
   });

@@ -12,8 +12,6 @@ namespace pliant {
 
 namespace {
 
-/// Share of the thinner of two parts that they may move against each other in a step.
-constexpr double kThinShare = 0.4;
 /// Most that a part may turn in a step over a plane, rad.
 constexpr double kMostTurn = 0.5;
 /// Ways that are so many times as long as they may be do not take a step back.
@@ -45,10 +43,9 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   ball = {scratch_->parts[at(i)].c,    Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
           scratch_->parts[at(i)].reach};
   if (m.motion != nullptr) {
-    const MovingFrame now = m.motion->at(t), then = m.motion->at(t + h);
-    ball.c_dot = (then.c - now.c) / h;
-    ball.speed = ball.reach * std::max(now.omega.norm(), then.omega.norm()) +
-                 std::max((now.c_dot - ball.c_dot).norm(), (then.c_dot - ball.c_dot).norm());
+    const PrescribedMotion::Mean mean = m.motion->over(t, h, ball.reach);
+    ball.c_dot = mean.c_dot;
+    ball.speed = mean.beside;
   }
   double spare = 0;
   if (m.q0 >= 0) {
@@ -104,7 +101,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   }
   const auto& planes = model_->body().contact.planes;
   for (std::size_t k = 0; k < planes.size(); ++k) {
-    if (!(planes[k].acts_at(t) || planes[k].acts_at(t + h))) continue;
+    if (!(planes[k].acts_before(t) || planes[k].acts_before(t + h))) continue;
     for (const double when : {t, t + h}) {
       const Vec3<double> point = planes[k].point.value(when);
       for (const int i : smooth_) {
@@ -121,7 +118,7 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   }
   const auto& obstacles = model_->body().contact.obstacles;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
-    if (!(obstacles[k].acts_at(t) || obstacles[k].acts_at(t + h))) continue;
+    if (!(obstacles[k].acts_before(t) || obstacles[k].acts_before(t + h))) continue;
     for (const int i : smooth_) {
       if (sleeps(state, i)) continue;
       const Scratch::Ball& ball = s.balls[at(i)];

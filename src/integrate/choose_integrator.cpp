@@ -15,9 +15,11 @@ namespace pliant {
 
 namespace {
 
-/// Steps of a trial, of which the first do not count: steps grow then, and what rings as a motion begins may
-/// die away.
-constexpr int kSteps = 96, kStarting = 32;
+/// Steps of a trial, of which one in kStarting does not count, the first: steps grow then, and what rings as
+/// a motion begins may die away. Those that keep factors grow for longer.
+constexpr int kSteps = 48, kStepsWithFactors = 96, kStarting = 3;
+/// A trial ends here, s: what does not move tells no more.
+constexpr double kFar = 1e3;
 /// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
 /// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 constexpr double kFactorisation = 0.005;
@@ -27,8 +29,8 @@ constexpr double kFactorisation = 0.005;
 constexpr double kSparseFactorisation = 13;
 /// What is solved in a step with these factors, in factorisations: 0.13 of that shell, 0.1 of that solid.
 constexpr double kSolves = 0.1;
-/// From this tolerance on a step is rather short where bodies touch: its error there is of first order,
-/// whatever the method.
+/// To this tolerance and coarser ones the short steps of bodies that touch, of first order whatever the
+/// method, are most of what is done.
 constexpr double kCoarse = 1e-3;
 /// Velocities of parts beyond which stiff ones are not taken all at once.
 constexpr int kMostStiff = 300;
@@ -38,8 +40,7 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
             double factorisation) {
   State state = start;
   Workspace<double> work;
-  StepCounters counters;
-  const double far = std::numeric_limits<double>::max();
+  StepCounters counters, before;
   const int order = method.error_order();
   const StepError none{std::numeric_limits<double>::infinity(), order, 0};
   method.measure(&scale);
@@ -55,18 +56,22 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
     return state.q.allFinite() && state.v.allFinite() ? error : none;
   };
   state.h = first_step(dynamics, scale, order, state, work, counters);
-  double begun = 0;
-  StepCounters before;
-  for (int i = 0; i < kSteps; ++i) {
-    if (i == kStarting) {
+  const StepGrowth growth = growth_of(method, dynamics.model());
+  const int most = growth.rarely ? kStepsWithFactors : kSteps;
+  const double far = start.time() + kFar;
+  double begun = start.time();
+  int begun_at = 0, steps = 0;
+  for (; steps < most && state.time() < far; ++steps) {
+    if (steps == most / kStarting) {
       begun = state.time();
+      begun_at = steps;
       before = counters;
     }
-    if (!take_controlled_step(state, far, 0, growth_of(method), counters, attempt)) return 0;
+    if (!take_controlled_step(state, far, 0, growth, counters, attempt)) return 0;
   }
-  const auto factored = static_cast<double>(counters.factorisations - before.factorisations);
-  return (state.time() - begun) / (static_cast<double>(counters.evaluations - before.evaluations) +
-                                   factorisation * (factored + kSolves * (kSteps - kStarting)));
+  const auto evaluations = static_cast<double>(counters.evaluations - before.evaluations),
+             factored = static_cast<double>(counters.factorisations - before.factorisations);
+  return (state.time() - begun) / (evaluations + factorisation * (factored + kSolves * (steps - begun_at)));
 }
 
 /// Whether anything pushes back: elasticity or damping of parts, springs.
@@ -83,7 +88,10 @@ IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& s
   const Model& model = dynamics.model();
   if (!anything_stiff(model)) {
     if (model.body().contact.active && scale.tolerance() >= kCoarse)
-      return {"dormand_prince", "nothing is elastic or damped, and what touches is of first order"};
+      return {
+          "dormand_prince",
+          "nothing is elastic or damped, and to a tolerance this coarse the short steps of bodies that touch "
+          "need no higher order"};
     return {"dop853", "nothing is elastic or damped"};
   }
   bool modes = false;

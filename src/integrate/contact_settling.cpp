@@ -18,7 +18,7 @@ namespace pliant {
 
 namespace {
 
-/// Bodies that overlap are parted at most at this speed, in sizes of side a a second, or as fast as they
+/// Bodies that overlap are parted at most at this speed, in sizes of the smaller a second, or as fast as they
 /// move.
 constexpr double kPartingSpeed = 1;
 constexpr int kMostPartings = 16;
@@ -70,7 +70,7 @@ double ContactSettling::swing(const ContactSide& side, const Vec3<double>& x, co
 
 /// How far a contact may be parted in a step of h seconds, m: at kPartingSpeed, and as far as its bodies go.
 double ContactSettling::most_parting(const Contact& contact, double h) const {
-  double most = kPartingSpeed * h * dynamics_.model().parts()[at(contact.a.part)].part->size();
+  double most = kPartingSpeed * h * smaller_size(dynamics_.model(), contact);
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) most += went_[at(side->part)];
   return most;

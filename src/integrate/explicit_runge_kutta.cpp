@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include <pliant/integrate/advance.h>
 #include <pliant/integrate/settle.h>
+#include <pliant/integrate/step_failure.h>
+#include <pliant/local/inverted_element.h>
 #include <pliant/math/index.h>
 
 #include "linear_growth.h"
@@ -135,28 +138,36 @@ void ExplicitRungeKutta::step(const Dynamics& dynamics, State& state, Workspace<
 
 StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const State& low, double h, const State& high,
                                   StepCounters& counters) {
-  const ContinuousExtension* between = of_->between;
-  if (between == nullptr || free_.any()) return Integrator::path(dynamics, low, h, high, counters);
+  if (of_->between == nullptr || free_.any()) return Integrator::path(dynamics, low, h, high, counters);
+  try {
+    return extended(dynamics, low, h, high, counters);
+  } catch (const StepFailure&) {  // where the motion itself did not go
+  } catch (const InvertedElement&) {
+  }
+  return Integrator::path(dynamics, low, h, high, counters);
+}
+
+StepPath ExplicitRungeKutta::extended(const Dynamics& dynamics, const State& low, double h, const State& high,
+                                      StepCounters& counters) {
+  const ContinuousExtension& between = *of_->between;
   const double t = low.time();
-  const int n = of_->stages, all = n + 1 + between->stages;
+  const int n = of_->stages, all = n + 1 + between.stages;
   if (!ended_at(dynamics, t + h, high)) {
+    last_.q.resize(0);
     q_ = high.q;
     v_ = high.v;
     take_rates(dynamics, t + h, n, RankRule::decide, high, between_work_, counters);
   }
-  const double* a = between->a;
+  const double* a = between.a;
   for (int k = n + 1; k < all; a += k, ++k) {
     combine(low.q, q_rates_, a, k, h, q_);
     combine(low.v, v_rates_, a, k, h, v_);
-    take_rates(dynamics, t + between->c[k - n - 1] * h, k, RankRule::keep, high, between_work_, counters);
+    take_rates(dynamics, t + between.c[k - n - 1] * h, k, RankRule::decide, high, between_work_, counters);
   }
-  const Eigen::Map<const MatX<double>> d(between->d, all, between->terms);
-  auto polynomial = [&](const VecX<double>& start, const MatX<double>& rates, const VecX<double>& end) {
-    StepPolynomial u{start, hermite_terms(start, rates.col(0), h, end, rates.col(n), between->terms)};
-    u.terms.rightCols(between->terms).noalias() = h * rates * d;
-    return u;
-  };
-  return {dynamics.model(), polynomial(low.q, q_rates_, high.q), polynomial(low.v, v_rates_, high.v)};
+  StepPolynomial q{low.q, hermite_terms(low.q, q_rates_.col(0), h, high.q, q_rates_.col(n), between.terms)};
+  q.terms.rightCols(between.terms).noalias() =
+      h * q_rates_ * Eigen::Map<const MatX<double>>(between.d, all, between.terms);
+  return {dynamics.model(), std::move(q)};
 }
 
 double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {

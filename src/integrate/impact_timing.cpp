@@ -21,6 +21,8 @@ constexpr double kApart = 100 * kGap;
 constexpr int kMostHalvings = 20;
 /// The path between the ends of the step is followed to this part of the step.
 constexpr double kOfPath = 1e-9;
+/// Rates are of gaps at times that are as far apart, in steps; of nearer ones they are rounding.
+constexpr double kForRate = 1e-6;
 /// Secants that have not led there in so many trials leave it to the bracket.
 constexpr int kMostSecants = 8;
 
@@ -60,7 +62,7 @@ std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
     tau = meets.guess();
     if (tau == last) break;
     f = gap(tau);
-    speed = (f - f_last) / (tau - last);
+    if (std::abs(tau - last) > kForRate * h) speed = (f - f_last) / (tau - last);
     if (std::abs(tau - last) <= kOfPath * h) break;
   }
   return {tau, speed};

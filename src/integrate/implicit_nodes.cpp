@@ -63,8 +63,7 @@ double& diagonal(SparseMatrix& A, Eigen::Index i) {
 
 ImplicitNodes::ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor)
     : ImplicitPart(part), factor_(std::move(factor)) {
-  follows_ = std::any_of(local().energies().begin(), local().energies().end(),
-                         [](const auto& energy) { return energy->of() == Of::position; });
+  follows_ = !local().stiffness_is_constant();
   VecX<double> q_s(part.n_s);
   for (int k = 0; k < part.n_s; ++k) q_s[k] = part.part->parameters().moving(k).rest_value();
   none_.setZero(local().n_d());
@@ -185,7 +184,7 @@ void ImplicitNodes::lay_border(const NodalWorkspace& at, double c) {
   for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
-  if (follows_) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // what is between is zero
+  if (follows_ && n_s > 0) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // what is between is zero
   if (n_gas > 0) factor_->solve(T_.rightCols(n_gas));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_gas).array() -= 1;

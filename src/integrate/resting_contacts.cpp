@@ -39,9 +39,7 @@ double RestingContacts::loosened(double tight) const {
 }
 
 double RestingContacts::tight_gap(const Contact& contact) const {
-  auto size = [&](int part) { return model_.parts()[static_cast<std::size_t>(part)].part->size(); };
-  const double a = size(contact.a.part);
-  return kResting * (contact.b.part < 0 ? a : std::min(a, size(contact.b.part)));
+  return kResting * smaller_size(model_, contact);
 }
 
 /// Marks parts that are not where they were looked at last; whether these are few.
@@ -115,7 +113,7 @@ std::vector<Contact> RestingContacts::met(const FreeMotion& motion, const std::v
   auto lay = [&](const Contact& contact) {
     if (!rest.has(contact)) return false;
     if (contact.gap > 0 && contact.gap <= gap(contact)) return true;
-    const double same = kSamePoint * model_.parts()[at(contact.a.part)].part->size();
+    const double same = kSamePoint * smaller_size(model_, contact);
     return (contact.gap <= 0 &&
             rest.has(contact, [&](const Contact& other) { return (contact.x - other.x).norm() <= same; })) ||
            rested(contact, motion, state);

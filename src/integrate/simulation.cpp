@@ -208,7 +208,7 @@ void Simulation::step_up_to(double until) {
   const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
   const bool bends = std::isfinite(kink.time);
   const double stop = bends ? just_before(kink.time) : end;
-  const bool done = take_controlled_step(state_, stop, least, growth_of(*integrator_), step_counters_,
+  const bool done = take_controlled_step(state_, stop, least, growth_of(*integrator_, model_), step_counters_,
                                          [&] { return try_step(); });
   if (!done) guarded(state_.h, [&] { fail_at_tolerance(); });
   const bool at_kink = bends && state_.start >= stop;

@@ -106,15 +106,16 @@ void Sleeping::note_drives() {
 
 /// What appears and goes.
 void Sleeping::note_switches() {
-  auto switches = [](const auto& thing) {
-    return [&thing](double t, double h) { return thing.acts_at(t) != thing.acts_at(t + h); };
-  };
   for (const JointModel& joint : model_.joints())
     if (joint.joint->on() > 0 || std::isfinite(joint.joint->off()))
-      drives_.push_back({joint.sides.front().part, switches(*joint.joint)});
+      drives_.push_back({joint.sides.front().part, [of = joint.joint](double t, double h) {
+                           return of->acts_at(t) != of->acts_at(t + h);
+                         }});
   auto note = [&](const auto& things) {
     for (const auto& thing : things)
-      if (thing.on > 0 || std::isfinite(thing.off)) drives_.push_back({-1, switches(thing)});
+      if (thing.on > 0 || std::isfinite(thing.off))
+        drives_.push_back(
+            {-1, [&thing](double t, double h) { return thing.acts_before(t) != thing.acts_before(t + h); }});
   };
   note(model_.body().contact.planes);
   note(model_.body().contact.obstacles);

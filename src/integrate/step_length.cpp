@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pliant/part/nodal_deformation.h>
+
 namespace pliant {
 
 namespace {
@@ -25,6 +27,15 @@ double next_step(double h, double error, double last_error, int order, bool reje
     factor = safety * std::pow(now, -power * (1 - 0.75 * kIntegral)) *
              std::pow(std::max(last_error, kLeastError), power * kIntegral);
   return h * std::clamp(factor, kMostCut, rejected ? 1 : most);
+}
+
+StepGrowth growth_of(const Integrator& method, const Model& model) {
+  const auto& parts = model.parts();
+  const bool keeps =
+      method.local_is_implicit() && std::any_of(parts.begin(), parts.end(), [](const PartModel& m) {
+        return m.local != nullptr && m.local->nodal() != nullptr && m.local->nodal()->stiffness_is_constant();
+      });
+  return keeps ? StepGrowth{true, 40} : StepGrowth{};
 }
 
 double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, const State& state,

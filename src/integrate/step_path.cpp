@@ -24,15 +24,14 @@ MatX<double> hermite_terms(const VecX<double>& low, const Eigen::Ref<const VecX<
 }
 
 StepPath::StepPath(const Dynamics& dynamics, const State& low, double h, const State& high)
-    : model_(&dynamics.model()), v_{low.v, high.v - low.v} {
+    : model_(&dynamics.model()) {
   VecX<double> low_rate, high_rate;
   dynamics.coordinate_rates(low.q, low.v, low_rate);
   dynamics.coordinate_rates(high.q, high.v, high_rate);
   q_ = {low.q, hermite_terms(low.q, low_rate, h, high.q, high_rate)};
 }
 
-StepPath::StepPath(const Model& model, StepPolynomial q, StepPolynomial v)
-    : model_(&model), q_(std::move(q)), v_(std::move(v)) {}
+StepPath::StepPath(const Model& model, StepPolynomial q) : model_(&model), q_(std::move(q)) {}
 
 void StepPath::at(double x, VecX<double>& q) const {
   q_.at(x, q);

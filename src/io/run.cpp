@@ -120,7 +120,6 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
          count_text(assembly.iterations, "iteration") +
          (assembly.settled ? "" : ", the most that are taken; the shapes have not settled"));
   note_redundancy();
-  for (const std::string& text : overlap_notes(*simulation_)) note(text);
   write_layout(folder_->path(), simulation_->model(), schedule_,
                TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
   for (const char* file :
@@ -269,7 +268,10 @@ void Run::record_state() {
   const Gaps gaps = widest_gaps(*simulation_);
   record_.max_gap = std::max(record_.max_gap, gaps.closed);
   record_.open_gap = gaps.open;
-  record_.max_depth = std::max(record_.max_depth, deepest_share(*simulation_));
+  const double depth = deepest_share(*simulation_);
+  record_.max_depth = std::max(record_.max_depth, depth);
+  if (depth > kToldOverlap)
+    for (const std::string& text : overlap_notes(*simulation_, told_overlaps_)) note(text);
   note_redundancy();
   note_holds();
   note_turns();

@@ -59,6 +59,11 @@ NodalDeformation::Linear NodalDeformation::lay_linear(const Part& part) const {
   return linear;
 }
 
+bool NodalDeformation::stiffness_is_constant() const {
+  return std::all_of(energies_.begin(), energies_.end(),
+                     [](const auto& energy) { return energy->of() == NodalEnergy::Of::displacement; });
+}
+
 std::string NodalDeformation::coordinate_name(Eigen::Index k) const {
   const Eigen::Index n = n_nodes();
   if (k >= 3 * n) return "own[" + std::to_string(k - 3 * n) + "]";

@@ -1,5 +1,7 @@
 #include <pliant/part/prescribed_motion.h>
 
+#include <algorithm>
+
 namespace pliant {
 
 MovingFrame PrescribedMotion::at(double t) const {
@@ -15,6 +17,13 @@ MovingFrame PrescribedMotion::at(double t) const {
   frame.omega = turn.d * axis;
   frame.omega_dot = turn.dd * axis;
   return frame;
+}
+
+PrescribedMotion::Mean PrescribedMotion::over(double t, double h, double reach) const {
+  const MovingFrame now = at(t), then = at(t + h);
+  const Vec3<double> c_dot = (then.c - now.c) / h;
+  return {c_dot, reach * std::max(now.omega.norm(), then.omega.norm()) +
+                     std::max((now.c_dot - c_dot).norm(), (then.c_dot - c_dot).norm())};
 }
 
 Eigen::Quaterniond PrescribedMotion::orientation_at(double t) const {

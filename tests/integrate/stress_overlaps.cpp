@@ -184,7 +184,7 @@ TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest fa
       const Vec3<double> before = simulation.model().position(simulation.state(), ball);
       simulation.step(h);
       const Vec3<double> now = simulation.model().position(simulation.state(), ball);
-      REQUIRE((now - before).norm() < kMostSpeed * 0.5 * h * (1 + 1e-9));  // of the larger, if that is side a
+      REQUIRE((now - before).norm() < kMostSpeed * kSize * h * (1 + 1e-9));
       REQUIRE((now - before).head<2>().norm() < 1e-15);
     }
     CHECK(simulation.model().position(simulation.state(), ball)[2] == Approx(0.3 + kSize).epsilon(1e-9));

@@ -192,6 +192,57 @@ TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywher
   CHECK_THROWS_AS(run(*scene_to(1e-6, 0.2), longer, {Existing::resume}), RecordingMismatch);
 }
 
+TEST_CASE("N67: so does a stiff shell, whose steps are as long as its factors hold") {
+  auto scene_until = [](double end) {
+    auto scene = std::make_unique<Scene>();
+    scene->name = "shell";
+    scene->end = end;
+    scene->tolerance = 1e-3;
+    scene->frame_rate = 50;
+    scene->integrator = "linearly_implicit";
+    Part& shell = scene->body.add(make_part("shell", "sphere", {}, 1));
+    shell.rest({{"r", 0.5}}).make_shell();
+    LocalSettings settings;
+    settings.resolution = 2;
+    settings.energies = {local_law("membrane", {1e8, 0.3, 0.01})};
+    settings.beta = 1e-4;
+    shell.deform_locally(settings).move({0, 0.5, 0}, {0.1, 0.2, 0.3});
+    scene->body.ball("string", world(0, 0, 0.5), point(shell, kPi / 2, 0));
+    scene->appearance.emplace_back();
+    return scene;
+  };
+  const NewFolder folder;
+  REQUIRE(run(*scene_until(0.2), folder / "unbroken"));
+  REQUIRE(run(*scene_until(0.13), folder / "longer"));
+  REQUIRE(run(*scene_until(0.2), folder / "longer", {Existing::resume}));
+  CHECK(results_of(folder / "longer") == results_of(folder / "unbroken"));
+  CHECK_FALSE(run(*scene_until(0.2), folder / "broken", {Existing::refuse, 1, 9}));
+  REQUIRE(run(*scene_until(0.2), folder / "broken", {Existing::resume}));
+  CHECK(results_of(folder / "broken") == results_of(folder / "unbroken"));
+}
+
+TEST_CASE("N57: a joint that pulls a part into a plane is named with both") {
+  Scene scene;
+  scene.name = "conflict";
+  scene.end = 0.6;
+  scene.step = 2e-3;
+  scene.frame_rate = 50;
+  scene.integrator = "rk4";
+  Part& part = scene.body.add(make_part("weight", "sphere", {}, 1000));
+  part.rest({{"r", 0.1}}).place({0, 0, 0.2});
+  scene.body.ball("pull", world(TimeVector(0, 0, TimeFunction::formula("0.3 - 0.5 * t"))),
+                  point(part, kPi / 2, 0));
+  scene.body.contact.active = true;
+  scene.body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  scene.appearance.emplace_back();
+  const NewFolder folder;
+  REQUIRE(run(scene, folder / "out"));
+  const std::string notes = record_of(folder / "out").at("notes").dump();
+  CAPTURE(notes);
+  CHECK(notes.find("part 'weight' and the plane 'floor' overlap by") != std::string::npos);
+  CHECK(notes.find("unless ball 'pull' holds them") != std::string::npos);
+}
+
 TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its steps") {
   // A free top, and a ball that bounces: its steps are as long as its flights.
   auto scene_of = [](double tolerance) {

@@ -13,6 +13,13 @@
 
 namespace pliant {
 
+/// Whether something that is there from `on` until `off` is so in a step that ends at a time t; steps end at
+/// such times, but for rounding. s.
+inline bool there_before(double t, double on, double off) {
+  constexpr double kRounding = 1e-12;
+  return (on <= 0 || t > on * (1 + kRounding)) && t <= off * (1 + kRounding);
+}
+
 /// An immobile, impenetrable half space below a plane, or one that is moved by hand.
 struct ContactPlane {
   std::string name;
@@ -22,6 +29,7 @@ struct ContactPlane {
   double off = std::numeric_limits<double>::infinity();  ///< until that, s
 
   bool acts_at(double t) const { return on <= t && t < off; }
+  bool acts_before(double t) const { return there_before(t, on, off); }
 };
 
 /// An immobile body whose surface is a triangle mesh, one-sided where it is open (contact/obstacle_mesh.h).
@@ -33,6 +41,7 @@ struct ContactObstacle {
   double off = std::numeric_limits<double>::infinity();  ///< until that, s
 
   bool acts_at(double t) const { return on <= t && t < off; }
+  bool acts_before(double t) const { return there_before(t, on, off); }
 };
 
 /// Parts, planes and obstacles that pairs can name together.

@@ -143,7 +143,7 @@ class Model {
   const std::vector<RigidIsland>& rigid_islands() const { return rigid_islands_; }
   /// Parts that are in no island.
   const std::vector<int>& lone_parts() const { return lone_parts_; }
-  /// Times at which joints begin or cease to act, in order.
+  /// Times after 0 at which joints, planes and obstacles begin or cease to act, in order, s.
   const std::vector<double>& switch_times() const { return switch_times_; }
   /// Joints that have an end that is moved as prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/body/model.h>
+#include <pliant/contact/contact.h>
 
 namespace pliant {
 
@@ -15,6 +16,9 @@ struct ContactRule {
   bool touch = true;
   double friction = 0, restitution = 0;
 };
+
+/// Size (m) of the smaller of the parts that a contact is of.
+double smaller_size(const Model& model, const Contact& contact);
 
 class ContactRules {
  public:

@@ -1,5 +1,6 @@
-// The method of integration for a model and a tolerance, found by trial: each that may be the best goes on
-// from the start for a few steps, and the one that comes farthest at the same cost is taken. The cost is
+// The method of integration for a model and a tolerance. Where nothing is elastic or damped it is an explicit
+// one of high order; else it is found by trial: each that may be the best goes on from the start for some
+// steps, and the one is taken that comes farthest at the same cost, once its steps have grown. The cost is
 // counted in evaluations of the accelerations, by a fixed model, never by a clock.
 #pragma once
 

@@ -28,6 +28,8 @@ class ExplicitRungeKutta : public Integrator {
   /// The rates at (t, q_, v_), in the columns of a stage.
   void take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank, const State& modes,
                   Workspace<double>& work, StepCounters& counters);
+  StepPath extended(const Dynamics& dynamics, const State& low, double h, const State& high,
+                    StepCounters& counters);
   bool ended_at(const Dynamics& dynamics, double t, const State& state) const;
   /// Of the step that was taken, in tolerances; v: velocities at its start.
   double error_of(double h, const VecX<double>& v);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include <pliant/integrate/integrator.h>
@@ -12,12 +11,12 @@ namespace pliant {
 
 /// What steps grow by, from one to the next, where they do.
 struct StepGrowth {
-  double least, most;
+  bool rarely = false;  ///< only by kWorthAFactor or more, and never less
+  double most = 6;
 };
-/// Matrices that a method has factored hold for steps of one length.
-inline StepGrowth growth_of(const Integrator& method) {
-  return method.local_is_implicit() ? StepGrowth{2, 40} : StepGrowth{1, 6};
-}
+/// Matrices that a method has factored and keeps hold for steps of one length.
+inline constexpr double kWorthAFactor = 2;
+StepGrowth growth_of(const Integrator& method, const Model& model);
 
 /// The next step after one of h that made an error, in tolerances. order: of the estimate. last_error: of the
 /// step before it, 0 where there was none. rejected: whether the step is to be taken again, or was so. most:
@@ -36,14 +35,12 @@ struct StepError {
 };
 
 /// Takes a step from a state, whose h is the first it tries, which ends at a time at the latest and then
-/// exactly there. attempt(): takes the step in the state, returns its StepError. growth: where there is a
-/// least, above 1, the next one is as long, unless it may be so many times longer. False when the step would
+/// exactly there. attempt(): takes the step in the state, returns its StepError. False when the step would
 /// have to be shorter than `least`.
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double least, StepGrowth growth, StepCounters& counters,
                           Attempt&& attempt) {
   constexpr double kNearEnd = 0.99;  // a step that comes so near to the end goes there
-  constexpr double kFewSteps = 1e3;
   const State begun = state;
   const double now = begun.time();
   bool rejected = false;
@@ -58,14 +55,7 @@ bool take_controlled_step(State& state, double end, double least, StepGrowth gro
     const auto [error, order, length] = attempt();
     double next =
         next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1), growth.most);
-    if (error <= 1 && growth.least > 1) {
-      // Steps of one length as far as they can, to the end too.
-      const double steps = (end - now - length) / next;
-      if (next < growth.least * taken)
-        next = taken;
-      else if (steps < kFewSteps)
-        next = (end - now - length) / std::ceil(steps);
-    }
+    if (error <= 1 && growth.rarely && next < kWorthAFactor * taken) next = taken;
     if (error <= 1) {
       const bool cut = length < taken;
       state.start = last && !cut ? end : now + length;

@@ -1,4 +1,4 @@
-// Coordinates and velocities between the ends of a step, as polynomials of the place in it.
+// Coordinates between the ends of a step, as polynomials of the place in it.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -16,22 +16,21 @@ struct StepPolynomial {
 
 class StepPath {
  public:
-  /// Without an evaluation: q by cubic Hermite interpolation, O(h^4), v along a straight line, O(h^2).
-  /// low, high: the ends; h: the time between them, s. The model must outlive the path, here and below.
+  /// Without an evaluation, by cubic Hermite interpolation, O(h^4). low, high: the ends; h: the time between
+  /// them, s. The model must outlive the path, here and below.
   StepPath(const Dynamics& dynamics, const State& low, double h, const State& high);
-  /// By polynomials from the ends of a step, as a method tells them (Integrator::path).
-  StepPath(const Model& model, StepPolynomial q, StepPolynomial v);
+  /// As a method tells it (Integrator::path).
+  StepPath(const Model& model, StepPolynomial q);
 
-  /// q and v at a part x of the way, from 0 to 1; quaternions are of unit length.
+  /// q at a part x of the way, from 0 to 1; quaternions are of unit length.
   void at(double x, VecX<double>& q) const;
-  void velocities_at(double x, VecX<double>& v) const { v_.at(x, v); }
 
  private:
   const Model* model_;
-  StepPolynomial q_, v_;
+  StepPolynomial q_;
 };
 
-/// The terms of cubic Hermite interpolation, with room for more. rate: of u, at the ends.
+/// The terms of cubic Hermite interpolation, with room for more, which are any. rate: of u, at the ends.
 MatX<double> hermite_terms(const VecX<double>& low, const Eigen::Ref<const VecX<double>>& low_rate, double h,
                            const VecX<double>& high, const Eigen::Ref<const VecX<double>>& high_rate,
                            int more = 0);

@@ -1,6 +1,8 @@
 // What is to be said of contacts: how deep bodies are in each other.
 #pragma once
 
+#include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,15 @@ namespace pliant {
 /// 0 where nothing touches.
 double deepest_share(const Simulation& simulation);
 
-/// Bodies that overlap at the state of a simulation by more than counts as resting, in words, the deepest
-/// contact of each pair; of many the deepest ones and how many there are.
-std::vector<std::string> overlap_notes(const Simulation& simulation);
+/// Overlaps below this share of the size of the smaller part are told by nothing but run.json.
+inline constexpr double kToldOverlap = 1e-3;
+
+/// Two things that touch: their parts, the second -1 of a plane or an obstacle, and the numbers of these.
+using TouchingPair = std::array<int, 4>;
+
+/// Bodies that overlap at the state of a simulation by more than kToldOverlap, in words, the deepest contact
+/// of each pair that was not told of, with the joints that may hold it there; of many the deepest ones and
+/// how many there are. told: gets them; once there are many nothing more is told.
+std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told);
 
 }  // namespace pliant

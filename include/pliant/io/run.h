@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/io/contact_notes.h>
 #include <pliant/io/contact_recording.h>
 #include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
@@ -95,6 +96,7 @@ class Run {
   double recorded_time_ = -1;                           // of the last recorded state
   std::size_t told_holds_ = 0;                          ///< of the impulses of joints that took hold
   std::set<std::string> told_redundant_, told_turned_;  // texts; names of parts
+  std::set<TouchingPair> told_overlaps_;
   std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
   StepCounters counted_steps_;     // of the sessions before
   Counters counted_work_;

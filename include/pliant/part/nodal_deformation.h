@@ -81,6 +81,8 @@ class NodalDeformation final : public LocalDeformation {
   const VecX<double>& mobility() const { return mobility_; }
   const std::vector<Material<Pack>>& packs() const { return packs_; }
   const std::vector<std::unique_ptr<NodalEnergy>>& energies() const { return energies_; }
+  /// Whether all of them are of displacement.
+  bool stiffness_is_constant() const;
 
   std::string coordinate_name(Eigen::Index k) const override;
   const char* unit(Eigen::Index k) const override;

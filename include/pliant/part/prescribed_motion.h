@@ -32,6 +32,14 @@ struct PrescribedMotion {
     return position.first_kink(after, until).or_sooner(angle.first_kink(after, until));
   }
   Eigen::Quaterniond orientation_at(double t) const;
+
+  /// Over h seconds: the mean velocity of the origin, and how fast at most points as far away as `reach` (m)
+  /// move beside that, as both ends tell. m/s.
+  struct Mean {
+    Vec3<double> c_dot;
+    double beside;
+  };
+  Mean over(double t, double h, double reach) const;
 };
 
 }  // namespace pliant
