@@ -133,9 +133,11 @@ void ContactStepping::strike(const FreeMotion& motion, const std::vector<Contact
                              StepCounters& counters, StageClock& clock) {
   const Pairs rest(resting), struck(impacts);
   const double now = motion.end();
-  // What rests has fallen freely until then as what is in flight has: it is held first.
+  // What rests has fallen freely until then as what is in flight has: it is held first, with what else of it
+  // has come down.
   std::vector<Contact> lying = resting_.met(motion, resting, state);
-  lying.erase(std::remove_if(lying.begin(), lying.end(), [](const Contact& c) { return c.since == 0; }),
+  lying.erase(std::remove_if(lying.begin(), lying.end(),
+                             [&](const Contact& c) { return c.since == 0 && !rest.has(c); }),
               lying.end());
   meshes_.find(state, now, lying);
   time_impacts(finder_, motion, state, lying);
