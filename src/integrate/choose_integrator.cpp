@@ -19,7 +19,7 @@ namespace {
 /// a motion begins may die away. Those that keep factors grow for longer.
 constexpr int kSteps = 48, kStepsWithFactors = 96, kStarting = 3;
 /// A trial ends here, s: what does not move tells no more.
-constexpr double kFar = 1e3;
+constexpr double kLongestTrial = 1e3;
 /// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
 /// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 constexpr double kFactorisation = 0.005;
@@ -58,7 +58,7 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
   state.h = first_step(dynamics, scale, order, state, work, counters);
   const StepGrowth growth = growth_of(method, dynamics.model());
   const int most = growth.rarely ? kStepsWithFactors : kSteps;
-  const double far = start.time() + kFar;
+  const double far = start.time() + kLongestTrial;
   double begun = start.time();
   int begun_at = 0, steps = 0;
   for (; steps < most && state.time() < far; ++steps) {

@@ -227,7 +227,8 @@ constexpr double kDop853BetweenD[] = {-0.84289382761090128651353491142e+1,
                                       0.96324553959188282948394950600e+2,
                                       -0.39177261675615439165231486172e+2,
                                       -0.14972683625798562581422125276e+3};
-constexpr ContinuousExtension kDop853Between{7, 3, kDop853BetweenA, kDop853BetweenC, 4, kDop853BetweenD};
+// Of order 7: wrong by O(h^8).
+constexpr ContinuousExtension kDop853Between{3, kDop853BetweenA, kDop853BetweenC, 4, kDop853BetweenD};
 constexpr ButcherTableau kDop853{"dop853", 8,       12, kDop853A, kDop853B,       kDop853C,
                                  kError5,  kError3, 7,  false,    &kDop853Between};
 

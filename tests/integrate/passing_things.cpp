@@ -16,19 +16,25 @@ Part& ball(MultiBody& body, double r, const Vec3<double>& at) {
   return body.add<Primitive<Sphere>>("ball").rest({{"r", r}}).place(at);
 }
 
+/// A ball that would reach a plane 0.5 s from now, which is there for a time only (s), and rebound as fast.
+void meet_plane(MultiBody& body, double on, double off) {
+  body.gravity.setZero();
+  ball(body, 0.1, {0, 0, 0.6}).move({0, 0, -1}, {0, 0, 0});
+  body.contact.active = true;
+  body.contact.restitution = 1;
+  ContactPlane& plane = body.contact.planes.emplace_back();
+  plane.name = "trap";
+  plane.on = on;
+  plane.off = off;
+}
+
 }  // namespace
 
 TEST_CASE("a plane that goes holds what has met it until then", "[contact]") {
   for (const auto& [method, tolerance] : {std::pair{"dop853", 1e-6}, std::pair{"rk4", 0.0}}) {
     for (const double off : {0.45, 0.55}) {
       MultiBody body;
-      body.gravity.setZero();
-      ball(body, 0.1, {0, 0, 0.6}).move({0, 0, -1}, {0, 0, 0});
-      body.contact.active = true;
-      body.contact.restitution = 1;
-      ContactPlane& plane = body.contact.planes.emplace_back();
-      plane.name = "trap";
-      plane.off = off;
+      meet_plane(body, 0, off);
       Simulation simulation(body, method, 1, tolerance);
       if (tolerance > 0)
         while (simulation.time() < 1) simulation.step_up_to(1);
@@ -42,14 +48,7 @@ TEST_CASE("a plane that goes holds what has met it until then", "[contact]") {
 
 TEST_CASE("a plane that is there for less than a step is met in it", "[contact]") {
   MultiBody body;
-  body.gravity.setZero();
-  ball(body, 0.1, {0, 0, 0.6}).move({0, 0, -1}, {0, 0, 0});
-  body.contact.active = true;
-  body.contact.restitution = 1;
-  ContactPlane& plane = body.contact.planes.emplace_back();
-  plane.name = "flash";
-  plane.on = 0.4997;
-  plane.off = 0.5003;
+  meet_plane(body, 0.4997, 0.5003);
   Simulation simulation(body, "rk4");
   test::run(simulation, 1, 500);
   CHECK(simulation.state().q[2] == Approx(0.6).margin(1e-12));

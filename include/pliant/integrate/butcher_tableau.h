@@ -9,7 +9,6 @@ namespace pliant {
 ///   u(x) = u_0 + x (u_1 - u_0 + y (a + x (b + y (h d_0 k + x (h d_1 k + y (...))))))),   y = 1 - x,
 /// with a = h k_0 - (u_1 - u_0), b = u_1 - u_0 - h k_end - a, as by cubic Hermite interpolation.
 struct ContinuousExtension {
-  int order;        ///< u(x) is wrong by O(h^(order + 1))
   int stages;       ///< more than the method has, after the rates at the end
   const double* a;  ///< of these, row by row: of all k before, with that at the end
   const double* c;

@@ -11,7 +11,7 @@ namespace pliant {
 
 /// What steps grow by, from one to the next, where they do.
 struct StepGrowth {
-  bool rarely = false;  ///< only by kWorthAFactor or more, and never less
+  bool rarely = false;  ///< only by kWorthAFactor or more; else they stay, but for rejected ones
   double most = 6;
 };
 /// Matrices that a method has factored and keeps hold for steps of one length.
