@@ -169,7 +169,7 @@ inline std::vector<Problem> problems() {
           {"solid", 0.4, 0, false, tumbling_solid},
           {"four-bars", 1, 1, false, four_bars},
           {"assembly", 0.5, 0, false, assembly},
-          {"ringing", 0.1, 0, false,
+          {"ringing", 1, 0, false,
            [](MultiBody& body) {
              balloon(body, 1e5, 0).move({0, 0, 0}, {0.1, 0.2, 0.3});
            }},

@@ -1,57 +1,38 @@
-// The motion of joints that hold, to the last digits: Gragg's midpoint rule extrapolated to order 8
-// (Bulirsch & Stoer), on accelerations alone: nothing is projected. For references, which it reaches in
-// hundreds of evaluations where RK4 takes millions; no method of the engine shares it.
+// The motion of what is smooth, to the last digits, by two methods of order 8 that no method of the engine
+// shares: for references, which they reach in hundreds of evaluations where RK4 takes millions. Both know
+// accelerations alone: nothing is projected.
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <pliant/pliant.h>
 
 namespace pliant::bench {
 
-class Extrapolation {
+/// y = (q, v) from a state on, whose limits and joints stay as they are.
+class SmoothMotion {
  public:
-  /// From a state on, whose limits and joints stay as they are.
-  Extrapolation(const Dynamics& dynamics, const State& start)
+  SmoothMotion(const Dynamics& dynamics, const State& start)
       : dynamics_(dynamics), modes_(start), n_q_(start.q.size()), y_(n_q_ + start.v.size()) {
     y_ << start.q, start.v;
     lost_.setZero(y_.size());
   }
-
+  virtual ~SmoothMotion() = default;
   VecX<double> q() const { return y_.head(n_q_); }
-
-  /// Moves from time t to t + step.
-  void step(double t, double step) {
-    // Changes since the start of the step are kept apart from y, so that its rounding is not theirs.
-    const VecX<double> slope = rates(t, y_);
-    std::array<VecX<double>, kColumns> T;
-    for (int k = 0; k < kColumns; ++k) {
-      const int n = 2 * (k + 1);
-      const double h = step / n;
-      VecX<double> before = VecX<double>::Zero(y_.size()), now = h * slope;
-      for (int i = 1; i < n; ++i) {
-        before += 2 * h * rates(t + i * h, y_ + now);
-        before.swap(now);
-      }
-      for (int j = 1; j <= k; ++j) {
-        const double ratio = static_cast<double>(k + 1) / (k + 1 - j);
-        const VecX<double> better = now + (now - T[at(j - 1)]) / (ratio * ratio - 1);
-        T[at(j - 1)].swap(now);
-        now = better;
-      }
-      T[at(k)] = now;
-    }
-    // Kahan's sum.
-    const VecX<double> change = T[at(kColumns - 1)] + lost_;
-    const VecX<double> sum = y_ + change;
-    lost_ = change - (sum - y_);
+  VecX<double> v() const { return y_.tail(y_.size() - n_q_); }
+  /// Moves from time t to t + h.
+  void step(double t, double h) {
+    // Changes within a step are kept apart from y, so that its rounding is not theirs; Kahan's sum.
+    const VecX<double> to_add = change(t, h) + lost_;
+    const VecX<double> sum = y_ + to_add;
+    lost_ = to_add - (sum - y_);
     y_ = sum;
   }
 
- private:
-  static constexpr int kColumns = 4;
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
+ protected:
+  virtual VecX<double> change(double t, double h) = 0;
+  const VecX<double>& y() const { return y_; }
   VecX<double> rates(double t, const VecX<double>& y) {
     q_ = y.head(n_q_);
     v_ = y.tail(y.size() - n_q_);
@@ -62,12 +43,88 @@ class Extrapolation {
     return rates;
   }
 
+ private:
   const Dynamics& dynamics_;
   const State modes_;
   Eigen::Index n_q_;
   VecX<double> y_, lost_;
   VecX<double> q_, v_, q_dot_;
   Workspace<double> work_;
+};
+
+/// Gragg's midpoint rule, extrapolated (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I,
+/// section II.9).
+class Extrapolation final : public SmoothMotion {
+ public:
+  using SmoothMotion::SmoothMotion;
+
+ private:
+  static constexpr int kColumns = 4;
+
+  VecX<double> change(double t, double step) override {
+    const VecX<double> slope = rates(t, y());
+    std::array<VecX<double>, kColumns> T;
+    for (int k = 0; k < kColumns; ++k) {
+      const int n = 2 * (k + 1);
+      const double h = step / n;
+      VecX<double> before = VecX<double>::Zero(slope.size()), now = h * slope;
+      for (int i = 1; i < n; ++i) {
+        before += 2 * h * rates(t + i * h, y() + now);
+        before.swap(now);
+      }
+      for (int j = 1; j <= k; ++j) {
+        const double ratio = static_cast<double>(k + 1) / (k + 1 - j);
+        VecX<double>& coarser = T[static_cast<std::size_t>(j - 1)];
+        const VecX<double> better = now + (now - coarser) / (ratio * ratio - 1);
+        coarser.swap(now);
+        now = better;
+      }
+      T[static_cast<std::size_t>(k)] = now;
+    }
+    return T.back();
+  }
+};
+
+/// Gauss' collocation with four stages, iterated from one to the next as far as rounding lets it (the same,
+/// section II.7).
+class Collocation final : public SmoothMotion {
+ public:
+  Collocation(const Dynamics& dynamics, const State& start) : SmoothMotion(dynamics, start) {
+    // The zeros of Legendre's polynomial of degree 4; integrals of Lagrange's polynomials to each, and to 1.
+    const double near = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)),
+                 far = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
+    c_ = (Weights(-far, -near, near, far).array() + 1) / 2;
+    Eigen::Matrix4d powers, integrals;
+    Weights whole;
+    for (int k = 0; k < kStages; ++k) {
+      powers.col(k) = c_.array().pow(k);
+      integrals.col(k) = c_.array().pow(k + 1) / (k + 1);
+      whole[k] = 1.0 / (k + 1);
+    }
+    a_ = integrals * powers.inverse();
+    b_ = powers.transpose().inverse() * whole;
+  }
+
+ private:
+  static constexpr int kStages = 4, kMostIterations = 40;
+  using Weights = Eigen::Vector4d;
+
+  VecX<double> change(double t, double h) override {
+    MatX<double> k = rates(t, y()) * Eigen::RowVector4d::Ones(), before;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kMostIterations; ++i) {
+      before = k;
+      const MatX<double> at = h * before * a_.transpose();
+      for (int s = 0; s < kStages; ++s) k.col(s) = rates(t + c_[s] * h, y() + at.col(s));
+      const double moved = (k - before).norm();
+      if (!(moved < least)) break;
+      least = moved;
+    }
+    return h * k * b_;
+  }
+
+  Weights c_, b_;
+  Eigen::Matrix4d a_;
 };
 
 }  // namespace pliant::bench

@@ -14,10 +14,10 @@
 // error_lambda: of the forces of joints there, over the largest.
 // Time: CPU time of the stepping loop, one thread, the least of several, in runs that stop nowhere before,
 // without the trial by which auto chooses.
-// Reference: dop853 to 1e-12, or the least that rounding lets it hold; its difference is that from the method
-// of extrapolation.h, of parts with parameters or nodes from dormand_prince to 1e-11. Where bodies touch:
-// dop853 to 1e-8 and rk4, each in short steps and half as long ones, extrapolated, as the error of contacts
-// that last is of first order. Errors below 10 times the difference count as that.
+// Reference: collocation, and what it differs by from extrapolation (reference_methods.h); of nodes and of
+// joints that close, dop853 to 1e-12, or the least that rounding lets it hold, and dormand_prince to 1e-11.
+// Where bodies touch: dop853 to 1e-8 and rk4, each in short steps and half as long ones, extrapolated, as the
+// error of contacts that last is of first order. Errors below 100 times the difference count as that.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -33,8 +33,8 @@
 #include <pliant/integrate/advance.h>
 #include <pliant/pliant.h>
 
-#include "extrapolation.h"
 #include "problems.h"
+#include "reference_methods.h"
 #include "table_file.h"
 
 using namespace pliant;
@@ -164,9 +164,19 @@ class Meter {
   std::unique_ptr<ErrorScale> scale_;
 };
 
-bool is_rigid(const Model& model) {
-  return std::all_of(model.parts().begin(), model.parts().end(),
-                     [](const PartModel& part) { return part.q0 < 0 || part.n_v() == 6; });
+/// Whether its motion is one smooth function of time that accelerations give: joints that hold, no nodes
+/// (whose stiffness would bound the steps).
+bool is_smooth(const Problem& problem) {
+  MultiBody body;
+  problem.build(body);
+  const Simulation simulation(body);
+  const Model& model = simulation.model();
+  const std::vector<JointMode>& joints = simulation.state().joints;
+  return !body.contact.active && std::all_of(joints.begin(), joints.end(), [](JointMode mode) {
+    return mode == JointMode::closed;
+  }) && std::all_of(model.parts().begin(), model.parts().end(), [](const PartModel& part) {
+    return part.local == nullptr;
+  });
 }
 
 /// By dop853, to the first tolerance from `finest` on, each ten times the one before, that rounding lets it
@@ -180,10 +190,11 @@ Outcome by_dop853(const Problem& problem, double finest) {
     }
 }
 
-/// Of rigid parts on joints, by the method of extrapolation.h: with the step at which it agrees best with
-/// that of twice the length; further ones only round.
-Outcome extrapolated(const Problem& problem, const Meter& meter) {
-  constexpr double kAgree = 1e-12, kFirstStep = 0.0125;
+/// By a method of reference_methods.h: with the step at which it agrees best with that of twice the length;
+/// further ones only round.
+template <class Method>
+Outcome smooth(const Problem& problem, const Meter& meter) {
+  constexpr double kAgree = 1e-14, kFirstStep = 0.0125;
   constexpr int kMostHalvings = 6;
   MultiBody body;
   problem.build(body);
@@ -193,21 +204,27 @@ Outcome extrapolated(const Problem& problem, const Meter& meter) {
   for (int halving = 0; halving <= kMostHalvings && least > kAgree; ++halving) {
     const long each = std::max(1L, std::lround(problem.end / kSamples / kFirstStep)) << halving;
     const double h = problem.end / kSamples / static_cast<double>(each);
-    bench::Extrapolation method(simulation.dynamics(), simulation.state());
+    Method method(simulation.dynamics(), simulation.state());
     Outcome now;
     for (long i = 0; i < kSamples * each; ++i) {
       method.step(static_cast<double>(i) * h, h);
       if ((i + 1) % each != 0) continue;
-      now.states.push_back(simulation.state());
-      now.states.back().q = method.q();
-      normalise_rotations(simulation.model(), now.states.back().q);
+      State& state = now.states.emplace_back(simulation.state());
+      state.q = method.q();
+      state.v = method.v();
+      normalise_rotations(simulation.model(), state.q);
+      now.gap = std::max(now.gap, worst_gap(simulation.model(), state));
     }
     const double difference = halving == 0 ? least : meter.along(now, before);
     before = now;
-    if (halving > 0 && difference >= least) continue;
+    if (halving > 0 && !(difference < least)) continue;
     least = difference;
     best = now;
   }
+  best.end = best.states.back();
+  Workspace<double> work;
+  simulation.dynamics().accelerations(problem.end, best.end.q, best.end.v, best.end, work);
+  best.lambda = work.joints.lambda;
   return best;
 }
 
@@ -335,7 +352,7 @@ int main(int argc, char** argv) try {
   bench::TableFile reference_file(in_folder("precision_reference.csv"),
                                   "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
   Choices choices(in_folder("precision_auto.csv"));
-  constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
+  constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}, kResolved = 100;
   const double most_ms = all ? 16e3 : 4e3, enough = 0.05;
   std::vector<std::string> methods{kAutomatic};
   for (const IntegratorInfo& info : all_integrators()) methods.emplace_back(info.name);
@@ -349,12 +366,17 @@ int main(int argc, char** argv) try {
     const auto touching = [&](const Setting& coarse, const Setting& fine) {
       return limit_of(run(problem, coarse), run(problem, fine), meter.model());
     };
-    const Outcome exact = touches
-                              ? touching({"dop853", 1e-8, 0, in_contact}, {"dop853", 1e-8, 0, in_contact / 2})
-                              : by_dop853(problem, 1e-12);
-    const Outcome other = touches                   ? touching({"rk4", 0, steps}, {"rk4", 0, 2 * steps})
-                          : is_rigid(meter.model()) ? extrapolated(problem, meter)
-                                                    : run(problem, {"dormand_prince", 1e-11, 0});
+    Outcome exact, other;
+    if (is_smooth(problem)) {
+      exact = smooth<bench::Collocation>(problem, meter);
+      other = smooth<bench::Extrapolation>(problem, meter);
+    } else if (touches) {
+      exact = touching({"dop853", 1e-8, 0, in_contact}, {"dop853", 1e-8, 0, in_contact / 2});
+      other = touching({"rk4", 0, steps}, {"rk4", 0, 2 * steps});
+    } else {
+      exact = by_dop853(problem, 1e-12);
+      other = run(problem, {"dormand_prince", 1e-11, 0});
+    }
     const double difference = meter.along(other, exact);
     std::printf("%s: the two references differ by %.1e; gap %.1e m\n", problem.name.c_str(), difference,
                 exact.gap);
@@ -387,8 +409,8 @@ int main(int argc, char** argv) try {
         const double lambda =
             largest > 0 ? (of.lambda - exact.lambda).cwiseAbs().maxCoeff() / largest : kNone;
         // What is nearer to the reference than that is to itself may be as far from the truth.
-        const bool resolved = !(error < 10 * difference);
-        points.push_back({of.cpu_ms, resolved ? error : 10 * difference});
+        const bool resolved = !(error < kResolved * difference);
+        points.push_back({of.cpu_ms, resolved ? error : kResolved * difference});
         runs_file.row("%s,%s,%g,%ld,%ld,%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e\n",
                       problem.name.c_str(), method.c_str(), asked, of.steps, of.evaluations, of.cpu_ms,
                       of.cpu_ms / problem.end, error, along, meter.of_velocities(end, true_end), lambda,
