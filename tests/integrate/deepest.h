@@ -1,4 +1,4 @@
-// How deep the meshes of parts that deform locally are in what they touch.
+// How deep parts are in what they touch.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,14 @@
 
 namespace pliant::test {
 
-/// Behind planes and in each other, m.
+/// By what contact tells of overlaps, m.
+inline double deepest_overlap(const Simulation& simulation) {
+  double deep = 0;
+  for (const Contact& contact : simulation.contact()->overlaps(simulation.state(), simulation.time()))
+    deep = std::max(deep, -contact.gap);
+  return deep;
+}
+/// The meshes of those that deform locally, m.
 inline double deepest(const Simulation& simulation) {
   std::vector<Contact> found;
   MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);

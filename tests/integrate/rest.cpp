@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "deepest.h"
 #include "motion.h"
 
 namespace rest_test {
@@ -40,13 +41,6 @@ double creep(Simulation& simulation, double time, double h) {
       farthest = std::max(farthest, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
   }
   return farthest;
-}
-double deepest(const Simulation& simulation) {
-  double deep = 0;
-  for (const Contact& contact :
-       ContactFinder(simulation.model()).find(simulation.state(), simulation.time(), 0))
-    deep = std::max(deep, -contact.gap);
-  return deep;
 }
 
 }  // namespace
@@ -88,7 +82,7 @@ TEST_CASE("N51: dropped boxes come to rest on each other", "[contact][long]") {
     double fallen = 0;  // of all the gaps
     for (int i = 1; i <= boxes; ++i) fallen += mass * 9.81 * 1e-4 * i;
     CHECK(start - simulation.ledger().energy() == Approx(fallen).epsilon(2e-2));
-    CHECK(deepest(simulation) < 1e-9 * kSize);
+    CHECK(test::deepest_overlap(simulation) < 1e-9 * kSize);
   }
 }
 
@@ -148,7 +142,7 @@ TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[
       double deep = 0;
       for (int i = 0; i < 400; ++i) {
         simulation.step(h);
-        deep = std::max(deep, deepest(simulation));
+        deep = std::max(deep, test::deepest_overlap(simulation));
       }
       CAPTURE(ratio, h);
       CHECK(deep < 1e-3 * kSize);

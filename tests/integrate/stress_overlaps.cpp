@@ -10,6 +10,7 @@
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/part/local_laws.h>
 
+#include "deepest.h"
 #include "draws.h"
 #include "motion.h"
 
@@ -39,13 +40,6 @@ Eigen::Quaterniond turned(Draws& draws) {
                             draws.uniform(0.1, 1))
       .normalized();
 }
-/// How deep bodies are in each other, m.
-double deepest(const Simulation& simulation) {
-  double deep = 0;
-  for (const Contact& contact : simulation.contact()->overlaps(simulation.state(), simulation.time()))
-    deep = std::max(deep, -contact.gap);
-  return deep;
-}
 /// The fastest that the centres of two parts go away from each other while bodies are parted for so long, in
 /// sizes a second. None gets a speed, and they are parted in the end.
 double fastest_parting(Simulation& simulation, double until, int parts) {
@@ -61,7 +55,7 @@ double fastest_parting(Simulation& simulation, double until, int parts) {
       for (int j = 0; j < i; ++j)
         fastest = std::max(fastest, (moved.segment<3>(7 * i) - moved.segment<3>(7 * j)).norm() / (h * size));
   }
-  CHECK(deepest(simulation) < 1e-9 * size);
+  CHECK(test::deepest_overlap(simulation) < 1e-9 * size);
   return fastest;
 }
 /// A solid or rigid ellipsoid that begins half a radius deep in the floor.
@@ -109,15 +103,15 @@ Parting part_balls(Simulation& simulation, double until, double h) {
   };
   Parting parting;
   const double start = simulation.ledger().energy();
-  parting.told = deepest(simulation);
+  parting.told = test::deepest_overlap(simulation);
   while (simulation.time() < until) {
-    const bool deep = deepest(simulation) > 0.2 * kSize;
+    const bool deep = test::deepest_overlap(simulation) > 0.2 * kSize;
     const Vec3<double> before = between();
     simulation.step(h);
     if (deep) parting.fastest = std::max(parting.fastest, (between() - before).norm() / (h * kSize));
   }
   parting.apart = between().norm();
-  parting.deep = deepest(simulation);
+  parting.deep = test::deepest_overlap(simulation);
   parting.ledger = simulation.ledger();
   parting.added = parting.ledger.energy() - start;
   return parting;
@@ -138,7 +132,7 @@ TEST_CASE("N54: what is parted pushes others out of its way within the step, all
   }
   Simulation simulation(body, "rk4");
   simulation.step(h);
-  CHECK(deepest(simulation) < 1e-10 * kSize);
+  CHECK(test::deepest_overlap(simulation) < 1e-10 * kSize);
   CHECK(simulation.ledger().kinetic == 0);
 }
 

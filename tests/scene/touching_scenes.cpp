@@ -2,6 +2,7 @@
 // another, what joints have closed stays closed through every blow, and the paper's figures do what it shows.
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -16,6 +17,7 @@
 #include <pliant/scene/read_scene.h>
 
 #include "catch.h"
+#include "io/new_folder.h"
 
 namespace touching_scenes_test {
 
@@ -33,10 +35,10 @@ const std::vector<std::string> kRigid{"bowl", "dominoes", "slope", "tower"}, kSo
 /// Steps a scene to its end, and looks at every step how deep bodies are in each other. Returns how often a
 /// body met another after 50 ms or more in which none touched any.
 template <class AfterStep>
-int run_to_the_end(const std::string& name, AfterStep&& after_step) {
-  CAPTURE(name);
+int run_file(const std::string& file, const std::vector<std::string>& overrides, AfterStep&& after_step) {
+  CAPTURE(file);
   pliant::Diagnostics diagnostics;
-  const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name + ".json", {}, diagnostics);
+  const auto scene = pliant::read_scene(file, overrides, diagnostics);
   Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
   REQUIRE(simulation.contact() != nullptr);
   int meetings = 0;
@@ -53,6 +55,10 @@ int run_to_the_end(const std::string& name, AfterStep&& after_step) {
   }
   CHECK(simulation.time() == Approx(scene->end));
   return meetings;
+}
+template <class AfterStep>
+int run_to_the_end(const std::string& name, AfterStep&& after_step) {
+  return run_file(std::string(PLIANT_SCENES) + "/" + name + ".json", {}, std::forward<AfterStep>(after_step));
 }
 int number_of(const Simulation& simulation, const std::string& part) {
   const std::vector<PartModel>& parts = simulation.model().parts();
@@ -109,6 +115,30 @@ TEST_CASE("every scene with contact is run to its end") {
 TEST_CASE("rigid bodies of the scenes are never deeper in each other than a thousandth of their size",
           "[contact][long]") {
   for (const std::string& name : kRigid) CHECK(run_to_the_end(name, [](Simulation&) {}) > 0);
+}
+
+TEST_CASE("a hundred ellipsoids that pour.sh prints come down into the bowl, all of them",
+          "[contact][long]") {
+  const NewFolder place;
+  const fs::path scenes = PLIANT_SCENES, file = place / "pour.json";
+  fs::copy(scenes / "bowl.obj", place.path);
+  REQUIRE(std::system(
+              ("bash '" + (scenes / "pour.sh").string() + "' 100 > '" + file.string() + "'").c_str()) == 0);
+  Extent height;
+  double out = 0;
+  run_file(file.string(), {"/time/end=1"}, [&](Simulation& simulation) {
+    height = Extent();
+    out = 0;
+    for (const PartModel& part : simulation.model().parts()) {
+      const Eigen::Vector3d c = simulation.state().q.segment<3>(part.q0);
+      height.note(c.z());
+      out = std::max(out, c.head<2>().norm());
+    }
+  });
+  const double scale = std::cbrt(100 / 30.0);  // of the bowl, see pour.sh
+  CHECK(height.least > 0);
+  CHECK(height.most < 0.55 * scale);
+  CHECK(out < 0.55 * scale);
 }
 
 TEST_CASE("balloons swing, collide, deform and come to rest, never deep in each other", "[contact][long]") {

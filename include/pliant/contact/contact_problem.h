@@ -17,7 +17,7 @@ struct ContactSolution {
   std::vector<Vec3<double>> velocity;  ///< after it, of side a against side b, m/s, world
   double residual = 0;                 ///< what Coulomb's law misses at the worst contact, m/s
   int sweeps = 0;
-  int fallbacks = 0;  ///< groups of contacts that were left with more than rounding of it
+  int fallbacks = 0;  ///< see CoulombResult
 };
 
 class ContactProblem {

@@ -22,7 +22,7 @@ struct StepCounters {
   long factorisations = 0;      ///< of the stiffness of nodes
   long impacts = 0;             ///< whose time in the step was found
   long contact_sweeps = 0;      ///< over all contacts
-  long contact_fallbacks = 0;   ///< groups of contacts that were left with more than rounding of it
+  long contact_fallbacks = 0;   ///< see CoulombResult
   double contact_residual = 0;  ///< the worst of them, m/s
 };
 

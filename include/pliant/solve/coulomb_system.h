@@ -17,7 +17,9 @@ namespace pliant {
 struct CoulombResult {
   double residual = 0;  ///< what the law misses at the worst contact, in units of u
   int sweeps = 0;       ///< over all contacts of a cluster
-  int fallbacks = 0;    ///< clusters that were left with more than rounding of it
+  /// Clusters that were left with more than 1e-6 of their fastest velocity of it; of many contacts, or of
+  /// points, which are left with more as a rule, with more than 1e-2.
+  int fallbacks = 0;
 };
 
 struct CoulombScratch;
