@@ -142,7 +142,7 @@ Gain gain(const Build& build, const std::string& method, double h, int steps) {
 
 }  // namespace
 
-TEST_CASE("inelastic contact with friction gains no energy beyond the error of a step", "[contact]") {
+TEST_CASE("inelastic contact with friction gains no energy beyond the error of a step", "[contact][long]") {
   for (const Build& build : std::vector<Build>{tumbling_box, pile, chain})
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       CAPTURE(method);

@@ -457,7 +457,7 @@ void check_gaps(const std::string& name, const std::function<void(MultiBody&)>& 
 
 }  // namespace
 
-TEST_CASE("joints stay closed whatever the masses, in chains, loops and doubled", "[loops]") {
+TEST_CASE("joints stay closed whatever the masses, in chains, loops and doubled", "[loops][long]") {
   for (const double ratio : {1e-6, 1e6}) {
     INFO("ratio " << ratio);
     check_gaps(

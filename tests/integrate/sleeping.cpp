@@ -314,7 +314,7 @@ TEST_CASE("constant forces, springs and dampers do no work on sleepers", "[sleep
   }
 }
 
-TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][contact]") {
+TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][contact][long]") {
   for (const auto basis : {LocalSettings::Basis::nodes, LocalSettings::Basis::polynomial}) {
     const bool obstacle = basis == LocalSettings::Basis::nodes;
     CAPTURE(obstacle);

@@ -187,7 +187,7 @@ TEST_CASE("N54: a ball whose centre is in a box leaves it through the nearest fa
 }
 
 TEST_CASE("N54: parts that deform locally are parted as wholes, however deep they begin in others",
-          "[contact]") {
+          "[contact][long]") {
   // The last of the overlap is parted node by node, which dents them a little. That alone takes work.
   struct Case {
     const char *one, *other, *method;
