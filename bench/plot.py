@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the CSV of bench/work_precision as run time against error, one panel a problem.
+"""Draws the CSV of bench/work_precision as run time, or evaluations, against error, one panel a problem.
 
 Failed runs are crosses in the lower left corner, in the colour of their method. Of --of gap_m and balance_J the unit is that
 of the name; the errors are those of positions, of velocities and of the forces of joints, relative.
@@ -25,6 +25,7 @@ QUANTITIES = {
     "gap_m": "widest gap, m",
     "balance_J": "error of the energy, J",
 }
+COSTS = {"cpu_ms": "run time, ms", "evaluations": "evaluations"}
 
 
 def arguments() -> argparse.Namespace:
@@ -32,14 +33,15 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("source", help="work_precision.csv")
     parser.add_argument("target", help="picture to write; its ending tells the format")
     parser.add_argument("--of", choices=QUANTITIES, default="error", help="what lies across (default: error)")
+    parser.add_argument("--cost", choices=COSTS, default="cpu_ms", help="what lies upwards (default: cpu_ms)")
     parser.add_argument("--problems", help="their names with commas between them (default: all)")
     return parser.parse_args()
 
 
-def draw(panel, rows: list, quantity: str, method: str, crosses: int) -> int:
+def draw(panel, rows: list, quantity: str, cost: str, method: str, crosses: int) -> int:
     """One method's line in a panel, and its failed runs beside as many crosses of others; how many there are then."""
     done = [
-        (float(r[quantity]), float(r["cpu_ms"])) for r in rows if r["failed"] != "1" and float(r["error"]) < FAR
+        (float(r[quantity]), float(r[cost])) for r in rows if r["failed"] != "1" and float(r["error"]) < FAR
     ]
     points = [(x, y) for x, y in done if x > 0 and math.isfinite(x)]
     (line,) = panel.loglog([x for x, _ in points], [y for _, y in points], "o-", ms=4, label=method)
@@ -71,12 +73,12 @@ def main() -> None:
         crosses = 0
         for method in methods:
             of_method = [r for r in rows if r["problem"] == problems[index] and r["method"] == method]
-            crosses = draw(panel, of_method, given.of, method, crosses)
+            crosses = draw(panel, of_method, given.of, given.cost, method, crosses)
         panel.set(title=problems[index])
         if index + columns >= len(problems):
             panel.set(xlabel=QUANTITIES[given.of])
         if index % columns == 0:
-            panel.set(ylabel="run time, ms")
+            panel.set(ylabel=COSTS[given.cost])
         panel.invert_xaxis()
         panel.grid(True, which="major", alpha=0.3)
         if lines == 1:

@@ -11,7 +11,7 @@
 //   assembly   five stretching ellipsoids, apart, while their joints draw them together (Baumgarte)
 //   ringing    free balloon of 432 triangles that rings and tumbles
 //   stiff      the same, a thousand times as stiff and damped, on a string
-//   bounce     a ball that rebounds from a plane, 0.8 times as fast each time
+//   bounce     a ball that rebounds from a plane, 0.8 times as fast each time, in air that drags
 //   see-saw    a ball that falls onto the end of a board on a pivot and throws up another
 #pragma once
 
@@ -140,7 +140,11 @@ inline Part& balloon(MultiBody& body, double stiffness, double damping) {
 }
 
 inline void bounce(MultiBody& body) {
-  body.add<Primitive<Sphere>>("ball").rest({{"r", 0.1}}).place({0, 0, 1.1}).move({0.3, 0, 0}, {1, 2, 3});
+  body.add<Primitive<Sphere>>("ball")
+      .rest({{"r", 0.1}})
+      .damping(0, 0, 0.2)
+      .place({0, 0, 1.1})
+      .move({0.3, 0, 0}, {1, 2, 3});
   body.contact.active = true;
   body.contact.restitution = 0.8;
   body.contact.planes.emplace_back().name = "floor";

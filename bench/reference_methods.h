@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <pliant/pliant.h>
 
@@ -107,6 +108,7 @@ class Collocation final : public SmoothMotion {
 
  private:
   static constexpr int kStages = 4, kMostIterations = 40;
+  static constexpr double kConverged = 1e-12;
   using Weights = Eigen::Vector4d;
 
   VecX<double> change(double t, double h) override {
@@ -120,6 +122,8 @@ class Collocation final : public SmoothMotion {
       if (!(moved < least)) break;
       least = moved;
     }
+    // What does not come to rest is no solution.
+    if (!(least <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }
 

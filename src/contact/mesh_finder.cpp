@@ -221,8 +221,8 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
       if (after != nullptr && falls) swept.gained = std::max(0.0, h * speed(*after, h * g) - swept.way);
       swept.reach += swept.way + swept.gained + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
     } else if (m.motion != nullptr) {
-      const PrescribedMotion::Mean mean = m.motion->over(t, h, swept.reach);
-      swept.way = h * (mean.c_dot.norm() + mean.beside);
+      const TimeVector::Passage passage = m.motion->over(t, h, swept.reach);
+      swept.way = h * (passage.rate.norm() + passage.beside);
       swept.reach += swept.way;
     }
     all.emplace(part, swept);
@@ -232,8 +232,11 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     if (!plane.acts_before(t) && !plane.acts_before(t + h)) continue;
     if (sleeps(state, on.part) && plane.point.is_constant()) continue;
     const Swept& a = all.at(on.part);
-    for (const double when : {t, t + h})
-      if (plane.normal.dot(a.c - plane.point.value(when)) < a.reach) near.soft = true;
+    if (!(plane.normal.dot(a.c) - plane.highest(t, h) < a.reach)) continue;
+    near.soft = true;
+    // It is not thin, but may go to and fro.
+    near.keep_within(h * plane.point.over(t, h).beside, 0, kStepShare * meshes_.at(on.part).thickness(), h,
+                     after != nullptr);
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];

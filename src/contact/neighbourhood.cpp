@@ -43,9 +43,9 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
   ball = {scratch_->parts[at(i)].c,    Vec3<double>::Zero(), Vec3<double>::Zero(), 0, 0,
           scratch_->parts[at(i)].reach};
   if (m.motion != nullptr) {
-    const PrescribedMotion::Mean mean = m.motion->over(t, h, ball.reach);
-    ball.c_dot = mean.c_dot;
-    ball.speed = mean.beside;
+    const TimeVector::Passage passage = m.motion->over(t, h, ball.reach);
+    ball.c_dot = passage.rate;
+    ball.speed = passage.beside;
   }
   double spare = 0;
   if (m.q0 >= 0) {
@@ -102,18 +102,17 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
   const auto& planes = model_->body().contact.planes;
   for (std::size_t k = 0; k < planes.size(); ++k) {
     if (!(planes[k].acts_before(t) || planes[k].acts_before(t + h))) continue;
-    for (const double when : {t, t + h}) {
-      const Vec3<double> point = planes[k].point.value(when);
-      for (const int i : smooth_) {
-        const Scratch::Ball& ball = s.balls[at(i)];
-        if (sleeps(state, i) && planes[k].point.is_constant()) continue;
-        if (!on_planes_[at(i) * planes.size() + k].touch ||
-            !(planes[k].normal.dot(ball.c - point) < ball.reach))
-          continue;
-        near.empty = false;
-        // None is thin, but what spins may come round with its other end.
-        near.keep_within(h * ball.speed, h * ball.gained, kMostTurn * s.parts[at(i)].reach, h, taken);
-      }
+    const double highest = planes[k].highest(t, h), beside = planes[k].point.over(t, h).beside;
+    for (const int i : smooth_) {
+      const Scratch::Ball& ball = s.balls[at(i)];
+      if (sleeps(state, i) && planes[k].point.is_constant()) continue;
+      if (!on_planes_[at(i) * planes.size() + k].touch ||
+          !(planes[k].normal.dot(ball.c) - highest < ball.reach))
+        continue;
+      near.empty = false;
+      // None is thin, but what spins may come round with its other end, and a plane may go to and fro.
+      near.keep_within(h * (ball.speed + beside), h * ball.gained, kMostTurn * s.parts[at(i)].reach, h,
+                       taken);
     }
   }
   const auto& obstacles = model_->body().contact.obstacles;

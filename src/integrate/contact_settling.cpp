@@ -163,6 +163,7 @@ void ContactSettling::settle_chain(std::vector<Contact> settled, double h, doubl
     settle_once(state, 0, h, state, t, contacts, work, counters);
     settled.insert(settled.end(), contacts.begin(), contacts.end());
   }
+  if (!settled.empty()) ++counters.contact_cutoffs;
 }
 
 /// Sides of a contact go this much farther, m.
@@ -274,6 +275,7 @@ void ContactSettling::part_overlaps(double h, State& state, double t, Workspace<
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
   }
+  ++counters.contact_cutoffs;
 }
 
 }  // namespace pliant

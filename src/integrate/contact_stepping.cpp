@@ -217,8 +217,11 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
     clock.lap(times_.finding);
-    const std::vector<Contact> impacts =
-        events < kMostEvents ? few_impacts(contacts, resting) : std::vector<Contact>();
+    std::vector<Contact> impacts = few_impacts(contacts, resting);
+    if (!impacts.empty() && events == kMostEvents) {
+      ++counters.contact_cutoffs;
+      impacts.clear();
+    }
     if (!impacts.empty()) {
       const std::optional<double> tau = locate_impact(dynamics_, finder_, method, motion.before, now,
                                                       motion.h, impacts, state, work, counters);

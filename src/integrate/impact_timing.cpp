@@ -76,8 +76,9 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
                                     Workspace<double>& work, StepCounters& counters) {
   double size = std::numeric_limits<double>::infinity(), largest = 0;
   for (const Contact& contact : impacts) {
-    size = std::min(size, dynamics.model().parts()[at(contact.a.part)].part->size());
-    largest = std::max(largest, dynamics.model().parts()[at(contact.a.part)].part->size());
+    size = std::min(size, smaller_size(dynamics.model(), contact));
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      if (side->part >= 0) largest = std::max(largest, dynamics.model().parts()[at(side->part)].part->size());
   }
   auto least_gap = [&](const State& of, double at_time) {
     double least = std::numeric_limits<double>::infinity();

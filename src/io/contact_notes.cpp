@@ -21,13 +21,18 @@ std::string other_side(const Model& model, const Contact& contact) {
   return "the obstacle '" + model.body().contact.obstacles[at(contact.obstacle)].name + "'";
 }
 
-/// ", unless hinge 'arm' holds them": the first joint that acts on a part of a contact; empty: there is none.
+/// ", unless hinge 'arm' holds them": the first joint that holds a part of a contact to what nothing moves;
+/// empty: there is none.
 std::string holding_joint(const Simulation& simulation, const Contact& contact) {
   const Model& model = simulation.model();
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     const JointModel& joint = model.joints()[j];
     const JointMode mode = simulation.state().joints[j];
     if (mode != JointMode::closed && mode != JointMode::closing) continue;
+    const bool holds = std::any_of(joint.at.begin(), joint.at.end(), [&](const PortRef& port) {
+      return port.part < 0 || model.parts()[at(port.part)].q0 < 0;
+    });
+    if (!holds) continue;
     for (const JointSide& side : joint.sides)
       if (side.part == contact.a.part || side.part == contact.b.part)
         return ", unless " + std::string(joint.joint->type()) + " '" + joint.joint->name() + "' holds them";
@@ -46,7 +51,7 @@ double deepest_share(const Simulation& simulation) {
 }
 
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told) {
-  if (simulation.contact() == nullptr || told.size() >= kMostTold) return {};
+  if (simulation.contact() == nullptr) return {};
   const Model& model = simulation.model();
   const std::vector<Contact> overlaps = simulation.contact()->overlaps(simulation.state(), simulation.time());
   std::map<TouchingPair, const Contact*> deepest;

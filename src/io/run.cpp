@@ -313,6 +313,7 @@ void Run::write_record() {
   record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
   record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
   record_.step_counters.contact_fallbacks = counted_steps_.contact_fallbacks + session.contact_fallbacks;
+  record_.step_counters.contact_cutoffs = counted_steps_.contact_cutoffs + session.contact_cutoffs;
   record_.step_counters.contact_residual =
       std::max(counted_steps_.contact_residual, session.contact_residual);
   record_.counters = counted_work_;

@@ -103,6 +103,7 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                   {"impacts", r.step_counters.impacts},
                   {"contact_sweeps", r.step_counters.contact_sweeps},
                   {"contact_fallbacks", r.step_counters.contact_fallbacks},
+                  {"contact_cutoffs", r.step_counters.contact_cutoffs},
                   {"jacobian_points", r.counters.jacobian_points},
                   {"rate_points", r.counters.rate_points},
                   {"mass_matrices", r.counters.mass_matrices},
@@ -192,6 +193,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     r.step_counters.impacts = work.value("impacts", 0L);
     r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
     r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
+    r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
     work.at("jacobian_points").get_to(r.counters.jacobian_points);
     work.at("rate_points").get_to(r.counters.rate_points);
     work.at("mass_matrices").get_to(r.counters.mass_matrices);

@@ -163,4 +163,15 @@ TimeFunction TimeFunction::formula(const std::string& text) {
   return TimeFunction(std::make_shared<FormulaFunction>(std::move(formula)));
 }
 
+TimeVector::Passage TimeVector::over(double t, double h) const {
+  Passage passage{Vec3<double>::Zero(), 0};
+  if (is_constant()) return passage;
+  passage.rate = (value(t + h) - value(t)) / h;
+  for (const double share : kMoments) {
+    const Vec3<Taylor2<double>> x = at(t + share * h);
+    passage.beside = std::max(passage.beside, (Vec3<double>(x[0].d, x[1].d, x[2].d) - passage.rate).norm());
+  }
+  return passage;
+}
+
 }  // namespace pliant

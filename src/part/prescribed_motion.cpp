@@ -1,6 +1,7 @@
 #include <pliant/part/prescribed_motion.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace pliant {
 
@@ -19,11 +20,12 @@ MovingFrame PrescribedMotion::at(double t) const {
   return frame;
 }
 
-PrescribedMotion::Mean PrescribedMotion::over(double t, double h, double reach) const {
-  const MovingFrame now = at(t), then = at(t + h);
-  const Vec3<double> c_dot = (then.c - now.c) / h;
-  return {c_dot, reach * std::max(now.omega.norm(), then.omega.norm()) +
-                     std::max((now.c_dot - c_dot).norm(), (then.c_dot - c_dot).norm())};
+TimeVector::Passage PrescribedMotion::over(double t, double h, double reach) const {
+  TimeVector::Passage passage = position.over(t, h);
+  double turning = 0;
+  for (const double share : kMoments) turning = std::max(turning, std::abs(angle.at(t + share * h).d));
+  passage.beside += reach * turning;
+  return passage;
 }
 
 Eigen::Quaterniond PrescribedMotion::orientation_at(double t) const {

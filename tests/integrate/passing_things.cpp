@@ -56,11 +56,37 @@ TEST_CASE("a plane that is there for less than a step is met in it", "[contact]"
 
 TEST_CASE("a paddle that ends where it began, or as far on the other side, meets what is between",
           "[contact]") {
+  for (const char* way : {"0.5 * cos(100 * pi * t)", "0.5 * cos(200 * pi * t)"})
+    for (const bool soft : {false, true}) {
+      MultiBody body;
+      body.gravity.setZero();
+      Part& target = body.add<Primitive<Ellipsoid>>("target");
+      target.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
+      if (soft) {
+        target.make_shell();
+        LocalSettings settings;
+        settings.resolution = 2;
+        settings.alpha = 2;
+        settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};
+        target.deform_locally(settings);
+      }
+      PrescribedMotion to_and_fro;
+      to_and_fro.position = TimeVector(TimeFunction::formula(way), 0, 0);
+      body.add<Primitive<Box>>("paddle").rest({{"a1", 0.05}, {"a2", 0.3}, {"a3", 0.3}}).prescribe(to_and_fro);
+      body.contact.active = true;
+      Simulation simulation(body, "semi_implicit_euler");
+      simulation.step(0.01);
+      CAPTURE(way, soft);
+      CHECK(simulation.model().position(simulation.state(), 0)[0] < -0.3);
+    }
+}
+
+TEST_CASE("a plane that goes to and fro within a step meets what is there", "[contact]") {
   for (const bool soft : {false, true}) {
     MultiBody body;
     body.gravity.setZero();
-    Part& target = body.add<Primitive<Ellipsoid>>("target");
-    target.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
+    Part& target = body.add<Primitive<Sphere>>("target");
+    target.rest({{"r", 0.1}}).place({0, 0, 0.3});
     if (soft) {
       target.make_shell();
       LocalSettings settings;
@@ -69,14 +95,14 @@ TEST_CASE("a paddle that ends where it began, or as far on the other side, meets
       settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};
       target.deform_locally(settings);
     }
-    PrescribedMotion to_and_fro;
-    to_and_fro.position = TimeVector(TimeFunction::formula("0.5 * cos(100 * pi * t)"), 0, 0);
-    body.add<Primitive<Box>>("paddle").rest({{"a1", 0.05}, {"a2", 0.3}, {"a3", 0.3}}).prescribe(to_and_fro);
     body.contact.active = true;
+    ContactPlane& plane = body.contact.planes.emplace_back();
+    plane.name = "piston";
+    plane.point = TimeVector(0, 0, TimeFunction::formula("0.2 - 0.2 * cos(200 * pi * t)"));
     Simulation simulation(body, "semi_implicit_euler");
     simulation.step(0.01);
     CAPTURE(soft);
-    CHECK(simulation.model().position(simulation.state(), 0)[0] < -0.3);
+    CHECK(simulation.model().position(simulation.state(), 0)[2] > 0.4);
   }
 }
 

@@ -1,6 +1,7 @@
 // Who touches whom: planes, obstacles, friction and restitution, and pairs that are out of the ordinary.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -30,6 +31,13 @@ struct ContactPlane {
 
   bool acts_at(double t) const { return on <= t && t < off; }
   bool acts_before(double t) const { return there_before(t, on, off); }
+  /// Over h seconds from t on the most of its height along its normal, m, at kMoments.
+  double highest(double t, double h) const {
+    if (point.is_constant()) return normal.dot(point.value(t));
+    double most = -std::numeric_limits<double>::infinity();
+    for (const double share : kMoments) most = std::max(most, normal.dot(point.value(t + share * h)));
+    return most;
+  }
 };
 
 /// An immobile body whose surface is a triangle mesh, one-sided where it is open (contact/obstacle_mesh.h).

@@ -33,9 +33,9 @@ class ContactFinder {
   static bool precedes(const Contact& one, const Contact& other);
   /// Velocity of side a against side b at a contact, m/s, world.
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// What a step of h seconds from a state comes near to.
   /// Share of the thinner of two parts that they may move against each other in a step.
   static constexpr double kThinShare = 0.4;
+  /// What a step of h seconds from a state comes near to.
   struct Neighbourhood {
     bool empty = true;  ///< nothing touches in it
     bool soft = false;  ///< parts that deform locally may touch something

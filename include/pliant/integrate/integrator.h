@@ -23,6 +23,7 @@ struct StepCounters {
   long impacts = 0;             ///< whose time in the step was found
   long contact_sweeps = 0;      ///< over all contacts
   long contact_fallbacks = 0;   ///< see CoulombResult
+  long contact_cutoffs = 0;     ///< rounds of what pushes push, or impacts in a step, that were not taken
   double contact_residual = 0;  ///< the worst of them, m/s
 };
 

@@ -22,7 +22,7 @@ using TouchingPair = std::array<int, 4>;
 
 /// Bodies that overlap at the state of a simulation by more than kToldOverlap, in words, the deepest contact
 /// of each pair that was not told of, with the joints that may hold it there; of many the deepest ones and
-/// how many there are. told: gets them; once there are many nothing more is told.
+/// how many there are. told: gets them; of each once.
 std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told);
 
 }  // namespace pliant

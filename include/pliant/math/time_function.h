@@ -90,6 +90,16 @@ struct TimeVector {
   bool is_constant() const {
     return component[0].is_constant() && component[1].is_constant() && component[2].is_constant();
   }
+
+  /// Its mean rate over h seconds, and by how much its rate differs from that at most, at kMoments.
+  struct Passage {
+    Vec3<double> rate;
+    double beside;
+  };
+  Passage over(double t, double h) const;
 };
+
+/// Shares of a time at which it is looked at what happens in it: what swings to and fro is caught by one.
+inline constexpr std::array<double, 5> kMoments{0, 0.27, 0.5, 0.77, 1};
 
 }  // namespace pliant

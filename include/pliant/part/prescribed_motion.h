@@ -33,13 +33,8 @@ struct PrescribedMotion {
   }
   Eigen::Quaterniond orientation_at(double t) const;
 
-  /// Over h seconds: the mean velocity of the origin, and how fast at most points as far away as `reach` (m)
-  /// move beside that, as both ends tell. m/s.
-  struct Mean {
-    Vec3<double> c_dot;
-    double beside;
-  };
-  Mean over(double t, double h, double reach) const;
+  /// Over h seconds, of its points as far away from its origin as `reach` (m): m/s.
+  TimeVector::Passage over(double t, double h, double reach) const;
 };
 
 }  // namespace pliant
