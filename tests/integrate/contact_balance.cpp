@@ -152,7 +152,7 @@ TEST_CASE("inelastic contact with friction gains no energy beyond the error of a
       const Gain gained = gain(build, method, 1e-3, 700);
       CHECK(gained.energy <= 1e-9);  // what has met within a step is lifted apart: that work is booked
       CHECK(gained.balance <= 1e-7);
-      CHECK(gained.sum <= 1e-9);
+      CHECK(gained.sum <= 1e-7);
       CHECK(gained.left < 0.95);
     }
 }
@@ -182,7 +182,7 @@ TEST_CASE("what gives way gains no energy in inelastic contact beyond the error 
       // The error is known to leading order: of vibrations in steps of first order to some per cent.
       CHECK(gained.energy <= (first_order ? 1e-4 : 2e-7));
       CHECK(gained.balance <= (first_order ? 1e-4 : 1e-6));
-      CHECK(gained.sum <= (first_order ? 1e-3 : 1e-6));
+      CHECK(gained.sum <= (first_order ? 1e-3 : 1e-5));
       CHECK(gained.left < 0.6);
     }
 }
