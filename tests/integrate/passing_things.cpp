@@ -16,6 +16,15 @@ Part& ball(MultiBody& body, double r, const Vec3<double>& at) {
   return body.add<Primitive<Sphere>>("ball").rest({{"r", r}}).place(at);
 }
 
+void soften(Part& part) {
+  part.make_shell();
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.alpha = 2;
+  settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};
+  part.deform_locally(settings);
+}
+
 /// A ball that would reach a plane 0.5 s from now, which is there for a time only (s), and rebound as fast.
 void meet_plane(MultiBody& body, double on, double off) {
   body.gravity.setZero();
@@ -62,14 +71,7 @@ TEST_CASE("a paddle that ends where it began, or as far on the other side, meets
       body.gravity.setZero();
       Part& target = body.add<Primitive<Ellipsoid>>("target");
       target.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
-      if (soft) {
-        target.make_shell();
-        LocalSettings settings;
-        settings.resolution = 2;
-        settings.alpha = 2;
-        settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};
-        target.deform_locally(settings);
-      }
+      if (soft) soften(target);
       PrescribedMotion to_and_fro;
       to_and_fro.position = TimeVector(TimeFunction::formula(way), 0, 0);
       body.add<Primitive<Box>>("paddle").rest({{"a1", 0.05}, {"a2", 0.3}, {"a3", 0.3}}).prescribe(to_and_fro);
@@ -87,14 +89,7 @@ TEST_CASE("a plane that goes to and fro within a step meets what is there", "[co
     body.gravity.setZero();
     Part& target = body.add<Primitive<Sphere>>("target");
     target.rest({{"r", 0.1}}).place({0, 0, 0.3});
-    if (soft) {
-      target.make_shell();
-      LocalSettings settings;
-      settings.resolution = 2;
-      settings.alpha = 2;
-      settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};
-      target.deform_locally(settings);
-    }
+    if (soft) soften(target);
     body.contact.active = true;
     ContactPlane& plane = body.contact.planes.emplace_back();
     plane.name = "piston";
