@@ -122,7 +122,8 @@ class Collocation final : public SmoothMotion {
       if (!(moved < least)) break;
       least = moved;
     }
-    // What goes on moving is no solution. Where a mechanism is singular its rank turns the rates a little.
+    // What diverges is no solution. No less: four-bars, near its singular positions, does not come to 1e-8;
+    // how good a solution is the other method tells.
     if (!(least <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }
