@@ -50,7 +50,6 @@ ContactSettling::ContactSettling(const Dynamics& dynamics, const ContactFinder& 
                                  RestingContacts& resting, ContactRecord& record)
     : dynamics_(dynamics), finder_(finder), meshes_(meshes), resting_(resting), record_(record) {}
 
-/// After velocities and places of what contacts push have changed: frames follow the nodes, joints hold.
 void ContactSettling::reconcile(const std::vector<int>& parts, State& state, double t,
                                 Workspace<double>& work, StepCounters& counters) const {
   settle_frames(dynamics_, t, parts, state, work);

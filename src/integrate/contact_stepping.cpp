@@ -72,11 +72,6 @@ std::vector<Contact> ContactStepping::overlaps(const State& state, double t) con
   return found;
 }
 
-bool ContactStepping::any_lasts() const {
-  return std::any_of(record_.contacts.begin(), record_.contacts.end(),
-                     [](const Contact& contact) { return contact.since > 0; });
-}
-
 /// Tells how long stages take, one after the other.
 class ContactStepping::StageClock {
  public:
@@ -161,7 +156,7 @@ void ContactStepping::strike(const FreeMotion& motion, const std::vector<Contact
 }
 
 double ContactStepping::step(Integrator& method, State& state, Workspace<double>& work,
-                             StepCounters& counters, bool to_impact) {
+                             StepCounters& counters, bool to_event) {
   const double start = state.start, h = state.h, begin = state.time(), end = begin + h;
   double taken = h;
   const std::int64_t number = state.step;
@@ -235,7 +230,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
         const StepResponses responses(method, dynamics_.model(), work);
         strike(motion, resting, impacts, state, work, counters, clock);
         sleeping_.wake_moved(state);
-        if (!to_impact || !(now > begin)) continue;
+        if (!to_event || !(now > begin)) continue;
         taken = now - begin;
         break;
       }
@@ -253,6 +248,10 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     settling_.settle_chain(std::move(contacts), motion.h, motion.slow, state, now, work, counters);
     sleeping_.wake_moved(state);
     clock.lap(times_.settling);
+    if (to_event && now < end - near && few_parts_ && any_lasts()) {
+      taken = now - begin;
+      break;
+    }
   }
   state.start = start;
   state.step = number;

@@ -232,30 +232,47 @@ void Simulation::give_up_step() {
 }
 
 /// A step of the length in the state. Its error is that of the method, impacts that are told in time
-/// included; where bodies lie on each other, or more meet than are told, it says nothing: steps are short
-/// instead.
+/// included; where few bodies lie on each other what halves of it tell counts too; of many, or where more
+/// meet than are told, nothing does: steps are short instead.
 StepError Simulation::try_step() {
-  if (contact_) contact_->begin_step();
+  if (contact_) {
+    contact_->begin_step();
+    begun_ = state_;
+  }
   const int order = integrator_->error_order();
-  const double h = state_.h;
-  StepError result{std::numeric_limits<double>::infinity(), order, h};
+  StepError result{std::numeric_limits<double>::infinity(), order, state_.h};
   try {
+    const long impacts = step_counters_.impacts;
     result.length = take_step();
     const double error = integrator_->take_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
+    if (contact_ && result.error <= 1 && contact_->any_lasts())
+      take_in_contact(step_counters_.impacts > impacts, result);
   } catch (const StepFailure&) {
     integrator_->take_error();
+    result.error = std::numeric_limits<double>::infinity();
   } catch (const InvertedElement&) {
     integrator_->take_error();
-  }
-  if (contact_ && result.error <= 1 && contact_->any_lasts()) {
-    result.error =
-        std::max(result.error, h / longest_contact_step(model_.body().contact, scale_->tolerance()));
-    result.order = 0;
-    if (result.error <= 1) ++step_counters_.uncontrolled;
+    result.error = std::numeric_limits<double>::infinity();
   }
   if (contact_ && !(result.error <= 1)) contact_->undo_step();
   return result;
+}
+
+/// The same of a step that has been taken and in which bodies lay on each other. struck: whether it ended
+/// where something struck.
+void Simulation::take_in_contact(bool struck, StepError& result) {
+  const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
+  if (share > 1 || !contact_->few_last()) {
+    result.order = 0;
+    result.error = std::max(result.error, share);
+    if (share <= 1) ++step_counters_.uncontrolled;
+    return;
+  }
+  const StepError halves = contact_->take_in_halves(*integrator_, *scale_, begun_, result.length, struck,
+                                                    state_, work_, step_counters_);
+  if (halves.error > result.error) result = halves;
+  result.length = halves.length;
 }
 
 /// What stops a step that cannot be made any shorter.

@@ -38,9 +38,11 @@ class ContactSettling {
   void settle_chain(std::vector<Contact> settled, double h, double slow, State& state, double t,
                     Workspace<double>& work, StepCounters& counters);
 
- private:
+  /// After velocities and places of some parts have changed: frames follow the nodes, joints hold.
   void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
                  StepCounters& counters) const;
+
+ private:
   double swing(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
   void settle_once(const State& before, double since_of_limits, double h, State& state, double t,
                    std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);

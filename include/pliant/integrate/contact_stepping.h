@@ -12,6 +12,7 @@
 #include <pliant/integrate/integrator.h>
 #include <pliant/integrate/resting_contacts.h>
 #include <pliant/integrate/sleeping.h>
+#include <pliant/integrate/step_length.h>
 
 namespace pliant {
 
@@ -23,10 +24,18 @@ class ContactStepping {
   /// A new step begins, which may come in parts; the one that began last counts for nothing.
   void begin_step();
   void undo_step();
-  /// Advances q, v and work by state.h, or to the first impact that is told in time where the step is to end
-  /// there, and returns by how much; the caller counts the step.
+  /// Advances q, v and work by state.h and returns by how much; the caller counts the step. to_event: it ends
+  /// at the first impact that is told in time, and where bodies that lie on each other have gone as far as
+  /// one motion may take them.
   double step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters,
-              bool to_impact = false);
+              bool to_event = false);
+  /// Takes a step to an event in which bodies lay on each other again, in two halves that are steps of their
+  /// own, and extrapolates from both (Richardson): impulses that stand for forces over a step are wrong by
+  /// O(h^2), which it tells, what is left by O(h^3). begun: where the step began, with its length; length:
+  /// what was taken of it; struck: whether it ended where something struck, so that the halves find their own
+  /// end, and are not extrapolated. state: where the step led, and then what the halves do.
+  StepError take_in_halves(Integrator& method, const ErrorScale& scale, const State& begun, double length,
+                           bool struck, State& state, Workspace<double>& work, StepCounters& counters);
 
   /// What the steps so far took, by stages, s of the clock.
   struct StageTimes {
@@ -39,8 +48,10 @@ class ContactStepping {
   const ContactFinder& finder() const { return finder_; }
   /// All contacts whose sides are in each other at a state and a time, s.
   std::vector<Contact> overlaps(const State& state, double t) const;
-  /// Whether some of what touched in the last step did so for a time, or was not met at its time.
+  /// Whether some of what touched in the last step did so for a time, or was not met at its time; and
+  /// whether that is little enough for take_in_halves.
   bool any_lasts() const;
+  bool few_last() const;
   /// Of the last whole step; empty where nothing touched.
   const ContactRecord& record() const { return record_; }
   const std::vector<Contact>& contacts() const { return record_.contacts; }
@@ -53,6 +64,8 @@ class ContactStepping {
   bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
   std::vector<Contact> few_impacts(const std::vector<Contact>& contacts,
                                    const std::vector<Contact>& resting) const;
+  void extrapolate(const State& once, double t, State& state, Workspace<double>& work,
+                   StepCounters& counters);
   void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
               StepCounters& counters, StageClock& clock);
@@ -64,6 +77,7 @@ class ContactStepping {
   ContactRecord record_, record_before_;
   ContactSettling settling_;
   Sleeping sleeping_;
+  Workspace<double> scratch_;
   bool few_parts_ = false;  ///< so that impacts are told in time
   StageTimes times_;
 };

@@ -76,6 +76,7 @@ class Simulation {
   double take_step();
   void take_method(std::unique_ptr<Integrator> method);
   StepError try_step();
+  void take_in_contact(bool struck, StepError& result);
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
   void begin_step();
@@ -91,7 +92,7 @@ class Simulation {
   std::optional<ErrorScale> scale_;  ///< with a tolerance
   IntegratorChoice choice_;
   std::unique_ptr<ContactStepping> contact_;  ///< where anything touches
-  State state_, last_good_;
+  State state_, last_good_, begun_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
