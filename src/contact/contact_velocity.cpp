@@ -1,9 +1,19 @@
+#include <algorithm>
+#include <limits>
+
 #include <pliant/contact/node_motion.h>
 #include <pliant/math/index.h>
 
 #include "finder_scratch.h"
 
 namespace pliant {
+
+double ContactFinder::thin(const Contact& contact) const {
+  double thickness = std::numeric_limits<double>::infinity();
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) thickness = std::min(thickness, surfaces_[at(side->part)]->thickness());
+  return kThinShare * thickness;
+}
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {
   auto of = [&](const ContactSide& side) -> Vec3<double> {

@@ -6,13 +6,6 @@
 
 namespace pliant {
 
-namespace {
-
-/// How far the surface may be outside the box of its points, in sizes of the part.
-constexpr double kBulge = 0.05;
-
-}  // namespace
-
 /// Whether the shape stays what it is at rest.
 bool ContactFinder::is_still(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;

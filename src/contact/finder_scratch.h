@@ -12,6 +12,9 @@
 
 namespace pliant {
 
+/// How far the surface may be outside the box of its points, in sizes of the part.
+inline constexpr double kBulge = 0.05;
+
 /// A part where it is.
 struct ContactFinder::Placed {
   Vec3<double> c;

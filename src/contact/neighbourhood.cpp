@@ -17,10 +17,13 @@ constexpr double kMostTurn = 0.5;
 /// Ways that are so many times as long as they may be do not take a step back.
 constexpr double kLittleMore = 1.125;
 
-/// A bound of the speed of any point of a part against its frame's origin, m/s; reach: its radius, m.
+/// A bound of the speed at which parameters change a part of a radius (m), m/s; and of any point of it
+/// against its frame's origin.
+double speed_of_shape(const PartModel& m, const State& state, double reach) {
+  return reach * state.v.segment(m.v0 + 6, m.n_s).lpNorm<1>() / m.part->size();
+}
 double speed_about(const PartModel& m, const State& state, double reach) {
-  const auto v = state.v.segment(m.v0, m.n_v());
-  return reach * (v.segment<3>(3).norm() + v.tail(m.n_s).lpNorm<1>() / m.part->size());
+  return reach * state.v.segment<3>(m.v0 + 3).norm() + speed_of_shape(m, state, reach);
 }
 
 }  // namespace
@@ -61,6 +64,36 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
     }
   }
   ball.reach += h * (ball.fastest() + spare);
+}
+
+/// How fast any point of a part moves as it is seen from the frame of another, m/s, and how much faster it
+/// may become as that frame turns, m/s^2: of what lies on a body and turns with it little is left. Neither's
+/// motion is prescribed.
+std::pair<double, double> ContactFinder::speed_seen(const State& state, int part, int from) const {
+  struct Motion {
+    Vec3<double> c_dot, omega;
+    double of_shape;
+  };
+  auto motion_of = [&](int i) -> Motion {
+    const PartModel& m = model_->parts()[at(i)];
+    const Placed& there = scratch_->parts[at(i)];
+    if (m.q0 < 0) return {Vec3<double>::Zero(), Vec3<double>::Zero(), 0};
+    return {state.v.segment<3>(m.v0), there.R * state.v.segment<3>(m.v0 + 3),
+            speed_of_shape(m, state, there.reach)};
+  };
+  const Motion a = motion_of(part), b = motion_of(from);
+  const Placed &at_a = scratch_->parts[at(part)], &at_b = scratch_->parts[at(from)];
+  const Vec3<double> against = a.c_dot - b.c_dot;
+  return {(against - b.omega.cross(at_a.c - at_b.c)).norm() + (a.omega - b.omega).norm() * at_a.reach +
+              a.of_shape + b.of_shape,
+          b.omega.cross(against).norm()};
+}
+
+/// How far at least the ball of a part is from the box of another, m.
+double ContactFinder::clearance(int ball, int box) const {
+  const Placed &a = scratch_->parts[at(ball)], &b = scratch_->parts[at(box)];
+  const double bulge = kBulge * model_->parts()[at(box)].part->size();
+  return std::max(0.0, body_box(box).exteriorDistance(b.R.transpose() * (a.c - b.c)) - a.reach - bulge);
 }
 
 ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, double t, double h,
@@ -151,10 +184,21 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
-    near.keep_within(h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed),
-                     h * ((a.c_dot_gained - b.c_dot_gained).norm() + a.gained + b.gained),
-                     kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness()), h,
-                     taken);
+    double most = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
+    const double gained = h * ((a.c_dot_gained - b.c_dot_gained).norm() + a.gained + b.gained);
+    double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed), bent = 0;
+    if (way + gained > most) {
+      most += std::max(clearance(i, j), clearance(j, i));
+      const bool prescribed =
+          model_->parts()[at(i)].motion != nullptr || model_->parts()[at(j)].motion != nullptr;
+      const auto [speed, curvature] =
+          s.parts[at(i)].reach < s.parts[at(j)].reach ? speed_seen(state, i, j) : speed_seen(state, j, i);
+      if (!prescribed && h * (speed + 0.5 * h * curvature) < way) {
+        way = h * speed;
+        bent = 0.5 * h * h * curvature;
+      }
+    }
+    near.keep_within(way, gained + bent, most, h, taken);
   }
   return near;
 }

@@ -58,6 +58,7 @@ ContactStepping::ContactStepping(const Dynamics& dynamics)
 }
 
 void ContactStepping::begin_step() {
+  lasts_ = false;
   std::swap(record_, record_before_);
   record_.clear();
 }
@@ -209,6 +210,12 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
       continue;
     }
     const std::vector<Contact> resting = resting_.at_rest(motion.before, now, motion.loose);
+    if (const double longest = resting_.longest(motion, resting, state); longest < motion.h - near) {
+      most = longest;
+      state = motion.before;
+      continue;
+    }
+    lasts_ = lasts_ || !resting.empty();
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
     clock.lap(times_.finding);
@@ -243,6 +250,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     if (method.local_is_implicit())
       for (Contact& contact : contacts)
         if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = motion.held();
+    lasts_ = lasts_ || !contacts.empty();
     clock.lap(times_.finding);
     settling_.settle(motion.before, motion.held(), motion.h, state, now, contacts, work, counters);
     settling_.settle_chain(std::move(contacts), motion.h, motion.slow, state, now, work, counters);

@@ -21,6 +21,8 @@ constexpr double kMostLoose = 1000;
 constexpr double kFewParts = 0.7;
 /// Points of one contact at the start and the end of a step are nearer than this, in sizes.
 constexpr double kSamePoint = 0.2;
+/// Motions that are too long are taken again with ways that are so much of what they may be, or less.
+constexpr double kUnderThin = 0.95;
 
 }  // namespace
 
@@ -102,6 +104,18 @@ bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, c
                u = finder_.velocity(state, contact).dot(contact.normal),
                way = motion.h * ((1 - motion.reach) * u_start + motion.reach * u);
   return rests(contact, contact.gap - way, u_start, motion.loose);
+}
+
+double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                const State& state) const {
+  double longest = motion.h;
+  for (const Contact& contact : resting) {
+    const Vec3<double> way = motion.h * ((1 - motion.reach) * finder_.velocity(motion.before, contact) +
+                                         motion.reach * finder_.velocity(state, contact));
+    const double share = way.norm() / finder_.thin(contact);
+    if (share > 1) longest = std::min(longest, kUnderThin * motion.h / std::sqrt(share));
+  }
+  return longest;
 }
 
 std::vector<Contact> RestingContacts::met(const FreeMotion& motion, const std::vector<Contact>& resting,

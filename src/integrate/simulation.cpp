@@ -241,13 +241,12 @@ StepError Simulation::try_step() {
   }
   const int order = integrator_->error_order();
   StepError result{std::numeric_limits<double>::infinity(), order, state_.h};
+  const long impacts = step_counters_.impacts;
   try {
-    const long impacts = step_counters_.impacts;
     result.length = take_step();
     const double error = integrator_->take_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
-    if (contact_ && result.error <= 1 && contact_->any_lasts())
-      take_in_contact(step_counters_.impacts > impacts, result);
+    if (contact_ && result.error <= 1 && contact_->any_lasts()) take_in_contact(impacts, result);
   } catch (const StepFailure&) {
     integrator_->take_error();
     result.error = std::numeric_limits<double>::infinity();
@@ -255,21 +254,24 @@ StepError Simulation::try_step() {
     integrator_->take_error();
     result.error = std::numeric_limits<double>::infinity();
   }
-  if (contact_ && !(result.error <= 1)) contact_->undo_step();
+  if (contact_ && !(result.error <= 1)) {
+    contact_->undo_step();
+    step_counters_.impacts = impacts;
+  }
   return result;
 }
 
-/// The same of a step that has been taken and in which bodies lay on each other. struck: whether it ended
-/// where something struck.
-void Simulation::take_in_contact(bool struck, StepError& result) {
-  const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
-  if (share > 1 || !contact_->few_last()) {
+/// The same of a step that has been taken and in which bodies lay on each other. impacts: how many there had
+/// been before it.
+void Simulation::take_in_contact(long impacts, StepError& result) {
+  if (!contact_->few_last()) {
+    const double longest = longest_contact_step(model_.body().contact, scale_->tolerance());
     result.order = 0;
-    result.error = std::max(result.error, share);
-    if (share <= 1) ++step_counters_.uncontrolled;
+    result.error = std::max(result.error, result.length / longest);
+    if (result.error <= 1) ++step_counters_.uncontrolled;
     return;
   }
-  const StepError halves = contact_->take_in_halves(*integrator_, *scale_, begun_, result.length, struck,
+  const StepError halves = contact_->take_in_halves(*integrator_, *scale_, begun_, result.length, impacts,
                                                     state_, work_, step_counters_);
   if (halves.error > result.error) result = halves;
   result.length = halves.length;

@@ -33,6 +33,8 @@ class ContactFinder {
   static bool precedes(const Contact& one, const Contact& other);
   /// Velocity of side a against side b at a contact, m/s, world.
   Vec3<double> velocity(const State& state, const Contact& contact) const;
+  /// How far sides of a contact may go into each other for it to be told where they touch, m.
+  double thin(const Contact& contact) const;
   /// Share of the thinner of two parts that they may move against each other in a step.
   static constexpr double kThinShare = 0.4;
   /// What a step of h seconds from a state comes near to.
@@ -65,6 +67,8 @@ class ContactFinder {
   const Eigen::Matrix3Xd& points_of(int part) const;
   /// after: of a step that is taken; nullptr of one to come.
   Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;
+  std::pair<double, double> speed_seen(const State& state, int part, int from) const;
+  double clearance(int ball, int box) const;
   void place_ball(const State& state, const State* after, double t, double h, double reach, int part) const;
   Eigen::AlignedBox3d body_box(int part) const;
   Eigen::AlignedBox3d world_box(int part) const;

@@ -32,10 +32,10 @@ class ContactStepping {
   /// Takes a step to an event in which bodies lay on each other again, in two halves that are steps of their
   /// own, and extrapolates from both (Richardson): impulses that stand for forces over a step are wrong by
   /// O(h^2), which it tells, what is left by O(h^3). begun: where the step began, with its length; length:
-  /// what was taken of it; struck: whether it ended where something struck, so that the halves find their own
-  /// end, and are not extrapolated. state: where the step led, and then what the halves do.
+  /// what was taken of it; impacts: how many had been counted before. Where it ended at one, the halves find
+  /// their own end and are not extrapolated. state: where the step led, and then where the halves do.
   StepError take_in_halves(Integrator& method, const ErrorScale& scale, const State& begun, double length,
-                           bool struck, State& state, Workspace<double>& work, StepCounters& counters);
+                           long impacts, State& state, Workspace<double>& work, StepCounters& counters);
 
   /// What the steps so far took, by stages, s of the clock.
   struct StageTimes {
@@ -50,7 +50,7 @@ class ContactStepping {
   std::vector<Contact> overlaps(const State& state, double t) const;
   /// Whether some of what touched in the last step did so for a time, or was not met at its time; and
   /// whether that is little enough for take_in_halves.
-  bool any_lasts() const;
+  bool any_lasts() const { return lasts_; }
   bool few_last() const;
   /// Of the last whole step; empty where nothing touched.
   const ContactRecord& record() const { return record_; }
@@ -64,7 +64,7 @@ class ContactStepping {
   bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
   std::vector<Contact> few_impacts(const std::vector<Contact>& contacts,
                                    const std::vector<Contact>& resting) const;
-  void extrapolate(const State& once, double t, State& state, Workspace<double>& work,
+  void extrapolate(const State& once, double t, double h, State& state, Workspace<double>& work,
                    StepCounters& counters);
   void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
@@ -79,6 +79,7 @@ class ContactStepping {
   Sleeping sleeping_;
   Workspace<double> scratch_;
   bool few_parts_ = false;  ///< so that impacts are told in time
+  bool lasts_ = false;      ///< see any_lasts
   StageTimes times_;
 };
 

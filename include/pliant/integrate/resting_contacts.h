@@ -25,6 +25,9 @@ class RestingContacts {
   const std::vector<Contact>& near(const State& state, double t);
   /// Those of them that neither open nor strike by more than `slow` m/s.
   std::vector<Contact> at_rest(const State& state, double t, double slow);
+  /// How long a motion may be, s, that has led to `state`, for what rested at its start to have sunk into
+  /// each other, where nothing holds it, by no more than ContactFinder::thin.
+  double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
   /// What meets at the end of a motion, where it has led to `state`: sides that overlap, and of what rested
   /// on each other at its start all that is near, for rounding may have parted it, or the motion, in which
   /// nothing held it. What rested did so all along (Contact::since).

@@ -76,7 +76,7 @@ class Simulation {
   double take_step();
   void take_method(std::unique_ptr<Integrator> method);
   StepError try_step();
-  void take_in_contact(bool struck, StepError& result);
+  void take_in_contact(long impacts, StepError& result);
   void fail_at_tolerance();
   bool shorter_steps_pass(double h);
   void begin_step();

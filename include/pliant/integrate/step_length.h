@@ -53,8 +53,9 @@ bool take_controlled_step(State& state, double end, double least, StepGrowth gro
     state.h = taken;
     if (taken <= least && !last) return false;
     const auto [error, order, length] = attempt();
+    const double tried = error <= 1 ? taken : length;  // one that was too wrong was so in what it came to
     double next =
-        next_step(taken, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1), growth.most);
+        next_step(tried, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1), growth.most);
     if (error <= 1 && growth.rarely && next < kWorthAFactor * taken) next = taken;
     if (error <= 1) {
       const bool cut = length < taken;
