@@ -36,6 +36,8 @@ constexpr double kPairMargin = 0.05;
 constexpr double kWider = 2;
 /// Normals of one contact differ by less than this.
 constexpr double kOneContactNormal = 0.2;
+/// Points of both sides whose gaps differ by less, in sizes of the smaller part, are as deep as each other.
+constexpr double kAsDeep = 1e-9;
 
 }  // namespace
 
@@ -331,8 +333,8 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
   const bool at_one_point = scratch_->parts[at(a)].axes && scratch_->parts[at(b)].axes;
   if (at_one_point && ours.empty()) return;
   find_on_part(b, a, rule, most, theirs);
-  const double same =
-      kOneContact * std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size());
+  const double size_a = model_->parts()[at(a)].part->size(), size_b = model_->parts()[at(b)].part->size(),
+               same = kOneContact * std::min(size_a, size_b), as_deep = kAsDeep * std::min(size_a, size_b);
   for (Contact& contact : theirs) {
     std::swap(contact.a, contact.b);
     contact.normal = -contact.normal;
@@ -343,11 +345,10 @@ void ContactFinder::find_between(int a, int b, const ContactRule& rule, double m
     });
     if (twin == ours.end())
       ours.push_back(contact);
-    else if (contact.gap < twin->gap)
-      *twin = contact;
+    else if (contact.gap < twin->gap + (size_b < size_a ? as_deep : -as_deep))
+      *twin = contact;  // of two as deep the point on the smaller part, so that one that rolls keeps its arm
   }
-  if (is_still(a) && is_still(b))
-    keep_outline(ours, 0, std::min(model_->parts()[at(a)].part->size(), model_->parts()[at(b)].part->size()));
+  if (is_still(a) && is_still(b)) keep_outline(ours, 0, std::min(size_a, size_b));
   found.insert(found.end(), ours.begin(), ours.end());
 }
 

@@ -58,7 +58,8 @@ ContactStepping::ContactStepping(const Dynamics& dynamics)
 }
 
 void ContactStepping::begin_step() {
-  lasts_ = false;
+  lay_.clear();
+  meets_late_ = false;
   std::swap(record_, record_before_);
   record_.clear();
 }
@@ -187,6 +188,9 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     motion.begin = now;
     motion.h = around.h >= end - now - near ? end - now : around.h;
     motion.reach = method.reach();
+    std::vector<Contact> resting;
+    if (!around.empty) resting = resting_.at_rest(state, now, motion.loose);
+    motion.h = resting_.longest(motion, resting, dynamics_.model().body().gravity_at(now).norm());
     if (now != start + static_cast<double>(number) * h || motion.h != h) set_step(state, now, motion.h);
     clock.lap(times_.finding);
     motion.before = state;
@@ -209,13 +213,12 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
       now = motion.end();
       continue;
     }
-    const std::vector<Contact> resting = resting_.at_rest(motion.before, now, motion.loose);
     if (const double longest = resting_.longest(motion, resting, state); longest < motion.h - near) {
       most = longest;
       state = motion.before;
       continue;
     }
-    lasts_ = lasts_ || !resting.empty();
+    lay_.insert(lay_.end(), resting.begin(), resting.end());
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
     clock.lap(times_.finding);
@@ -250,7 +253,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
     if (method.local_is_implicit())
       for (Contact& contact : contacts)
         if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = motion.held();
-    lasts_ = lasts_ || !contacts.empty();
+    meets_late_ = meets_late_ || !contacts.empty();
     clock.lap(times_.finding);
     settling_.settle(motion.before, motion.held(), motion.h, state, now, contacts, work, counters);
     settling_.settle_chain(std::move(contacts), motion.h, motion.slow, state, now, work, counters);

@@ -107,6 +107,14 @@ bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, c
 }
 
 double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                double gravity) const {
+  double longest = motion.h;
+  for (const Contact& contact : resting)
+    longest = std::min(longest, kUnderThin * std::sqrt(finder_.thin(contact) / (motion.reach * gravity)));
+  return longest;
+}
+
+double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
                                 const State& state) const {
   double longest = motion.h;
   for (const Contact& contact : resting) {

@@ -151,9 +151,12 @@ namespace {
 
 /// Rates that jump by more than this part of what they change by in a step have been struck.
 constexpr double kJump = 0.5;
+/// Rates that accelerations at both ends tell less well than to this part of that have been pushed in
+/// between, as by what lies below.
+constexpr double kPushed = 0.2;
 
 /// q at a part x of the way from one state to another by a polynomial of degree 5, with the accelerations at
-/// both.
+/// both; of degree 3 where other forces acted too.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
   Workspace<double> work;
@@ -179,6 +182,14 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
     // What is left of the way at the end, when the rates and accelerations at the start have had their share.
     const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
     const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
+    const double pushed =
+        std::min(2 / h * rest.norm(),
+                 (of(b.rate) - of(a.rate) - 0.5 * h * (of(a.curvature) + of(b.curvature))).norm());
+    if (pushed > kPushed * h * bend) {
+      of(q) = y * y * ((1 + 2 * x) * of(low.q) + x * h * of(a.rate)) +
+              x * x * ((1 + 2 * y) * of(high.q) - y * h * of(b.rate));
+      return;
+    }
     const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
     if (jump > kJump * h * bend) {  // something struck at the end: the rate there is that after it
       of(q) = of(low.q) + x * h * of(a.rate) + 0.5 * x * x * h * h * of(a.curvature) + x3 * rest;

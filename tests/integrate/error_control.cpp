@@ -307,37 +307,4 @@ TEST_CASE("impacts are met within the tolerance, whatever the steps", "[error]")
   CHECK(simulation.step_counters().steps < 40);
 }
 
-TEST_CASE("bodies that lie on each other take short steps, which are counted", "[error]") {
-  // A box slides to a stop: v^2 / (2 mu g).
-  MultiBody body;
-  body.add<Primitive<Box>>("box")
-      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
-      .place({0, 0, 0.1})
-      .move({1, 0, 0}, {0, 0, 0});
-  body.contact.active = true;
-  body.contact.friction = 0.5;
-  body.contact.planes.emplace_back().name = "floor";
-  Simulation simulation(body, "dop853", 1, 1e-6);
-  while (simulation.time() < 0.5) simulation.step_up_to(0.5);
-  CHECK(simulation.state().q[0] == Approx(1 / (2 * 0.5 * 9.81)).margin(1e-3));
-  CHECK(simulation.state().v.norm() < 1e-9);
-  CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
-  CHECK(simulation.step_counters().steps < 300);
-  const auto steps = [&](double longest) {
-    body.contact.longest_step = longest;
-    Simulation other(body, "dop853", 1, 1e-6);
-    while (other.time() < 0.1) other.step_up_to(0.1);
-    return other.step_counters().uncontrolled;
-  };
-  const auto usual = steps(2e-3);
-  CHECK(usual >= 50);
-  CHECK(usual < 60);
-  CHECK(steps(5e-4) >= 4 * usual - 20);
-  body.contact.longest_step = 2e-3;
-  Simulation rough(body, "dop853", 1, 1e-2);
-  while (rough.time() < 0.5) rough.step_up_to(0.5);
-  CHECK(rough.step_counters().uncontrolled <= 27);
-  CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * 9.81)).margin(0.2e-2));
-}
-
 }  // namespace error_control_test

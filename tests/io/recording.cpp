@@ -13,7 +13,9 @@
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/run_files.h>
 #include <pliant/part/primitive.h>
+#include <pliant/shape/box.h>
 #include <pliant/shape/ellipsoid.h>
+#include <pliant/shape/sphere.h>
 
 namespace recording_test {
 
@@ -233,6 +235,41 @@ TEST_CASE("pictures between two steps to a tolerance are as near to the motion a
   const auto worst = errors("esdirk", 1e-5, 1e10);
   CAPTURE(worst.at_steps, worst.between);
   CHECK(worst.between < 3 * worst.at_steps);
+}
+
+TEST_CASE("pictures between long steps show what rests as it rests, and what rolls on what it rolls on") {
+  const NewFolder folder;
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 1;
+  body.add<Primitive<Box>>("slope")
+      .rest({{"a1", 3}, {"a2", 1}, {"a3", 0.5}})
+      .place({0, 0, -0.5 / std::cos(0.3)}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3<double>::UnitY())))
+      .fix();
+  const Vec3<double> up(std::sin(0.3), 0, std::cos(0.3)), down(std::cos(0.3), 0, -std::sin(0.3));
+  body.add<Primitive<Sphere>>("ball").rest({{"r", 0.2}}).place(0.2 * up);
+  body.add<Primitive<Box>>("box")
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.2}})
+      .place(-down + 0.2 * up, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vec3<double>::UnitY())));
+  Simulation simulation(body, "dop853", 1, 1e-4);
+  {
+    write_layout(folder.path, simulation.model(), FrameSchedule::with_free_steps(1, 50), {});
+    RecordingWriter writer = RecordingWriter::create(folder.path, simulation.model());
+    for (writer.append(simulation.state()); simulation.time() < 1; writer.append(simulation.state()))
+      simulation.step_up_to(1);
+    writer.flush();
+  }
+  CHECK(simulation.step_counters().steps < 60);
+  const Recording recording(folder.path, simulation.model());
+  const Vec3<double> box = simulation.model().position(simulation.state(), 2);
+  for (int i = 0; i <= 200; ++i) {
+    const double t = 0.005 * i;
+    const State state = recording.at(t);
+    CAPTURE(t);
+    CHECK((simulation.model().position(state, 2) - box).norm() < 1e-9);
+    const double rolled = 0.5 * 5.0 / 7 * 9.81 * std::sin(0.3) * t * t;
+    CHECK((simulation.model().position(state, 1) - 0.2 * up - rolled * down).norm() < 1e-4);
+  }
 }
 
 TEST_CASE("a recorded time gives the recorded state itself") {

@@ -50,7 +50,7 @@ class ContactStepping {
   std::vector<Contact> overlaps(const State& state, double t) const;
   /// Whether some of what touched in the last step did so for a time, or was not met at its time; and
   /// whether that is little enough for take_in_halves.
-  bool any_lasts() const { return lasts_; }
+  bool any_lasts() const { return meets_late_ || !lay_.empty(); }
   bool few_last() const;
   /// Of the last whole step; empty where nothing touched.
   const ContactRecord& record() const { return record_; }
@@ -64,8 +64,8 @@ class ContactStepping {
   bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
   std::vector<Contact> few_impacts(const std::vector<Contact>& contacts,
                                    const std::vector<Contact>& resting) const;
-  void extrapolate(const State& once, double t, double h, State& state, Workspace<double>& work,
-                   StepCounters& counters);
+  void extrapolate(const State& once, std::size_t second, double t, double h, State& state,
+                   Workspace<double>& work, StepCounters& counters);
   void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
               const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
               StepCounters& counters, StageClock& clock);
@@ -79,7 +79,10 @@ class ContactStepping {
   Sleeping sleeping_;
   Workspace<double> scratch_;
   bool few_parts_ = false;  ///< so that impacts are told in time
-  bool lasts_ = false;      ///< see any_lasts
+  // Of the last step: what lay on each other at the start of a motion, and whether something met that was not
+  // told in time.
+  std::vector<Contact> lay_;
+  bool meets_late_ = false;
   StageTimes times_;
 };
 

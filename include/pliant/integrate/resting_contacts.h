@@ -28,6 +28,8 @@ class RestingContacts {
   /// How long a motion may be, s, that has led to `state`, for what rested at its start to have sunk into
   /// each other, where nothing holds it, by no more than ContactFinder::thin.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
+  /// The same as far as it is foreseen before the motion: by gravity alone, m/s^2.
+  double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
   /// What meets at the end of a motion, where it has led to `state`: sides that overlap, and of what rested
   /// on each other at its start all that is near, for rounding may have parted it, or the motion, in which
   /// nothing held it. What rested did so all along (Contact::since).
