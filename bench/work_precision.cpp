@@ -56,7 +56,6 @@ struct Setting {
   std::string method;
   double tolerance;
   long steps;
-  double in_contact = 0;  ///< longest step of bodies that lie on each other, s; 0: as usual
 };
 
 /// A run: its states at the samples and at the end, the forces of joints there, what it cost.
@@ -81,7 +80,6 @@ template <class F>
 double go(const Problem& problem, const Setting& setting, int parts, F&& after_part) {
   MultiBody body;
   problem.build(body);
-  if (setting.in_contact > 0) body.contact.longest_step = setting.in_contact;
   Simulation simulation(body, setting.method, 1, setting.tolerance);
   double seconds = 0;
   for (int part = 1; part <= parts; ++part) {
@@ -384,18 +382,14 @@ int main(int argc, char** argv) try {
     if (only.empty() ? problem.long_running && !all : only != problem.name) continue;
     const Meter meter(problem);
     const bool touches = meter.model().body().contact.active;
-    constexpr double in_contact = 2.5e-4;  // s
-    constexpr long steps = 1L << 14;
-    const auto touching = [&](const Setting& coarse, const Setting& fine) {
-      return limit_of(run(problem, coarse), run(problem, fine), meter.model());
-    };
+    constexpr long steps = 1L << 17;
     Outcome exact, other;
     if (is_smooth(problem)) {
       exact = smooth<bench::Collocation>(problem, meter);
       other = smooth<bench::Extrapolation>(problem, meter);
     } else if (touches) {
-      exact = touching({"dop853", 1e-11, 0, in_contact}, {"dop853", 1e-11, 0, in_contact / 2});
-      other = touching({"rk4", 0, steps}, {"rk4", 0, 2 * steps});
+      exact = to_the_finest(problem, "dop853", 1e-10);
+      other = limit_of(run(problem, {"rk4", 0, steps}), run(problem, {"rk4", 0, 2 * steps}), meter.model());
     } else {
       exact = to_the_finest(problem, "dop853", 1e-12);
       other = to_the_finest(problem, "dormand_prince", 1e-11);

@@ -29,9 +29,9 @@ constexpr double kFactorisation = 0.005;
 constexpr double kSparseFactorisation = 13;
 /// What is solved in a step with these factors, in factorisations: 0.13 of that shell, 0.1 of that solid.
 constexpr double kSolves = 0.1;
-/// To this tolerance and coarser ones the short steps of bodies that touch, of first order whatever the
-/// method, are most of what is done.
-constexpr double kCoarse = 1e-3;
+/// To this tolerance and coarser ones the steps of bodies that touch, of second order whatever the method,
+/// are most of what is done.
+constexpr double kCoarse = 1e-6;
 /// Velocities of parts beyond which stiff ones are not taken all at once.
 constexpr int kMostStiff = 300;
 
@@ -90,8 +90,8 @@ IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& s
     if (model.body().contact.active && scale.tolerance() >= kCoarse)
       return {
           "dormand_prince",
-          "nothing is elastic or damped, and to a tolerance this coarse the short steps of bodies that touch "
-          "need no higher order"};
+          "nothing is elastic or damped, and to a tolerance this coarse the steps of bodies that touch need "
+          "no higher order"};
     return {"dop853", "nothing is elastic or damped"};
   }
   bool modes = false;

@@ -49,8 +49,8 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// While it lives, steps to a tolerance in which bodies lie on each other are half as long as those to
-/// another.
+/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled are
+/// half as long as those to another.
 class HalfStepsInContact {
  public:
   HalfStepsInContact(ContactSettings& settings, double tolerance, double of)
@@ -87,7 +87,7 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   ErrorEstimate error;
   error.tolerance = scene.tolerance > 0 ? std::max(least, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
-  // Where bodies lie on each other the tolerance says nothing: half the step does.
+  // Where many bodies lie on each other the tolerance says nothing: half the step does.
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();

@@ -385,7 +385,8 @@ bool Run::simulate() {
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
     if (record_.step_counters.uncontrolled > 0)
-      note("bodies lay on each other in " + count_text(record_.step_counters.uncontrolled, "step") +
+      note("many bodies, or soft ones, lay on each other in " +
+           count_text(record_.step_counters.uncontrolled, "step") +
            ", whose error is not controlled; they are of at most " +
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
            " s, and --estimate-error tells it");

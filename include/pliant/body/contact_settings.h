@@ -87,7 +87,8 @@ struct ContactSettings {
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
   std::optional<Sleep> sleep{};  ///< not given: nothing sleeps
-  /// Of steps to a tolerance of 5e-4 or less while bodies lie on each other (contact_step.h), s; above 0.
+  /// Of steps to a tolerance of 5e-4 or less in which many bodies lie on each other, or some that deform
+  /// locally, whose error is not controlled (contact_step.h), s; above 0.
   double longest_step = 2e-3;
 };
 
