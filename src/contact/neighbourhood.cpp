@@ -67,8 +67,8 @@ void ContactFinder::place_ball(const State& state, const State* after, double t,
 }
 
 /// How fast any point of a part moves as it is seen from the frame of another, m/s, and how much faster it
-/// may become as that frame turns, m/s^2: of what lies on a body and turns with it little is left. Neither's
-/// motion is prescribed.
+/// may become as that frame turns, both at the rates of now, m/s^2: of what lies on a body and turns with it
+/// little is left. Neither's motion is prescribed.
 std::pair<double, double> ContactFinder::speed_seen(const State& state, int part, int from) const {
   struct Motion {
     Vec3<double> c_dot, omega;
@@ -184,7 +184,8 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
     const Scratch::Ball &a = s.balls[at(i)], &b = s.balls[at(j)];
     if ((a.c - b.c).norm() > a.reach + b.reach) continue;
     near.empty = false;
-    double most = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
+    const double thin = kThinShare * std::min(surfaces_[at(i)]->thickness(), surfaces_[at(j)]->thickness());
+    double most = thin;
     const double gained = h * ((a.c_dot_gained - b.c_dot_gained).norm() + a.gained + b.gained);
     double way = h * ((a.c_dot - b.c_dot).norm() + a.speed + b.speed), bent = 0;
     if (way + gained > most) {
@@ -198,7 +199,10 @@ ContactFinder::Neighbourhood ContactFinder::neighbourhood(const State& state, co
         bent = 0.5 * h * h * curvature;
       }
     }
-    near.keep_within(way, gained + bent, most, h, taken);
+    // What is between them is not to be overshot by more than what is thin.
+    const double eased = most + (kLittleMore - 1) * thin, whole = way + gained + bent;
+    near.keep_within(way, gained + bent, taken ? eased / kLittleMore : most, h, taken);
+    near.spare = std::min(near.spare, 0.5 * (eased - std::min(whole, most)));
   }
   return near;
 }

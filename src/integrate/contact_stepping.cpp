@@ -218,9 +218,12 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
       state = motion.before;
       continue;
     }
-    lay_.insert(lay_.end(), resting.begin(), resting.end());
     std::vector<Contact> contacts = resting_.met(motion, resting, state);
     if (wake_met(contacts, motion, state)) continue;
+    if (to_event && few_parts_)
+      lay_.insert(lay_.end(), resting.begin(), resting.end());
+    else
+      meets_late_ = meets_late_ || !resting.empty();
     clock.lap(times_.finding);
     std::vector<Contact> impacts = few_impacts(contacts, resting);
     if (!impacts.empty() && events == kMostEvents) {

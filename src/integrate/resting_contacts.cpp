@@ -120,7 +120,7 @@ double RestingContacts::longest(const FreeMotion& motion, const std::vector<Cont
   for (const Contact& contact : resting) {
     const Vec3<double> way = motion.h * ((1 - motion.reach) * finder_.velocity(motion.before, contact) +
                                          motion.reach * finder_.velocity(state, contact));
-    const double share = way.norm() / finder_.thin(contact);
+    const double share = std::abs(way.dot(contact.normal)) / finder_.thin(contact);
     if (share > 1) longest = std::min(longest, kUnderThin * motion.h / std::sqrt(share));
   }
   return longest;

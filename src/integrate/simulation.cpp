@@ -232,8 +232,8 @@ void Simulation::give_up_step() {
 }
 
 /// A step of the length in the state. Its error is that of the method, impacts that are told in time
-/// included; where few bodies lie on each other what halves of it tell counts too; of many, or where more
-/// meet than are told, nothing does: steps are short instead.
+/// included; where few bodies lie on each other, or more meet than are told, what halves of it tell counts
+/// too; where many do, or soft ones, nothing does: steps are short instead.
 StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();
@@ -264,16 +264,21 @@ StepError Simulation::try_step() {
 /// The same of a step that has been taken and in which bodies lay on each other. impacts: how many there had
 /// been before it.
 void Simulation::take_in_contact(long impacts, StepError& result) {
-  if (!contact_->few_last()) {
-    const double longest = longest_contact_step(model_.body().contact, scale_->tolerance());
-    result.order = 0;
-    result.error = std::max(result.error, result.length / longest);
-    if (result.error <= 1) ++step_counters_.uncontrolled;
-    return;
+  const bool few = contact_->few_last();
+  // What forces do to what lies there is booked for a motion that it does not make: steps stay short for
+  // that.
+  if (!few || !model_.body().forces().empty()) {
+    const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
+    if (!few || share > 1) {
+      result.order = 0;
+      result.error = std::max(result.error, share);
+      if (result.error <= 1) ++step_counters_.uncontrolled;
+      return;
+    }
   }
   const StepError halves = contact_->take_in_halves(*integrator_, *scale_, begun_, result.length, impacts,
                                                     state_, work_, step_counters_);
-  if (halves.error > result.error) result = halves;
+  if (!(halves.error <= result.error)) result = halves;
   result.length = halves.length;
 }
 

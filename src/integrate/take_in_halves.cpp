@@ -7,6 +7,7 @@
 #include <pliant/integrate/contact_step.h>
 #include <pliant/integrate/contact_stepping.h>
 #include <pliant/integrate/impact_timing.h>
+#include <pliant/integrate/settle.h>
 #include <pliant/math/index.h>
 
 #include "contact_pairs.h"
@@ -19,12 +20,13 @@ namespace {
 /// What lies on each other and moves by less than this in a step, in tolerances, is at rest: that is exact.
 constexpr double kAtRest = 1e-2;
 
-/// Where one way has struck, or touches at other points, and the other has not yet, rates differ however
-/// short the step is, by more than gravity would change them in so many steps: in steps no longer than those
-/// of contact that is not controlled that counts by where it leads in the step.
+/// A step and its halves tell that something struck, or that bodies touch at other points, at times that
+/// differ: if one of them has and the other has not yet, rates jump between them however short the step is.
+/// They jump where they differ by more than gravity changes them in so many steps; what counts is then where
+/// that leads in the step, in steps no longer than those of contact that is not controlled.
 constexpr double kFalls = 0.6;
-/// In steps that are shorter than this share of the longest of these it does in any case.
-constexpr double kBrief = 1e-2;
+/// In steps as short as this, s, it is what counts in any case.
+constexpr double kBrief = 2e-5;
 
 /// Whether rates of some part differ by more than so much, m/s.
 bool jump(const Model& model, const VecX<double>& of_v, double most) {
@@ -48,6 +50,20 @@ VecX<double> gravity_on_lost(const Model& model, const RestingContacts& resting,
       if (m.q0 >= 0) gravity.segment<3>(m.v0) = model.body().gravity_at(t);
     }
   return gravity;
+}
+
+/// Whether hands move what touches, or the parts that are tied to it: what is the same at both ends of a step
+/// may have been elsewhere.
+bool anything_moved(const Model& model, const std::vector<Contact>& touch) {
+  auto moves = [&](const ContactSide& side) {
+    return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
+  };
+  return std::any_of(touch.begin(), touch.end(),
+                     [&](const Contact& c) {
+                       return moves(c.a) || moves(c.b) ||
+                              (c.plane >= 0 && !model.body().contact.planes[at(c.plane)].point.is_constant());
+                     }) ||
+         are_driven(model, parts_touched(model, touch));
 }
 
 /// Whether a step did to parts less than its error may be.
@@ -74,11 +90,12 @@ StepError ContactStepping::take_in_halves(Integrator& method, const ErrorScale& 
                                           StepCounters& counters) {
   constexpr int order = 1;
   const Model& model = dynamics_.model();
-  std::vector<Contact> lie = lay_;
-  lie.insert(lie.end(), record_.contacts.begin(), record_.contacts.end());
-  if (rest(model, scale, parts_touched(model, lie), begun, state)) return {0, order, length};
-  const State once = state;
   const std::vector<Contact> lay = lay_;
+  std::vector<Contact> touch = lay;
+  touch.insert(touch.end(), record_.contacts.begin(), record_.contacts.end());
+  if (!anything_moved(model, touch) && rest(model, scale, parts_touched(model, touch), begun, state))
+    return {0, order, length};
+  const State once = state;
   const std::size_t touched = record_.contacts.size();
   const bool struck = counters.impacts > impacts;
   counters.impacts = impacts;
@@ -93,31 +110,40 @@ StepError ContactStepping::take_in_halves(Integrator& method, const ErrorScale& 
   const double first = go(0, half);
   const std::size_t touched_first = record_.contacts.size();
   const VecX<double> falls = length * gravity_on_lost(model, resting_, lay, record_.contacts, start);
-  const double taken = first + go(first, (struck && first == half ? begun.h : length) - first);
-  const bool strikes = counters.impacts > impacts;
-  const bool alike = first == half && strikes == struck && state.at_limit == once.at_limit &&
-                     state.joints == once.joints && record_.contacts.size() - touched_first == touched &&
-                     (struck || touched_first == touched);
-  const VecX<double> of_v = state.v - once.v;
-  VecX<double> rate;
-  dynamics_.coordinate_rates(once.q, once.v, rate);
-  const VecX<double> of_q = state.q - once.q - (taken - length) * rate;
-  double error = scale.norm(of_q, of_v, state.v);
-  const ContactSettings& settings = model.body().contact;
-  const double longest = longest_contact_step(settings, scale.tolerance());
-  const bool jumps = !alike && jump(model, of_v, kFalls * length * model.body().gravity_at(start).norm());
-  if (length <= (jumps ? longest : kBrief * settings.longest_step)) {
-    dynamics_.coordinate_rates(state.q, of_v, rate);
-    error = std::max(scale.norm(of_q), scale.norm(length * rate));
-  }
-  error = std::max(error, scale.norm(VecX<double>::Zero(state.q.size()), falls, state.v));
-  if (!state.q.allFinite() || !state.v.allFinite()) error = std::numeric_limits<double>::infinity();
-  if (alike && !struck && error <= 1)
-    extrapolate(once, touched_first, start + taken, taken, state, work, counters);
+  lay_.clear();
+  meets_late_ = false;
+  const bool finite = state.q.allFinite() && state.v.allFinite();
+  const double taken =
+      finite ? first + go(first, (struck && first == half ? begun.h : length) - first) : first;
   state.start = begun.start;
   state.step = begun.step;
   state.h = begun.h;
-  return {std::max(error, method.take_error()), order, taken};
+  const double of_method = method.take_error();
+  if (!finite || !state.q.allFinite() || !state.v.allFinite() || !(of_method <= 1))
+    return {std::numeric_limits<double>::infinity(), order, taken};
+  const bool strikes = counters.impacts > impacts;
+  const bool alike =
+      first == half && strikes == struck && (struck || taken == length) && state.at_limit == once.at_limit &&
+      state.joints == once.joints && same_sleepers(state.at_rest, once.at_rest) &&
+      record_.contacts.size() - touched_first == touched && (struck || touched_first == touched);
+  const VecX<double> of_v = state.v - once.v, none = VecX<double>::Zero(state.q.size());
+  VecX<double> rate;
+  dynamics_.coordinate_rates(once.q, once.v, rate);
+  const VecX<double> of_q = state.q - once.q - (taken - length) * rate;
+  const bool jumps = !alike && jump(model, of_v, kFalls * length * model.body().gravity_at(start).norm());
+  // Of rates where they lead in the step.
+  auto led_by = [&](const VecX<double>& rates) {
+    dynamics_.coordinate_rates(state.q, rates, rate);
+    return scale.norm(length * rate);
+  };
+  const bool brief = length <= kBrief,
+             late = brief || (jumps && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
+  const double of_ends = late ? std::max(scale.norm(of_q), led_by(of_v)) : scale.norm(of_q, of_v, state.v),
+               of_lost = brief ? led_by(falls) : scale.norm(none, falls, state.v);
+  const double error = std::max({of_ends, of_lost, of_method});
+  if (alike && !struck && error <= 1)
+    extrapolate(once, touched_first, start + taken, taken, state, work, counters);
+  return {error, order, taken};
 }
 
 /// once: where a step of h seconds to a time t (s) led; state: where its halves did, and then what both tell
@@ -137,6 +163,7 @@ void ContactStepping::extrapolate(const State& once, std::size_t second, double 
   }
   normalise_rotations(model, state.q);
   settling_.reconcile(parts, state, t, work, counters);
+  settle_limits(dynamics_, t, state, work, counters);
   // Gaps are not linear in what was extrapolated: what is left of them counts as resting.
   for (std::size_t k = second; k < record_.contacts.size(); ++k) {
     const Contact& contact = record_.contacts[k];

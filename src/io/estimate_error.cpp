@@ -49,8 +49,8 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled are
-/// half as long as those to another.
+/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled
+/// are half as long as those to another.
 class HalfStepsInContact {
  public:
   HalfStepsInContact(ContactSettings& settings, double tolerance, double of)

@@ -154,6 +154,8 @@ constexpr double kJump = 0.5;
 /// Rates that accelerations at both ends tell less well than to this part of that have been pushed in
 /// between, as by what lies below.
 constexpr double kPushed = 0.2;
+/// What of rates is rounding.
+constexpr double kRounding = 1e-9;
 
 /// q at a part x of the way from one state to another by a polynomial of degree 5, with the accelerations at
 /// both; of degree 3 where other forces acted too.
@@ -185,7 +187,8 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
     const double pushed =
         std::min(2 / h * rest.norm(),
                  (of(b.rate) - of(a.rate) - 0.5 * h * (of(a.curvature) + of(b.curvature))).norm());
-    if (pushed > kPushed * h * bend) {
+    const double rounding = kRounding * std::max(of(a.rate).norm(), of(b.rate).norm());
+    if (pushed > kPushed * h * bend + rounding) {
       of(q) = y * y * ((1 + 2 * x) * of(low.q) + x * h * of(a.rate)) +
               x * x * ((1 + 2 * y) * of(high.q) - y * h * of(b.rate));
       return;
