@@ -231,4 +231,79 @@ TEST_CASE("of many bodies that lie on each other steps are short, and counted", 
   CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(0.2e-2));
 }
 
+TEST_CASE("what a force drives at a thin plate does not pass it, from far or near", "[error][contact]") {
+  for (const double tolerance : {0.0, 1e-3, 1e-6})
+    for (const double from : {0.1, 0.37, 0.83, 1.9})
+      for (const double force : {0.5, 5.0, 40.0}) {
+        MultiBody body;
+        body.gravity.setZero();
+        body.contact.active = true;
+        body.add<Primitive<Box>>("plate").rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.005}}).fix();
+        Part& ball = body.add<Primitive<Sphere>>("ball").rest({{"r", 0.02}}).place({0.03, 0.01, from});
+        body.force("push", point(ball, 0, 0, 0), {0, 0, -force});
+        Simulation simulation(body, "dop853", 1, tolerance);
+        for (int i = 0; i < 40; ++i) simulation.step(0.05);
+        CAPTURE(tolerance, from, force);
+        CHECK(simulation.state().q[2] > 0.02);
+      }
+}
+
+TEST_CASE("a plane that is back where it was at the end of a step is seen to have moved",
+          "[error][contact]") {
+  // It goes up and down with three times the acceleration of gravity: a box on it is thrown.
+  MultiBody body;
+  body.contact.active = true;
+  body.add<Primitive<Box>>("box").rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.2}}).place({0, 0, 0.2});
+  ContactPlane& plane = body.contact.planes.emplace_back();
+  plane.name = "table";
+  plane.point = TimeVector(0, 0, TimeFunction::formula("0.00745 * (1 - cos(20 * pi * t))"));
+  Simulation simulation(body, "dop853", 1, 1e-4);
+
+  for (int i = 0; i < 20; ++i) simulation.step(0.1);  // a period
+  CHECK(simulation.step_counters().impacts >= 10);
+  CHECK(simulation.step_counters().steps > 40);
+}
+
+TEST_CASE("the longest step of what is not controlled changes nothing of what is", "[error][contact]") {
+  auto end = [](double longest) {
+    MultiBody body;
+    hill(body);
+    body.contact.longest_step = longest;
+    Simulation simulation(body, "dop853", 1, 1e-4);
+    go_to(simulation, 0.5);
+    return simulation.state().q;
+  };
+  CHECK(end(2e-3) == end(100));
+}
+
+TEST_CASE("a support that goes ends a step, whatever the time and the tolerance", "[error][contact]") {
+  for (const double off : {0.5, 100.0}) {
+    MultiBody body;
+    body.contact.active = true;
+    body.add<Primitive<Box>>("box").rest({{"a1", 2e-3}, {"a2", 2e-3}, {"a3", 2e-3}}).place({0, 0, 2e-3});
+    ContactPlane& plane = body.contact.planes.emplace_back();
+    plane.name = "table";
+    plane.off = off;
+    Simulation simulation(body, "dop853", 1, 1e-10);
+    go_to(simulation, off + 0.1);
+    CAPTURE(off);
+    CHECK(simulation.state().q[2] == Approx(2e-3 - 0.5 * kGravity * 0.01).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("what slides fast along a floor takes whole steps, however thin it is", "[contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 0;
+  body.contact.planes.emplace_back().name = "floor";
+  body.add<Primitive<Box>>("puck")
+      .rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.01}})
+      .place({0, 0, 0.01})
+      .move({10, 0, 0}, {0, 0, 0});
+  Simulation simulation(body, "semi_implicit_euler");
+  for (int i = 0; i < 20; ++i) simulation.step(0.01);
+  CHECK(simulation.step_counters().evaluations == 20);
+  CHECK(simulation.state().q[0] == Approx(2).epsilon(1e-12));
+}
+
 }  // namespace lasting_contact_test
