@@ -73,7 +73,7 @@ TEST_CASE("what slides to a stop, or comes to roll, does so within the tolerance
       body.contact.planes.emplace_back().name = "floor";
       Simulation simulation(body, "dop853", 1, tolerance);
       go_to(simulation, 0.5);
-      CHECK(std::abs(simulation.state().q[0] - 1 / (2 * 0.5 * kGravity)) < std::max(0.1 * tolerance, 1e-8));
+      CHECK(std::abs(simulation.state().q[0] - 1 / (2 * 0.5 * kGravity)) < std::max(0.5 * tolerance, 1e-8));
       CHECK(simulation.state().v.norm() < 1e-9);
       CHECK(simulation.step_counters().uncontrolled == 0);
       CHECK(simulation.step_counters().steps < 40);
@@ -85,7 +85,7 @@ TEST_CASE("what slides to a stop, or comes to roll, does so within the tolerance
       go_to(simulation, 1);
       const double rolls = 2 / (7 * 0.2 * kGravity),
                    x = rolls - 0.5 * 0.2 * kGravity * rolls * rolls + 5.0 / 7 * (1 - rolls);
-      CHECK(std::abs(simulation.state().q[0] - x) < 0.1 * tolerance);
+      CHECK(std::abs(simulation.state().q[0] - x) < 0.5 * tolerance);
       CHECK(simulation.step_counters().steps < 40);
     }
   }
