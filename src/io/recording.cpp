@@ -151,8 +151,8 @@ namespace {
 
 /// Rates that jump by more than this part of what they change by in a step have been struck.
 constexpr double kJump = 0.5;
-/// Rates that accelerations at both ends tell less well than to this part of that have been pushed in
-/// between, as by what lies below.
+/// Where accelerations at both ends tell neither ways nor rates to this part of them, other forces acted in
+/// between, as of what lies below.
 constexpr double kPushed = 0.2;
 /// What of rates is rounding.
 constexpr double kRounding = 1e-9;
@@ -189,8 +189,9 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
                  (of(b.rate) - of(a.rate) - 0.5 * h * (of(a.curvature) + of(b.curvature))).norm());
     const double rounding = kRounding * std::max(of(a.rate).norm(), of(b.rate).norm());
     if (pushed > kPushed * h * bend + rounding) {
-      of(q) = y * y * ((1 + 2 * x) * of(low.q) + x * h * of(a.rate)) +
-              x * x * ((1 + 2 * y) * of(high.q) - y * h * of(b.rate));
+      VecX<double> cubic;
+      StepPolynomial{of(low.q), hermite_terms(of(low.q), of(a.rate), h, of(high.q), of(b.rate))}.at(x, cubic);
+      of(q) = cubic;
       return;
     }
     const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
