@@ -54,8 +54,8 @@ schema::Record contact_record(const schema::Type& orientation, const schema::Typ
            optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
            optional("longest_step", number(above(0), "s"),
                     "Longest step to a tolerance in which many bodies lie on each other, or some that deform "
-                    "locally, whose errors are not controlled; to tolerances above 5e-4 steps are longer in "
-                    "proportion, up to ten times.",
+                    "locally, whose errors are not controlled, or any where forces act; to tolerances above "
+                    "5e-4 steps are longer in proportion, up to ten times.",
                     "0.002"),
            optional("sleep", record(sleep), "Whether bodies at rest sleep; they do not when not given."),
            optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),

@@ -88,7 +88,7 @@ struct ContactSettings {
   std::deque<ContactObstacle> obstacles;
   std::optional<Sleep> sleep{};  ///< not given: nothing sleeps
   /// Of steps to a tolerance of 5e-4 or less in which many bodies lie on each other, or some that deform
-  /// locally, whose error is not controlled (contact_step.h), s; above 0.
+  /// locally, whose error is not controlled (contact_step.h), or any where forces act, s; above 0.
   double longest_step = 2e-3;
 };
 

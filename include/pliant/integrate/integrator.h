@@ -17,7 +17,7 @@ struct StepCounters {
   long steps = 0;
   long evaluations = 0;   ///< of the accelerations
   long rejected = 0;      ///< steps whose error was too large, taken again
-  long uncontrolled = 0;  ///< steps to a tolerance in which many bodies lay on each other
+  long uncontrolled = 0;  ///< steps to a tolerance in which many bodies, or soft ones, lay there
   long limit_impulses = 0;
   long factorisations = 0;      ///< of the stiffness of nodes
   long impacts = 0;             ///< whose time in the step was found
