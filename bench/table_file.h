@@ -5,8 +5,26 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace pliant::bench {
+
+/// The cells of the rows of a CSV file with this head; none when it is not there or has another head.
+inline std::vector<std::vector<std::string>> read_rows(const std::string& path, const std::string& head) {
+  std::ifstream file(path);
+  std::string columns(head.size(), '\0'), line;
+  std::vector<std::vector<std::string>> rows;
+  if (!file.read(columns.data(), static_cast<std::streamsize>(head.size())) || columns != head) return rows;
+  while (std::getline(file, line)) {
+    std::vector<std::string>& row = rows.emplace_back(1);
+    for (const char c : line)
+      if (c == ',')
+        row.emplace_back();
+      else
+        row.back() += c;
+  }
+  return rows;
+}
 
 class TableFile {
  public:
@@ -16,6 +34,10 @@ class TableFile {
     file_.open(path);
     if (!file_) throw std::runtime_error("cannot write " + path);
     file_ << head << std::flush;
+  }
+  void row(const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) file_ << (i > 0 ? "," : "") << cells[i];
+    file_ << '\n' << std::flush;
   }
   template <class... Args>
   void row(const char* format, Args... args) {

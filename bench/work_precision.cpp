@@ -1,11 +1,13 @@
 // Run time against error of every method of integration, over the problems of problems.h.
 //
-//   work_precision [--all] [--only PROBLEM] [FOLDER]
+//   work_precision [--all] [--only PROBLEM] [--again] [FOLDER]
 //
 // writes to FOLDER work_precision.csv (a run a row; bench/plot.py draws it), precision_cost.csv (time at an
 // error), precision_auto.csv (that of auto over that of the best method chosen by hand) and
 // precision_reference.csv (where bodies are at the end); tables to standard output. --all: the long problems
-// too, and four times as long runs.
+// too, and four times as long runs. --again: the rows of FOLDER of problems that are not measured stay, and
+// of a run that is in it already, with as many steps and evaluations, the lesser time counts: on a machine
+// that others use, some rounds of the same code tell what it takes.
 //
 // Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
 // others tolerances from 0.1 on, each a tenth of the one before; linearly_implicit is measured in either way,
@@ -32,6 +34,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pliant/integrate/advance.h>
@@ -274,12 +277,55 @@ double cost_of_run(const std::vector<Cost>& runs, double level) {
   return std::isfinite(least) ? least : kNone;
 }
 
+/// What a folder has of earlier rounds.
+class Rounds {
+ public:
+  /// is_measured: of a problem by name. again: whether its rows count at all.
+  Rounds(std::string folder, bool again, std::function<bool(const std::string&)> is_measured)
+      : folder_(std::move(folder)), again_(again), is_measured_(std::move(is_measured)) {}
+
+  /// A file of the folder, with the rows that stay.
+  std::unique_ptr<bench::TableFile> open(const char* name, const std::string& head) const {
+    const std::string path = folder_.empty() ? "" : folder_ + name;
+    const auto rows = again_ ? bench::read_rows(path, head) : decltype(bench::read_rows(path, head))();
+    auto file = std::make_unique<bench::TableFile>(path, head);
+    for (const std::vector<std::string>& row : rows)
+      if (!is_measured_(row.front())) file->row(row);
+    return file;
+  }
+  /// The runs of earlier rounds, by the first columns of their rows.
+  void read_runs(const char* name, const std::string& head) {
+    if (!again_) return;
+    for (const std::vector<std::string>& row : bench::read_rows(folder_ + name, head))
+      if (row.size() > kTime && !row[kTime].empty()) least_[key(row)] = std::stod(row[kTime]);
+  }
+  /// The least time of a run, with that measured now, ms. run: the cells before that.
+  double least(const std::string& run, double cpu_ms) const {
+    const auto found = least_.find(run);
+    return found == least_.end() ? cpu_ms : std::min(cpu_ms, found->second);
+  }
+
+ private:
+  static constexpr std::size_t kTime = 5;  // its column
+  static std::string key(const std::vector<std::string>& row) {
+    std::string key;
+    for (std::size_t i = 0; i < kTime; ++i) key += row[i] + ",";
+    return key;
+  }
+
+  std::string folder_;
+  bool again_;
+  std::function<bool(const std::string&)> is_measured_;
+  std::map<std::string, double> least_;
+};
+
 /// What auto takes at an error against the best method of all; levels that the same two runs reach count
 /// once.
 class Choices {
  public:
-  explicit Choices(const std::string& path)
-      : file_(path, "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n") {}
+  explicit Choices(const Rounds& rounds)
+      : file_(rounds.open("precision_auto.csv",
+                          "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n")) {}
   /// NaN: it does not reach this error.
   void add(const std::string& method, double error, double cpu_ms) {
     if (std::isnan(cpu_ms)) return;
@@ -293,15 +339,15 @@ class Choices {
     for (const auto& [error, best] : best_) {
       const auto chosen = automatic_.find(error);
       if (chosen == automatic_.end()) {
-        file_.row("%s,%g,,%.4g,%s,\n", name.c_str(), error, best.cpu_ms, best.method.c_str());
+        file_->row("%s,%g,,%.4g,%s,\n", name.c_str(), error, best.cpu_ms, best.method.c_str());
         missed_ += (missed_.empty() ? "" : ", ") + name + " at " + level_text(error);
         continue;
       }
       const double cpu_ms = chosen->second, ratio = cpu_ms / best.cpu_ms;
       if (ratio == last) continue;
       last = ratio;
-      file_.row("%s,%g,%.4g,%.4g,%s,%.3f\n", name.c_str(), error, cpu_ms, best.cpu_ms, best.method.c_str(),
-                ratio);
+      file_->row("%s,%g,%.4g,%.4g,%s,%.3f\n", name.c_str(), error, cpu_ms, best.cpu_ms, best.method.c_str(),
+                 ratio);
       sum_ += std::log(ratio);
       ++count_;
       if (!(ratio <= most_)) {
@@ -323,7 +369,7 @@ class Choices {
     std::string method;
     double cpu_ms;
   };
-  bench::TableFile file_;
+  std::unique_ptr<bench::TableFile> file_;
   static std::string level_text(double level) {
     char text[16];
     std::snprintf(text, sizeof text, "%g", level);
@@ -352,34 +398,45 @@ std::vector<Setting> settings_of(const std::string& method, bool controlled, dou
 }  // namespace
 
 int main(int argc, char** argv) try {
-  bool all = false;
+  bool all = false, again = false;
   std::string folder, only;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--all") == 0)
       all = true;
+    else if (std::strcmp(argv[i], "--again") == 0)
+      again = true;
     else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc)
       only = argv[++i];
     else
       folder = std::string(argv[i]) + "/";
   }
-  auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
-  bench::TableFile runs_file(in_folder("work_precision.csv"),
-                             "problem,method,step_or_tolerance,steps,evaluations,cpu_ms,cpu_ms_per_s,error,"
-                             "error_along,error_v,error_lambda,gap_m,balance_J,kinetic_J,failed,"
-                             "reference_difference\n");
-  bench::TableFile cost_file(in_folder("precision_cost.csv"),
-                             "problem,method,error,cpu_ms_per_s_interpolated,cpu_ms_per_s_of_run\n");
-  bench::TableFile reference_file(in_folder("precision_reference.csv"),
-                                  "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
-  Choices choices(in_folder("precision_auto.csv"));
+  std::vector<Problem> problems;
+  for (Problem& problem : bench::problems())
+    if (only.empty() ? all || !problem.long_running : only == problem.name)
+      problems.push_back(std::move(problem));
+  if (problems.empty()) throw std::invalid_argument("there is no problem " + only);
+  Rounds rounds(folder, again, [&](const std::string& name) {
+    return std::any_of(problems.begin(), problems.end(),
+                       [&](const Problem& problem) { return problem.name == name; });
+  });
+  const char* const runs_name = "work_precision.csv";
+  const std::string runs_head =
+      "problem,method,step_or_tolerance,steps,evaluations,cpu_ms,cpu_ms_per_s,error,error_along,error_v,"
+      "error_lambda,gap_m,balance_J,kinetic_J,failed,reference_difference\n";
+  rounds.read_runs(runs_name, runs_head);
+  const auto runs_file = rounds.open(runs_name, runs_head);
+  const auto cost_file = rounds.open("precision_cost.csv",
+                                     "problem,method,error,cpu_ms_per_s_interpolated,cpu_ms_per_s_of_run\n");
+  const auto reference_file =
+      rounds.open("precision_reference.csv", "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
+  Choices choices(rounds);
   constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}, kResolved = 100, kAgreement = 1e-6;
   const double most_ms = all ? 16e3 : 4e3, enough = 0.05;
   std::vector<std::string> methods{kAutomatic};
   for (const IntegratorInfo& info : all_integrators()) methods.emplace_back(info.name);
   methods.insert(std::find(methods.begin(), methods.end(), kFixed) + 1, kControlled);
 
-  for (const Problem& problem : bench::problems()) {
-    if (only.empty() ? problem.long_running && !all : only != problem.name) continue;
+  for (const Problem& problem : problems) {
     const Meter meter(problem);
     const bool touches = meter.model().body().contact.active;
     constexpr long steps = 1L << 17;
@@ -403,9 +460,9 @@ int main(int argc, char** argv) try {
       const int at = meter.model().parts()[i].q0;
       if (at < 0) continue;
       const VecX<double>& q = exact.states.back().q;
-      reference_file.row("%s,%zu,%g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3e,%.3e\n",
-                         problem.name.c_str(), i, problem.end, q[at], q[at + 1], q[at + 2], q[at + 3],
-                         q[at + 4], q[at + 5], q[at + 6], difference, exact.gap);
+      reference_file->row("%s,%zu,%g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3e,%.3e\n",
+                          problem.name.c_str(), i, problem.end, q[at], q[at + 1], q[at + 2], q[at + 3],
+                          q[at + 4], q[at + 5], q[at + 6], difference, exact.gap);
     }
     const double largest = exact.lambda.size() > 0 ? exact.lambda.cwiseAbs().maxCoeff() : 0;
     for (const std::string& method : methods) {
@@ -420,10 +477,14 @@ int main(int argc, char** argv) try {
         try {
           of = run(problem, setting, enough);
         } catch (const StepFailure&) {
-          runs_file.row("%s,%s,%g,,,,,,,,,,,,1,%.3e\n", problem.name.c_str(), method.c_str(), asked,
-                        difference);
+          runs_file->row("%s,%s,%g,,,,,,,,,,,,1,%.3e\n", problem.name.c_str(), method.c_str(), asked,
+                         difference);
           continue;
         }
+        char key[160];
+        std::snprintf(key, sizeof key, "%s,%s,%g,%ld,%ld,", problem.name.c_str(), method.c_str(), asked,
+                      of.steps, of.evaluations);
+        of.cpu_ms = rounds.least(key, of.cpu_ms);
         const State &end = of.end, &true_end = exact.states.back();
         const double error = meter.of_places(end, true_end), along = meter.along(of, exact);
         const double lambda =
@@ -431,10 +492,9 @@ int main(int argc, char** argv) try {
         // What is nearer to the reference than that is to itself may be as far from the truth.
         const bool resolved = !(error < kResolved * difference);
         points.push_back({of.cpu_ms, resolved ? error : kResolved * difference});
-        runs_file.row("%s,%s,%g,%ld,%ld,%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e\n",
-                      problem.name.c_str(), method.c_str(), asked, of.steps, of.evaluations, of.cpu_ms,
-                      of.cpu_ms / problem.end, error, along, meter.of_velocities(end, true_end), lambda,
-                      of.gap, of.balance, of.kinetic, difference);
+        runs_file->row("%s%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e\n", key, of.cpu_ms,
+                       of.cpu_ms / problem.end, error, along, meter.of_velocities(end, true_end), lambda,
+                       of.gap, of.balance, of.kinetic, difference);
         std::printf("  %-20s %9.3g  %8ld steps  %9.2f ms  error %.2e, along %.2e\n", method.c_str(), asked,
                     of.steps, of.cpu_ms, error, along);
         std::fflush(stdout);
@@ -445,7 +505,7 @@ int main(int argc, char** argv) try {
         const double between = cost_at(points, level) / problem.end,
                      of = cost_of_run(points, level) / problem.end;
         std::printf("  %g: %.3g (%.3g)", level, between, of);
-        cost_file.row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, between, of);
+        cost_file->row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, between, of);
         choices.add(method, level, of);
       }
       std::printf("\n");

@@ -85,7 +85,8 @@ def draw(by_problem, target):
                 points = [p for p in by_method[key] if math.isfinite(p[0]) and p[0] > 0]
                 panel.loglog(*zip(*points) if points else ([], []), marker + "-", ms=3, color=colours[engine],
                              lw=1.6 if engine == "pliant" else 0.8)
-        failed = {key[0] for key, points in by_method.items() if all(math.isnan(e) for e, _ in points)}
+        present = {key[0] for key in by_method}
+        failed = present - {key[0] for key, points in by_method.items() if any(math.isfinite(e) for e, _ in points)}
         note = f" (only failed runs: {', '.join(sorted(failed))})" if failed else ""
         panel.set(title=problem + note, xlabel="error at the end", ylabel="CPU ms per simulated s", xlim=(10, 1e-11))
         panel.grid(True, which="major", alpha=0.3)

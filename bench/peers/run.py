@@ -2,6 +2,7 @@
 """Runs the problems in every engine that is installed, one thread, and writes run time against error.
 
 usage: run.py FOLDER [--out peers.csv] [--quick] [--problems A,B] [--engines mujoco,simbody] [--limit SECONDS]
+              [--again]
 """
 import argparse
 import csv
@@ -22,6 +23,7 @@ import problems
 ENGINES = "pinocchio mujoco simbody exudyn drake multipliers".split()
 QUICK = "A B C8 D4".split()
 REFERENCES = Path(__file__).resolve().parents[1] / "results" / "amd_epyc_portable" / "precision_reference.csv"
+RUN = "problem,engine,formulation,method,step_or_tolerance,error".split(",")
 COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per_s,error,failed".split(",")
 # Nothing finer is run after an error below SMALLEST, after STALLED runs below ROUNDING that did not better the
 # ladder's best, after FAILURES failed runs, after half the limit of time, or, of the runs above a 16th of it,
@@ -39,6 +41,8 @@ def arguments():
     parser.add_argument("--problems", type=lambda s: s.split(","), help="default: all")
     parser.add_argument("--engines", type=lambda s: s.split(","), default=ENGINES)
     parser.add_argument("--limit", type=float, help="CPU s of one configuration, default 10; killed at 4 times that")
+    parser.add_argument("--again", action="store_true", help="another round: what --out has of other problems and "
+                        "engines stays, and of the same run the least time")
     parser.add_argument("--prefix", default=sys.prefix, help="where native libraries of wheels are looked for")
     parser.add_argument("--references", type=Path, default=REFERENCES)
     return parser.parse_args()
@@ -57,6 +61,11 @@ def version(engine, folder):
     if getattr(peer, "PROGRAM", None) and not (folder / "native" / peer.PROGRAM).exists():
         raise RuntimeError(f"{peer.PROGRAM} was not built: its library was not found")
     return importlib.metadata.version(peer.DISTRIBUTION) if peer.DISTRIBUTION else "of the system"
+
+
+def read_rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(line for line in file if not line.startswith("#")))
 
 
 def in_child(function, *args):
@@ -112,8 +121,9 @@ def runs(engine, name, folder, index, settings, limit):
         process.join()
 
 
-def measure(problem, engine, folder, reference, limit, best, write):
-    """All ladders of an engine on a problem; best: (CPU s, error) of the runs so far."""
+def measure(problem, engine, folder, reference, limit, best, least, write):
+    """All ladders of an engine on a problem; best: (CPU s, error) of the runs so far; least: CPU ms of those of
+    earlier rounds."""
     for index, (formulation, method, settings) in enumerate(in_child(titles, engine, problem.name, folder)):
         failures, mine, begin = 0, [], time.monotonic()
         for setting, result in runs(engine, problem.name, folder, index, settings, limit):
@@ -129,7 +139,9 @@ def measure(problem, engine, folder, reference, limit, best, write):
                 if failures >= FAILURES or time.monotonic() - begin > 4 * limit:
                     break
                 continue
-            write(key + [f"{seconds * 1e3:.4f}", f"{seconds * 1e3 / problem.end:.4f}", f"{error:.3e}", 0], "")
+            told = f"{error:.3e}"
+            seconds = min(seconds, least.get((*key, told), math.inf) / 1e3)
+            write(key + [f"{seconds * 1e3:.4f}", f"{seconds * 1e3 / problem.end:.4f}", told, 0], "")
             mine.append(error)
             best.append((seconds, error))
             dominated = seconds > limit / 16 and any(seconds > DOMINATED * s and error >= e for s, e in best)
@@ -151,10 +163,16 @@ def main():
     limit = options.limit or (1 if options.quick else 10)
     names = options.problems or (QUICK if options.quick else list(problems.MAKERS))
     engines = {engine: found for engine in options.engines if (found := available(engine, folder))}
-    with open(options.out or folder / "peers.csv", "w", newline="") as file:
+    out = options.out or folder / "peers.csv"
+    earlier = read_rows(out) if options.again and out.exists() else []
+    least = {tuple(row[column] for column in RUN): float(row["cpu_ms"]) for row in earlier if row["cpu_ms"]}
+    with open(out, "w", newline="") as file:
         file.write("# " + ", ".join(f"{engine} {found}" for engine, found in engines.items()) + "\n")
         table = csv.writer(file, lineterminator="\n")
         table.writerow(COLUMNS)
+        for row in earlier:
+            if row["problem"] not in names or row["engine"] not in engines:
+                table.writerow(row[column] for column in COLUMNS)
 
         def write(row, remark):
             table.writerow(row)
@@ -164,7 +182,7 @@ def main():
         for name in names:
             best = []
             for engine in engines:
-                measure(problems.problem(name), engine, folder, references[name], limit, best, write)
+                measure(problems.problem(name), engine, folder, references[name], limit, best, least, write)
 
 
 if __name__ == "__main__":
