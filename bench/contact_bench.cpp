@@ -1,13 +1,15 @@
 // What contact costs: time per body and step of ellipsoids dropped on a plane, from the first impacts until
-// they lie still, and of towers of ten boxes that stand; the exponent of its growth with their number, and
-// the share of each stage.
+// they lie still, and of towers and pyramids of ten boxes that stand; the exponent of its growth with their
+// number, and the share of each stage.
 //
 //   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
 //   standard output; no more than MOST bodies (10000)
 //
-// Asleep: a step in which all of them sleep, which a scene may ask for. Stages, of a step at the end: motion
-// (the method's own step), near (what may meet), find (contacts), solve (impulses). They are timed one by
-// one, in loops of their own, so that their caches are warm.
+// Begun: a step at the end, alone, whose search for impulses begins at the supports of the step before, as
+// every step's does; anew: one whose search begins at none. Asleep: a step in which all of them sleep, which
+// a scene may ask for. Stages, of a step at the end: motion (the method's own step), near (what may meet),
+// find (contacts), solve (impulses). They are timed one by one, in loops of their own, so that their caches
+// are warm.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -27,7 +29,7 @@ namespace {
 
 constexpr double kStep = 2e-3, kDuration = 1;
 
-enum class Bodies { rigid, soft, boxes };  ///< soft: of three parameters each
+enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: of three parameters each
 
 struct System {
   const char* name;
@@ -40,6 +42,7 @@ struct System {
 struct Cost {
   std::string system;
   int bodies, contacts;
+  double begun, anew;
   double step, still_step;  ///< over the whole fall and its impacts; of the end
   double asleep;            ///< of a step in which all sleep
   double motion, near, find, solve;
@@ -64,6 +67,18 @@ void build_towers(MultiBody& body, const System& system, int n) {
   }
 }
 
+/// Of rows of 4, 3, 2 and 1.
+void build_pyramids(MultiBody& body, int n) {
+  constexpr double half = 0.05;
+  for (int first = 0; first < n; first += 10)
+    for (int row = 0, i = first; row < 4; ++row)
+      for (int k = 0; k < 4 - row; ++k, ++i) {
+        Part& part = body.add(make_part("body" + std::to_string(i), "box", {}, 1000));
+        part.rest({{"a1", half}, {"a2", half}, {"a3", half}});
+        part.place({half * (2.1 * k + 1.05 * row), 0.025 * first, (1 + 2 * row) * half});
+      }
+}
+
 void build_ellipsoids(MultiBody& body, const System& system, int n) {
   const int across = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(n) / system.layers)));
   for (int i = 0; i < n; ++i) {
@@ -82,7 +97,10 @@ void build_ellipsoids(MultiBody& body, const System& system, int n) {
 }
 
 void build(MultiBody& body, const System& system, int n) {
-  (system.bodies == Bodies::boxes ? build_towers : build_ellipsoids)(body, system, n);
+  if (system.bodies == Bodies::pyramids)
+    build_pyramids(body, n);
+  else
+    (system.bodies == Bodies::towers ? build_towers : build_ellipsoids)(body, system, n);
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
 
@@ -117,6 +135,16 @@ Cost measure(const System& system, int n) {
   auto stage = [&](auto&& act) {
     return per_body(bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5), 1);
   };
+  State unsupported = state;
+  unsupported.supports.clear();
+  auto step_from = [&](const State& from) {
+    return stage([&] {
+      simulation.set_state(from);
+      simulation.step(kStep);
+    });
+  };
+  cost.begun = step_from(state);
+  cost.anew = step_from(unsupported);
   loose.set_state(state);
   cost.motion = stage([&] {
     loose.set_state(state);
@@ -157,37 +185,40 @@ int main(int argc, char** argv) try {
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
                 bench::multiply_add_peak(), bench::triad_bandwidth());
   std::printf("%s", calibration);
-  bench::TableFile costs_file(
-      in_folder("contact_bench.csv"),
-      std::string(calibration) +
-          "system,bodies,contacts,step_us_per_body,still_step_us_per_body,asleep_us,motion_us,"
-          "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
+  bench::TableFile costs_file(in_folder("contact_bench.csv"),
+                              std::string(calibration) +
+                                  "system,bodies,contacts,step_us_per_body,still_step_us_per_body,begun_us,"
+                                  "anew_us,asleep_us,motion_us,"
+                                  "near_us,find_us,solve_us,deepest_in_sizes,residual,fallbacks\n");
   bench::TableFile exponents_file(in_folder("contact_exponents.csv"),
                                   std::string(calibration) + "system,step,still_step\n");
   const std::vector<System> systems{{"rigid", Bodies::rigid, 1, 10000},
                                     {"3 parameters", Bodies::soft, 1, 10000},
                                     {"rigid, heap", Bodies::rigid, 5, 1000},
-                                    {"towers of ten", Bodies::boxes, 10, 1000}};
-  std::printf("microseconds per body and step\n%-14s %6s %8s | %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
-              "system", "bodies", "contacts", "step", "still", "motion", "near", "find", "solve", "deepest",
-              "residual", "fallbacks");
+                                    {"towers of ten", Bodies::towers, 10, 1000},
+                                    {"pyramids of ten", Bodies::pyramids, 10, 1000}};
+  std::printf(
+      "microseconds per body and step\n%-15s %6s %8s | %8s %8s %8s %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
+      "system", "bodies", "contacts", "step", "still", "begun", "anew", "asleep", "motion", "near", "find",
+      "solve", "deepest", "residual", "fallbacks");
   for (const System& system : systems) {
     std::vector<Cost> costs;
     for (int n = 10; n <= std::min(most, system.most); n *= 10) {
       const Cost c = measure(system, n);
       costs.push_back(c);
-      std::printf("%-14s %6d %8d | %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
-                  c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.asleep, c.motion, c.near,
-                  c.find, c.solve, c.deepest, c.residual, c.fallbacks);
+      std::printf(
+          "%-15s %6d %8d | %8.3f %8.3f %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
+          c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.begun, c.anew, c.asleep, c.motion,
+          c.near, c.find, c.solve, c.deepest, c.residual, c.fallbacks);
       std::fflush(stdout);
-      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n", c.system.c_str(),
-                     c.bodies, c.contacts, c.step, c.still_step, c.asleep, c.motion, c.near, c.find, c.solve,
-                     c.deepest, c.residual, c.fallbacks);
+      costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n",
+                     c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.begun, c.anew, c.asleep,
+                     c.motion, c.near, c.find, c.solve, c.deepest, c.residual, c.fallbacks);
     }
     if (costs.size() < 2) continue;
     const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),
                  still = bench::exponent(costs, &Cost::bodies, &Cost::still_step);
-    std::printf("%-14s grows as bodies to the power %.3f (step) %.3f (still)\n", system.name, moving, still);
+    std::printf("%-15s grows as bodies to the power %.3f (step) %.3f (still)\n", system.name, moving, still);
     exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, still);
   }
   return 0;

@@ -50,6 +50,11 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.at_limit);
   hash.add_each(state.joints);
   hash.add_each(state.at_rest);
+  for (const Support& support : state.supports) {
+    hash.add_each(support.between);
+    hash.add_each(support.x);
+    hash.add_each(support.force);
+  }
   return hash.value();
 }
 

@@ -273,6 +273,10 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
   return solution;
 }
 
+void ContactProblem::begin_at(int contact, const Vec3<double>& impulse) {
+  system_.impulse(contact) = axes(contacts_[at(contact)]).transpose() * impulse;
+}
+
 void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
   for (const JointResponse& response : joints_) {
     const VecX<double> lambda =

@@ -30,6 +30,8 @@ constexpr double kLeftOverlap = 1e-4;
 constexpr double kUlps = 16;
 /// Meshes may overlap by this many times what counts as resting without being parted.
 constexpr double kMeshOverlap = 800;
+/// Contacts within this share of the smaller body's size of each other are the same from step to step.
+constexpr double kSamePoint = 0.05;
 /// What is parted may overlap by this share of what would be left.
 constexpr double kPartedLeft = 0.03;
 
@@ -75,6 +77,52 @@ double ContactSettling::most_parting(const Contact& contact, double h) const {
   return most;
 }
 
+/// Contacts that are this near, m, are the same.
+double ContactSettling::near(const Contact& contact) const {
+  return kSamePoint * smaller_size(dynamics_.model(), contact);
+}
+
+/// The search for impulses begins at those of h seconds by the forces of the step before.
+void ContactSettling::begin_at_supports(const std::vector<Support>& supports, double h,
+                                        const std::vector<Contact>& contacts, ContactProblem& problem) const {
+  struct Before {
+    bool operator()(const Support& support, const PairKey& key) const { return support.between < key; }
+    bool operator()(const PairKey& key, const Support& support) const { return key < support.between; }
+  };
+  if (supports.empty()) return;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const auto [first, last] =
+        std::equal_range(supports.begin(), supports.end(), key_of(contacts[k]), Before{});
+    double least = near(contacts[k]);
+    for (auto support = first; support != last; ++support) {
+      const double distance = (support->x - contacts[k].x).norm();
+      if (!(distance < least)) continue;
+      least = distance;
+      problem.begin_at(static_cast<int>(k), h * support->force);
+    }
+  }
+}
+
+std::vector<Support> ContactSettling::supports(double h) const {
+  std::vector<Pushed> sorted = pushed_;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Pushed& a, const Pushed& b) { return a.support.between < b.support.between; });
+  std::vector<Support> supports;
+  std::size_t first = 0;  // of the same pair
+  for (const Pushed& pushed : sorted) {
+    const Support& next = pushed.support;
+    if (supports.empty() || supports.back().between != next.between) first = supports.size();
+    const auto same =
+        std::find_if(supports.begin() + static_cast<std::ptrdiff_t>(first), supports.end(),
+                     [&](const Support& support) { return (support.x - next.x).norm() < pushed.near; });
+    if (same == supports.end())
+      supports.push_back({next.between, next.x, next.force / h});
+    else
+      same->force += next.force / h;
+  }
+  return supports;
+}
+
 void ContactSettling::settle(const State& before, double since_of_limits, double h, State& state, double t,
                              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
   parted_enough_.clear();
@@ -96,7 +144,11 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
+  if (h > 0) begin_at_supports(state.supports, h, contacts, problem);
   const ContactSolution solution = problem.solve(since_of_limits);
+  for (std::size_t k = 0; h > 0 && k < contacts.size(); ++k)
+    if (problem.is_shared(static_cast<int>(k)) && !of_meshes(contacts[k]) && !solution.impulse[k].isZero(0))
+      pushed_.push_back({{key_of(contacts[k]), contacts[k].x, solution.impulse[k]}, near(contacts[k])});
   counters.contact_sweeps += solution.sweeps;
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);

@@ -171,6 +171,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   const double falls = dynamics_.model().body().gravity_at(end).norm() * h,
                left = loose_speed(state.contact_residual, falls);
   state.contact_residual = 0;
+  settling_.begin_step();
   motion.slow = kSlowImpact * falls;
   motion.loose = std::max(motion.slow, left);
   resting_.loosen(left * h);
@@ -270,6 +271,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   state.start = start;
   state.step = number;
   state.h = h;
+  state.supports = settling_.supports(taken);
   sleeping_.fall_asleep(record_.contacts, begin, taken, state);
   return taken;
 }

@@ -61,6 +61,12 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   tables[kCoordinatesFile] = part_columns(model, false);
   tables[kVelocitiesFile] = part_columns(model, true);
   tables[kModesFile] = json_of(mode_columns_of(model));
+  if (model.body().contact.active) {
+    tables[kSupportsFile] = json_of(support_columns());
+    layout["support_rows"] =
+        "any number of rows a state, those up to the one that its row of modes.npy tells, and not of the "
+        "state before";
+  }
   tables[kTrajectoryFile] = json_of(trajectory);
   if (contacts) {
     for (const char* file : {kContactsFile, kContactsTable}) tables[file] = json_of(contact_columns());

@@ -75,46 +75,76 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
   }
 }
 
+bool has_supports(const Model& model) {
+  return model.body().contact.active;
+}
+
+int support_count() {
+  return static_cast<int>(support_columns().size());
+}
+
+/// How many rows of supports there are up to the end of a state, from its row of modes: -1 when that is no
+/// number of rows.
+std::int64_t supports_of(const std::vector<double>& modes) {
+  const double end = modes[kSupportsColumn];
+  return end >= 0 && end < 0x1p53 && end == std::floor(end) ? static_cast<std::int64_t>(end) : -1;
+}
+
 }  // namespace
 
 RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities,
-                                 NpyWriter modes)
+                                 NpyWriter modes, std::optional<NpyWriter> supports)
     : times_(std::move(times)),
       coordinates_(std::move(coordinates)),
       velocities_(std::move(velocities)),
-      modes_(std::move(modes)) {}
+      modes_(std::move(modes)),
+      supports_(std::move(supports)) {}
 
 RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model) {
+  std::optional<NpyWriter> supports;
+  if (has_supports(model)) supports.emplace(NpyWriter::create(folder / kSupportsFile, support_count()));
   return {NpyWriter::create(folder / kTimesFile, kNpyVector),
           NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
           NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-          NpyWriter::create(folder / kModesFile, mode_count(model))};
+          NpyWriter::create(folder / kModesFile, mode_count(model)), std::move(supports)};
 }
 
 RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model,
                                         std::int64_t rows) {
+  std::optional<NpyWriter> supports;
+  if (has_supports(model)) {
+    std::vector<double> modes(static_cast<std::size_t>(mode_count(model)), 0.0);
+    if (rows > 0) open_table(folder / kModesFile, mode_count(model)).read(rows - 1, modes.data());
+    const std::int64_t end = supports_of(modes);
+    if (end < 0) throw RecordingMismatch((folder / kModesFile).string() + " is damaged in its last row");
+    supports.emplace(NpyWriter::resume(folder / kSupportsFile, support_count(), end));
+  }
   return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
           NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
           NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
-          NpyWriter::resume(folder / kModesFile, mode_count(model), rows)};
+          NpyWriter::resume(folder / kModesFile, mode_count(model), rows), std::move(supports)};
 }
 
 void RecordingWriter::append(const State& state) {
   const double time = state.time();
   coordinates_.append(state.q.data());
   velocities_.append(state.v.data());
-  write_modes(state, row_);
+  if (supports_)
+    for (const Support& support : state.supports) supports_->append(row_of(support).data());
+  write_modes(state, supports_ ? supports_->rows() : 0, row_);
   modes_.append(row_.data());
   times_.append(&time);
 }
 
 void RecordingWriter::flush(bool to_disk) {
+  if (supports_) to_disk ? supports_->flush_to_disk() : supports_->flush();
   for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_})
     to_disk ? table->flush_to_disk() : table->flush();
 }
 
 std::size_t RecordingWriter::pending_bytes() const {
-  return coordinates_.pending_bytes() + velocities_.pending_bytes() + modes_.pending_bytes();
+  return coordinates_.pending_bytes() + velocities_.pending_bytes() + modes_.pending_bytes() +
+         (supports_ ? supports_->pending_bytes() : 0);
 }
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
@@ -124,7 +154,11 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
       velocities_(open_table(folder / kVelocitiesFile, model.n_v())),
       modes_(open_table(folder / kModesFile, mode_count(model))) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
-  const std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
+  std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
+  if (has_supports(model)) {
+    supports_.emplace(open_table(folder / kSupportsFile, support_count()));
+    while (rows > 0 && supports_up_to(rows - 1) > supports_->rows()) --rows;
+  }
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
   for (std::size_t row = 1; row < times_.size(); ++row)
@@ -133,8 +167,33 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
                               std::to_string(row));
 }
 
+std::int64_t Recording::supports_up_to(std::int64_t row) const {
+  if (row < 0) return 0;
+  std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
+  modes_.read(row, modes.data());
+  return supports_of(modes);
+}
+
 State Recording::state(std::int64_t row) const {
+  auto damaged = [&] {
+    return RecordingMismatch("the recorded state at row " + std::to_string(row) +
+                             " is damaged: its check number does not fit");
+  };
   State state;
+  const std::int64_t first = supports_up_to(row - 1), end = supports_up_to(row),
+                     most = supports_ ? supports_->rows() : 0;
+  if (first < 0 || end < first || end > most) throw damaged();
+  if (end > first) {
+    std::vector<double> support(static_cast<std::size_t>(support_count()));
+    for (std::int64_t i = first; i < end; ++i) {
+      supports_->read(i, support.data());
+      try {
+        state.supports.push_back(support_of(support));
+      } catch (const std::out_of_range&) {
+        throw damaged();
+      }
+    }
+  }
   state.q.resize(coordinates_.columns());
   state.v.resize(velocities_.columns());
   coordinates_.read(row, state.q.data());
@@ -142,8 +201,7 @@ State Recording::state(std::int64_t row) const {
   std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
   modes_.read(row, modes.data());
   if (!read_modes(modes, model_->n_limits(), model_->n_resting(), state) || !(state.time() == time(row)))
-    throw RecordingMismatch("the recorded state at row " + std::to_string(row) +
-                            " is damaged: its check number does not fit");
+    throw damaged();
   return state;
 }
 

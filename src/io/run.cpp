@@ -125,6 +125,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   for (const char* file :
        {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
     if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
+  if (simulation_->model().body().contact.active) record_.add_file(kSupportsFile);
   if (scene.contacts)
     for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
   save(true);

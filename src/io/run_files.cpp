@@ -41,10 +41,10 @@ std::string frame_name(const std::string& stem, std::int64_t number, const std::
 }
 
 bool is_run_file(const std::filesystem::path& relative) {
-  static constexpr std::array<const char*, 13> top{
-      kRunFile,           kSceneFile,          kLayoutFile,     kTimesFile,    kCoordinatesFile,
-      kVelocitiesFile,    kModesFile,          kTrajectoryFile, kContactsFile, kContactsTable,
-      kJointImpulsesFile, kJointImpulsesTable, kLockFile};
+  static constexpr std::array<const char*, 14> top{
+      kRunFile,        kSceneFile,         kLayoutFile,         kTimesFile,      kCoordinatesFile,
+      kVelocitiesFile, kModesFile,         kSupportsFile,       kTrajectoryFile, kContactsFile,
+      kContactsTable,  kJointImpulsesFile, kJointImpulsesTable, kLockFile};
   const std::string folder = relative.parent_path().string(),
                     name = finished_name(relative.filename().string());
   if (folder.empty()) return std::find(top.begin(), top.end(), name) != top.end() || is_recorded_mesh(name);

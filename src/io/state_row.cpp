@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace pliant {
@@ -59,7 +61,8 @@ std::vector<Column> mode_columns_of(const Model& model) {
       {"step_size", "s", "step; where errors are controlled, the next one"},
       {"step", "1", "steps since start"},
       {"error", "1", "of the last step, in tolerances; 0 where it is not measured"},
-      {"contact_residual", "m/s", "what impulses missed of the laws of contact in the last step"}};
+      {"contact_residual", "m/s", "what impulses missed of the laws of contact in the last step"},
+      {"supports", "1", "rows of supports.npy up to the end of this state"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
@@ -77,13 +80,46 @@ std::vector<Column> mode_columns_of(const Model& model) {
   return columns;
 }
 
-void write_modes(const State& state, std::vector<double>& row) {
+std::vector<Column> support_columns() {
+  return {{"a", "1", "number of the part that the force is on"},
+          {"b", "1", "of the other part; -1: none"},
+          {"plane", "1", "or of the plane"},
+          {"obstacle", "1", "or of the obstacle"},
+          {"x", "m", "where it was, world"},
+          {"y", "m", ""},
+          {"z", "m", ""},
+          {"force_x", "N", "mean of the last step, on part a, world"},
+          {"force_y", "N", ""},
+          {"force_z", "N", ""}};
+}
+
+std::vector<double> row_of(const Support& support) {
+  std::vector<double> row(support.between.begin(), support.between.end());
+  row.insert(row.end(), support.x.data(), support.x.data() + 3);
+  row.insert(row.end(), support.force.data(), support.force.data() + 3);
+  return row;
+}
+
+Support support_of(const std::vector<double>& row) {
+  Support support;
+  for (std::size_t i = 0; i < support.between.size(); ++i) {
+    if (!(row[i] >= -1 && row[i] <= std::numeric_limits<int>::max() && row[i] == std::floor(row[i])))
+      throw std::out_of_range("a support is between no bodies");
+    support.between[i] = static_cast<int>(row[i]);
+  }
+  support.x = Vec3<double>(row[4], row[5], row[6]);
+  support.force = Vec3<double>(row[7], row[8], row[9]);
+  return support;
+}
+
+void write_modes(const State& state, std::int64_t supports, std::vector<double>& row) {
   row.clear();
   row.push_back(state.start);
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
   row.push_back(state.contact_residual);
+  row.push_back(static_cast<double>(supports));
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
@@ -92,7 +128,7 @@ void write_modes(const State& state, std::vector<double>& row) {
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
-  constexpr std::size_t first_work = 5, first_limit = first_work + kWorks;
+  constexpr std::size_t first_work = kSupportsColumn + 1, first_limit = first_work + kWorks;
   const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
                     first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;

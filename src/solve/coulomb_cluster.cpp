@@ -30,6 +30,8 @@ constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
 constexpr double kYielding = 1e-4;
 /// Impulses that stay bounded may leave this many times what others leave.
 constexpr double kBounded = 2;
+/// A search goes on from impulses that leave less than this share of what there is to stop.
+constexpr double kNear = 0.1;
 
 }  // namespace
 
@@ -47,9 +49,10 @@ CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
 
 /// Velocities that count as zero, and those that may be left.
 void CoulombCluster::set_scale() {
-  double scale = 0, terms = 0;
+  double terms = 0;
+  scale_ = 0;
   for (int i = 0; i < size_; ++i) {
-    scale = std::max(scale, velocity(i).lpNorm<Eigen::Infinity>());
+    scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
       const CoulombSystem::Term& side = system_.sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
@@ -57,9 +60,9 @@ void CoulombCluster::set_scale() {
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
     }
   }
-  exact_ = std::max({(points_ ? kExactOfPoints : kExact) * scale,
+  exact_ = std::max({(points_ ? kExactOfPoints : kExact) * scale_,
                      kUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
-  allowed_ = std::max(exact_, (points_ || size_ > kMany ? kLeftOfMany : kLeft) * scale);
+  allowed_ = std::max(exact_, (points_ || size_ > kMany ? kLeftOfMany : kLeft) * scale_);
 }
 
 /// Contacts give way by this share of W.
@@ -216,6 +219,14 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
+/// From impulses that may be near the solution: returns whether it found that, and begins at none otherwise.
+bool CoulombCluster::follow(const VecX<double>& begun) {
+  set(begun);
+  if (residual() <= kNear * scale_ && newton(true)) return true;
+  set(VecX<double>::Zero(begun.size()));
+  return false;
+}
+
 /// Returns whether it found the solution.
 bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
@@ -226,7 +237,7 @@ bool CoulombCluster::search(int& sweeps) {
     const auto& [most, history] = *round;
     if (many && history == 0) continue;  // it would take too long, as Newton's method would with many points
     if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
-    if (!(many && points_) && newton()) return true;
+    if (!(many && points_) && newton(false)) return true;
   }
   return false;
 }
@@ -235,6 +246,14 @@ bool CoulombCluster::search(int& sweeps) {
 /// solved with contacts that yield, which has one; the better of the two stays.
 void CoulombCluster::solve(CoulombResult& result) {
   yield(0);
+  VecX<double> start, found;
+  take(start);
+  const bool begun = !start.isZero(0);
+  if (begun) {
+    found = start;
+    start.setZero();
+    set(start);
+  }
   set_scale();
   if (size_ == 1) {
     sweep(true);
@@ -242,9 +261,7 @@ void CoulombCluster::solve(CoulombResult& result) {
     result.residual = std::max(result.residual, residual());
     return;
   }
-  VecX<double> start, found;
-  take(start);
-  const bool solved = search(result.sweeps);
+  const bool solved = (begun && !points_ && follow(found)) || search(result.sweeps);
   double left = residual();
   if (!solved && left > allowed_) {
     ++result.fallbacks;

@@ -73,7 +73,8 @@ class CoulombCluster {
   void linearise(double proximal);
   MoverSystem* couple_movers();
   void solve_linear(MoverSystem& movers);
-  bool newton();
+  bool newton(bool near);
+  bool follow(const VecX<double>& begun);
   bool search(int& sweeps);
 
   CoulombSystem& system_;
@@ -83,6 +84,7 @@ class CoulombCluster {
   double enough_;
   CoulombScratch& scratch_;
   bool points_ = false;  // whether points are among the movers
+  double scale_ = 0;     // of the velocities that there are to stop
   double exact_ = 0;     // velocities below this are rounding
   double allowed_ = 0;   // and what may be left
   double softness_ = 0;  // of all contacts, as a share of their W

@@ -20,11 +20,13 @@ constexpr int kMostNewton = 30;
 /// Where many bodies are packed all around, sweeps take less time, and memory, than equations that have this
 /// many times the numbers of the bodies' own.
 constexpr double kMostFill = 10;
-/// What is found is made better while that is one step's work, to this share of what counts as exact.
-constexpr double kBeyondExact = 0.1;
+/// What is found is made better while that is one step's work, to this share of what counts as exact (near:
+/// where it begins near the solution, so that what is left does not add up from step to step).
+constexpr double kBeyondExact = 0.1, kBeyondExactNear = 0.01;
 /// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
-/// factor from step to step, from the first to the least, below which rounding outweighs the gain.
-constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kLeastProximal = 3e-8;
+/// factor from step to step, from the first (near: where it begins near the solution) to the least, below
+/// which rounding outweighs the gain.
+constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kLeastProximal = 3e-8, kProximalNear = 1e-5;
 constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
 /// Where so many steps have led away, by this factor, the search goes on from the best with shares that are
 /// greater by that one.
@@ -180,18 +182,21 @@ MoverSystem* CoulombCluster::couple_movers() {
   return &movers;
 }
 
-/// Leaves the best it has seen; returns whether that is exact.
-bool CoulombCluster::newton() {
+/// Leaves the best it has seen; returns whether that is exact. near: whether that is thought to be near.
+bool CoulombCluster::newton(bool near) {
+  const double enough = (near ? kBeyondExactNear : kBeyondExact) * exact_;
+  double best_left = residual();
+  if (best_left <= enough) return true;
   MoverSystem* movers = couple_movers();
   if (movers == nullptr) return false;
   auto& [open, drop] = scratch_.linear;
   VecX<double>& best = scratch_.best;
   take(best);
-  double best_left = residual(), proximal = kFirstProximal,
+  double proximal = near ? kProximalNear : kFirstProximal,
          least = points_ ? kLeastProximalOfPoints : kLeastProximal;
   const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
   int futile = 0;
-  for (int step = 0; step < kMostNewton && best_left > kBeyondExact * exact_; ++step) {
+  for (int step = 0; step < kMostNewton && best_left > enough; ++step) {
     linearise(proximal);
     for (const auto& [i, dp] : drop) push(i, dp);
     for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);

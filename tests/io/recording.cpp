@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,53 @@ TEST_CASE("recorded sleepers sleep on") {
   }
   CHECK(awake);
   CHECK(asleep);
+}
+
+namespace {
+
+/// pulled_scene, and two boxes that stand on a floor, one on the other.
+std::unique_ptr<Scene> standing_scene() {
+  auto scene = pulled_scene();
+  scene->body.contact.active = true;
+  scene->body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
+  for (const double z : {-4.5, -3.5})
+    scene->body.add(make_part(z < -4 ? "below" : "above", "box", {}, 1000))
+        .rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}})
+        .place({5, 5, z});
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("recorded supports come back, and damage in them is found") {
+  const NewFolder folder;
+  const auto scene = standing_scene();
+  const std::vector<State> states = record(folder.path, *scene, 12, 3);
+  const Model model(scene->body);
+  const std::string whole = bytes_of(folder / kSupportsFile);
+  {
+    const Recording recording(folder.path, model);
+    REQUIRE(recording.rows() == static_cast<std::int64_t>(states.size()));
+    for (std::size_t i = 0; i < states.size(); ++i)
+      CHECK(hash(recording.state(static_cast<std::int64_t>(i))) == hash(states[i]));
+    CHECK(states.back().supports.size() > 4);
+  }
+  // Cut off within the last state's, it is one state less; going on from there makes the same file again.
+  set_bytes(folder / kSupportsFile, whole.substr(0, whole.size() - 8));
+  const auto rows = static_cast<std::int64_t>(states.size() - 1);
+  CHECK(Recording(folder.path, model).rows() == rows);
+  RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
+  writer.append(states.back());
+  writer.flush();
+  CHECK(bytes_of(folder / kSupportsFile) == whole);
+  CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
+  for (const std::size_t from_end : {5, 75, 85}) {  // a force, and what it is between
+    std::string bytes = whole;
+    bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);
+    set_bytes(folder / kSupportsFile, bytes);
+    CHECK_THROWS_AS(Recording(folder.path, model).state(rows), RecordingMismatch);
+    CHECK_NOTHROW(Recording(folder.path, model).state(0));
+  }
 }
 
 TEST_CASE("the layout names every column") {

@@ -243,6 +243,30 @@ TEST_CASE("N57: a joint that pulls a part into a plane is named with both") {
   CHECK(notes.find("unless ball 'pull' holds them") != std::string::npos);
 }
 
+TEST_CASE("I53: a run in which bodies stand goes on from where it was stopped as if it had not been") {
+  auto scene_of = [] {
+    auto scene = pulled_scene();
+    scene->body.contact.active = true;
+    scene->body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
+    for (int i = 0; i < 3; ++i)
+      scene->body.add(make_part("box" + std::to_string(i), "box", {}, 1000))
+          .rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}})
+          .place({5 + 0.1 * i, 5, -4.5 + i});
+    for (std::size_t i = scene->appearance.size(); i < scene->body.parts().size(); ++i)
+      scene->appearance.emplace_back();
+    return scene;
+  };
+  const NewFolder folder;
+  auto whole = scene_of(), broken = scene_of();
+  REQUIRE(run(*whole, folder / "whole"));
+  REQUIRE_FALSE(run(*broken, folder / "broken", {Existing::refuse, 1, 15}));
+  broken = scene_of();
+  REQUIRE(run(*broken, folder / "broken", {Existing::resume}));
+  CHECK(results_of(folder / "broken") == results_of(folder / "whole"));
+  CHECK(bytes_of(folder / "broken" / kSupportsFile) == bytes_of(folder / "whole" / kSupportsFile));
+  CHECK(NpyReader(folder / "whole" / kSupportsFile).rows() > 10);
+}
+
 TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its steps") {
   // A free top, and a ball that bounces: its steps are as long as its flights.
   auto scene_of = [](double tolerance) {

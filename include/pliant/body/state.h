@@ -37,6 +37,14 @@ enum class JointMode : std::int8_t {
   slack     ///< one-sided, and open: it does nothing
 };
 
+/// A contact that shares what it pushes with others, and the force that it took: where the search for its
+/// impulse of the next step begins.
+struct Support {
+  std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
+  Vec3<double> x;              ///< where it was, m, world
+  Vec3<double> force;          ///< mean of the last step, on part a, N, world
+};
+
 struct State {
   double start = 0;       ///< time of step 0, s
   double h = 0;           ///< step, s; where errors are controlled, the next one
@@ -53,6 +61,7 @@ struct State {
   /// Per part, where bodies may sleep (else empty): how long it has been at rest, s; negative: it sleeps,
   /// with those of the same number. Who moves a part that sleeps wakes it.
   std::vector<double> at_rest;
+  std::vector<Support> supports;  ///< in the order of what they are between
 
   double time() const { return start + static_cast<double>(step) * h; }
 };

@@ -29,6 +29,11 @@ class ContactSettling {
   ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                   RestingContacts& resting, ContactRecord& record);
 
+  /// Forgets the supports of the step before.
+  void begin_step() { pushed_.clear(); }
+  /// Those that took something of this step, of so many seconds.
+  std::vector<Support> supports(double h) const;
+
   /// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
   /// then what still overlaps is parted.
   void settle(const State& before, double since_of_limits, double h, State& state, double t,
@@ -48,6 +53,9 @@ class ContactSettling {
                    std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   double most_parting(const Contact& contact, double h) const;
   void went(const Contact& contact, double far);
+  void begin_at_supports(const std::vector<Support>& supports, double h, const std::vector<Contact>& contacts,
+                         ContactProblem& problem) const;
+  double near(const Contact& contact) const;
   void add_throws(const State& state);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
@@ -59,6 +67,12 @@ class ContactSettling {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
+  /// A support whose force is still an impulse, N s, and how near another is the same, m.
+  struct Pushed {
+    Support support;
+    double near;
+  };
+  std::vector<Pushed> pushed_;  // of the step
   // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
   // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
   std::vector<double> went_;

@@ -1,11 +1,13 @@
 // The recording of a run: every entry of the recorded states, in tables of doubles (t.npy, q.npy, v.npy, and
-// modes.npy for step count, works, limit flags and a check number). A recorded state is a state after a step,
+// modes.npy for step count, works, limit flags and a check number; supports.npy, where bodies may touch, for
+// what contacts begin with). A recorded state is a state after a step,
 // never an interpolated one, and going on from any of them gives the same bits. layout.json names every
 // column.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -41,9 +43,11 @@ class RecordingWriter {
   std::size_t pending_bytes() const;
 
  private:
-  RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes);
+  RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes,
+                  std::optional<NpyWriter> supports);
 
   NpyWriter times_, coordinates_, velocities_, modes_;
+  std::optional<NpyWriter> supports_;
   std::vector<double> row_;
 };
 
@@ -67,8 +71,11 @@ class Recording {
   State at(double time) const;
 
  private:
+  std::int64_t supports_up_to(std::int64_t row) const;
+
   const Model* model_;
   NpyReader coordinates_, velocities_, modes_;
+  std::optional<NpyReader> supports_;
   std::vector<double> times_;
 };
 

@@ -10,11 +10,12 @@ namespace pliant {
 inline constexpr const char* kRunFile = "run.json";        ///< how far the run came, and how
 inline constexpr const char* kSceneFile = "scene.json";    ///< the scene as it was read
 inline constexpr const char* kLayoutFile = "layout.json";  ///< the columns of the tables
-inline constexpr int kRecordingVersion = 2;                ///< of it and the tables
+inline constexpr int kRecordingVersion = 3;                ///< of it and the tables
 inline constexpr const char* kTimesFile = "t.npy";
 inline constexpr const char* kCoordinatesFile = "q.npy";
 inline constexpr const char* kVelocitiesFile = "v.npy";
-inline constexpr const char* kModesFile = "modes.npy";  ///< what else a state holds
+inline constexpr const char* kModesFile = "modes.npy";        ///< what else a state holds
+inline constexpr const char* kSupportsFile = "supports.npy";  ///< and what contacts begin the next step with
 inline constexpr const char* kTrajectoryFile = "trajectory.csv";
 // Of a run that tells what touches, recorded and for people:
 inline constexpr const char* kContactsFile = "contacts.npy";

@@ -1,6 +1,8 @@
-// What a state holds beside t, q and v, as one row of numbers: modes.npy.
+// What a state holds beside t, q and v, as one row of numbers, modes.npy, and some for what rests on
+// contacts: supports.npy.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,11 +18,20 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 /// The columns of modes.npy, in order.
 std::vector<Column> mode_columns_of(const Model& model);
 
-/// The row of a state. Its last number is a hash of all bits of the state.
-void write_modes(const State& state, std::vector<double>& row);
+/// Which column tells how many rows of supports.npy there are up to the end of a state.
+inline constexpr std::size_t kSupportsColumn = 5;
+/// The columns of supports.npy, in order.
+std::vector<Column> support_columns();
+std::vector<double> row_of(const Support& support);
+/// Throws std::out_of_range when a number of a row is not one of a part, plane or obstacle.
+Support support_of(const std::vector<double>& row);
 
-/// Fills in the rest of a state whose q and v are set, of a model with so many limits, and parts whose rest
-/// is told. False when the row's hash is not that of the state.
+/// The row of a state, with so many rows of supports up to its end. Its last number is a hash of all bits of
+/// the state.
+void write_modes(const State& state, std::int64_t supports, std::vector<double>& row);
+
+/// Fills in the rest of a state whose q, v and supports are set, of a model with so many limits, and parts
+/// whose rest is told. False when the row's hash is not that of the state.
 [[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting,
                               State& state);
 

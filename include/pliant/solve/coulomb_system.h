@@ -56,7 +56,7 @@ class CoulombSystem {
   /// Y of a contact that was added, and the mover it is of.
   Push push(int k, int i);
   int pushed(int k, int i) const { return pushes_[at(contacts_[at(k)].first_push + i)].mover; }
-  /// c and p of a contact; p is where the search begins.
+  /// c and p of a contact. Before solve(), p is where the search begins, if it is near the solution.
   Vec3<double>& constant(int k) { return contacts_[at(k)].c; }
   const Vec3<double>& constant(int k) const { return contacts_[at(k)].c; }
   Vec3<double>& impulse(int k) { return p_[at(k)]; }
@@ -74,6 +74,8 @@ class CoulombSystem {
   /// Adds the changes of x by the impulse of contact k, `factor` times.
   void add_change(int k, double factor, VecX<double>& x) const;
 
+  /// Whether a contact is the only one of its cluster. Once solve() was called.
+  bool is_alone(int k) const { return contacts_[at(k)].alone; }
   /// Finds the impulses; x: velocities of all movers, before them and after. enough: what the law may miss
   /// anyhow. Once this is called, no more is added.
   CoulombResult solve(VecX<double>& x, double enough = 0);
@@ -91,6 +93,7 @@ class CoulombSystem {
     Vec3<double> c = Vec3<double>::Zero();
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
+    bool alone = true;
   };
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);

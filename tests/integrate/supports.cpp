@@ -1,0 +1,143 @@
+// The impulses of a step begin at the forces of the one before, which are part of the state.
+#include "catch.h"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "motion.h"
+
+namespace supports_test {
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kHalf = 0.1, kStep = 5e-3;  // m, s
+
+/// Rows of boxes on a floor, each row a box shorter than the one below, each box on two.
+void pyramid(MultiBody& body, int rows) {
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < rows - row; ++k) {
+      Part& part =
+          body.add(make_part("box" + std::to_string(row) + "_" + std::to_string(k), "box", {}, 1000));
+      part.rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}});
+      part.place({kHalf * (2.1 * k + 1.05 * row), 0, kHalf * (2 * row + 1)});
+    }
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+}
+double weight(const MultiBody& body) {
+  double mass = 0;
+  for (const auto& part : body.parts()) mass += part->total_mass();
+  return mass * body.gravity_at(0).norm();
+}
+/// What the floor takes of a state's supports, N.
+Vec3<double> on_floor(const State& state) {
+  Vec3<double> force = Vec3<double>::Zero();
+  for (const Support& support : state.supports)
+    if (support.between[2] == 0) force += support.force;
+  return force;
+}
+/// Steps, each from a state that `change` has changed; returns the sweeps that they took.
+template <class F>
+long sweeps(Simulation& simulation, int steps, F&& change) {
+  const long before = simulation.step_counters().contact_sweeps;
+  for (int i = 0; i < steps; ++i) {
+    State state = simulation.state();
+    change(state);
+    simulation.set_state(state);
+    simulation.step(kStep);
+  }
+  return simulation.step_counters().contact_sweeps - before;
+}
+
+}  // namespace
+
+TEST_CASE("a pile that stands needs no search, and stands as without", "[contact]") {
+  MultiBody body;
+  pyramid(body, 5);
+  Simulation warm(body, "rk4"), cold(body, "rk4");
+  const VecX<double> start = warm.state().q;
+  for (int i = 0; i < 20; ++i) warm.step(kStep);
+  cold.set_state(warm.state());
+  const long with = sweeps(warm, 40, [](State&) {}),
+             without = sweeps(cold, 40, [](State&state) { state.supports.clear(); });
+  CAPTURE(with, without);
+  CHECK(without >= 40);
+  CHECK(4 * with < without);
+  for (const Simulation* simulation : {&warm, &cold}) {
+    CHECK((simulation->state().q - start).lpNorm<Eigen::Infinity>() < 1e-11);
+    CHECK(simulation->state().v.norm() < 1e-11);
+    CHECK((on_floor(simulation->state()) - Vec3<double>(0, 0, weight(body))).norm() < 1e-9 * weight(body));
+  }
+}
+
+TEST_CASE("supports are forces: steps of other lengths begin at them too", "[contact]") {
+  MultiBody body;
+  pyramid(body, 4);
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 20; ++i) simulation.step(kStep);
+  const long before = simulation.step_counters().contact_sweeps;
+  for (const double h : {2e-3, 1e-2, 1e-3, 5e-3}) {
+    simulation.step(h);
+    CHECK(on_floor(simulation.state()).z() == Approx(weight(body)).epsilon(1e-9));
+  }
+  CHECK(simulation.step_counters().contact_sweeps - before < 4);
+}
+
+TEST_CASE("supports that are wrong do not change what is found", "[contact]") {
+  MultiBody body;
+  pyramid(body, 4);
+  Simulation simulation(body, "rk4");
+  const VecX<double> start = simulation.state().q;
+  for (const double factor : {0.0, -1.0, 1e3, 1e12}) {
+    CAPTURE(factor);
+    sweeps(simulation, 10, [&](State& state) {
+      for (Support& support : state.supports)
+        support.force = factor * support.force + Vec3<double>(factor, 1, 0);
+    });
+    CHECK((simulation.state().q - start).lpNorm<Eigen::Infinity>() < 1e-11);
+    CHECK(simulation.state().v.norm() < 1e-11);
+    CHECK(on_floor(simulation.state()).z() == Approx(weight(body)).epsilon(1e-9));
+  }
+  CHECK(simulation.step_counters().contact_fallbacks == 0);
+}
+
+TEST_CASE("what shares nothing has no supports, and what has left none", "[contact]") {
+  MultiBody body;
+  for (int i = 0; i < 3; ++i) {
+    Part& part = body.add(make_part("ball" + std::to_string(i), "sphere", {}, 1000));
+    part.rest({{"r", 0.1}}).place({1.0 * i, 0, 0.1});
+  }
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Part& box = body.add(make_part("box", "box", {}, 1000));
+  box.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place({0, 3, 0.1});
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 5; ++i) simulation.step(kStep);
+  CHECK(simulation.contact()->contacts().size() > 3);
+  REQUIRE(simulation.state().supports.size() > 1);  // of the box, on its corners
+  for (const Support& support : simulation.state().supports) CHECK(support.between[0] == 3);
+  State up = simulation.state();
+  up.q[simulation.model().parts()[3].q0 + 2] += 1;
+  simulation.set_state(up);
+  simulation.step(kStep);
+  CHECK(simulation.state().supports.empty());
+}
+
+TEST_CASE("a state goes on to the same bits, with its supports", "[contact]") {
+  MultiBody body;
+  pyramid(body, 4);
+  Simulation one(body, "rk4"), other(body, "rk4");
+  for (int i = 0; i < 20; ++i) one.step(kStep);
+  other.set_state(one.state());
+  for (int i = 0; i < 10; ++i) {
+    one.step(kStep);
+    other.step(kStep);
+    REQUIRE(hash(one.state()) == hash(other.state()));
+  }
+  State without = one.state();
+  without.supports.pop_back();
+  CHECK(hash(without) != hash(one.state()));
+}
+
+}  // namespace supports_test
