@@ -50,6 +50,7 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.at_limit);
   hash.add_each(state.joints);
   hash.add_each(state.at_rest);
+  hash.add(&state.supports_age, sizeof state.supports_age);
   for (const Support& support : state.supports) {
     hash.add_each(support.between);
     hash.add_each(support.x);

@@ -32,6 +32,8 @@ constexpr double kUlps = 16;
 constexpr double kMeshOverlap = 800;
 /// Contacts within this share of the smaller body's size of each other are the same from step to step.
 constexpr double kSamePoint = 0.05;
+/// So many steps in a row begin at the forces before.
+constexpr int kMostAge = 10;
 /// What is parted may overlap by this share of what would be left.
 constexpr double kPartedLeft = 0.03;
 
@@ -77,50 +79,80 @@ double ContactSettling::most_parting(const Contact& contact, double h) const {
   return most;
 }
 
+/// Where a contact is in the frame of its part a, m: what rests stays there, whatever its bodies do.
+Vec3<double> ContactSettling::place(const Contact& contact, const State& state, double t) const {
+  const Model& model = dynamics_.model();
+  const int part = contact.a.part;
+  return model.orientation(state, part, t).conjugate() * (contact.x - model.position(state, part, t));
+}
+
 /// Contacts that are this near, m, are the same.
 double ContactSettling::near(const Contact& contact) const {
   return kSamePoint * smaller_size(dynamics_.model(), contact);
 }
 
+void ContactSettling::begin_step(const State& state) {
+  pushed_.clear();
+  settlements_ = 0;
+  begins_anew_ = state.supports.empty() || state.supports_age >= kMostAge;
+}
+
 /// The search for impulses begins at those of h seconds by the forces of the step before.
-void ContactSettling::begin_at_supports(const std::vector<Support>& supports, double h,
+void ContactSettling::begin_at_supports(const State& state, double t, double h,
                                         const std::vector<Contact>& contacts, ContactProblem& problem) const {
+  if (begins_anew_) return;
+  const std::vector<Support>& supports = state.supports;
   struct Before {
     bool operator()(const Support& support, const PairKey& key) const { return support.between < key; }
     bool operator()(const PairKey& key, const Support& support) const { return key < support.between; }
   };
-  if (supports.empty()) return;
+  std::vector<char> taken(supports.size(), 0);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const auto [first, last] =
         std::equal_range(supports.begin(), supports.end(), key_of(contacts[k]), Before{});
+    if (first == last) continue;
+    const Vec3<double> x = place(contacts[k], state, t);
     double least = near(contacts[k]);
+    auto found = last;
     for (auto support = first; support != last; ++support) {
-      const double distance = (support->x - contacts[k].x).norm();
-      if (!(distance < least)) continue;
+      const double distance = (support->x - x).norm();
+      if (!(distance < least) || taken[static_cast<std::size_t>(support - supports.begin())] != 0) continue;
       least = distance;
-      problem.begin_at(static_cast<int>(k), h * support->force);
+      found = support;
     }
+    if (found == last) continue;
+    taken[static_cast<std::size_t>(found - supports.begin())] = 1;
+    problem.begin_at(static_cast<int>(k), h * found->force);
   }
 }
 
-std::vector<Support> ContactSettling::supports(double h) const {
-  std::vector<Pushed> sorted = pushed_;
+void ContactSettling::end_step(double h, State& state) const {
+  state.supports_age = begins_anew_ ? 0 : state.supports_age + 1;
+  std::vector<Pushed> sorted = pushed_, merged;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Pushed& a, const Pushed& b) { return a.support.between < b.support.between; });
-  std::vector<Support> supports;
   std::size_t first = 0;  // of the same pair
-  for (const Pushed& pushed : sorted) {
-    const Support& next = pushed.support;
-    if (supports.empty() || supports.back().between != next.between) first = supports.size();
-    const auto same =
-        std::find_if(supports.begin() + static_cast<std::ptrdiff_t>(first), supports.end(),
-                     [&](const Support& support) { return (support.x - next.x).norm() < pushed.near; });
-    if (same == supports.end())
-      supports.push_back({next.between, next.x, next.force / h});
-    else
-      same->force += next.force / h;
+  for (const Pushed& next : sorted) {
+    if (merged.empty() || merged.back().support.between != next.support.between) first = merged.size();
+    // The nearest of an earlier settlement is the same contact.
+    double least = next.near;
+    std::size_t same = merged.size();
+    for (std::size_t i = first; i < merged.size(); ++i) {
+      const double distance = (merged[i].support.x - next.support.x).norm();
+      if (!(distance < least) || merged[i].settlement == next.settlement) continue;
+      least = distance;
+      same = i;
+    }
+    if (same == merged.size()) {
+      merged.push_back(next);
+      continue;
+    }
+    merged[same].support.force += next.support.force;
+    merged[same].settlement = next.settlement;
   }
-  return supports;
+  state.supports.clear();
+  for (const Pushed& pushed : merged)
+    state.supports.push_back({pushed.support.between, pushed.support.x, pushed.support.force / h});
 }
 
 void ContactSettling::settle(const State& before, double since_of_limits, double h, State& state, double t,
@@ -144,11 +176,14 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
-  if (h > 0) begin_at_supports(state.supports, h, contacts, problem);
+  if (h > 0) begin_at_supports(state, t, h, contacts, problem);
   const ContactSolution solution = problem.solve(since_of_limits);
   for (std::size_t k = 0; h > 0 && k < contacts.size(); ++k)
-    if (problem.is_shared(static_cast<int>(k)) && !of_meshes(contacts[k]) && !solution.impulse[k].isZero(0))
-      pushed_.push_back({{key_of(contacts[k]), contacts[k].x, solution.impulse[k]}, near(contacts[k])});
+    if (problem.may_begin(static_cast<int>(k)) && !of_meshes(contacts[k]) && !solution.impulse[k].isZero(0))
+      pushed_.push_back({{key_of(contacts[k]), place(contacts[k], state, t), solution.impulse[k]},
+                         near(contacts[k]),
+                         settlements_});
+  ++settlements_;
   counters.contact_sweeps += solution.sweeps;
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);

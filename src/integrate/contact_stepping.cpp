@@ -171,7 +171,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   const double falls = dynamics_.model().body().gravity_at(end).norm() * h,
                left = loose_speed(state.contact_residual, falls);
   state.contact_residual = 0;
-  settling_.begin_step();
+  settling_.begin_step(state);
   motion.slow = kSlowImpact * falls;
   motion.loose = std::max(motion.slow, left);
   resting_.loosen(left * h);
@@ -271,7 +271,7 @@ double ContactStepping::step(Integrator& method, State& state, Workspace<double>
   state.start = start;
   state.step = number;
   state.h = h;
-  state.supports = settling_.supports(taken);
+  settling_.end_step(taken, state);
   sleeping_.fall_asleep(record_.contacts, begin, taken, state);
   return taken;
 }

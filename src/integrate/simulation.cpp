@@ -1,6 +1,7 @@
 #include <pliant/integrate/simulation.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -74,6 +75,24 @@ auto at_time(double t, F&& act) {
     throw NumericalFailure(failure.what(), t);
   }
 }
+/// Throws where supports are not finite, of this model and in their order.
+void check_supports(const std::vector<Support>& supports, const Model& model) {
+  const ContactSettings& contact = model.body().contact;
+  const std::array<std::size_t, 4> counts{model.parts().size(), model.parts().size(), contact.planes.size(),
+                                          contact.obstacles.size()};
+  for (const Support& support : supports) {
+    bool fits = support.between[0] >= 0;
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      fits = fits && support.between[i] >= -1 && support.between[i] < static_cast<int>(counts[i]);
+    if (!fits) throw std::invalid_argument("a support of this state belongs to another model");
+    if (!support.x.allFinite() || !support.force.allFinite())
+      throw std::invalid_argument("a support of this state is not finite");
+  }
+  if (!std::is_sorted(supports.begin(), supports.end(),
+                      [](const Support& a, const Support& b) { return a.between < b.between; }))
+    throw std::invalid_argument("the supports of this state are not in the order of what they are between");
+}
+
 }  // namespace
 
 Simulation::Simulation(MultiBody& body, const std::string& integrator, int threads, double tolerance)
@@ -407,6 +426,8 @@ void Simulation::set_state(State state) {
       static_cast<int>(state.at_limit.size()) != model_.n_limits() ||
       state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting())
     throw std::invalid_argument("this state belongs to another model");
+  if (!contact_) state.supports.clear();
+  check_supports(state.supports, model_);
   state_ = std::move(state);
   switching_.forget_after(time() + kNear * state_.h);
   if (contact_) contact_->begin_step();  // nothing has touched yet

@@ -83,11 +83,21 @@ int support_count() {
   return static_cast<int>(support_columns().size());
 }
 
-/// How many rows of supports there are up to the end of a state, from its row of modes: -1 when that is no
-/// number of rows.
-std::int64_t supports_of(const std::vector<double>& modes) {
-  const double end = modes[kSupportsColumn];
-  return end >= 0 && end < 0x1p53 && end == std::floor(end) ? static_cast<std::int64_t>(end) : -1;
+/// The rows of supports that are of a state, from the first to before the last; both -1 when its row of modes
+/// is damaged there.
+struct SupportRows {
+  std::int64_t first = -1, end = -1;
+};
+SupportRows supports_of(const std::vector<double>& modes) {
+  const double first = modes[kFirstSupport], end = modes[kEndOfSupports];
+  if (!(0 <= first && first <= end && end < 0x1p53 && first == std::floor(first) && end == std::floor(end)))
+    return {};
+  return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
+}
+std::vector<double> read_row(const NpyReader& table, std::int64_t row) {
+  std::vector<double> numbers(static_cast<std::size_t>(table.columns()));
+  table.read(row, numbers.data());
+  return numbers;
 }
 
 }  // namespace
@@ -113,10 +123,12 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
                                         std::int64_t rows) {
   std::optional<NpyWriter> supports;
   if (has_supports(model)) {
-    std::vector<double> modes(static_cast<std::size_t>(mode_count(model)), 0.0);
-    if (rows > 0) open_table(folder / kModesFile, mode_count(model)).read(rows - 1, modes.data());
-    const std::int64_t end = supports_of(modes);
-    if (end < 0) throw RecordingMismatch((folder / kModesFile).string() + " is damaged in its last row");
+    const std::int64_t end =
+        rows > 0 ? supports_of(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
+                 : 0;
+    if (end < 0)
+      throw RecordingMismatch((folder / kModesFile).string() + " is damaged at row " +
+                              std::to_string(rows - 1));
     supports.emplace(NpyWriter::resume(folder / kSupportsFile, support_count(), end));
   }
   return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
@@ -157,7 +169,7 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
   std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
   if (has_supports(model)) {
     supports_.emplace(open_table(folder / kSupportsFile, support_count()));
-    while (rows > 0 && supports_up_to(rows - 1) > supports_->rows()) --rows;
+    while (rows > 0 && supports_of(read_row(modes_, rows - 1)).end > supports_->rows()) --rows;
   }
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
@@ -167,39 +179,24 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
                               std::to_string(row));
 }
 
-std::int64_t Recording::supports_up_to(std::int64_t row) const {
-  if (row < 0) return 0;
-  std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
-  modes_.read(row, modes.data());
-  return supports_of(modes);
-}
-
 State Recording::state(std::int64_t row) const {
   auto damaged = [&] {
     return RecordingMismatch("the recorded state at row " + std::to_string(row) +
                              " is damaged: its check number does not fit");
   };
   State state;
-  const std::int64_t first = supports_up_to(row - 1), end = supports_up_to(row),
-                     most = supports_ ? supports_->rows() : 0;
-  if (first < 0 || end < first || end > most) throw damaged();
-  if (end > first) {
-    std::vector<double> support(static_cast<std::size_t>(support_count()));
-    for (std::int64_t i = first; i < end; ++i) {
-      supports_->read(i, support.data());
-      try {
-        state.supports.push_back(support_of(support));
-      } catch (const std::out_of_range&) {
-        throw damaged();
-      }
+  const std::vector<double> modes = read_row(modes_, row);
+  const SupportRows rows = supports_of(modes);
+  if (rows.first < 0 || rows.end > (supports_ ? supports_->rows() : 0)) throw damaged();
+  for (std::int64_t i = rows.first; i < rows.end; ++i) try {
+      state.supports.push_back(support_of(read_row(*supports_, i)));
+    } catch (const std::out_of_range&) {
+      throw damaged();
     }
-  }
   state.q.resize(coordinates_.columns());
   state.v.resize(velocities_.columns());
   coordinates_.read(row, state.q.data());
   velocities_.read(row, state.v.data());
-  std::vector<double> modes(static_cast<std::size_t>(modes_.columns()));
-  modes_.read(row, modes.data());
   if (!read_modes(modes, model_->n_limits(), model_->n_resting(), state) || !(state.time() == time(row)))
     throw damaged();
   return state;

@@ -62,7 +62,9 @@ std::vector<Column> mode_columns_of(const Model& model) {
       {"step", "1", "steps since start"},
       {"error", "1", "of the last step, in tolerances; 0 where it is not measured"},
       {"contact_residual", "m/s", "what impulses missed of the laws of contact in the last step"},
-      {"supports", "1", "rows of supports.npy up to the end of this state"}};
+      {"supports", "1", "the first row of supports.npy that is of this state"},
+      {"supports_end", "1", "the row after the last"},
+      {"supports_age", "1", "steps in a row whose search for impulses began at them"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
@@ -85,7 +87,7 @@ std::vector<Column> support_columns() {
           {"b", "1", "of the other part; -1: none"},
           {"plane", "1", "or of the plane"},
           {"obstacle", "1", "or of the obstacle"},
-          {"x", "m", "where it was, world"},
+          {"x", "m", "where it was, in the frame of part a"},
           {"y", "m", ""},
           {"z", "m", ""},
           {"force_x", "N", "mean of the last step, on part a, world"},
@@ -112,14 +114,16 @@ Support support_of(const std::vector<double>& row) {
   return support;
 }
 
-void write_modes(const State& state, std::int64_t supports, std::vector<double>& row) {
+void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row) {
   row.clear();
   row.push_back(state.start);
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
   row.push_back(state.contact_residual);
-  row.push_back(static_cast<double>(supports));
+  row.push_back(static_cast<double>(end_of_supports) - static_cast<double>(state.supports.size()));
+  row.push_back(static_cast<double>(end_of_supports));
+  row.push_back(state.supports_age);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
@@ -128,7 +132,7 @@ void write_modes(const State& state, std::int64_t supports, std::vector<double>&
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
-  constexpr std::size_t first_work = kSupportsColumn + 1, first_limit = first_work + kWorks;
+  constexpr std::size_t age = kEndOfSupports + 1, first_work = age + 1, first_limit = first_work + kWorks;
   const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
                     first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;
@@ -137,6 +141,9 @@ bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_rest
   state.step = static_cast<std::int64_t>(row[2]);
   state.error = row[3];
   state.contact_residual = row[4];
+  if (!(row[age] >= 0 && row[age] < std::numeric_limits<int>::max() && row[age] == std::floor(row[age])))
+    return false;
+  state.supports_age = static_cast<int>(row[age]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
   for (std::size_t i = first_limit; i < first_resting; ++i) {

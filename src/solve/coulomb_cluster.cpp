@@ -219,10 +219,18 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
+/// Whether searches are for what Newton's method may go on from.
+bool CoulombCluster::may_begin() const {
+  const std::vector<MoverSystem>& systems = scratch_.coupling.clusters;
+  const bool too_large =
+      !systems.empty() && !systems[at(number_)].empty() && !systems[at(number_)].is_ordered();
+  return size_ > 1 && !points_ && !too_large;
+}
+
 /// From impulses that may be near the solution: returns whether it found that, and begins at none otherwise.
 bool CoulombCluster::follow(const VecX<double>& begun) {
   set(begun);
-  if (residual() <= kNear * scale_ && newton(true)) return true;
+  if (begun.allFinite() && residual() <= kNear * scale_ && newton(true)) return true;
   set(VecX<double>::Zero(begun.size()));
   return false;
 }
@@ -246,6 +254,13 @@ bool CoulombCluster::search(int& sweeps) {
 /// solved with contacts that yield, which has one; the better of the two stays.
 void CoulombCluster::solve(CoulombResult& result) {
   yield(0);
+  if (size_ == 1) {
+    set_scale();
+    sweep(true);
+    ++result.sweeps;
+    result.residual = std::max(result.residual, residual());
+    return;
+  }
   VecX<double> start, found;
   take(start);
   const bool begun = !start.isZero(0);
@@ -255,12 +270,6 @@ void CoulombCluster::solve(CoulombResult& result) {
     set(start);
   }
   set_scale();
-  if (size_ == 1) {
-    sweep(true);
-    ++result.sweeps;
-    result.residual = std::max(result.residual, residual());
-    return;
-  }
   const bool solved = (begun && !points_ && follow(found)) || search(result.sweeps);
   double left = residual();
   if (!solved && left > allowed_) {
@@ -277,6 +286,7 @@ void CoulombCluster::solve(CoulombResult& result) {
       set(found);
   }
   result.residual = std::max(result.residual, left);
+  for (int i = 0; i < size_; ++i) point(i).begins = may_begin();
 }
 
 }  // namespace pliant

@@ -75,6 +75,7 @@ class CoulombCluster {
   void solve_linear(MoverSystem& movers);
   bool newton(bool near);
   bool follow(const VecX<double>& begun);
+  bool may_begin() const;
   bool search(int& sweeps);
 
   CoulombSystem& system_;

@@ -137,9 +137,6 @@ void CoulombSystem::find_clusters() {
   for (int i = 0; i < static_cast<int>(order_.size()); ++i)
     if (i == 0 || mover[at(order_[at(i)])] != mover[at(order_[at(i - 1)])]) clusters_.push_back(i);
   clusters_.push_back(static_cast<int>(order_.size()));
-  for (std::size_t i = 0; i + 1 < clusters_.size(); ++i)
-    for (int k = clusters_[i]; k < clusters_[i + 1]; ++k)
-      contacts_[at(order_[at(k)])].alone = clusters_[i + 1] - clusters_[i] == 1;
 }
 
 CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
@@ -148,6 +145,7 @@ CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
   x0_ = x;
   x_ = x;
   for (int k = 0; k < size(); ++k) {
+    if (pushes(k) == 0) p_[at(k)].setZero();
     add_change(k, 1, x_);
     if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x_)[0]);
   }

@@ -59,10 +59,12 @@ Outcome shoot(const std::string& at, const std::string& shape, int shots, Draws&
   Outcome outcome;
   for (int i = 0; i < shots; ++i) {
     State state = first;
-    const double speed = kSize * std::exp(draws.uniform(std::log(0.1), std::log(10.0))) / kStep;
+    const double share = std::exp(draws.uniform(std::log(0.1), std::log(10.0))),
+                 speed = share * kSize / kStep;
     const Vec3<double> along =
         Vec3<double>(draws.uniform(-0.5, 0.5), draws.uniform(-0.5, 0.5), -1).normalized();
-    const double far = draws.uniform(2.2, 12) * kSize;
+    // Two of its steps on the way, or less: they meet at any part of a step.
+    const double far = draws.uniform(2.2, 2.2 + std::clamp(2 * share, 0.5, 9.8)) * kSize;
     // Off the middle of a body by at most half its least semi-axis.
     const Vec3<double> aim = pair ? draws.vector(0.5 * kLeast / std::sqrt(3.0)) : Vec3<double>::Zero();
     set(simulation.model(), 0, aim - far * along, turned(draws), speed * along, draws.vector(9), state);

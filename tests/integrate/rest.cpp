@@ -57,9 +57,9 @@ TEST_CASE("N51: a stack of ten boxes stands without creep", "[contact][long]") {
   }
 }
 
-TEST_CASE("N51: a box on a box stands for ten hours, stacks of ten and fifty for an hour and ten minutes",
+TEST_CASE("N51: a box on a box and a stack of ten stand for an hour, one of fifty for ten minutes",
           "[contact][long]") {
-  for (const auto& [boxes, hours] : {std::pair(2, 10.0), std::pair(10, 1.0), std::pair(50, 1.0 / 6)}) {
+  for (const auto& [boxes, hours] : {std::pair(2, 1.0), std::pair(10, 1.0), std::pair(50, 1.0 / 6)}) {
     CAPTURE(boxes);
     MultiBody body;
     stack(body, boxes);

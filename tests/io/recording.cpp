@@ -13,6 +13,7 @@
 
 #include <pliant/integrate/simulation.h>
 #include <pliant/io/run_files.h>
+#include <pliant/io/state_row.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/box.h>
 #include <pliant/shape/ellipsoid.h>
@@ -130,6 +131,21 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
     set_bytes(folder / kSupportsFile, bytes);
     CHECK_THROWS_AS(Recording(folder.path, model).state(rows), RecordingMismatch);
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
+  }
+  set_bytes(folder / kSupportsFile, whole);
+  // Which of them are a state's: a bit that flips there spoils no other state.
+  const std::string modes = bytes_of(folder / kModesFile);
+  const std::size_t row = (modes.size() - 128) / states.size();
+  for (std::size_t byte = 128 + 2 * row + 8 * kFirstSupport; byte < 128 + 2 * row + 8 * (kEndOfSupports + 2);
+       ++byte) {
+    std::string bytes = modes;
+    bytes[byte] = static_cast<char>(bytes[byte] ^ 0x10);
+    set_bytes(folder / kModesFile, bytes);
+    CAPTURE(byte);
+    const Recording recording(folder.path, model);
+    CHECK_THROWS_AS(recording.state(2), RecordingMismatch);
+    CHECK(hash(recording.state(1)) == hash(states[1]));
+    CHECK(hash(recording.state(3)) == hash(states[3]));
   }
 }
 

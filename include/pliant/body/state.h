@@ -41,7 +41,7 @@ enum class JointMode : std::int8_t {
 /// impulse of the next step begins.
 struct Support {
   std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
-  Vec3<double> x;              ///< where it was, m, world
+  Vec3<double> x;              ///< where it was, m, in the frame of part a
   Vec3<double> force;          ///< mean of the last step, on part a, N, world
 };
 
@@ -62,6 +62,9 @@ struct State {
   /// with those of the same number. Who moves a part that sleeps wakes it.
   std::vector<double> at_rest;
   std::vector<Support> supports;  ///< in the order of what they are between
+  /// How many steps in a row have begun at those before: after some of them one begins anew, so that forces
+  /// which nothing calls for any more, as in a body between two walls, do not stay.
+  int supports_age = 0;
 
   double time() const { return start + static_cast<double>(step) * h; }
 };

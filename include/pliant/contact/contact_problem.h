@@ -30,11 +30,11 @@ class ContactProblem {
   /// Impulses of the contacts, with the rebound that each of them asks for, and of limits and strings, whose
   /// `since` is that of all.
   ContactSolution solve(double since_of_limits);
-  /// Where the search for the impulse of a contact begins, if that is near what is found: standing piles then
-  /// take no search at all, others as long as without. N s, world, on side a.
+  /// Where the search for the impulse of a contact begins, if that is near what is found: piles that stand
+  /// then take no search at all, heaps that move as long as without. N s, world, on side a.
   void begin_at(int contact, const Vec3<double>& impulse);
-  /// Whether a contact shares what it pushes with others. Once solve() was called.
-  bool is_shared(int contact) const { return !system_.is_alone(contact); }
+  /// Whether it may begin at the impulse of a contact. Once solve() was called.
+  bool may_begin(int contact) const { return system_.may_begin(contact); }
   /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
   /// another state.
   std::vector<Vec3<double>> velocities(const State& of) const;

@@ -29,10 +29,10 @@ class ContactSettling {
   ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                   RestingContacts& resting, ContactRecord& record);
 
-  /// Forgets the supports of the step before.
-  void begin_step() { pushed_.clear(); }
-  /// Those that took something of this step, of so many seconds.
-  std::vector<Support> supports(double h) const;
+  /// Forgets what took something of the step before.
+  void begin_step(const State& state);
+  /// What took something of this step, of so many seconds, becomes the supports of a state.
+  void end_step(double h, State& state) const;
 
   /// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
   /// then what still overlaps is parted.
@@ -53,8 +53,9 @@ class ContactSettling {
                    std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
   double most_parting(const Contact& contact, double h) const;
   void went(const Contact& contact, double far);
-  void begin_at_supports(const std::vector<Support>& supports, double h, const std::vector<Contact>& contacts,
+  void begin_at_supports(const State& state, double t, double h, const std::vector<Contact>& contacts,
                          ContactProblem& problem) const;
+  Vec3<double> place(const Contact& contact, const State& state, double t) const;
   double near(const Contact& contact) const;
   void add_throws(const State& state);
   double may_overlap(const Contact& contact) const;
@@ -67,12 +68,16 @@ class ContactSettling {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
-  /// A support whose force is still an impulse, N s, and how near another is the same, m.
+  /// A support whose force is still an impulse, N s, how near another is the same, m, and the number of the
+  /// settlement in the step.
   struct Pushed {
     Support support;
     double near;
+    int settlement;
   };
   std::vector<Pushed> pushed_;  // of the step
+  int settlements_ = 0;
+  bool begins_anew_ = false;
   // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
   // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
   std::vector<double> went_;

@@ -71,8 +71,6 @@ class Recording {
   State at(double time) const;
 
  private:
-  std::int64_t supports_up_to(std::int64_t row) const;
-
   const Model* model_;
   NpyReader coordinates_, velocities_, modes_;
   std::optional<NpyReader> supports_;

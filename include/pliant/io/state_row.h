@@ -18,17 +18,17 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 /// The columns of modes.npy, in order.
 std::vector<Column> mode_columns_of(const Model& model);
 
-/// Which column tells how many rows of supports.npy there are up to the end of a state.
-inline constexpr std::size_t kSupportsColumn = 5;
+/// The columns that tell which rows of supports.npy are of a state: the first, and the one after the last.
+inline constexpr std::size_t kFirstSupport = 5, kEndOfSupports = 6;
 /// The columns of supports.npy, in order.
 std::vector<Column> support_columns();
 std::vector<double> row_of(const Support& support);
 /// Throws std::out_of_range when a number of a row is not one of a part, plane or obstacle.
 Support support_of(const std::vector<double>& row);
 
-/// The row of a state, with so many rows of supports up to its end. Its last number is a hash of all bits of
-/// the state.
-void write_modes(const State& state, std::int64_t supports, std::vector<double>& row);
+/// The row of a state whose supports end before a row of theirs. Its last number is a hash of all bits of the
+/// state.
+void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row);
 
 /// Fills in the rest of a state whose q, v and supports are set, of a model with so many limits, and parts
 /// whose rest is told. False when the row's hash is not that of the state.

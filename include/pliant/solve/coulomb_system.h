@@ -74,8 +74,9 @@ class CoulombSystem {
   /// Adds the changes of x by the impulse of contact k, `factor` times.
   void add_change(int k, double factor, VecX<double>& x) const;
 
-  /// Whether a contact is the only one of its cluster. Once solve() was called.
-  bool is_alone(int k) const { return contacts_[at(k)].alone; }
+  /// Whether a search may begin at the impulse of a contact. Once solve() was called: not where it is the
+  /// only one of its cluster, nor where a cluster is too large, or of points.
+  bool may_begin(int k) const { return contacts_[at(k)].begins; }
   /// Finds the impulses; x: velocities of all movers, before them and after. enough: what the law may miss
   /// anyhow. Once this is called, no more is added.
   CoulombResult solve(VecX<double>& x, double enough = 0);
@@ -93,7 +94,7 @@ class CoulombSystem {
     Vec3<double> c = Vec3<double>::Zero();
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
-    bool alone = true;
+    bool begins = false;
   };
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);
