@@ -219,12 +219,10 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
-/// Whether searches are for what Newton's method may go on from.
+/// Whether searches may begin at impulses: not of points, nor of many contacts, whose solutions are not
+/// unique and would be others in steps that begin anew.
 bool CoulombCluster::may_begin() const {
-  const std::vector<MoverSystem>& systems = scratch_.coupling.clusters;
-  const bool too_large =
-      !systems.empty() && !systems[at(number_)].empty() && !systems[at(number_)].is_ordered();
-  return size_ > 1 && !points_ && !too_large;
+  return size_ > 1 && size_ <= kMany && !points_;
 }
 
 /// From impulses that may be near the solution: returns whether it found that, and begins at none otherwise.
@@ -270,7 +268,7 @@ void CoulombCluster::solve(CoulombResult& result) {
     set(start);
   }
   set_scale();
-  const bool solved = (begun && !points_ && follow(found)) || search(result.sweeps);
+  const bool solved = (begun && may_begin() && follow(found)) || search(result.sweeps);
   double left = residual();
   if (!solved && left > allowed_) {
     ++result.fallbacks;
