@@ -241,10 +241,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
       "  pliant run scenes/pull.json -o out/pull --resume --end 20    longer than it was, or after Ctrl-C\n"
       "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, "
       "q.npy, v.npy,\n"
-      "modes.npy, supports.npy, explained by layout.json), meshes/ and frames/; and contacts.csv and "
-      "joint_impulses.csv "
-      "where\n"
-      "the scene says \"output\": {\"contacts\": true}.");
+      "modes.npy, supports.npy, explained by layout.json), meshes/ and frames/; and contacts.csv and\n"
+      "joint_impulses.csv where the scene says \"output\": {\"contacts\": true}.");
   command->callback([options, &action] {
     check_colors(options->colors);
     action = [options] { return run_scene(*options); };

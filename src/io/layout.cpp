@@ -64,8 +64,8 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   if (model.body().contact.active) {
     tables[kSupportsFile] = json_of(support_columns());
     layout["support_rows"] =
-        "any number of rows a state, those up to the one that its row of modes.npy tells, and not of the "
-        "state before";
+        "any number of rows a state: from the one that its column supports in modes.npy tells to before "
+        "that of supports_end, counted from 0";
   }
   tables[kTrajectoryFile] = json_of(trajectory);
   if (contacts) {

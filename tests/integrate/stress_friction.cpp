@@ -43,7 +43,7 @@ Part& on_slope(MultiBody& body, double friction) {
 void check_taken(Simulation& simulation, double taken) {
   CHECK(work(simulation, Work::friction) == Approx(-taken).epsilon(1e-12).margin(1e-13));
   CHECK(std::abs(work(simulation, Work::contact)) < 1e-11);
-  CHECK(std::abs(simulation.ledger().balance) < 2e-12);  // of up to 600 J, in up to 800 steps
+  CHECK(std::abs(simulation.ledger().balance) < 1e-12);
 }
 
 }  // namespace

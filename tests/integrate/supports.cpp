@@ -39,6 +39,9 @@ Vec3<double> on_floor(const State& state) {
     if (support.between[2] == 0) force += support.force;
   return force;
 }
+void forget(State& state) {
+  state.supports.clear();
+}
 /// Steps, each from a state that `change` has changed; returns the sweeps that they took.
 template <class F>
 long sweeps(Simulation& simulation, int steps, F&& change) {
@@ -61,8 +64,7 @@ TEST_CASE("a pile that stands needs no search, and stands as without", "[contact
   const VecX<double> start = warm.state().q;
   for (int i = 0; i < 20; ++i) warm.step(kStep);
   cold.set_state(warm.state());
-  const long with = sweeps(warm, 40, [](State&) {}),
-             without = sweeps(cold, 40, [](State&state) { state.supports.clear(); });
+  const long with = sweeps(warm, 40, [](State&) {}), without = sweeps(cold, 40, forget);
   CAPTURE(with, without);
   CHECK(without >= 40);
   CHECK(4 * with < without);
@@ -107,8 +109,7 @@ TEST_CASE("supports go with what slides or is carried", "[contact]") {
   for (MultiBody* body : {&sliding, &carried}) {
     CAPTURE(body->parts().size());
     Simulation simulation(*body, "rk4");
-    const long with = sweeps(simulation, 40, [](State&) {}),
-               without = sweeps(simulation, 40, [](State&state) { state.supports.clear(); });
+    const long with = sweeps(simulation, 40, [](State&) {}), without = sweeps(simulation, 40, forget);
     CAPTURE(with, without);
     CHECK(without >= 40);
     CHECK(4 * with < without);

@@ -1,8 +1,7 @@
 // The recording of a run: every entry of the recorded states, in tables of doubles (t.npy, q.npy, v.npy, and
 // modes.npy for step count, works, limit flags and a check number; supports.npy, where bodies may touch, for
-// what contacts begin with). A recorded state is a state after a step,
-// never an interpolated one, and going on from any of them gives the same bits. layout.json names every
-// column.
+// what contacts begin with). A recorded state is a state after a step, never an interpolated one, and going
+// on from any of them gives the same bits. layout.json names every column.
 #pragma once
 
 #include <cstdint>
