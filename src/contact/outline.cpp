@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -17,14 +18,50 @@ constexpr double kStraight = 1e-5;
 /// So few contacts are all kept.
 constexpr std::size_t kFew = 4;
 
+struct Place {
+  Eigen::Vector2d p;
+  std::size_t number;
+};
+
+/// Twice the area of a triangle, positive where it goes round to the left.
+double turn(const Place& a, const Place& b, const Place& c) {
+  const Eigen::Vector2d ab = b.p - a.p, ac = c.p - a.p;
+  return ab.x() * ac.y() - ab.y() * ac.x();
+}
+
+/// How far b is from the line from a to c, which ends there.
+double stands_out(const Place& a, const Place& b, const Place& c) {
+  const Eigen::Vector2d ac = c.p - a.p, ab = b.p - a.p;
+  const double square = ac.squaredNorm(), along = square > 0 ? std::clamp(ab.dot(ac) / square, 0.0, 1.0) : 0;
+  return (ab - along * ac).norm();
+}
+
+/// The convex hull of places, all around, by Andrew's monotone chains (1979): as exact as its numbers, for
+/// sides that are straight but for rounding turn back and forth.
+std::vector<Place> hull(std::vector<Place> places) {
+  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
+    return a.p.y() < b.p.y() || (a.p.y() == b.p.y() && a.number < b.number);
+  });
+  std::vector<Place> around;
+  auto add_side = [&](auto begin, auto end) {
+    const std::size_t start = around.size();
+    for (auto place = begin; place != end; ++place) {
+      while (around.size() >= start + 2 && !(turn(around.end()[-2], around.back(), *place) > 0))
+        around.pop_back();
+      around.push_back(*place);
+    }
+    around.pop_back();  // the other side begins there
+  };
+  add_side(places.begin(), places.end());
+  add_side(places.rbegin(), places.rend());
+  return around;
+}
+
 }  // namespace
 
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size) {
   if (contacts.size() <= first + kFew) return;
-  struct Place {
-    double x, y;
-    std::size_t number;
-  };
   const Vec3<double> normal = contacts[first].normal, e1 = normal.unitOrthogonal(), e2 = normal.cross(e1);
   const auto n = static_cast<Eigen::Index>(contacts.size() - first);
   std::vector<Place> places;
@@ -34,33 +71,22 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
     const std::size_t k = first + static_cast<std::size_t>(i);
     if ((contacts[k].normal - normal).norm() > kOneNormal) return;
     const Vec3<double> d = contacts[k].x - contacts[first].x;
-    places.push_back({d.dot(e1), d.dot(e2), k});
-    A.row(i) << size, places.back().x, places.back().y;
+    places.push_back({{d.dot(e1), d.dot(e2)}, k});
+    A.row(i) << size, places.back().p.x(), places.back().p.y();
     gaps[i] = contacts[k].gap;
   }
   if ((A * A.colPivHouseholderQr().solve(gaps) - gaps).lpNorm<Eigen::Infinity>() > kOnePlane * size) return;
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    if (a.x != b.x) return a.x < b.x;
-    return a.y < b.y || (a.y == b.y && a.number < b.number);
-  });
+  std::vector<Place> around = hull(std::move(places));
+  for (std::size_t k = 0; k < around.size() && around.size() > 2;) {
+    const Place &before = around[(k + around.size() - 1) % around.size()],
+                &after = around[(k + 1) % around.size()];
+    if (stands_out(before, around[k], after) > kStraight * size)
+      ++k;
+    else
+      around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));
+  }
   std::vector<bool> corner(contacts.size(), false);
-  // One side of the outline, from one end to the other, by Andrew's monotone chain (1979).
-  auto mark = [&](auto begin, auto end) {
-    std::vector<Place> side;
-    for (auto place = begin; place != end; ++place) {
-      while (side.size() >= 2) {
-        const Place &a = side[side.size() - 2], &b = side.back();
-        const double dx = place->x - a.x, dy = place->y - a.y;
-        const double out = dx * (a.y - b.y) + dy * (b.x - a.x);  // times the distance to the next
-        if (out > kStraight * size * std::hypot(dx, dy)) break;
-        side.pop_back();
-      }
-      side.push_back(*place);
-    }
-    for (const Place& place : side) corner[place.number] = true;
-  };
-  mark(places.begin(), places.end());
-  mark(places.rbegin(), places.rend());
+  for (const Place& place : around) corner[place.number] = true;
   std::size_t kept = first;
   for (std::size_t k = first; k < contacts.size(); ++k)
     if (corner[k]) contacts[kept++] = contacts[k];

@@ -192,6 +192,36 @@ TEST_CASE("the closed forms of ellipsoids agree with the search of other shapes"
   }
 }
 
+TEST_CASE("faces whose edges lie on each other but for rounding touch at all corners", "[contact]") {
+  Draws draws(29);
+  auto rounding = [&] { return Vec3<double>(1e-12 * draws.vector(1)); };
+  for (int trial = 0; trial < 2000; ++trial) {
+    // Upright, for there edges order corners by rounding; and turned.
+    const Eigen::Quaterniond R = trial % 4 < 3 ? Eigen::Quaterniond::Identity() : turn(draws);
+    // Edges lie on each other along one direction; along the other they do, or the upper box is moved.
+    const double aside = trial % 2 == 0 ? 0 : 0.005;
+    MultiBody body;
+    body.contact.between_parts = true;
+    for (int k = 0; k < 2; ++k) {
+      const Vec3<double> angles = rounding();
+      body.add(make_part(k == 0 ? "below" : "above", "box", {}, 1000))
+          .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+          .place(R * (Vec3<double>(k * aside, 0, 0.2 * k) + rounding()),
+                 R * Eigen::Quaterniond(1, angles[0], angles[1], angles[2]).normalized());
+    }
+    const std::vector<Contact> found = contacts_of(body, 1e-6);
+    CAPTURE(trial);
+    CHECK(found.size() == 4);
+    for (const double x : {aside - 0.1, 0.1})
+      for (const double y : {-0.1, 0.1}) {
+        const Vec3<double> corner = R * Vec3<double>(x, y, 0.1);
+        double nearest = 1;
+        for (const Contact& contact : found) nearest = std::min(nearest, (contact.x - corner).norm());
+        CHECK(nearest < 1e-6);
+      }
+  }
+}
+
 TEST_CASE("pairs that are named keep their own rules, joined ones touch only then", "[contact]") {
   for (const bool between : {true, false})
     for (const bool named : {true, false}) {
