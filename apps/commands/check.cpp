@@ -7,6 +7,7 @@
 #include <pliant/integrate/stable_step.h>
 #include <pliant/io/number_text.h>
 #include <pliant/io/run.h>
+#include <pliant/io/state_row.h>
 #include <pliant/scene/read_scene.h>
 
 #include "command.h"
@@ -50,9 +51,6 @@ void print_estimate(pliant::Scene& scene) {
   const pliant::FrameSchedule schedule = pliant::schedule_of(scene);
   pliant::Simulation simulation(scene.body, scene.integrator, 1, scene.tolerance);
   const pliant::StableStep stable = pliant::stable_step(simulation);
-  const double numbers = 5.0 + pliant::kWorks + simulation.model().n_q() + simulation.model().n_v() +
-                         simulation.model().n_limits() + 1;
-  const auto frames = static_cast<double>(schedule.frames());
   std::cout << "ok: " << pliant::count_text(static_cast<std::int64_t>(scene.body.parts().size()), "part")
             << obstacle_text(scene.body) << ", " << simulation.model().n_v() << " degrees of freedom\n"
             << "estimate: ";
@@ -66,8 +64,15 @@ void print_estimate(pliant::Scene& scene) {
   else
     std::cout << ", about " << pliant::rounded_text(seconds_of_run(simulation, schedule), 2)
               << " s of computing";
+  const pliant::Model& model = simulation.model();
+  const std::size_t numbers = 1 + static_cast<std::size_t>(model.n_q() + model.n_v()) +
+                              pliant::mode_columns_of(model).size() +
+                              simulation.state().supports.size() * pliant::support_columns().size();
   std::cout << "; " << pliant::count_text(schedule.frames(), "frame") << ", a recording of "
-            << pliant::rounded_text(frames * numbers * 8 / 1e6, 2) << " MB\n";
+            << (model.body().contact.active ? "at least " : "")
+            << pliant::rounded_text(
+                   static_cast<double>(schedule.frames()) * static_cast<double>(numbers) * 8 / 1e6, 2)
+            << " MB\n";
 }
 
 int check(const CheckCommand& command) {

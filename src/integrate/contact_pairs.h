@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/state.h>
 #include <pliant/contact/contact.h>
 
 namespace pliant {
@@ -15,6 +16,23 @@ using PairKey = std::array<int, 4>;
 inline PairKey key_of(const Contact& contact) {
   return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
 }
+inline const PairKey& key_of(const PairKey& key) {
+  return key;
+}
+inline const PairKey& key_of(const Support& support) {
+  return support.between;
+}
+inline const PairKey& key_of(const std::pair<PairKey, const Contact*>& entry) {
+  return entry.first;
+}
+
+/// The order of contacts, supports and entries by what touches what.
+struct ByPair {
+  template <class A, class B>
+  bool operator()(const A& a, const B& b) const {
+    return key_of(a) < key_of(b);
+  }
+};
 
 class Pairs {
  public:
@@ -38,11 +56,7 @@ class Pairs {
   using Entry = std::pair<PairKey, const Contact*>;
   std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
       const Contact& contact) const {
-    struct Before {
-      bool operator()(const Entry& entry, const PairKey& k) const { return entry.first < k; }
-      bool operator()(const PairKey& k, const Entry& entry) const { return k < entry.first; }
-    };
-    return std::equal_range(all_.begin(), all_.end(), key_of(contact), Before{});
+    return std::equal_range(all_.begin(), all_.end(), key_of(contact), ByPair{});
   }
   std::vector<Entry> all_;
 };

@@ -31,7 +31,7 @@ constexpr double kUlps = 16;
 /// Meshes may overlap by this many times what counts as resting without being parted.
 constexpr double kMeshOverlap = 800;
 /// Contacts within this share of the smaller body's size of each other are the same from step to step.
-constexpr double kSamePoint = 0.05;
+constexpr double kSameSupport = 0.05;
 /// So many steps in a row begin at the forces before.
 constexpr int kMostAge = 10;
 /// What is parted may overlap by this share of what would be left.
@@ -39,6 +39,21 @@ constexpr double kPartedLeft = 0.03;
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
+}
+
+/// The number of the support of [first, last) that is nearest to a place of the same part, nearer than
+/// `within` (m) and not taken; `last` if there is none. at and is_taken: of a number.
+template <class At, class IsTaken>
+std::size_t nearest(std::size_t first, std::size_t last, const Vec3<double>& x, double within, At&& at,
+                    IsTaken&& is_taken) {
+  std::size_t found = last;
+  for (std::size_t i = first; i < last; ++i) {
+    const double distance = (at(i) - x).norm();
+    if (!(distance < within) || is_taken(i)) continue;
+    within = distance;
+    found = i;
+  }
+  return found;
 }
 
 }  // namespace
@@ -86,9 +101,9 @@ Vec3<double> ContactSettling::place(const Contact& contact, const State& state, 
   return model.orientation(state, part, t).conjugate() * (contact.x - model.position(state, part, t));
 }
 
-/// Contacts that are this near, m, are the same.
-double ContactSettling::near(const Contact& contact) const {
-  return kSamePoint * smaller_size(dynamics_.model(), contact);
+/// Contacts of a pair that are nearer than this, m, are the same.
+double ContactSettling::same_within(const Contact& contact) const {
+  return kSameSupport * smaller_size(dynamics_.model(), contact);
 }
 
 void ContactSettling::begin_step(const State& state) {
@@ -102,47 +117,45 @@ void ContactSettling::begin_at_supports(const State& state, double t, double h,
                                         const std::vector<Contact>& contacts, ContactProblem& problem) const {
   if (begins_anew_) return;
   const std::vector<Support>& supports = state.supports;
-  struct Before {
-    bool operator()(const Support& support, const PairKey& key) const { return support.between < key; }
-    bool operator()(const PairKey& key, const Support& support) const { return key < support.between; }
-  };
   std::vector<char> taken(supports.size(), 0);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const auto [first, last] =
-        std::equal_range(supports.begin(), supports.end(), key_of(contacts[k]), Before{});
+        std::equal_range(supports.begin(), supports.end(), key_of(contacts[k]), ByPair{});
     if (first == last) continue;
-    const Vec3<double> x = place(contacts[k], state, t);
-    double least = near(contacts[k]);
-    auto found = last;
-    for (auto support = first; support != last; ++support) {
-      const double distance = (support->x - x).norm();
-      if (!(distance < least) || taken[static_cast<std::size_t>(support - supports.begin())] != 0) continue;
-      least = distance;
-      found = support;
-    }
-    if (found == last) continue;
-    taken[static_cast<std::size_t>(found - supports.begin())] = 1;
-    problem.begin_at(static_cast<int>(k), h * found->force);
+    const auto end = static_cast<std::size_t>(last - supports.begin());
+    const std::size_t found = nearest(
+        static_cast<std::size_t>(first - supports.begin()), end, place(contacts[k], state, t),
+        same_within(contacts[k]), [&](std::size_t i) { return supports[i].x; },
+        [&](std::size_t i) { return taken[i] != 0; });
+    if (found == end) continue;
+    taken[found] = 1;
+    problem.begin_at(static_cast<int>(k), h * supports[found].force);
   }
 }
 
+/// What contacts took is known as pushed.
+void ContactSettling::note_pushed(const State& state, double t, const std::vector<Contact>& contacts,
+                                  const ContactProblem& problem, const std::vector<Vec3<double>>& impulses) {
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    if (problem.may_begin(static_cast<int>(k)) && !of_meshes(contacts[k]) && !impulses[k].isZero(0))
+      pushed_.push_back({{key_of(contacts[k]), place(contacts[k], state, t), impulses[k]},
+                         same_within(contacts[k]),
+                         settlements_});
+  ++settlements_;
+}
+
 void ContactSettling::end_step(double h, State& state) const {
-  state.supports_age = begins_anew_ ? 0 : state.supports_age + 1;
   std::vector<Pushed> sorted = pushed_, merged;
   std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Pushed& a, const Pushed& b) { return a.support.between < b.support.between; });
+                   [](const Pushed& a, const Pushed& b) { return ByPair{}(a.support, b.support); });
   std::size_t first = 0;  // of the same pair
   for (const Pushed& next : sorted) {
     if (merged.empty() || merged.back().support.between != next.support.between) first = merged.size();
     // The nearest of an earlier settlement is the same contact.
-    double least = next.near;
-    std::size_t same = merged.size();
-    for (std::size_t i = first; i < merged.size(); ++i) {
-      const double distance = (merged[i].support.x - next.support.x).norm();
-      if (!(distance < least) || merged[i].settlement == next.settlement) continue;
-      least = distance;
-      same = i;
-    }
+    const std::size_t same = nearest(
+        first, merged.size(), next.support.x, next.same_within,
+        [&](std::size_t i) { return merged[i].support.x; },
+        [&](std::size_t i) { return merged[i].settlement == next.settlement; });
     if (same == merged.size()) {
       merged.push_back(next);
       continue;
@@ -152,18 +165,21 @@ void ContactSettling::end_step(double h, State& state) const {
   }
   state.supports.clear();
   for (const Pushed& pushed : merged)
-    state.supports.push_back({pushed.support.between, pushed.support.x, pushed.support.force / h});
+    if (const Vec3<double> force = pushed.support.force / h; force.allFinite())
+      state.supports.push_back({pushed.support.between, pushed.support.x, force});
+  state.supports_age = begins_anew_ || state.supports.empty() ? 0 : state.supports_age + 1;
 }
 
 void ContactSettling::settle(const State& before, double since_of_limits, double h, State& state, double t,
                              std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters) {
   parted_enough_.clear();
-  settle_once(before, since_of_limits, h, state, t, std::move(contacts), work, counters);
+  settle_once(before, since_of_limits, h, state, t, std::move(contacts), h > 0, work, counters);
 }
 
+/// begins: whether the search begins at what took something of the step before.
 void ContactSettling::settle_once(const State& before, double since_of_limits, double h, State& state,
-                                  double t, std::vector<Contact> contacts, Workspace<double>& work,
-                                  StepCounters& counters) {
+                                  double t, std::vector<Contact> contacts, bool begins,
+                                  Workspace<double>& work, StepCounters& counters) {
   if (contacts.empty()) return;
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double booked = state.work.sum();
@@ -176,14 +192,9 @@ void ContactSettling::settle_once(const State& before, double since_of_limits, d
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
-  if (h > 0) begin_at_supports(state, t, h, contacts, problem);
+  if (begins) begin_at_supports(state, t, h, contacts, problem);
   const ContactSolution solution = problem.solve(since_of_limits);
-  for (std::size_t k = 0; h > 0 && k < contacts.size(); ++k)
-    if (problem.may_begin(static_cast<int>(k)) && !of_meshes(contacts[k]) && !solution.impulse[k].isZero(0))
-      pushed_.push_back({{key_of(contacts[k]), place(contacts[k], state, t), solution.impulse[k]},
-                         near(contacts[k]),
-                         settlements_});
-  ++settlements_;
+  if (h > 0) note_pushed(state, t, contacts, problem, solution.impulse);
   counters.contact_sweeps += solution.sweeps;
   counters.contact_fallbacks += solution.fallbacks;
   counters.contact_residual = std::max(counters.contact_residual, solution.residual);
@@ -246,7 +257,7 @@ void ContactSettling::settle_chain(std::vector<Contact> settled, double h, doubl
     meshes_.find(state, t, contacts);
     for (Contact& contact : contacts)
       if (contact.since == 0) contact.since = earliest;
-    settle_once(state, 0, h, state, t, contacts, work, counters);
+    settle_once(state, 0, h, state, t, contacts, false, work, counters);
     settled.insert(settled.end(), contacts.begin(), contacts.end());
   }
   if (!settled.empty()) ++counters.contact_cutoffs;

@@ -75,8 +75,11 @@ auto at_time(double t, F&& act) {
     throw NumericalFailure(failure.what(), t);
   }
 }
-/// Throws where supports are not finite, of this model and in their order.
-void check_supports(const std::vector<Support>& supports, const Model& model) {
+
+/// Throws where supports are not finite, of this model and in their order, or their age is none.
+void check_supports(const State& state, const Model& model) {
+  const std::vector<Support>& supports = state.supports;
+  if (state.supports_age < 0) throw std::invalid_argument("the supports of this state have a negative age");
   const ContactSettings& contact = model.body().contact;
   const std::array<std::size_t, 4> counts{model.parts().size(), model.parts().size(), contact.planes.size(),
                                           contact.obstacles.size()};
@@ -427,7 +430,8 @@ void Simulation::set_state(State state) {
       state.joints.size() != model_.joints().size() || state.at_rest.size() != model_.n_resting())
     throw std::invalid_argument("this state belongs to another model");
   if (!contact_) state.supports.clear();
-  check_supports(state.supports, model_);
+  check_supports(state, model_);
+  if (state.supports.empty()) state.supports_age = 0;
   state_ = std::move(state);
   switching_.forget_after(time() + kNear * state_.h);
   if (contact_) contact_->begin_step();  // nothing has touched yet

@@ -48,8 +48,9 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   Json layout;
   layout["format"] = "pliant recording";
   layout["version"] = kRecordingVersion;
-  layout["rows"] =
-      "one state a row, the same row in every table; the number of states is that of the shortest .npy table";
+  layout["rows"] = std::string("one state a row, the same row in ") + kTimesFile + ", " + kCoordinatesFile +
+                   ", " + kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
+                   "; the number of states is that of the shortest of the .npy tables among these";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},

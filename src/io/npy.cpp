@@ -202,11 +202,14 @@ NpyReader::~NpyReader() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void NpyReader::read(std::int64_t row, double* numbers) const {
-  if (row < 0 || row >= rows_) throw std::out_of_range(path_.string() + " has no row " + std::to_string(row));
-  const std::size_t bytes = row_bytes(columns_);
-  if (read_at(descriptor_, numbers, bytes, data_ + row * static_cast<std::int64_t>(bytes), path_) != bytes)
-    refuse(path_, "row " + std::to_string(row) + " is cut");
+void NpyReader::read(std::int64_t row, double* numbers, std::int64_t count) const {
+  if (row < 0 || count < 0 || row > rows_ - count)
+    throw std::out_of_range(path_.string() + " has no row " +
+                            std::to_string(row < 0 ? row : row + count - 1));
+  const auto a_row = static_cast<std::int64_t>(row_bytes(columns_));
+  const auto bytes = static_cast<std::size_t>(count * a_row);
+  if (read_at(descriptor_, numbers, bytes, data_ + row * a_row, path_) != bytes)
+    refuse(path_, "row " + std::to_string(row + count - 1) + " is cut");
 }
 
 }  // namespace pliant

@@ -188,11 +188,13 @@ State Recording::state(std::int64_t row) const {
   const std::vector<double> modes = read_row(modes_, row);
   const SupportRows rows = supports_of(modes);
   if (rows.first < 0 || rows.end > (supports_ ? supports_->rows() : 0)) throw damaged();
-  for (std::int64_t i = rows.first; i < rows.end; ++i) try {
-      state.supports.push_back(support_of(read_row(*supports_, i)));
-    } catch (const std::out_of_range&) {
-      throw damaged();
-    }
+  if (rows.end > rows.first) {
+    const auto columns = static_cast<std::size_t>(support_count());
+    std::vector<double> numbers(static_cast<std::size_t>(rows.end - rows.first) * columns);
+    supports_->read(rows.first, numbers.data(), rows.end - rows.first);
+    for (std::size_t i = 0; i < numbers.size(); i += columns)
+      if (!read_support(numbers.data() + i, state.supports.emplace_back())) throw damaged();
+  }
   state.q.resize(coordinates_.columns());
   state.v.resize(velocities_.columns());
   coordinates_.read(row, state.q.data());

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 namespace pliant {
@@ -102,16 +101,15 @@ std::vector<double> row_of(const Support& support) {
   return row;
 }
 
-Support support_of(const std::vector<double>& row) {
-  Support support;
+bool read_support(const double* row, Support& support) {
   for (std::size_t i = 0; i < support.between.size(); ++i) {
     if (!(row[i] >= -1 && row[i] <= std::numeric_limits<int>::max() && row[i] == std::floor(row[i])))
-      throw std::out_of_range("a support is between no bodies");
+      return false;
     support.between[i] = static_cast<int>(row[i]);
   }
   support.x = Vec3<double>(row[4], row[5], row[6]);
   support.force = Vec3<double>(row[7], row[8], row[9]);
-  return support;
+  return true;
 }
 
 void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row) {

@@ -106,6 +106,15 @@ void CoulombCluster::push(int i, const Vec3<double>& dp) {
   }
 }
 
+/// Velocities that count as zero by the present impulses: these leave rounding of what they push by, which is
+/// great where something light holds something heavy.
+double CoulombCluster::exact_now() const {
+  double most = 0;
+  for (int i = 0; i < size_; ++i)
+    most = std::max(most, point(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
+  return std::max(exact_, std::min(allowed_, kUlps * std::numeric_limits<double>::epsilon() * most));
+}
+
 double CoulombCluster::sweep(bool forward) {
   double change = 0;
   for (int k = 0; k < size_; ++k) {
@@ -219,10 +228,10 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
-/// Whether searches may begin at impulses: not of points, nor of many contacts, whose solutions are not
-/// unique and would be others in steps that begin anew.
+/// Whether searches may begin at impulses: not of one contact, which takes none, nor of points, which sweeps
+/// settle in less time.
 bool CoulombCluster::may_begin() const {
-  return size_ > 1 && size_ <= kMany && !points_;
+  return size_ > 1 && !points_;
 }
 
 /// From impulses that may be near the solution: returns whether it found that, and begins at none otherwise.
@@ -252,6 +261,11 @@ bool CoulombCluster::search(int& sweeps) {
 /// solved with contacts that yield, which has one; the better of the two stays.
 void CoulombCluster::solve(CoulombResult& result) {
   yield(0);
+  VecX<double> begun, found;
+  take(begun);
+  const VecX<double> none = VecX<double>::Zero(begun.size());
+  const bool begins = may_begin() && !begun.isZero(0);
+  if (!begun.isZero(0)) set(none);
   if (size_ == 1) {
     set_scale();
     sweep(true);
@@ -259,21 +273,13 @@ void CoulombCluster::solve(CoulombResult& result) {
     result.residual = std::max(result.residual, residual());
     return;
   }
-  VecX<double> start, found;
-  take(start);
-  const bool begun = !start.isZero(0);
-  if (begun) {
-    found = start;
-    start.setZero();
-    set(start);
-  }
   set_scale();
-  const bool solved = (begun && may_begin() && follow(found)) || search(result.sweeps);
+  const bool solved = (begins && follow(begun)) || search(result.sweeps);
   double left = residual();
   if (!solved && left > allowed_) {
     ++result.fallbacks;
     take(found);
-    set(start);
+    set(none);
     yield(kYielding);
     search(result.sweeps);
     yield(0);

@@ -65,6 +65,7 @@ class CoulombCluster {
   Vec3<double> velocity(int i) const;
   Vec3<double> met(int i, const Vec3<double>& u) const;
   void push(int i, const Vec3<double>& dp);
+  double exact_now() const;
   double sweep(bool forward);
   double residual() const;
   void take(VecX<double>& impulses) const;

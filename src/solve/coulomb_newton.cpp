@@ -16,7 +16,8 @@
 namespace pliant {
 
 namespace {
-constexpr int kMostNewton = 30;
+/// Most steps (near: where it begins near the solution, and would be there by then).
+constexpr int kMostNewton = 30, kMostNewtonNear = 10;
 /// Where many bodies are packed all around, sweeps take less time, and memory, than equations that have this
 /// many times the numbers of the bodies' own.
 constexpr double kMostFill = 10;
@@ -184,9 +185,10 @@ MoverSystem* CoulombCluster::couple_movers() {
 
 /// Leaves the best it has seen; returns whether that is exact. near: whether that is thought to be near.
 bool CoulombCluster::newton(bool near) {
-  const double enough = (near ? kBeyondExactNear : kBeyondExact) * exact_;
+  const double beyond = near ? kBeyondExactNear : kBeyondExact;
+  double exact = exact_now();
   double best_left = residual();
-  if (best_left <= enough) return true;
+  if (best_left <= beyond * exact) return true;
   MoverSystem* movers = couple_movers();
   if (movers == nullptr) return false;
   auto& [open, drop] = scratch_.linear;
@@ -196,7 +198,7 @@ bool CoulombCluster::newton(bool near) {
          least = points_ ? kLeastProximalOfPoints : kLeastProximal;
   const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
   int futile = 0;
-  for (int step = 0; step < kMostNewton && best_left > enough; ++step) {
+  for (int step = 0; step < (near ? kMostNewtonNear : kMostNewton) && best_left > beyond * exact; ++step) {
     linearise(proximal);
     for (const auto& [i, dp] : drop) push(i, dp);
     for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
@@ -211,8 +213,9 @@ bool CoulombCluster::newton(bool near) {
     if (left < best_left) {
       take(best);
       best_left = left;
+      exact = exact_now();
       futile = 0;
-    } else if (best_left <= exact_) {
+    } else if (best_left <= exact) {
       break;
     } else if (++futile; !finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
       futile = 0;
@@ -223,7 +226,7 @@ bool CoulombCluster::newton(bool near) {
     proximal = std::max(factor * proximal, least);
   }
   set(best);
-  return residual() <= exact_;
+  return residual() <= exact;
 }
 
 }  // namespace pliant

@@ -138,7 +138,7 @@ Eigen::Quaterniond turned(Draws& draws) {
 
 }  // namespace
 
-TEST_CASE("a blow changes parts whose parameters move by the inelastic law", "[contact]") {
+TEST_CASE("a blow changes parts whose parameters move by the inelastic law", "[contact][long]") {
   Worst of_velocity, of_loss, of_coulomb;
   for (const std::string& kind : kKinds)
     for (const bool pair : {false, true})

@@ -239,7 +239,7 @@ TEST_CASE("N51: boxes on boxes stand without creep", "[contact]") {
   CHECK(std::abs(simulation.ledger().balance) < 1e-9);
 }
 
-TEST_CASE("parts that collide keep their momenta, and lose the energy that e says", "[contact]") {
+TEST_CASE("parts that collide keep their momenta, and lose the energy that e says", "[contact][long]") {
   Draws draws(5);
   for (const double e : {0.0, 0.6, 1.0}) {
     MultiBody body;

@@ -68,7 +68,7 @@ TEST_CASE("N29: a damped body at rest costs no more than a moving one", "[extrem
   CHECK(still < 3 * moving);  // subnormal operands cost tens of times more
 }
 
-TEST_CASE("N31: methods agree as the step shrinks, each at its order", "[extremes]") {
+TEST_CASE("N31: methods agree as the step shrinks, each at its order", "[extremes][long]") {
   auto run = [](const char* method, int steps) {
     MultiBody body;
     Part& part = test::tumbling_solid(body);

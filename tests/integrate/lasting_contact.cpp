@@ -231,7 +231,8 @@ TEST_CASE("of many bodies that lie on each other steps are short, and counted", 
   CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(0.2e-2));
 }
 
-TEST_CASE("what a force drives at a thin plate does not pass it, from far or near", "[error][contact]") {
+TEST_CASE("what a force drives at a thin plate does not pass it, from far or near",
+          "[error][contact][long]") {
   for (const double tolerance : {0.0, 1e-3, 1e-6})
     for (const double from : {0.1, 0.37, 0.83, 1.9})
       for (const double force : {0.5, 5.0, 40.0}) {

@@ -102,7 +102,7 @@ TEST_CASE("gravity and a spring press a hung body onto its limit", "[limits]") {
   }
 }
 
-TEST_CASE("N04: exponents pulled beyond their range stay in it", "[limits]") {
+TEST_CASE("N04: exponents pulled beyond their range stay in it", "[limits][long]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();

@@ -280,7 +280,7 @@ TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P a
 }
 
 TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns the body by its torque",
-          "[local]") {
+          "[local][long]") {
   std::vector<Kind> all = kinds();
   all.push_back({"a net of springs", 0, {}});
   for (const Kind& kind : all)

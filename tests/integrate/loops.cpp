@@ -284,7 +284,7 @@ TEST_CASE("IFToMM A04: Bricard's mechanism from rest, for 10 s", "[loops][long]"
   CHECK(worst.gap <= 1e-9);
 }
 
-TEST_CASE("N43: mechanisms with rows that depend on others, by the augmented matrix", "[loops]") {
+TEST_CASE("N43: mechanisms with rows that depend on others, by the augmented matrix", "[loops][long]") {
   const std::pair<const char*, std::function<void(MultiBody&)>> mechanisms[] = {
       {"Bricard", [](MultiBody& body) { bricard(body); }},
       {"windows", [](MultiBody& body) { windows_in_a_row(body, 2); }},

@@ -162,7 +162,7 @@ TEST_CASE("balls of jelly that collide, and hit a rigid box, keep their momentum
   }
 }
 
-TEST_CASE("a jointed ball of jelly strikes a wall, and its joint holds", "[contact][modal][joints]") {
+TEST_CASE("a jointed ball of jelly strikes a wall, and its joint holds", "[contact][modal][joints][long]") {
   MultiBody body;
   Part& ball = jelly(body, "ball", {0.3, 0, 0});
   Part& arm = body.add(make_part("arm", "ellipsoid", {}, 1000));
@@ -184,7 +184,7 @@ TEST_CASE("a jointed ball of jelly strikes a wall, and its joint holds", "[conta
   CHECK(simulation.ledger().energy() < start);
 }
 
-TEST_CASE("what may touch bounds the step by its modes", "[contact][modal]") {
+TEST_CASE("what may touch bounds the step by its modes", "[contact][modal][long]") {
   for (const std::string method : {"semi_implicit_euler", "rk4"}) {
     MultiBody free, touching;
     jelly(free, "ball", {0, 0, 0.2});

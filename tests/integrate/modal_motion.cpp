@@ -129,7 +129,7 @@ TEST_CASE("semi-implicit Euler with modes: first order", "[modal][motion][long]"
 }
 
 TEST_CASE("a force on any node moves the centre of mass by F / m and turns the body by its torque",
-          "[modal]") {
+          "[modal][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool parameters : {false, true})
       for (const bool moving : {false, true}) {
@@ -313,7 +313,8 @@ TEST_CASE("what deforms locally comes to the same end by every method, at its or
     }
 }
 
-TEST_CASE("a spinning body swells alike by polynomials of a high degree, modes and a fine mesh", "[modal]") {
+TEST_CASE("a spinning body swells alike by polynomials of a high degree, modes and a fine mesh",
+          "[modal][long]") {
   std::vector<Nodes> shapes;
   double swell = 0;
   for (const Basis basis : {Basis::nodes, Basis::modes, Basis::polynomial}) {

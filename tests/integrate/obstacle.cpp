@@ -141,7 +141,7 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
 }
 
 TEST_CASE("what tumbles over rough ground neither sinks in nor lets a peak in, and gains no energy",
-          "[contact]") {
+          "[contact][long]") {
   constexpr int n = 12;
   for (const std::string shape : {"sphere", "ellipsoid", "box", "capsule"}) {
     INFO(shape);

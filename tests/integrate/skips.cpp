@@ -227,7 +227,8 @@ TEST_CASE("no local deformation, no nodes; with it, J of frozen parameters is ne
   }
 }
 
-TEST_CASE("a frame that keeps to its reference conditions is not looked for after a step", "[skip][local]") {
+TEST_CASE("a frame that keeps to its reference conditions is not looked for after a step",
+          "[skip][local][long]") {
   for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit"})
     for (const bool soft : {false, true}) {
       CAPTURE(method, soft);

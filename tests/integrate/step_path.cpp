@@ -60,7 +60,7 @@ double error_of(const std::function<void(MultiBody&)>& build, Integrator& method
 
 }  // namespace
 
-TEST_CASE("a step is known in between to the order of its method's path", "[path]") {
+TEST_CASE("a step is known in between to the order of its method's path", "[path][long]") {
   struct Case {
     std::unique_ptr<Integrator> method;
     bool controlled;

@@ -155,7 +155,7 @@ void shoot_all(const std::vector<std::string>& kinds, int shots, double most_sha
 
 }  // namespace
 
-TEST_CASE("N53: bodies of up to a hundred lengths a step, none through", "[contact]") {
+TEST_CASE("N53: bodies of up to a hundred lengths a step, none through", "[contact][long]") {
   Draws draws(31);
   shoot_all({"ellipsoid", "box", "superellipsoid"}, 3, 100, draws);
   shoot_all({"shell", "solid"}, 1, 2, draws);

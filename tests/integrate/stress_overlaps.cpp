@@ -223,7 +223,7 @@ TEST_CASE("N54: parts that deform locally are parted as wholes, however deep the
 }
 
 TEST_CASE("N54: a soft part that something begins in is parted from it while joints and a floor hold",
-          "[contact]") {
+          "[contact][long]") {
   MultiBody body;
   body.contact.active = true;
   SECTION("on a joint") {

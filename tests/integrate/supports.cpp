@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/part/local_laws.h>
+
 #include "motion.h"
 
 namespace supports_test {
@@ -59,7 +61,7 @@ long sweeps(Simulation& simulation, int steps, F&& change) {
 
 TEST_CASE("a pile that stands needs no search, and stands as without", "[contact]") {
   MultiBody body;
-  pyramid(body, 5);
+  pyramid(body, GENERATE(2, 8));  // 16 contacts, 144
   Simulation warm(body, "rk4"), cold(body, "rk4");
   const VecX<double> start = warm.state().q;
   for (int i = 0; i < 20; ++i) warm.step(kStep);
@@ -73,6 +75,22 @@ TEST_CASE("a pile that stands needs no search, and stands as without", "[contact
     CHECK(simulation->state().v.norm() < 1e-11);
     CHECK((on_floor(simulation->state()) - Vec3<double>(0, 0, weight(body))).norm() < 1e-9 * weight(body));
   }
+}
+
+TEST_CASE("what is heavy stands on what is light without a search", "[contact]") {
+  MultiBody body;
+  for (int i = 0; i < 3; ++i)
+    body.add(make_part("box" + std::to_string(i), "box", {}, i == 2 ? 1e6 : 1e3))
+        .rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}})
+        .place({0.01 * i, 0, kHalf * (2 * i + 1)});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation warm(body, "rk4"), cold(body, "rk4");
+  const long with = sweeps(warm, 44, [](State&) {}), without = sweeps(cold, 44, forget);
+  CAPTURE(with, without);
+  CHECK(without <= 44 * 20);  // a round of them
+  CHECK(with <= 6 * 20);
+  CHECK(warm.step_counters().contact_residual < 1e-11);
+  CHECK(warm.state().v.norm() < 1e-11);
 }
 
 TEST_CASE("supports are forces: steps of other lengths begin at them too", "[contact]") {
@@ -134,6 +152,48 @@ TEST_CASE("supports that are wrong do not change what is found", "[contact]") {
   CHECK(simulation.step_counters().contact_fallbacks == 0);
 }
 
+TEST_CASE("what shares nothing does not begin at supports, whatever they are", "[contact]") {
+  MultiBody body;
+  body.add(make_part("ball", "sphere", {}, 1000)).rest({{"r", kHalf}}).place({0, 0, kHalf});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation simulation(body, "rk4");
+  for (const double force : {1e3, 1e12, 1e300}) {
+    State state = simulation.state();
+    state.supports = {{{0, -1, 0, -1}, {0, 0, -kHalf}, {0, 0, force}}};
+    simulation.set_state(state);
+    simulation.step(kStep);
+    CHECK(simulation.state().v.norm() < 1e-12);
+    CHECK(simulation.state().supports.empty());
+  }
+}
+
+TEST_CASE("supports tell the mean force of a step, however it is cut", "[contact]") {
+  // Two boxes stand while a ball bounces beside them.
+  MultiBody body;
+  body.contact.restitution = 0.8;
+  for (int i = 0; i < 2; ++i)
+    body.add(make_part("box" + std::to_string(i), "box", {}, 1000))
+        .rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}})
+        .place({0.03 * i, 0, kHalf * (2 * i + 1)});
+  Part& ball = body.add(make_part("ball", "sphere", {}, 1000));
+  ball.rest({{"r", 0.05}}).place({1, 0, 0.3}).move({0, 0, -1}, {});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  const double tolerance = GENERATE(0.0, 1e-5);
+  Simulation simulation(body, tolerance > 0 ? "dormand_prince" : "rk4", 1, tolerance);
+  const double stands = weight(body) - ball.total_mass() * body.gravity_at(0).norm();
+  while (simulation.time() < 1) {
+    if (tolerance > 0)
+      simulation.step_up_to(1);
+    else
+      simulation.step(kStep);
+    const State& state = simulation.state();
+    if (state.supports.empty()) continue;  // the step ended at an impact, at its very start
+    CHECK(state.supports.size() == 8);
+    CHECK(on_floor(state).z() == Approx(stands).epsilon(1e-9));
+  }
+  CHECK(simulation.step_counters().impacts >= 3);
+}
+
 TEST_CASE("supports that cannot be are refused", "[contact]") {
   MultiBody body;
   pyramid(body, 2);
@@ -153,11 +213,49 @@ TEST_CASE("supports that cannot be are refused", "[contact]") {
   refuses("another model", [](Supports& all) { all[0].between[0] = 3; });
   refuses("another model", [](Supports& all) { all[0].between[2] = -2; });
   refuses("order", [](Supports& all) { std::swap(all.front(), all.back()); });
-  State far = good;  // what overflows is no beginning
-  for (Support& support : far.supports) support.force *= 1e306;
+  State old = good;
+  old.supports_age = -1;
+  CHECK_THROWS_WITH(simulation.set_state(old), test::has_text("negative age"));
+  State none = good;
+  none.supports.clear();
+  none.supports_age = 7;
+  simulation.set_state(none);
+  CHECK(simulation.state().supports_age == 0);
+}
+
+TEST_CASE("what overflows is no beginning", "[contact]") {
+  MultiBody body;
+  for (int i = 0; i < 2; ++i)
+    body.add(make_part("box" + std::to_string(i), "box", {}, 1e-3))
+        .rest({{"a1", kHalf}, {"a2", kHalf}, {"a3", kHalf}})
+        .place({0, 0, kHalf * (2 * i + 1)});
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation simulation(body, "rk4");
+  simulation.step(kStep);
+  State far = simulation.state();
+  for (Support& support : far.supports) support.force.setConstant(1e308);
   simulation.set_state(far);
   simulation.step(kStep);
   CHECK(simulation.state().v.norm() < 1e-11);
+  CHECK(on_floor(simulation.state()).z() == Approx(weight(body)).epsilon(1e-9));
+}
+
+TEST_CASE("contacts of meshes have no supports", "[contact]") {
+  MultiBody body;
+  auto& part = body.add<Primitive<Sphere>>("ball", 1000.0);
+  part.rest({{"r", kHalf}}).place({0, 0, 0.98 * kHalf});
+  LocalSettings settings;
+  settings.basis = LocalSettings::Basis::polynomial;
+  settings.resolution = 4;
+  settings.energies = {local_law("elastic", {2e5, 0.3})};
+  part.deform_locally(settings);
+  body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
+  Simulation simulation(body, "rk4");
+  for (int i = 0; i < 5; ++i) {
+    simulation.step(1e-4);
+    CHECK(simulation.contact()->contacts().size() > 1);
+    CHECK(simulation.state().supports.empty());
+  }
 }
 
 TEST_CASE("forces that nothing calls for any more do not stay", "[contact]") {

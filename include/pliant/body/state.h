@@ -38,11 +38,12 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact that shares what it pushes with others, and the force that it took: where the search for its
-/// impulse of the next step begins.
+/// impulse of the next step begins. Rows of limits and strings begin at none.
 struct Support {
   std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< where it was, m, in the frame of part a
-  Vec3<double> force;          ///< mean of the last step, on part a, N, world
+  Vec3<double>
+      force;  ///< mean of the last step or, where it was taken in two, its second half; on part a, N, world
 };
 
 struct State {

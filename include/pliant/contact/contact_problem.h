@@ -31,7 +31,7 @@ class ContactProblem {
   /// `since` is that of all.
   ContactSolution solve(double since_of_limits);
   /// Where the search for the impulse of a contact begins, if that is near what is found: piles that stand
-  /// then take no search at all, heaps that move as long as without. N s, world, on side a.
+  /// then take no sweeps, heaps that move as long as without. N s, world, on side a.
   void begin_at(int contact, const Vec3<double>& impulse);
   /// Whether it may begin at the impulse of a contact. Once solve() was called.
   bool may_begin(int contact) const { return system_.may_begin(contact); }

@@ -29,7 +29,7 @@ class ContactSettling {
   ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                   RestingContacts& resting, ContactRecord& record);
 
-  /// Forgets what took something of the step before.
+  /// Forgets what took something, and tells whether searches of this step begin at the supports of a state.
   void begin_step(const State& state);
   /// What took something of this step, of so many seconds, becomes the supports of a state.
   void end_step(double h, State& state) const;
@@ -50,13 +50,16 @@ class ContactSettling {
  private:
   double swing(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
   void settle_once(const State& before, double since_of_limits, double h, State& state, double t,
-                   std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
+                   std::vector<Contact> contacts, bool begins, Workspace<double>& work,
+                   StepCounters& counters);
   double most_parting(const Contact& contact, double h) const;
   void went(const Contact& contact, double far);
   void begin_at_supports(const State& state, double t, double h, const std::vector<Contact>& contacts,
                          ContactProblem& problem) const;
+  void note_pushed(const State& state, double t, const std::vector<Contact>& contacts,
+                   const ContactProblem& problem, const std::vector<Vec3<double>>& impulses);
   Vec3<double> place(const Contact& contact, const State& state, double t) const;
-  double near(const Contact& contact) const;
+  double same_within(const Contact& contact) const;
   void add_throws(const State& state);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
@@ -72,7 +75,7 @@ class ContactSettling {
   /// settlement in the step.
   struct Pushed {
     Support support;
-    double near;
+    double same_within;
     int settlement;
   };
   std::vector<Pushed> pushed_;  // of the step

@@ -60,8 +60,8 @@ class NpyReader {
   std::int64_t rows() const { return rows_; }
   /// As given to NpyWriter.
   int columns() const { return columns_; }
-  /// Copies a row (0 <= row < rows()).
-  void read(std::int64_t row, double* numbers) const;
+  /// Copies rows (0 <= row <= row + count <= rows()).
+  void read(std::int64_t row, double* numbers, std::int64_t count = 1) const;
 
  private:
   std::filesystem::path path_;

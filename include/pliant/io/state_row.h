@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <pliant/body/model.h>
+#include <pliant/body/state.h>
 #include <pliant/io/column.h>
 
 namespace pliant {
@@ -23,8 +24,8 @@ inline constexpr std::size_t kFirstSupport = 5, kEndOfSupports = 6;
 /// The columns of supports.npy, in order.
 std::vector<Column> support_columns();
 std::vector<double> row_of(const Support& support);
-/// Throws std::out_of_range when a number of a row is not one of a part, plane or obstacle.
-Support support_of(const std::vector<double>& row);
+/// Of a row. False when one of its numbers is not that of a part, plane or obstacle.
+[[nodiscard]] bool read_support(const double* row, Support& support);
 
 /// The row of a state whose supports end before a row of theirs. Its last number is a hash of all bits of the
 /// state.
