@@ -20,7 +20,7 @@
 // Reference: collocation, and what it differs by from extrapolation (reference_methods.h). Of nodes and of
 // joints that close dop853 to 1e-12 and dormand_prince to 1e-11, or the least that rounding lets them hold:
 // two methods, but the engine's projection and its search for the time of closing are in both. Where bodies
-// touch: dop853 to 1e-11 and rk4, each in short steps and half as long ones, extrapolated, as the error of
+// touch: dop853 to 1e-10 and rk4, each in short steps and half as long ones, extrapolated, as the error of
 // contacts that last is of first order. Errors below 100 times the difference count as that.
 #include <algorithm>
 #include <cmath>
@@ -387,7 +387,7 @@ class Choices {
 std::vector<Setting> settings_of(const std::string& method, bool controlled, double end) {
   std::vector<Setting> all;
   if (controlled) {
-    for (double tolerance = 0.1; tolerance > 2e-12; tolerance *= 0.1) all.push_back({method, tolerance, 0});
+    for (double tolerance = 0.1; tolerance > 5e-13; tolerance *= 0.1) all.push_back({method, tolerance, 0});
     return all;
   }
   const long first = kSamples * std::max(1L, std::lround(end / 0.05 / kSamples));

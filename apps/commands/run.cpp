@@ -142,6 +142,7 @@ int run_scene(const RunCommand& command) {
   apply_options(command, begun, *scene);
 
   // What would fail after the simulation fails before it.
+  if (command.estimate) pliant::require_better_run(*scene);
   if (command.obj || command.png) pliant::FrameRange().size(pliant::schedule_of(*scene).frames());
   pliant::RunOptions options;
   if (command.png) options.graphics = require_graphics(command.backend);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <Eigen/Geometry>
@@ -15,6 +16,8 @@ namespace {
 constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
 /// A corner stands out by more than this, in sizes.
 constexpr double kStraight = 1e-5;
+/// What is deeper than all corners by more than this, in sizes, matters too.
+constexpr double kDeeper = 1e-11;
 /// So few contacts are all kept.
 constexpr std::size_t kFew = 4;
 
@@ -75,6 +78,7 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
     A.row(i) << size, places.back().p.x(), places.back().p.y();
     gaps[i] = contacts[k].gap;
   }
+  if (!A.allFinite()) return;
   if ((A * A.colPivHouseholderQr().solve(gaps) - gaps).lpNorm<Eigen::Infinity>() > kOnePlane * size) return;
   std::vector<Place> around = hull(std::move(places));
   for (std::size_t k = 0; k < around.size() && around.size() > 2;) {
@@ -86,7 +90,14 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
       around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));
   }
   std::vector<bool> corner(contacts.size(), false);
-  for (const Place& place : around) corner[place.number] = true;
+  double deepest = std::numeric_limits<double>::infinity();  // gap of a corner
+  for (const Place& place : around) {
+    corner[place.number] = true;
+    deepest = std::min(deepest, contacts[place.number].gap);
+  }
+  Eigen::Index least = 0;
+  if (gaps.minCoeff(&least) < deepest - kDeeper * size)
+    corner[first + static_cast<std::size_t>(least)] = true;
   std::size_t kept = first;
   for (std::size_t k = first; k < contacts.size(); ++k)
     if (corner[k]) contacts[kept++] = contacts[k];

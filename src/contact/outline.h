@@ -9,8 +9,8 @@
 namespace pliant {
 
 /// Takes out contacts, all of one pair, from number `first` on, that lie between others with the same normal
-/// and are no deeper: what keeps those from going into each other keeps them too. size: of the smaller part,
-/// m.
+/// and are not the deepest: what keeps those from going into each other keeps them too. size: of the smaller
+/// part, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);
 
 }  // namespace pliant

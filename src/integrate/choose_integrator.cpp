@@ -78,7 +78,9 @@ double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scal
 bool anything_stiff(const Model& model) {
   if (!model.springs().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
-    return m.q0 >= 0 && (m.n_s > 0 || m.local != nullptr || m.drag > 0);
+    const Part& part = *m.part;
+    return m.q0 >= 0 && (m.local != nullptr || m.drag > 0 || part.continuum() != nullptr ||
+                         (m.n_s > 0 && (!part.K_s().isZero(0) || part.alpha() > 0 || part.beta() > 0)));
   });
 }
 

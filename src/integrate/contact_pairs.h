@@ -16,9 +16,6 @@ using PairKey = std::array<int, 4>;
 inline PairKey key_of(const Contact& contact) {
   return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
 }
-inline const PairKey& key_of(const PairKey& key) {
-  return key;
-}
 inline const PairKey& key_of(const Support& support) {
   return support.between;
 }
@@ -56,7 +53,7 @@ class Pairs {
   using Entry = std::pair<PairKey, const Contact*>;
   std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
       const Contact& contact) const {
-    return std::equal_range(all_.begin(), all_.end(), key_of(contact), ByPair{});
+    return std::equal_range(all_.begin(), all_.end(), contact, ByPair{});
   }
   std::vector<Entry> all_;
 };

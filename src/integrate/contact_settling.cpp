@@ -119,8 +119,7 @@ void ContactSettling::begin_at_supports(const State& state, double t, double h,
   const std::vector<Support>& supports = state.supports;
   std::vector<char> taken(supports.size(), 0);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const auto [first, last] =
-        std::equal_range(supports.begin(), supports.end(), key_of(contacts[k]), ByPair{});
+    const auto [first, last] = std::equal_range(supports.begin(), supports.end(), contacts[k], ByPair{});
     if (first == last) continue;
     const auto end = static_cast<std::size_t>(last - supports.begin());
     const std::size_t found = nearest(

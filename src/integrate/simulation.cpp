@@ -15,6 +15,7 @@
 #include <pliant/math/finite.h>
 #include <pliant/math/flush_subnormals.h>
 
+#include "contact_pairs.h"
 #include "contradiction_ahead.h"
 
 namespace pliant {
@@ -59,10 +60,10 @@ std::string endless_gap(const Model& model, const Workspace<double>& work) {
 }
 
 void require_tolerance(double tolerance) {
-  constexpr double kLeast = 1e-12, kMost = 0.1;
-  if (tolerance >= kLeast && tolerance <= kMost) return;
+  if (tolerance >= kLeastTolerance && tolerance <= kGreatestTolerance) return;
   std::ostringstream message;
-  message << "a tolerance of " << tolerance << "; expected a number from " << kLeast << " to " << kMost;
+  message << "a tolerance of " << tolerance << "; expected a number from " << kLeastTolerance << " to "
+          << kGreatestTolerance;
   throw std::invalid_argument(message.str());
 }
 
@@ -91,8 +92,7 @@ void check_supports(const State& state, const Model& model) {
     if (!support.x.allFinite() || !support.force.allFinite())
       throw std::invalid_argument("a support of this state is not finite");
   }
-  if (!std::is_sorted(supports.begin(), supports.end(),
-                      [](const Support& a, const Support& b) { return a.between < b.between; }))
+  if (!std::is_sorted(supports.begin(), supports.end(), ByPair{}))
     throw std::invalid_argument("the supports of this state are not in the order of what they are between");
 }
 

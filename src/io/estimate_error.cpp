@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
+#include <stdexcept>
 
 #include <pliant/integrate/contact_step.h>
+#include <pliant/integrate/error_scale.h>
 #include <pliant/integrate/simulation.h>
 
 namespace pliant {
@@ -81,11 +84,19 @@ void go_to(Simulation& simulation, double until, double step) {
 
 }  // namespace
 
+void require_better_run(const Scene& scene) {
+  if (!(scene.tolerance > 0) || scene.tolerance > kLeastTolerance) return;
+  std::ostringstream message;
+  message << "no run is better than one to a tolerance of " << scene.tolerance
+          << ": its error cannot be estimated";
+  throw std::invalid_argument(message.str());
+}
+
 ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
                              int threads, Progress& progress) {
-  constexpr double least = 1e-12;
+  require_better_run(scene);
   ErrorEstimate error;
-  error.tolerance = scene.tolerance > 0 ? std::max(least, scene.tolerance / kTighter) : 0;
+  error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
   // Where many bodies lie on each other the tolerance says nothing: half the step does.
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);

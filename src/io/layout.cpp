@@ -50,7 +50,9 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   layout["version"] = kRecordingVersion;
   layout["rows"] = std::string("one state a row, the same row in ") + kTimesFile + ", " + kCoordinatesFile +
                    ", " + kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
-                   "; the number of states is that of the shortest of the .npy tables among these";
+                   "; the number of states is that of the shortest of the .npy tables among these, less the "
+                   "last ones whose "
+                   "supports are not whole";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},

@@ -89,7 +89,7 @@ std::vector<Column> support_columns() {
           {"x", "m", "where it was, in the frame of part a"},
           {"y", "m", ""},
           {"z", "m", ""},
-          {"force_x", "N", "mean of the last step, on part a, world"},
+          {"force_x", "N", "mean of the last step or its second half, on part a, world"},
           {"force_y", "N", ""},
           {"force_z", "N", ""}};
 }

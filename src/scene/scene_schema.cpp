@@ -1,6 +1,7 @@
 #include <pliant/scene/scene_schema.h>
 
 #include <pliant/integrate/choose_integrator.h>
+#include <pliant/integrate/error_scale.h>
 #include <pliant/part/registry.h>
 #include <pliant/scene/point_value.h>
 #include <pliant/scene/time_value.h>
@@ -156,7 +157,7 @@ Record make_scene_record() {
        optional("integrator", choice(integrator_choices()), "Method of time integration.",
                 "\"semi_implicit_euler\""),
        optional(
-           "tolerance", number(between(1e-12, 0.1), "1"),
+           "tolerance", number(between(kLeastTolerance, kGreatestTolerance), "1"),
            "Error of a step, in sizes of each part and radians, and of their rates; steps are then as long "
            "as it lets them be. Not given: all are \"step\" long."),
        optional("solver",

@@ -145,17 +145,20 @@ void CoulombCluster::take(VecX<double>& impulses) const {
   for (int i = 0; i < size_; ++i) impulses.segment<3>(3 * i) = p(i);
 }
 
-/// Velocities are those by these impulses, anew.
-void CoulombCluster::set(const VecX<double>& impulses) {
+/// There are no impulses.
+void CoulombCluster::reset() {
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
       const CoulombSystem::Term& term = system_.pushes_[at(r)];
       system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
     }
-  for (int i = 0; i < size_; ++i) {
-    p(i).setZero();
-    push(i, impulses.segment<3>(3 * i));
-  }
+  for (int i = 0; i < size_; ++i) p(i).setZero();
+}
+
+/// Velocities are those by these impulses, anew.
+void CoulombCluster::set(const VecX<double>& impulses) {
+  reset();
+  for (int i = 0; i < size_; ++i) push(i, impulses.segment<3>(3 * i));
 }
 
 /// Sweeps there and back as a fixed point p = g(p), extrapolated from the last of them to where p - g(p)
@@ -190,7 +193,7 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
       best = next;
       best_left = left;
     }
-    if (left <= exact_) return true;
+    if (left <= exact_now()) return true;
     if (history == 0) {
       now.swap(next);
       continue;
@@ -238,7 +241,7 @@ bool CoulombCluster::may_begin() const {
 bool CoulombCluster::follow(const VecX<double>& begun) {
   set(begun);
   if (begun.allFinite() && residual() <= kNear * scale_ && newton(true)) return true;
-  set(VecX<double>::Zero(begun.size()));
+  reset();
   return false;
 }
 
@@ -261,25 +264,25 @@ bool CoulombCluster::search(int& sweeps) {
 /// solved with contacts that yield, which has one; the better of the two stays.
 void CoulombCluster::solve(CoulombResult& result) {
   yield(0);
-  VecX<double> begun, found;
-  take(begun);
-  const VecX<double> none = VecX<double>::Zero(begun.size());
-  const bool begins = may_begin() && !begun.isZero(0);
-  if (!begun.isZero(0)) set(none);
   if (size_ == 1) {
+    reset();
     set_scale();
     sweep(true);
     ++result.sweeps;
     result.residual = std::max(result.residual, residual());
     return;
   }
+  VecX<double> begun, found;
+  take(begun);
+  const bool begins = may_begin() && !begun.isZero(0);
+  reset();
   set_scale();
   const bool solved = (begins && follow(begun)) || search(result.sweeps);
   double left = residual();
   if (!solved && left > allowed_) {
     ++result.fallbacks;
     take(found);
-    set(none);
+    reset();
     yield(kYielding);
     search(result.sweeps);
     yield(0);

@@ -69,6 +69,7 @@ class CoulombCluster {
   double sweep(bool forward);
   double residual() const;
   void take(VecX<double>& impulses) const;
+  void reset();
   void set(const VecX<double>& impulses);
   bool relax(int most, int history, int& sweeps);
   void linearise(double proximal);

@@ -264,6 +264,15 @@ TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
   };
   CHECK(chosen(swing) == "dop853");
   CHECK(chosen([](MultiBody& body) { test::tumbling_solid(body); }) == "dop853");
+  MultiBody dust;  // its parameters move, and nothing pushes back
+  Part& cloud = dust.add<Primitive<Ellipsoid>>("dust");
+  cloud.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).make_dynamic({"a1", "a2", "a3"});
+  cloud.move({0, 0, 0}, {1, 2, 3});
+  for (const double tolerance : {0.1, 1e-2, 1e-6}) {
+    const Simulation simulation(dust, kAutomatic, 1, tolerance);
+    CHECK(simulation.choice().integrator == "dop853");
+    CHECK(simulation.choice().why == "nothing is elastic or damped");
+  }
   CHECK(chosen([](MultiBody& body) {
           Part& part = body.add<Primitive<Ellipsoid>>("stiff");
           part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});

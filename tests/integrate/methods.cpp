@@ -2,9 +2,13 @@
 // implicit midpoint rule keeps; the stiff method's steps.
 #include "catch.h"
 
+#include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
 
 #include <pliant/integrate/integrator.h>
+#include <pliant/part/local_laws.h>
 
 #include "motion.h"
 
@@ -41,12 +45,66 @@ void sprung(MultiBody& body) {
   body.spring("spring", point(part, 0.4, 0.3), world(0, 0, 1), 500, 5, 0.5);
 }
 
+/// Bodies in a row, each joined to the one before in another way: a hinge to the world, a slider, a plane, a
+/// line and a weld.
+void joined(MultiBody& body) {
+  auto at = [](Part& part, const Vec3<double>& x) {
+    part.prepare();
+    return point(part, part.label(part.R0().conjugate() * (x - part.c0()), part.parameters().rest()));
+  };
+  Part* before = nullptr;
+  for (const char* type : {"hinge", "slider", "plane", "line", "weld"}) {
+    const double along = 0.3 * static_cast<double>(body.parts().size());
+    Part& part = body.add<Primitive<Ellipsoid>>(std::string("part on a ") + type);
+    part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}});
+    part.place({along, 0, 0}, Eigen::Quaterniond(1, 0.2 * along, 0.1, 0.05).normalized());
+    const Vec3<double> x(along - 0.15, 0.05, 0.02);
+    JointSetting setting{at(part, x), before == nullptr ? world(x[0], x[1], x[2]) : at(*before, x)};
+    setting.axis = {0.3, 1, 0.2};
+    body.join(type, type, setting);
+    before = &part;
+  }
+}
+
+/// Links on ball joints in a ring, one corner of which is held.
+void ring(MultiBody& body) {
+  constexpr int n = 5;
+  std::vector<Part*> links;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * kPi * i / n, radius = 0.3 / std::tan(kPi / n);
+    Part& link = body.add<Primitive<Ellipsoid>>("link" + std::to_string(i));
+    link.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}});
+    link.place({radius * std::cos(angle), 0, radius * std::sin(angle)},
+               Eigen::Quaterniond(Eigen::AngleAxisd(-angle - kPi / 2, Vec3<double>::UnitY())));
+    links.push_back(&link);
+  }
+  for (int i = 0; i < n; ++i)
+    body.ball("joint" + std::to_string(i), point(*links[static_cast<std::size_t>(i)], 0, 0),
+              point(*links[static_cast<std::size_t>((i + 1) % n)], 0, kPi));
+  const double top = 0.3 / std::sin(kPi / n);
+  body.ball("nail", point(*links[0], 0, kPi), world(top * std::cos(-kPi / n), 0, top * std::sin(-kPi / n)));
+}
+
+/// A rubber shell that is set spinning with a dent.
+void shell(MultiBody& body) {
+  auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
+  part.make_shell().rest({{"a1", 0.1}, {"a2", 0.08}, {"a3", 0.12}}).move({0, 0, 0}, {2, 1, -3});
+  LocalSettings settings;
+  settings.resolution = 1;
+  settings.energies = {local_law("neo_hookean_membrane", {2e4, 0.5, 1e-3}), local_law("pressure", {20})};
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return {X[1], 3 * X[0], 0}; };
+  part.deform_locally(settings);
+}
+
 const std::vector<Problem> kProblems{
     {"a free solid of many parameters", [](MultiBody& body) { test::tumbling_solid(body); }, 0.08, 16},
     {"stretching links on ball joints", soft_pendulum, 0.2, 16},
-    {"a body on a spring", sprung, 0.8, 16}};
+    {"a body on a spring", sprung, 0.8, 16},
+    {"bodies on a hinge, a slider, a plane, a line and a weld", joined, 0.8, 16},
+    {"a ring of links", ring, 0.4, 16},
+    {"a rubber shell", shell, 0.04, 16}};
 
-/// States at the quarters of a run; the forces of joints at its end.
+/// States and the forces of joints at the quarters of a run.
 struct Way {
   VecX<double> q, v, lambda;
 };
@@ -65,11 +123,13 @@ Way way(const Problem& problem, const std::string& method, int steps, double tol
       for (int i = 0; i < steps / 4; ++i) simulation.step(problem.end / steps);
     way.q.segment(quarter * n_q, n_q) = simulation.state().q;
     way.v.segment(quarter * n_v, n_v) = simulation.state().v;
+    Workspace<double> work;
+    const State& now = simulation.state();
+    simulation.dynamics().accelerations(now.time(), now.q, now.v, now, work);
+    const Eigen::Index n = work.joints.lambda.size();
+    way.lambda.conservativeResize(4 * n);
+    way.lambda.segment(quarter * n, n) = work.joints.lambda;
   }
-  Workspace<double> work;
-  const State& end = simulation.state();
-  simulation.dynamics().accelerations(end.time(), end.q, end.v, end, work);
-  way.lambda = work.joints.lambda;
   return way;
 }
 
@@ -143,6 +203,57 @@ TEST_CASE("N17, N18: the implicit midpoint rule keeps energy and angular momentu
 
 TEST_CASE("N18: and over a million steps", "[methods][long]") {
   CHECK(drift(1000000) < 1e-11);
+}
+
+TEST_CASE(
+    "N18: a box that spins about its middle axis turns over at the times of Jacobi's elliptic functions",
+    "[methods]") {
+  // Between two of them lies 2 K(k) / p (Landau and Lifshitz, Mechanics, section 37).
+  const Vec3<double> omega(0.01, 3, 0.02);
+  auto build = [&](MultiBody& body) -> Part& {
+    body.gravity.setZero();
+    return body.add<Primitive<Box>>("box")
+        .rest({{"a1", 0.1}, {"a2", 0.2}, {"a3", 0.3}})
+        .move({0, 0, 0}, omega);
+  };
+  MultiBody model;
+  Part& box = build(model);
+  box.prepare();
+  const Vec3<double> I = box.rest_inertia().M.diagonal().tail<3>(), L = I.cwiseProduct(omega);
+  const double twice_E = L.dot(omega), M2 = L.squaredNorm();
+  REQUIRE((I[0] > I[1] && I[1] > I[2]));
+  const bool about_greatest = M2 > twice_E * I[1];
+  const double great = about_greatest ? I[0] : I[2], small = about_greatest ? I[2] : I[0];
+  const double p = std::sqrt((great - I[1]) * (M2 - twice_E * small) / (I[0] * I[1] * I[2])),
+               k = std::sqrt((I[1] - small) * (twice_E * great - M2) /
+                             ((great - I[1]) * (M2 - twice_E * small)));
+  const double between = 2 * std::comp_ellint_1(k) / p;
+  // The mean time between two of so many, and the change of the energy.
+  auto measure = [&](const char* method, double h, int times) {
+    MultiBody body;
+    build(body);
+    Simulation simulation(body, method);
+    const double kinetic = simulation.ledger().kinetic;
+    double first = 0, last = 0, before = omega[1];
+    for (int found = 0; found <= times;) {
+      simulation.step(h);
+      const double now = simulation.state().v[4];
+      if (now * before < 0) {
+        last = simulation.time() - h * now / (now - before);
+        if (found == 0) first = last;
+        ++found;
+      }
+      before = now;
+    }
+    return std::pair((last - first) / times, std::abs(simulation.ledger().kinetic / kinetic - 1));
+  };
+  CHECK(measure("dop853", 2e-3, 10).first == Approx(between).epsilon(1e-7));
+  const double coarse = measure("implicit_midpoint", 1e-2, 200).first / between - 1,
+               fine = measure("implicit_midpoint", 5e-3, 200).first / between - 1;
+  CAPTURE(between, coarse, fine);
+  CHECK(std::abs(coarse) < 1e-3);
+  CHECK(std::log2(coarse / fine) == Approx(2).margin(0.1));
+  CHECK(measure("implicit_midpoint", 1e-2, 200).second < 1e-12);
 }
 
 TEST_CASE("N21: implicit methods bear any stiffness: no growth, and the L-stable one damps", "[methods]") {

@@ -295,6 +295,21 @@ TEST_CASE("what lies on a line of its side rolls no farther than to the next poi
   CHECK(raised < 1.5e-9);
 }
 
+TEST_CASE("faces that are nearly flat lie on their deepest point", "[contact]") {
+  for (const double eps1 : {0.03, 0.036, 0.04, 0.043, 0.046, 0.2}) {
+    CAPTURE(eps1);
+    MultiBody body;
+    floor(body);
+    test::add(body, "a", "superellipsoid", {}, 1000)
+        .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}, {"eps1", eps1}, {"eps2", 0.1}})
+        .place({0, 0, 0.11});
+    Simulation simulation(body, "rk4");
+    test::run(simulation, 0.4, 200);
+    CHECK(std::abs(simulation.state().q[2] - 0.1) < 1e-12);
+    CHECK(simulation.state().v.norm() < 1e-10);
+  }
+}
+
 TEST_CASE("dropped cylinders, cones, tori and deformed solids come to rest on what is lowest",
           "[contact][long]") {
   struct Kind {

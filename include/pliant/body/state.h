@@ -42,8 +42,8 @@ enum class JointMode : std::int8_t {
 struct Support {
   std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< where it was, m, in the frame of part a
-  Vec3<double>
-      force;  ///< mean of the last step or, where it was taken in two, its second half; on part a, N, world
+  /// Mean of the last step or, where it was taken in two, its second half; on part a, N, world.
+  Vec3<double> force;
 };
 
 struct State {

@@ -29,7 +29,7 @@ class ContactSettling {
   ContactSettling(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                   RestingContacts& resting, ContactRecord& record);
 
-  /// Forgets what took something, and tells whether searches of this step begin at the supports of a state.
+  /// Forgets what took something, and settles whether searches of this step begin at the supports of a state.
   void begin_step(const State& state);
   /// What took something of this step, of so many seconds, becomes the supports of a state.
   void end_step(double h, State& state) const;

@@ -11,6 +11,9 @@
 
 namespace pliant {
 
+/// The least and the greatest tolerance that a simulation takes.
+inline constexpr double kLeastTolerance = 1e-12, kGreatestTolerance = 0.1;
+
 class ErrorScale {
  public:
   /// tolerance: > 0. model: must outlive it.

@@ -26,7 +26,11 @@ struct ErrorEstimate {
   double tolerance = 0, step = 0;  ///< of the run that it was compared with; one of them is 0
 };
 
-/// integrator: name of the method of the run. Throws what steps of a simulation throw, RecordingMismatch.
+/// Throws std::invalid_argument of a scene whose tolerance is the least that there is.
+void require_better_run(const Scene& scene);
+
+/// integrator: name of the method of the run. Throws what steps of a simulation throw, RecordingMismatch, and
+/// as require_better_run() does.
 ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
                              int threads, Progress& progress);
 

@@ -1,0 +1,15 @@
+#!/bin/bash
+# Measures run time against error and draws it: the tables of work_precision and a picture of each error over run time, and
+# of the error at the end over evaluations.
+#
+# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: the program; options are for it (--only, --again)
+set -euo pipefail
+[ $# -ge 2 ] || { sed -n '2,5s/^# \?//p' "$0"; exit 2; }
+folder=$1 program=$2
+shift 2
+plot=$(dirname "$0")/plot.py
+"$program" "$folder" "$@"
+for quantity in error error_along error_v error_lambda gap_m balance_J; do
+  python3 "$plot" "$folder/work_precision.csv" "$folder/over_time_$quantity.png" --of "$quantity"
+done
+python3 "$plot" "$folder/work_precision.csv" "$folder/over_evaluations_error.png" --cost evaluations
