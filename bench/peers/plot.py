@@ -17,7 +17,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-LEVELS = (1e-2, 1e-4, 1e-6, 1e-8)
+LEVELS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 COLUMNS = 3
 NO_ENGINE = "multipliers"  # drawn and tabled, but no peer
 

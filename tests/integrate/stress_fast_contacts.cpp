@@ -168,7 +168,7 @@ TEST_CASE("N53: hundreds of bodies of up to a hundred lengths a step, none throu
 
 TEST_CASE("N53: many soft bodies of up to a hundred lengths a step, none through", "[contact][long]") {
   Draws draws(33);
-  shoot_all({"shell", "solid"}, 8, 100, draws);
+  shoot_all({"shell", "solid"}, 5, 100, draws);
 }
 
 TEST_CASE("N53: a body of thousands of lengths a step is refused, and a hundredth of the step cures it",
