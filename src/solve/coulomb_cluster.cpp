@@ -231,8 +231,8 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
-/// Whether searches may begin at impulses: not of one contact, which takes none, nor of points, which sweeps
-/// settle in less time.
+/// Whether searches may begin at impulses: not of one contact, which takes none, nor of points, which are
+/// many and lightly coupled.
 bool CoulombCluster::may_begin() const {
   return size_ > 1 && !points_;
 }
