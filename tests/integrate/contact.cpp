@@ -281,7 +281,7 @@ TEST_CASE("parts that collide keep their momenta, and lose the energy that e say
       }
       REQUIRE(met);
       const Ledger after = simulation.ledger();
-      CHECK((after.momentum - before.momentum).norm() < 1e-11 * before.momentum.norm());
+      CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
       CHECK(after.energy() < before.energy());
       balance.push_back(std::abs(after.balance) / before.kinetic);
       const Model& model = simulation.model();
