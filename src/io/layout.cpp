@@ -51,8 +51,7 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   layout["rows"] = std::string("one state a row, the same row in ") + kTimesFile + ", " + kCoordinatesFile +
                    ", " + kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
                    "; the number of states is that of the shortest of the .npy tables among these, less the "
-                   "last ones whose "
-                   "supports are not whole";
+                   "last ones whose supports are not whole";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},

@@ -114,6 +114,20 @@ TEST_CASE("help, version and a run") {
   CHECK_FALSE(fs::exists(place.folder / "out/top/frames"));
 }
 
+TEST_CASE("the error of a run is estimated, unless no run is better; the method that is chosen is told") {
+  const Place place;
+  const Result run = place.pliant(
+      "run top.json --end 0.05 --integrator auto --tolerance 1e-6 --estimate-error --quiet -o out/e");
+  CHECK(run.code == 0);
+  CHECK(has(run.out, "error, by a run to a tolerance of 1e-07\n  place "));
+  CHECK(has(place.record("out/e").dump(), "integrator dop853: dop853 comes "));
+  CHECK(place.record("out/e").at("error_estimate").at("rotation") > 0);
+  const Result best = place.pliant("run top.json --tolerance 1e-12 --estimate-error -o out/best");
+  CHECK(best.code == 3);
+  CHECK(has(best.err, "no run is better than one to a tolerance of 1e-12"));
+  CHECK(!fs::exists(place.folder / "out/best"));
+}
+
 TEST_CASE("commands that tell") {
   const Place place;
   const Result info = place.pliant("info top.json");

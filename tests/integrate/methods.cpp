@@ -85,7 +85,7 @@ void ring(MultiBody& body) {
   body.ball("nail", point(*links[0], 0, kPi), world(top * std::cos(-kPi / n), 0, top * std::sin(-kPi / n)));
 }
 
-/// A rubber shell that is set spinning with a dent.
+/// A rubber shell under pressure that spins and is sheared as it starts.
 void shell(MultiBody& body) {
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
   part.make_shell().rest({{"a1", 0.1}, {"a2", 0.08}, {"a3", 0.12}}).move({0, 0, 0}, {2, 1, -3});
