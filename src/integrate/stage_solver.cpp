@@ -16,9 +16,11 @@ namespace pliant {
 
 namespace {
 
-/// An iteration that leaves more than this part of its change is slow; without the matrix, and with it.
-constexpr double kSlowFree = 0.2, kSlowWith = 0.9;
+/// An iteration that leaves more than this part of its change is slow.
+constexpr double kSlow = 0.9;
 constexpr int kMostStageIterations = 20;
+/// Iterations without the matrix that cost as much as their share of one, in velocities.
+constexpr double kShareOfMatrix = 0.5;
 /// Matrices that a stage may have of its own.
 constexpr int kMostMatrices = 4;
 /// Changes that no longer fall and are below this, in sizes and radians, are rounding.
@@ -67,7 +69,8 @@ int leader(std::vector<int>& of, int i) {
 
 }  // namespace
 
-StageSolver::StageSolver(const Model& model) : model_(model), difference_(model.n_v()) {
+StageSolver::StageSolver(const Model& model)
+    : model_(model), difference_(model.n_v()), most_free_(kMostStageIterations) {
   const int n = static_cast<int>(model.parts().size());
   std::vector<int> set(at(n));
   std::iota(set.begin(), set.end(), 0);
@@ -98,6 +101,9 @@ StageSolver::StageSolver(const Model& model) : model_(model), difference_(model.
       if (m.part->parameters().moving(k).spec->quantity != Quantity::length)
         difference_[m.v0 + 6 + k] = kDifference;
   }
+  for (const Cluster& of : clusters_)
+    most_free_ =
+        std::max(most_free_, static_cast<int>(kShareOfMatrix * static_cast<double>(of.velocities.size())));
 }
 
 void StageSolver::begin(const Dynamics& dynamics, const State& state, double c, const ErrorScale& scale) {
@@ -136,9 +142,9 @@ void StageSolver::solve(double t, const VecX<double>& r_q, const VecX<double>& r
 
 bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q,
                           VecX<double>& v, Workspace<double>& work, StepCounters& counters) {
-  const double slow = linear_ ? kSlowWith : kSlowFree;
+  const int most = linear_ ? kMostStageIterations : most_free_;
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kMostStageIterations; ++i) {
+  for (int i = 0; i < most; ++i) {
     dynamics_->accelerations(t, q, v, *state_, work, RankRule::keep);
     ++counters.evaluations;
     hold_inertialess(model_, work, v);
@@ -153,9 +159,11 @@ bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>&
     const double left = change / before;  // of a change, by one more iteration
     const bool small = change <= kConverged && left / (1 - std::min(left, 0.99)) * change <= kConverged;
     if (change == 0 || (i > 0 && small)) return true;
-    if (left > kSlowWith && change * scale_->tolerance() <= kStageRounding) return true;
+    if (left > kSlow && change * scale_->tolerance() <= kStageRounding) return true;
     // The first change with the matrix is as crude as the guess was.
-    if (i > (linear_ ? 1 : 0) && left > slow) return false;
+    const bool hopeless =
+        linear_ ? i > 1 && left > kSlow : i > 0 && change * std::pow(left, most - 1 - i) > kConverged;
+    if (hopeless) return false;
     before = change;
   }
   return false;

@@ -1,8 +1,8 @@
 // The equations of an implicit stage,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
 // by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, of the derivatives A_q and A_v of v_dot, is
-// only formed where the iteration without it is slow, by differences, once a step, and again where stiff
-// parts turn so far on each other in it that it no longer helps; parts that no joint, spring or torque
+// only formed where the iteration without it would cost more, by differences, once a step, and again where
+// stiff parts turn so far on each other in it that it no longer helps; parts that no joint, spring or torque
 // against each other ties together have one each. It stands in the frames of the parts, with which stiff
 // directions turn.
 #pragma once
@@ -49,6 +49,7 @@ class StageSolver {
   const Model& model_;
   std::vector<Cluster> clusters_;
   VecX<double> difference_;  ///< of each velocity's coordinate, m or rad or 1
+  int most_free_;            ///< iterations without the matrix that cost less than it
   // Of the step.
   const Dynamics* dynamics_ = nullptr;
   const State* state_ = nullptr;

@@ -276,6 +276,35 @@ TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and 
   }
 }
 
+TEST_CASE("implicit methods form no matrix of a long chain where iterations without it cost less",
+          "[joints]") {
+  // 200 links have more velocities than a matrix may have.
+  constexpr int links = 200;
+  constexpr double end = 0.1;
+  MultiBody same;
+  chain(same, links, 0.7);
+  Simulation exact(same, "dop853", 1, 1e-9);
+  while (exact.time() < end) exact.step_up_to(end);
+  struct Bound {
+    const char* method;
+    int steps;
+    double error;
+    long evaluations;
+  };
+  for (const Bound& bound :
+       {Bound{"implicit_midpoint", 32, 2e-4, 20 * 32}, Bound{"esdirk", 8, 2e-6, 100 * 8}}) {
+    MultiBody body;
+    chain(body, links, 0.7);
+    Simulation simulation(body, bound.method);
+    test::run(simulation, end, bound.steps);
+    const double error = (simulation.state().q - exact.state().q).cwiseAbs().maxCoeff();
+    CAPTURE(bound.method, error, simulation.step_counters().evaluations);
+    CHECK(error < bound.error);
+    CHECK(simulation.step_counters().factorisations == 0);
+    CHECK(simulation.step_counters().evaluations < bound.evaluations);
+  }
+}
+
 TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomial", "[joints]") {
   // Spheres of no size hardly turn: joints at their centres, rods of 1 m between them.
   for (const auto& [n, roots] :
