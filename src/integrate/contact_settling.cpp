@@ -136,7 +136,7 @@ void ContactSettling::begin_at_supports(const State& state, double t, double h,
 void ContactSettling::note_pushed(const State& state, double t, const std::vector<Contact>& contacts,
                                   const ContactProblem& problem, const std::vector<Vec3<double>>& impulses) {
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    if (problem.may_begin(static_cast<int>(k)) && !of_meshes(contacts[k]) && !impulses[k].isZero(0))
+    if (problem.may_begin(static_cast<int>(k)) && !impulses[k].isZero(0))
       pushed_.push_back({{key_of(contacts[k]), place(contacts[k], state, t), impulses[k]},
                          same_within(contacts[k]),
                          settlements_});

@@ -30,6 +30,9 @@ constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
 constexpr double kYielding = 1e-4;
 /// Impulses that stay bounded may leave this many times what others leave.
 constexpr double kBounded = 2;
+/// A search that leaves less than kLeft ends where a round leaves more than this share of what the one before
+/// left: contacts that hardly differ may leave what no impulse in reason takes off.
+constexpr double kStalled = 0.1;
 /// A search goes on from impulses that leave less than this share of what there is to stop.
 constexpr double kNear = 0.1;
 
@@ -44,7 +47,7 @@ CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
       scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
     for (int s = point(i).first_side; s < point(i).last_side; ++s)
-      points_ = points_ || system_.sides_[at(s)].size == 3;
+      points_ = points_ || system_.mover_size(system_.seen_sides_[at(s)].mover) == 3;
 }
 
 /// Velocities that count as zero, and those that may be left.
@@ -54,7 +57,7 @@ void CoulombCluster::set_scale() {
   for (int i = 0; i < size_; ++i) {
     scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
       terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
@@ -76,7 +79,7 @@ void CoulombCluster::yield(double softness) {
 }
 
 Vec3<double> CoulombCluster::velocity(int i) const {
-  Vec3<double> u = system_.velocity(contacts_[i], system_.x_);
+  Vec3<double> u = system_.velocity_at(contacts_[i], system_.seen_sides_, system_.x_);
   if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
   return u;
 }
@@ -94,7 +97,7 @@ Vec3<double> CoulombCluster::met(int i, const Vec3<double>& u) const {
 void CoulombCluster::push(int i, const Vec3<double>& dp) {
   p(i) += dp;
   for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-    const CoulombSystem::Term& term = system_.pushes_[at(r)];
+    const CoulombSystem::Term& term = system_.seen_pushes_[at(r)];
     const double* Y = system_.numbers_.data() + term.numbers;
     if (term.size == 3)
       system_.x_.segment<3>(term.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * dp;
@@ -149,7 +152,7 @@ void CoulombCluster::take(VecX<double>& impulses) const {
 void CoulombCluster::reset() {
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const CoulombSystem::Term& term = system_.pushes_[at(r)];
+      const CoulombSystem::Term& term = system_.seen_pushes_[at(r)];
       system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
     }
   for (int i = 0; i < size_; ++i) p(i).setZero();
@@ -251,11 +254,15 @@ bool CoulombCluster::search(int& sweeps) {
   const bool many = size_ > kMany;
   const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
   const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
+  double before = std::numeric_limits<double>::infinity();
   for (const auto* round = first; round != last; ++round) {
     const auto& [most, history] = *round;
     if (many && history == 0) continue;  // it would take too long, as Newton's method would with many points
     if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
     if (!(many && points_) && newton(false)) return true;
+    const double left = residual();
+    if (left <= kLeft * scale_ && left > kStalled * before) return false;
+    before = left;
   }
   return false;
 }

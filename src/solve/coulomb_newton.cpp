@@ -33,6 +33,8 @@ constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
 /// greater by that one.
 constexpr int kMostFutile = 4;
 constexpr double kFarOff = 1e3, kBack = 10;
+/// Where they have led nowhere, less than this is left of what there is to stop, and the search ends.
+constexpr double kStalled = 1e-6;
 
 /// Adds Y T S to a block of N velocities pushed and N at a side.
 template <int N>
@@ -96,18 +98,18 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
     law.F = (inverse * law.F).eval();
     law.T = (inverse * law.T).eval();
     for (int r = contact_at.first_push; r < contact_at.last_push; ++r) {
-      const CoulombSystem::Term& push = system_.pushes_[at(r)];
+      const CoulombSystem::Term& push = system_.seen_pushes_[at(r)];
       movers.add(coupling.push_rows[at(r)], Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
     }
     const MoverSystem::Block* block =
         coupling.blocks.data() + coupling.first_block[at(contacts_[law.contact])];
     for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
       if (coupling.side_rows[at(s)] < 0) continue;
-      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       TS = law.T.lazyProduct(S);
       for (int r = contact_at.first_push; r < contact_at.last_push; ++r, ++block) {
-        const CoulombSystem::Term& push = system_.pushes_[at(r)];
+        const CoulombSystem::Term& push = system_.seen_pushes_[at(r)];
         if (side.size == 3 && push.size == 3)
           add_product<3>(numbers + push.numbers, TS, *block, movers);
         else if (side.size == 6 && push.size == 6)
@@ -124,7 +126,7 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
     for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
       const int row = coupling.side_rows[at(s)];
       if (row < 0) continue;
-      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       du += S.lazyProduct(movers.change(row, side.size));
     }
@@ -139,32 +141,35 @@ MoverSystem* CoulombCluster::couple_movers() {
   if (coupling.clusters.empty()) {
     coupling.clusters.resize(system_.clusters_.size() - 1);
     coupling.numbers.resize(at(system_.movers()), -1);
-    coupling.push_rows.resize(system_.pushes_.size(), -1);
-    coupling.side_rows.resize(system_.sides_.size(), -1);
+    coupling.push_rows.resize(system_.seen_pushes_.size(), -1);
+    coupling.side_rows.resize(system_.seen_sides_.size(), -1);
     coupling.first_block.resize(system_.contacts_.size(), 0);
   }
   MoverSystem& movers = coupling.clusters[at(number_)];
   if (!movers.empty()) return movers.is_ordered() ? &movers : nullptr;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const int mover = system_.pushes_[at(r)].mover;
+      const int mover = system_.seen_pushes_[at(r)].mover;
       int& number = coupling.numbers[at(mover)];
-      if (number < 0) number = movers.add_mover(system_.mover_size(mover));
+      if (number < 0)
+        number = movers.add_mover(system_.seen_movers_[at(mover) + 1] - system_.seen_movers_[at(mover)]);
     }
   auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
       const int column = number_at(side);
       if (column < 0) continue;
       for (int r = point(i).first_push; r < point(i).last_push; ++r)
-        act(number_at(system_.pushes_[at(r)]), column, side);
+        act(number_at(system_.seen_pushes_[at(r)]), column, side);
     }
   };
   for (int i = 0; i < size_; ++i)
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
   if (!movers.order(size_ > kMany ? kMostFill : std::numeric_limits<double>::infinity())) return nullptr;
-  auto in_mover = [&](const CoulombSystem::Term& term) { return term.first - system_.first(term.mover); };
+  auto in_mover = [&](const CoulombSystem::Term& term) {
+    return term.first - system_.seen_movers_[at(term.mover)];
+  };
   for (int i = 0; i < size_; ++i) {
     coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
@@ -173,9 +178,9 @@ MoverSystem* CoulombCluster::couple_movers() {
       coupling.blocks.push_back(block);
     });
     for (int r = point(i).first_push; r < point(i).last_push; ++r)
-      coupling.push_rows[at(r)] = movers.row(number_at(system_.pushes_[at(r)]));
+      coupling.push_rows[at(r)] = movers.row(number_at(system_.seen_pushes_[at(r)]));
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.sides_[at(s)];
+      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
       if (const int number = number_at(side); number >= 0)
         coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
     }
@@ -197,6 +202,7 @@ bool CoulombCluster::newton(bool near) {
   double proximal = near ? kProximalNear : kFirstProximal,
          least = points_ ? kLeastProximalOfPoints : kLeastProximal;
   const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
+  const double stalled = kStalled * scale_;
   int futile = 0;
   for (int step = 0; step < (near ? kMostNewtonNear : kMostNewton) && best_left > beyond * exact; ++step) {
     linearise(proximal);
@@ -217,7 +223,9 @@ bool CoulombCluster::newton(bool near) {
       futile = 0;
     } else if (best_left <= exact) {
       break;
-    } else if (++futile; !finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
+    } else if (++futile; futile >= kMostFutile && best_left <= stalled) {
+      break;
+    } else if (!finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
       futile = 0;
       set(best);
       proximal = least = std::min(kFirstProximal, kBack * proximal);

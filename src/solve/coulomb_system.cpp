@@ -80,10 +80,14 @@ Mat3<double> CoulombSystem::effect(int i, int j) const {
 }
 
 Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x) const {
+  return velocity_at(k, sides_, x);
+}
+
+Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& sides, const VecX<double>& x) const {
   const Point& point = contacts_[at(k)];
   Vec3<double> u = point.c;
   for (int s = point.first_side; s < point.last_side; ++s) {
-    const Term& side = sides_[at(s)];
+    const Term& side = sides[at(s)];
     const double* J = numbers_.data() + side.numbers;
     if (side.size == 3)
       u.noalias() += Eigen::Map<const Mat3<double>>(J) * x.segment<3>(side.first);
@@ -96,9 +100,14 @@ Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x) const {
 }
 
 void CoulombSystem::add_change(int k, double factor, VecX<double>& x) const {
+  add_change_to(k, factor, pushes_, x);
+}
+
+void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& pushes,
+                                  VecX<double>& x) const {
   const Vec3<double> p = factor * p_[at(k)];
   for (int r = contacts_[at(k)].first_push; r < contacts_[at(k)].last_push; ++r) {
-    const Term& push = pushes_[at(r)];
+    const Term& push = pushes[at(r)];
     x.segment(push.first, push.size).noalias() +=
         Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3) * p;
   }
@@ -112,7 +121,44 @@ void CoulombSystem::complete() {
     point.W = 0.5 * (W + W.transpose());
     point.W.diagonal().array() += kSoft * point.W.diagonal().maxCoeff();
   }
+  keep_seen();
   find_clusters();
+}
+
+/// Terms for the velocities that sides depend on; of a mover that no side is of all count.
+void CoulombSystem::keep_seen() {
+  std::vector<char> is_seen(at(n_x()), 0);
+  std::vector<char> has_side(movers_.size() - 1, 0);
+  for (const Term& side : sides_) {
+    std::fill_n(is_seen.begin() + side.first, side.size, 1);
+    has_side[at(side.mover)] = 1;
+  }
+  for (int i = 0; i < movers(); ++i)
+    if (!has_side[at(i)]) std::fill_n(is_seen.begin() + first(i), mover_size(i), 1);
+  seen_.clear();
+  std::vector<int> before{0};  // how many of those before each velocity are seen
+  for (int i = 0; i < n_x(); ++i) {
+    if (is_seen[at(i)]) seen_.push_back(i);
+    before.push_back(static_cast<int>(seen_.size()));
+  }
+  seen_movers_.clear();
+  for (const int first_of_mover : movers_) seen_movers_.push_back(before[at(first_of_mover)]);
+  seen_sides_ = sides_;
+  for (Term& side : seen_sides_) side.first = before[at(side.first)];
+  seen_pushes_ = pushes_;
+  for (Term& push : seen_pushes_) {
+    const int first = before[at(push.first)], size = before[at(push.first + push.size)] - first;
+    if (size < push.size) {
+      const std::size_t numbers = numbers_.size();
+      numbers_.resize(numbers + at(3 * size));
+      const Push all(numbers_.data() + push.numbers, push.size, 3);
+      Push seen(numbers_.data() + numbers, size, 3);
+      for (int i = 0; i < size; ++i) seen.row(i) = all.row(seen_[at(first + i)] - push.first);
+      push.numbers = numbers;
+    }
+    push.first = first;
+    push.size = size;
+  }
 }
 
 /// Contacts by what they push, those of one cluster after each other, in their order.
@@ -142,12 +188,13 @@ void CoulombSystem::find_clusters() {
 CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
   if (!complete_) complete();
   CoulombResult result;
-  x0_ = x;
-  x_ = x;
+  x0_.resize(static_cast<Eigen::Index>(seen_.size()));
+  for (Eigen::Index i = 0; i < x0_.size(); ++i) x0_[i] = x[seen_[static_cast<std::size_t>(i)]];
+  x_ = x0_;
   for (int k = 0; k < size(); ++k) {
     if (pushes(k) == 0) p_[at(k)].setZero();
-    add_change(k, 1, x_);
-    if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x_)[0]);
+    add_change_to(k, 1, seen_pushes_, x_);
+    if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x)[0]);
   }
   for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)
     CoulombCluster(*this, i, enough, *scratch_).solve(result);

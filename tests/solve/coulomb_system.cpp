@@ -172,6 +172,56 @@ TEST_CASE("a search that begins at the solution ends there at once", "[coulomb]"
   CHECK((again.x - line.x).norm() < 1e-10);
 }
 
+TEST_CASE("what contacts do not see of a mover is pushed all the same", "[coulomb]") {
+  // Of two large movers contacts see some velocities here and there.
+  constexpr int kSize = 30;
+  const std::vector<Eigen::Index> seen{2, 3, 4, 11, 20, 21};
+  Draws draws(5);
+  auto filled = [&](int rows, int columns) {
+    MatX<double> matrix(rows, columns);
+    for (double& number : matrix.reshaped()) number = draws.uniform(-1, 1);
+    return matrix;
+  };
+  const MatX<double> root = filled(kSize, kSize),
+                     inverse_mass = root * root.transpose() / kSize + MatX<double>::Identity(kSize, kSize);
+  CoulombSystem all, part;
+  for (int i = 0; i < 2; ++i) {
+    all.add_mover(kSize);
+    part.add_mover(6);
+  }
+  VecX<double> x = filled(2 * kSize, 1), x_part(12);
+  for (int contact = 0; contact < 12; ++contact) {
+    const int movers = contact < 3 ? 1 : 2;
+    all.add_contact(0.5);
+    part.add_contact(0.5);
+    for (int i = 0; i < movers; ++i) {
+      MatX<double> J = MatX<double>::Zero(3, kSize);
+      J(Eigen::all, seen) = filled(3, 6);
+      all.add_side(i, 2, 3) = J.middleCols(2, 3);
+      all.add_side(i, 11, 1) = J.col(11);
+      all.add_side(i, 20, 2) = J.middleCols(20, 2);
+      part.add_side(i, 0, 6) = J(Eigen::all, seen);
+      const MatX<double> Y = inverse_mass * J.transpose();
+      all.add_push(i) = Y;
+      part.add_push(i) = Y(seen, Eigen::all);
+    }
+  }
+  const VecX<double> before = x;
+  x_part << before.head(kSize)(seen), before.tail(kSize)(seen);
+  CHECK(all.solve(x).residual < 1e-10);
+  CHECK(part.solve(x_part).residual < 1e-10);
+  VecX<double> moved = before;
+  for (int k = 0; k < all.size(); ++k) {
+    CHECK((all.impulse(k) - part.impulse(k)).norm() < 1e-10);
+    CHECK((all.velocity(k, x) - part.velocity(k, x_part)).norm() < 1e-10);
+    all.add_change(k, 1, moved);
+  }
+  CHECK((moved - x).norm() < 1e-12);
+  CHECK((x - before).tail(kSize)[0] != 0);
+  CHECK((x.head(kSize)(seen) - x_part.head(6)).norm() < 1e-10);
+  CHECK((x.tail(kSize)(seen) - x_part.tail(6)).norm() < 1e-10);
+}
+
 TEST_CASE("what cannot be stopped shows in the residual", "[coulomb]") {
   CoulombSystem system;
   system.add_mover(3);

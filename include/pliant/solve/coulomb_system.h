@@ -99,13 +99,21 @@ class CoulombSystem {
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);
   void complete();
+  void keep_seen();
   void find_clusters();
+  Vec3<double> velocity_at(int k, const std::vector<Term>& sides, const VecX<double>& x) const;
+  void add_change_to(int k, double factor, const std::vector<Term>& pushes, VecX<double>& x) const;
 
   std::vector<int> movers_{0};  // where each begins in x
   std::vector<Point> contacts_;
   std::vector<Term> sides_, pushes_;
   std::vector<double> numbers_;  // of all terms
   std::vector<Vec3<double>> p_;
+  // Searches know of those velocities alone that some side depends on: what is large, as a part that deforms
+  // or one with many joints, moves far more than its contacts see. Their numbers, where those of each mover
+  // begin, the terms for them, and they before the impulses and by the present ones.
+  std::vector<int> seen_, seen_movers_;
+  std::vector<Term> seen_sides_, seen_pushes_;
   VecX<double> x0_, x_;
   std::vector<int> order_, clusters_;  // contacts, cluster after cluster; where each begins in it
   bool complete_ = false;
