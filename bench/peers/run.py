@@ -121,16 +121,16 @@ def runs(engine, name, folder, index, settings, limit):
         process.join()
 
 
-def measure(problem, engine, folder, reference, limit, best, least, write):
-    """All ladders of an engine on a problem; best: (CPU s, error) of the runs so far; least: CPU ms of those of
-    earlier rounds."""
+def measure(problem, engine, folder, reference, smallest, limit, best, least, write):
+    """All ladders of an engine on a problem; smallest: errors below count as that; best: (CPU s, error) of the runs
+    so far; least: CPU ms of those of earlier rounds."""
     for index, (formulation, method, settings) in enumerate(in_child(titles, engine, problem.name, folder)):
         failures, mine, begin = 0, [], time.monotonic()
         for setting, result in runs(engine, problem.name, folder, index, settings, limit):
             seconds, error, reason = math.nan, math.nan, result
             if not isinstance(result, str):
                 seconds, *pose = result
-                error, reason = errors.error(problem, pose, reference), "not finite"
+                error, reason = max(errors.error(problem, pose, reference), smallest), "not finite"
             failed = math.isnan(error)
             key = [problem.name, engine, formulation, method, f"{setting:.6g}"]
             if failed:
@@ -159,7 +159,7 @@ def main():
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     native_peer.build(folder / "native", options.prefix)
-    references = errors.read_references(options.references)
+    references, smallest = errors.read_references(options.references), errors.read_least(options.references)
     limit = options.limit or (1 if options.quick else 10)
     names = options.problems or (QUICK if options.quick else list(problems.MAKERS))
     engines = {engine: found for engine in options.engines if (found := available(engine, folder))}
@@ -182,7 +182,7 @@ def main():
         for name in names:
             best = []
             for engine in engines:
-                measure(problems.problem(name), engine, folder, references[name], limit, best, least, write)
+                measure(problems.problem(name), engine, folder, references[name], smallest[name], limit, best, least, write)
 
 
 if __name__ == "__main__":
