@@ -9,12 +9,15 @@
 
 namespace pliant::bench {
 
-/// The cells of the rows of a CSV file with this head; none when it is not there or has another head.
+/// The cells of the rows of a CSV file with this head; none when it is not there. Throws std::runtime_error
+/// when it has another head.
 inline std::vector<std::vector<std::string>> read_rows(const std::string& path, const std::string& head) {
   std::ifstream file(path);
   std::string columns(head.size(), '\0'), line;
   std::vector<std::vector<std::string>> rows;
-  if (!file.read(columns.data(), static_cast<std::streamsize>(head.size())) || columns != head) return rows;
+  if (!file) return rows;
+  if (!file.read(columns.data(), static_cast<std::streamsize>(head.size())) || columns != head)
+    throw std::runtime_error(path + ": other columns than " + head);
   while (std::getline(file, line)) {
     std::vector<std::string>& row = rows.emplace_back(1);
     for (const char c : line)

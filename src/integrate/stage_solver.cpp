@@ -19,7 +19,8 @@ namespace {
 /// An iteration that leaves more than this part of its change is slow.
 constexpr double kSlow = 0.9;
 constexpr int kMostStageIterations = 20;
-/// Iterations without the matrix that cost as much as their share of one, in velocities.
+/// Iterations without the matrix that a stage may take, if not so many as with it: of velocities, each of
+/// which costs a matrix, once a step, two evaluations.
 constexpr double kShareOfMatrix = 0.5;
 /// Matrices that a stage may have of its own.
 constexpr int kMostMatrices = 4;

@@ -49,7 +49,7 @@ class StageSolver {
   const Model& model_;
   std::vector<Cluster> clusters_;
   VecX<double> difference_;  ///< of each velocity's coordinate, m or rad or 1
-  int most_free_;            ///< iterations without the matrix that cost less than it
+  int most_free_;            ///< iterations without the matrix that a stage may take
   // Of the step.
   const Dynamics* dynamics_ = nullptr;
   const State* state_ = nullptr;

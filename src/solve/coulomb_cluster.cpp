@@ -24,15 +24,13 @@ constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0},
 constexpr double kWorse = 4;
 /// Sweeps that depend on each other by more than this are not told apart.
 constexpr double kSameSweep = 1e-14;
-/// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield: by these
-/// shares of their W.
-constexpr double kLeft = 1e-6, kLeftOfMany = 1e-2;
-constexpr double kYielding = 1e-4;
+/// kLeft of many contacts, or of points; and what contacts yield by, as a share of their W.
+constexpr double kLeftOfMany = 1e-2, kYielding = 1e-4;
 /// Impulses that stay bounded may leave this many times what others leave.
 constexpr double kBounded = 2;
-/// A search that leaves less than kLeft ends where a round leaves more than this share of what the one before
-/// left: contacts that hardly differ may leave what no impulse in reason takes off.
-constexpr double kStalled = 0.1;
+/// A search has stalled where a round leaves more than this share of what the one before left: contacts that
+/// hardly differ may leave what no impulse in reason takes off.
+constexpr double kStalledShare = 0.1;
 /// A search goes on from impulses that leave less than this share of what there is to stop.
 constexpr double kNear = 0.1;
 
@@ -255,13 +253,18 @@ bool CoulombCluster::search(int& sweeps) {
   const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
   const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
   double before = std::numeric_limits<double>::infinity();
+  VecX<double> kept;  // what the round before found
   for (const auto* round = first; round != last; ++round) {
     const auto& [most, history] = *round;
     if (many && history == 0) continue;  // it would take too long, as Newton's method would with many points
     if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
     if (!(many && points_) && newton(false)) return true;
     const double left = residual();
-    if (left <= kLeft * scale_ && left > kStalled * before) return false;
+    if (left <= kLeft * scale_ && left > kStalledShare * before) {
+      if (left > before) set(kept);
+      return false;
+    }
+    take(kept);
     before = left;
   }
   return false;

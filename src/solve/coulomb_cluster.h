@@ -13,6 +13,9 @@ namespace pliant {
 
 /// More contacts than this are many.
 inline constexpr int kMany = 100;
+/// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield; of less
+/// a search that stalls is content.
+inline constexpr double kLeft = 1e-6;
 
 /// The law of a contact, linear about its impulse: F + T du + D dp = 0.
 struct LinearContactLaw {

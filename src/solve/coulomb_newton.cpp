@@ -33,8 +33,8 @@ constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
 /// greater by that one.
 constexpr int kMostFutile = 4;
 constexpr double kFarOff = 1e3, kBack = 10;
-/// Where they have led nowhere, less than this is left of what there is to stop, and the search ends.
-constexpr double kStalled = 1e-6;
+/// Equations of a mover, of the velocities that contacts see of it, that are too many: sweeps take less time.
+constexpr int kMostOfMover = 1000;
 
 /// Adds Y T S to a block of N velocities pushed and N at a side.
 template <int N>
@@ -147,13 +147,17 @@ MoverSystem* CoulombCluster::couple_movers() {
   }
   MoverSystem& movers = coupling.clusters[at(number_)];
   if (!movers.empty()) return movers.is_ordered() ? &movers : nullptr;
+  bool too_large = false;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
       const int mover = system_.seen_pushes_[at(r)].mover;
       int& number = coupling.numbers[at(mover)];
-      if (number < 0)
-        number = movers.add_mover(system_.seen_movers_[at(mover) + 1] - system_.seen_movers_[at(mover)]);
+      if (number >= 0) continue;
+      const int seen = system_.seen_movers_[at(mover) + 1] - system_.seen_movers_[at(mover)];
+      number = movers.add_mover(seen);
+      too_large = too_large || seen > kMostOfMover;
     }
+  if (too_large) return nullptr;
   auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
@@ -202,7 +206,6 @@ bool CoulombCluster::newton(bool near) {
   double proximal = near ? kProximalNear : kFirstProximal,
          least = points_ ? kLeastProximalOfPoints : kLeastProximal;
   const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
-  const double stalled = kStalled * scale_;
   int futile = 0;
   for (int step = 0; step < (near ? kMostNewtonNear : kMostNewton) && best_left > beyond * exact; ++step) {
     linearise(proximal);
@@ -223,7 +226,7 @@ bool CoulombCluster::newton(bool near) {
       futile = 0;
     } else if (best_left <= exact) {
       break;
-    } else if (++futile; futile >= kMostFutile && best_left <= stalled) {
+    } else if (++futile; futile >= kMostFutile && best_left <= kLeft * scale_ && proximal <= least) {
       break;
     } else if (!finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
       futile = 0;

@@ -83,11 +83,11 @@ Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x) const {
   return velocity_at(k, sides_, x);
 }
 
-Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& sides, const VecX<double>& x) const {
+Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& of, const VecX<double>& x) const {
   const Point& point = contacts_[at(k)];
   Vec3<double> u = point.c;
   for (int s = point.first_side; s < point.last_side; ++s) {
-    const Term& side = sides[at(s)];
+    const Term& side = of[at(s)];
     const double* J = numbers_.data() + side.numbers;
     if (side.size == 3)
       u.noalias() += Eigen::Map<const Mat3<double>>(J) * x.segment<3>(side.first);
@@ -103,11 +103,10 @@ void CoulombSystem::add_change(int k, double factor, VecX<double>& x) const {
   add_change_to(k, factor, pushes_, x);
 }
 
-void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& pushes,
-                                  VecX<double>& x) const {
+void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& by, VecX<double>& x) const {
   const Vec3<double> p = factor * p_[at(k)];
   for (int r = contacts_[at(k)].first_push; r < contacts_[at(k)].last_push; ++r) {
-    const Term& push = pushes[at(r)];
+    const Term& push = by[at(r)];
     x.segment(push.first, push.size).noalias() +=
         Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3) * p;
   }
@@ -146,6 +145,9 @@ void CoulombSystem::keep_seen() {
   seen_sides_ = sides_;
   for (Term& side : seen_sides_) side.first = before[at(side.first)];
   seen_pushes_ = pushes_;
+  std::size_t more = 0;
+  for (const Term& push : pushes_) more += at(3 * push.size);
+  if (seen_.size() < is_seen.size()) numbers_.reserve(numbers_.size() + more);
   for (Term& push : seen_pushes_) {
     const int first = before[at(push.first)], size = before[at(push.first + push.size)] - first;
     if (size < push.size) {

@@ -1,6 +1,7 @@
 // The impulses of a step begin at the forces of the one before, which are part of the state.
 #include "catch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -289,7 +290,9 @@ TEST_CASE("contacts that push nodes have no supports", "[contact]") {
   Simulation simulation(body, "semi_implicit_euler");
   for (int i = 0; i < 5; ++i) {
     simulation.step(1e-4);
-    CHECK(simulation.contact()->contacts().size() > 1);
+    const std::vector<Contact>& contacts = simulation.contact()->contacts();
+    CHECK(std::count_if(contacts.begin(), contacts.end(),
+                        [](const Contact& contact) { return contact.b.part == 1; }) > 1);
     CHECK(simulation.state().supports.empty());
   }
 }

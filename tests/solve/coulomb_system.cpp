@@ -222,6 +222,31 @@ TEST_CASE("what contacts do not see of a mover is pushed all the same", "[coulom
   CHECK((x.tail(kSize)(seen) - x_part.tail(6)).norm() < 1e-10);
 }
 
+TEST_CASE("contacts that hardly differ end a search that stalls", "[coulomb]") {
+  // A body falls on four points, and on one of them again, a micrometre off and by a rate a little different,
+  // which only a huge impulse would level.
+  CoulombSystem system;
+  system.add_mover(6);
+  for (int k = 0; k < 5; ++k) {
+    const Vec3<double> arm =
+        k < 4 ? Vec3<double>(-1, k % 2 - 0.5, k / 2 - 0.5) : Vec3<double>(-1, -0.5, -0.5 + 1e-6);
+    Eigen::Matrix<double, 3, 6> J;
+    J << Mat3<double>::Identity(), -skew<double>(arm);
+    system.add_contact(0.5);
+    system.add_side(0, 0, 6) = J;
+    system.add_push(0) = J.transpose();
+  }
+  system.constant(4)[0] = -1e-8;
+  VecX<double> x = VecX<double>::Zero(6);
+  x[0] = -1;
+  const CoulombResult result = system.solve(x);
+  CAPTURE(result.residual);
+  CHECK(result.residual < 1e-7);
+  CHECK(result.fallbacks == 0);
+  CHECK(result.sweeps <= 132);
+  CHECK(std::abs(x[0]) < 1e-7);
+}
+
 TEST_CASE("what cannot be stopped shows in the residual", "[coulomb]") {
   CoulombSystem system;
   system.add_mover(3);

@@ -38,7 +38,7 @@ enum class JointMode : std::int8_t {
 };
 
 /// A contact that shares what it pushes with others, and the force that it took: where the search for its
-/// impulse of the next step begins. Rows of limits and strings begin at none.
+/// impulse of the next step begins. Rows of limits and strings, and what shares lone nodes, begin at none.
 struct Support {
   std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< where it was, m, in the frame of part a

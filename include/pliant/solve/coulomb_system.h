@@ -53,7 +53,7 @@ class CoulombSystem {
   int rows(int k) const { return contacts_[at(k)].rows; }
   int sides(int k) const { return contacts_[at(k)].last_side - contacts_[at(k)].first_side; }
   int pushes(int k) const { return contacts_[at(k)].last_push - contacts_[at(k)].first_push; }
-  /// Y of a contact that was added, and the mover it is of.
+  /// Y of a contact that was added, and the mover it is of. Not once solve() was called.
   Push push(int k, int i);
   int pushed(int k, int i) const { return pushes_[at(contacts_[at(k)].first_push + i)].mover; }
   /// c and p of a contact. Before solve(), p is where the search begins, if it is near the solution.
@@ -101,8 +101,8 @@ class CoulombSystem {
   void complete();
   void keep_seen();
   void find_clusters();
-  Vec3<double> velocity_at(int k, const std::vector<Term>& sides, const VecX<double>& x) const;
-  void add_change_to(int k, double factor, const std::vector<Term>& pushes, VecX<double>& x) const;
+  Vec3<double> velocity_at(int k, const std::vector<Term>& of, const VecX<double>& x) const;
+  void add_change_to(int k, double factor, const std::vector<Term>& by, VecX<double>& x) const;
 
   std::vector<int> movers_{0};  // where each begins in x
   std::vector<Point> contacts_;
@@ -110,11 +110,11 @@ class CoulombSystem {
   std::vector<double> numbers_;  // of all terms
   std::vector<Vec3<double>> p_;
   // Searches know of those velocities alone that some side depends on: what is large, as a part that deforms
-  // or one with many joints, moves far more than its contacts see. Their numbers, where those of each mover
-  // begin, the terms for them, and they before the impulses and by the present ones.
-  std::vector<int> seen_, seen_movers_;
+  // or one with many joints, moves far more than its contacts see.
+  std::vector<int> seen_;         // their numbers in x
+  std::vector<int> seen_movers_;  // where those of each mover begin among them
   std::vector<Term> seen_sides_, seen_pushes_;
-  VecX<double> x0_, x_;
+  VecX<double> x0_, x_;                // they: before the impulses, and by the present ones
   std::vector<int> order_, clusters_;  // contacts, cluster after cluster; where each begins in it
   bool complete_ = false;
   std::unique_ptr<CoulombScratch> scratch_;
