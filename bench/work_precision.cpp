@@ -11,18 +11,22 @@
 //
 // Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
 // others tolerances from 0.1 on, each a tenth of the one before; linearly_implicit is measured in either way,
-// to a tolerance as linearly_implicit_controlled. Six that succeed at least, and no more from 4 s on, or
-// where errors are below what the reference tells. error: at the end, of the places of bodies over their
-// length, or of all coordinates (error_scale.h); error_along: the worst at eight times, of a run that stops
-// at each, as are gaps and energies; error_v: of velocities at the end, over the fastest; error_lambda: of
-// the forces of joints there, over the largest. Time: CPU time of the stepping loop, one thread, the least of
-// several, in runs that stop nowhere before, without the trial by which auto chooses. Reference: collocation,
-// and what it differs by from extrapolation (reference_methods.h). Of nodes and of joints that close dop853
-// to 1e-12 and dormand_prince to 1e-11, or the least that rounding lets them hold: two methods, but the
-// engine's projection and its search for the time of closing are in both. Where bodies touch: dop853 to 1e-10
-// and rk4, each in short steps and half as long ones, extrapolated, as the error of contacts that last is of
-// first order. Errors below 100 times the difference are written as that, those of velocities and of forces
-// by differences of their own.
+// to a tolerance as linearly_implicit_controlled. Six settings that succeed at least, and then no more once a
+// run takes 4 s or errors are below what the reference tells.
+//
+// error: at the end, of the places of bodies over their length, or of all coordinates (error_scale.h);
+// error_along: the worst at eight times, of a run that stops at each, as are gaps and energies; error_v: of
+// velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
+//
+// Time: CPU time of the stepping loop, one thread, the least of several, in runs that stop nowhere before,
+// without the trial by which auto chooses.
+//
+// Reference: collocation, and what it differs by from extrapolation (reference_methods.h). Of nodes and of
+// joints that close dop853 to 1e-12 and dormand_prince to 1e-11, or the least that rounding lets them hold:
+// two methods, but the engine's projection and its search for the time of closing are in both. Where bodies
+// touch: dop853 to 1e-10 and rk4, each in short steps and half as long ones, extrapolated, as the error of
+// contacts that last is of first order. Errors below 100 times the difference are written as that, those of
+// velocities and of forces by differences of their own.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
