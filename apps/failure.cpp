@@ -8,13 +8,13 @@
 #include <system_error>
 #include <vector>
 
-#include <pliant/integrate/simulation.h>
-#include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
-#include <pliant/io/run_folder.h>
+#include <pliant/io/run/progress.h>
+#include <pliant/io/run/run_folder.h>
 #include <pliant/math/nearest_name.h>
 #include <pliant/scene/diagnostics.h>
-#include <pliant/scene/text_file.h>
+#include <pliant/scene/json/text_file.h>
+#include <pliant/simulate/simulation.h>
 
 #include "exit_codes.h"
 #include "stop_signal.h"

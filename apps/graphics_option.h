@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <pliant/render/gl_context.h>
+#include <pliant/render/gl/gl_context.h>
 
 namespace pliant_cli {
 

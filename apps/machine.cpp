@@ -8,8 +8,8 @@
 
 #include <unistd.h>
 
-#include <pliant/io/build_info.h>
-#include <pliant/io/png.h>
+#include <pliant/io/format/png.h>
+#include <pliant/io/run/build_info.h>
 
 namespace pliant_cli {
 

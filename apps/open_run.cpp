@@ -1,9 +1,9 @@
 #include "open_run.h"
 
+#include <pliant/io/format/number_text.h>
 #include <pliant/io/frame_schedule.h>
-#include <pliant/io/number_text.h>
-#include <pliant/io/run_files.h>
-#include <pliant/io/run_folder.h>
+#include <pliant/io/run/run_files.h>
+#include <pliant/io/run/run_folder.h>
 #include <pliant/scene/read_scene.h>
 
 #include "scene_options.h"

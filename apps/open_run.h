@@ -6,7 +6,7 @@
 #include <memory>
 
 #include <pliant/io/recording.h>
-#include <pliant/io/run_record.h>
+#include <pliant/io/run/run_record.h>
 #include <pliant/scene/scene.h>
 
 namespace pliant_cli {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include <pliant/io/number_text.h>
+#include <pliant/io/format/number_text.h>
 
 namespace pliant_cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include <pliant/io/progress.h>
+#include <pliant/io/run/progress.h>
 
 namespace pliant_cli {
 

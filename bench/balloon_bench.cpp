@@ -16,7 +16,7 @@
 #include <vector>
 
 #include <pliant/body/joints/string.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/pliant.h>
 
 #include "table_file.h"

@@ -131,13 +131,13 @@ Cost measure(const System& system, int n) {
   cost.residual = simulation.step_counters().contact_residual;
   cost.fallbacks = simulation.step_counters().contact_fallbacks;
   State state = simulation.state();
-  state.supports_age = 0;
+  state.contact_cache_age = 0;
   const double t = state.time();
   auto stage = [&](auto&& act) {
     return per_body(bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5), 1);
   };
   State unsupported = state;
-  unsupported.supports.clear();
+  unsupported.contact_cache.clear();
   auto step_from = [&](const State& from) {
     return stage([&] {
       simulation.set_state(from);

@@ -9,7 +9,7 @@
 #include <exception>
 #include <string>
 
-#include <pliant/io/contact_notes.h>
+#include <pliant/io/run/contact_notes.h>
 #include <pliant/pliant.h>
 #include <pliant/scene/read_scene.h>
 #ifdef PLIANT_HAS_SUITESPARSE
@@ -53,7 +53,7 @@ std::string measure(const std::string& folder, const std::string& name) {
   char line[256];
   std::snprintf(line, sizeof line, "%s,%d,%.3g,%.3g,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.1e\n", name.c_str(),
                 simulation.model().n_v(), scene->end, scene->step, load, taken, simulation.time() / taken,
-                100 * stages.motion / taken, 100 * stages.finding / taken, 100 * stages.settling / taken,
+                100 * stages.motion / taken, 100 * stages.finding / taken, 100 * stages.resolution / taken,
                 deepest);
   return line;
 }

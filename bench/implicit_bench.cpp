@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/pliant.h>
 #include <pliant/solve/cholmod_factor.h>
 #include <pliant/solve/suitesparse.h>
@@ -75,7 +75,7 @@ std::unique_ptr<SparseFactor> make_factor(const std::string& kind) {
 /// A solid hung from a joint at its top, pushed aside.
 void swinging(MultiBody& body, const std::string& law, int resolution, double E) {
   auto& part = body.add<Primitive<Ellipsoid>>("solid", 1000.0);
-  part.rest({{"a1", 0.15}, {"a2", 0.1}, {"a3", 0.4}}).place({0, 0, -0.4}).move({0.4, 0, 0}, {0, -1, 0});
+  part.rest({{"a1", 0.15}, {"a2", 0.1}, {"a3", 0.4}}).place({0, 0, -0.4}).velocity({0.4, 0, 0}, {0, -1, 0});
   LocalSettings settings;
   settings.resolution = resolution;
   settings.alpha = 5;

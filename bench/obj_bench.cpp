@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <pliant/io/obj.h>
-#include <pliant/io/ply.h>
+#include <pliant/io/format/obj.h>
+#include <pliant/io/format/ply.h>
 #include <pliant/part/registry.h>
 
 namespace {

@@ -48,7 +48,7 @@ inline Problem net_of(int n, double end, bool long_running = false) {
 inline void free_ellipsoid(MultiBody& body) {
   body.gravity.setZero();
   Linkage linkage(body);
-  linkage.link({-0.3, 0, 0}, Eigen::Quaterniond::Identity()).move({0, 0, 0}, {0.01, 5, 0.01});
+  linkage.link({-0.3, 0, 0}, Eigen::Quaterniond::Identity()).velocity({0, 0, 0}, {0.01, 5, 0.01});
 }
 
 inline void pendulum(MultiBody& body) {
@@ -56,7 +56,7 @@ inline void pendulum(MultiBody& body) {
   const Vec3<double> omega(0, 0, 3);
   Linkage linkage(body);
   Part& part = linkage.link({0, 0, 0}, R);
-  part.move(omega.cross(part.c0()), R.conjugate() * omega);
+  part.velocity(omega.cross(part.c0()), R.conjugate() * omega);
   linkage.tie(world(0, 0, 0), Linkage::near_tip(part));
 }
 
@@ -64,7 +64,7 @@ inline void dust(MultiBody& body) {
   body.gravity.setZero();
   Part& part = body.add<Primitive<Ellipsoid>>("dust");
   part.rest({{"a1", 0.3}, {"a2", 0.3}, {"a3", 0.2}}).stiffness({{"a1", 0}, {"a2", 0}, {"a3", 0}});
-  part.move({0, 0, 0}, {0, 0, 2});
+  part.velocity({0, 0, 0}, {0, 0, 2});
 }
 
 inline void tumbling_solid(MultiBody& body) {
@@ -78,7 +78,7 @@ inline void tumbling_solid(MultiBody& body) {
                   {"taper.ty", 1e3},
                   {"twist.angle", 500},
                   {"bend.angle", 500}});
-  part.initial({{"a1", 0.32}, {"twist.angle", 0.3}, {"bend.angle", 0.2}}).move({1, 2, 3}, {2, 3, 1});
+  part.initial({{"a1", 0.32}, {"twist.angle", 0.3}, {"bend.angle", 0.2}}).velocity({1, 2, 3}, {2, 3, 1});
 }
 
 inline void four_bars(MultiBody& body) {
@@ -101,13 +101,13 @@ inline void four_bars(MultiBody& body) {
   std::vector<Part*> upright;
   for (int i = 0; i <= windows; ++i) {
     upright.push_back(&rod("upright" + std::to_string(i), i * x, i * x + z));
-    upright.back()->move(0.5 * x, y);
+    upright.back()->velocity(0.5 * x, y);
     hinge(start(*upright.back()), world(i, 0, 0));
   }
   for (int i = 0; i < windows; ++i) {
     const auto k = static_cast<std::size_t>(i);
     Part& bar = rod("bar" + std::to_string(i), i * x + z, (i + 1) * x + z);
-    bar.move(x, {0, 0, 0});
+    bar.velocity(x, {0, 0, 0});
     hinge(start(bar), end(*upright[k]));
     hinge(end(bar), end(*upright[k + 1]));
   }
@@ -144,7 +144,7 @@ inline void bounce(MultiBody& body) {
       .rest({{"r", 0.1}})
       .damping(0, 0, 0.2)
       .place({0, 0, 1.1})
-      .move({0.3, 0, 0}, {1, 2, 3});
+      .velocity({0.3, 0, 0}, {1, 2, 3});
   body.contact.active = true;
   body.contact.restitution = 0.8;
   body.contact.planes.emplace_back().name = "floor";
@@ -175,12 +175,12 @@ inline std::vector<Problem> problems() {
           {"assembly", 0.5, 0, false, assembly},
           {"ringing", 1, 0, false,
            [](MultiBody& body) {
-             balloon(body, 1e5, 0).move({0, 0, 0}, {0.1, 0.2, 0.3});
+             balloon(body, 1e5, 0).velocity({0, 0, 0}, {0.1, 0.2, 0.3});
            }},
           {"stiff", 1, 0, false,
            [](MultiBody& body) {
              Part& part = balloon(body, 1e8, 1e-4);
-             part.move({0, 0.5, 0}, {0.1, 0.2, 0.3});
+             part.velocity({0, 0.5, 0}, {0.1, 0.2, 0.3});
              body.ball("string", world(0, 0, 0.5), point(part, kPi / 2, 0));
            }},
           {"bounce", 2, 0.2, false, bounce},

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <vector>
 
-#include <pliant/io/png.h>
+#include <pliant/io/format/png.h>
 #include <pliant/render/renderer.h>
 
 namespace {

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/pliant.h>
 #ifdef PLIANT_HAS_SUITESPARSE
 #include <pliant/solve/cholmod_factor.h>

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include <pliant/io/joint_notes.h>
+#include <pliant/io/run/joint_notes.h>
 #include <pliant/pliant.h>
 #include <pliant/scene/read_scene.h>
 

@@ -8,11 +8,11 @@
 #include <cstdio>
 #include <string>
 
-#include <pliant/local/bending.h>
-#include <pliant/local/linear_membrane.h>
-#include <pliant/local/loaded_membrane.h>
-#include <pliant/local/membrane.h>
-#include <pliant/local/pressure.h>
+#include <pliant/local/shell/bending.h>
+#include <pliant/local/shell/linear_membrane.h>
+#include <pliant/local/shell/loaded_membrane.h>
+#include <pliant/local/shell/membrane.h>
+#include <pliant/local/shell/pressure.h>
 
 #include "../tests/local/shell_meshes.h"
 #include "table_file.h"

@@ -10,8 +10,8 @@
 #include <limits>
 #include <string>
 
-#include <pliant/part/local_laws.h>
-#include <pliant/part/nodal_deformation.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/nodal_deformation.h>
 #include <pliant/pliant.h>
 
 #include "table_file.h"
@@ -25,7 +25,7 @@ void measure(int resolution, int threads, bench::TableFile& file) {
   MultiBody body;
   body.gravity.setZero();  // it would fall at hundreds of m/s before the last of many steps
   auto& part = body.add<Primitive<Sphere>>("balloon", 1.0);
-  part.make_shell().move({0, 0, 0}, {0.1, 0.2, 0.3});
+  part.make_shell().velocity({0, 0, 0}, {0.1, 0.2, 0.3});
   LocalSettings settings;
   settings.resolution = resolution;
   settings.energies = {local_law("membrane", {1e5, 0.3, 0.01})};

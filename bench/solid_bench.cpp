@@ -9,8 +9,8 @@
 #include <exception>
 #include <string>
 
-#include <pliant/local/averaged_dilatation.h>
-#include <pliant/local/solid_energy.h>
+#include <pliant/local/solid/averaged_dilatation.h>
+#include <pliant/local/solid/solid_energy.h>
 #include <pliant/pliant.h>
 
 #include "counted.h"

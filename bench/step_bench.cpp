@@ -17,27 +17,27 @@ using Soft = Superellipsoid;
 
 void rigid(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
 }
 /// A deformation that is there but frozen at nothing: must cost a rigid part no more.
 void rigid_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).velocity({0, 0, 0}, {1, 2, 3});
 }
 void three(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
 /// The same with deformations frozen at nothing: at most 5 % more.
 void three_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Taper, Bend>>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
 void eleven(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft, Chain<Taper, Twist, Shear, BendOffset, Bend>>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}, {"bend.direction", 0.3}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e5},
                   {"a2", 1e5},
                   {"a3", 1e5},
@@ -55,7 +55,7 @@ void eleven(MultiBody& body, const std::string& name) {
 /// The exponents too, over all of their ranges: no ring keeps its shape, the full rule is needed.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
-  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).move({0, 0, 0}, {1, 2, 3});
+  part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e5}, {"eps1", 1e3}, {"eps2", 1e3}});
 }
 

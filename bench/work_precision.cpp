@@ -42,7 +42,7 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/integrate/advance.h>
+#include <pliant/body/advance.h>
 #include <pliant/pliant.h>
 
 #include "problems.h"

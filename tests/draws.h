@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <pliant/math/functions.h>
 #include <pliant/math/parameter_spec.h>
+#include <pliant/math/scalar/functions.h>
 #include <pliant/shape/shape.h>
 
 namespace pliant::test {

@@ -4,11 +4,11 @@
 #include <iostream>
 #include <memory>
 
-#include <pliant/integrate/stable_step.h>
-#include <pliant/io/number_text.h>
-#include <pliant/io/run.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/run/run.h>
 #include <pliant/io/state_row.h>
 #include <pliant/scene/read_scene.h>
+#include <pliant/simulate/stable_step.h>
 
 #include "command.h"
 #include "exit_codes.h"

@@ -11,8 +11,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <pliant/io/whole_file.h>
-#include <pliant/render/gl_context.h>
+#include <pliant/io/format/whole_file.h>
+#include <pliant/render/gl/gl_context.h>
 
 #include "command.h"
 #include "exit_codes.h"

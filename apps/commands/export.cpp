@@ -3,7 +3,7 @@
 #include <memory>
 
 #include <pliant/io/mesh_frames.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run_files.h>
 
 #include "color_options.h"
 #include "command.h"

@@ -4,12 +4,12 @@
 #include <memory>
 
 #include <pliant/body/placed_point.h>
-#include <pliant/contact/obstacle_mesh.h>
-#include <pliant/integrate/stable_step.h>
-#include <pliant/io/joint_notes.h>
-#include <pliant/io/number_text.h>
-#include <pliant/io/run.h>
-#include <pliant/io/skipped.h>
+#include <pliant/collision/mesh/obstacle_mesh.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/run/joint_notes.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/skipped.h>
+#include <pliant/simulate/stable_step.h>
 
 #include "command.h"
 #include "exit_codes.h"

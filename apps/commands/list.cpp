@@ -6,11 +6,11 @@
 #include <sstream>
 #include <string>
 
-#include <pliant/body/joint_registry.h>
-#include <pliant/integrate/choose_integrator.h>
+#include <pliant/body/joints/joint_registry.h>
 #include <pliant/math/formula.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/part/registry.h>
+#include <pliant/simulate/choose_integrator.h>
 
 #include "command.h"
 #include "exit_codes.h"

@@ -2,7 +2,7 @@
 #include <memory>
 #include <optional>
 
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run_files.h>
 
 #include "color_options.h"
 #include "command.h"

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include <pliant/io/format/number_text.h>
 #include <pliant/io/frame_range.h>
 #include <pliant/io/mesh_frames.h>
-#include <pliant/io/number_text.h>
-#include <pliant/io/run.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/run_files.h>
 
 #include "color_options.h"
 #include "command.h"

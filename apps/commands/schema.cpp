@@ -1,7 +1,7 @@
 // pliant schema: the JSON Schema of scene files.
 #include <iostream>
 
-#include <pliant/scene/scene_schema.h>
+#include <pliant/scene/schema/scene_schema.h>
 
 #include "command.h"
 #include "exit_codes.h"

@@ -28,7 +28,7 @@ struct Egg {
 int main() {
   MultiBody body;
   auto& egg = body.add<Primitive<Egg, Chain<Twist>>>("egg", 1000.0);
-  egg.rest({{"r", 0.05}}).stiffness({{"k", 0.5}, {"twist.angle", 0.05}}).move({0, 0, 3}, {5, 2, 0});
+  egg.rest({{"r", 0.05}}).stiffness({{"k", 0.5}, {"twist.angle", 0.05}}).velocity({0, 0, 3}, {5, 2, 0});
   Simulation simulation(body, "rk4");
   for (int i = 0; i < 500; ++i) simulation.step(1e-3);
   std::printf("mass %.4f kg, energy balance error %.1e J\n", egg.total_mass(), simulation.ledger().balance);

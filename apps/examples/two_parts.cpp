@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include <pliant/io/obj.h>
+#include <pliant/io/format/obj.h>
 #include <pliant/pliant.h>
 
 using namespace pliant;

@@ -5,9 +5,9 @@
 
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/deform/all_deforms.h>
-#include <pliant/integrate/simulation.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/mesh/solid.h>
+#include <pliant/part/mesh/surface.h>
 #include <pliant/part/registry.h>
-#include <pliant/part/solid.h>
-#include <pliant/part/surface.h>
 #include <pliant/shape/all_shapes.h>
+#include <pliant/simulate/simulation.h>

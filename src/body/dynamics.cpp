@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include <pliant/local/inverted_element.h>
+#include <pliant/local/solid/inverted_element.h>
 
 #include "loads.h"
 #include "part_stages.h"
@@ -45,7 +45,7 @@ void Dynamics::choose_rigid_islands(const State* modes, Workspace<S>& work) cons
   work.rigid.resize(islands.size());
   for (std::size_t k = 0; k < islands.size(); ++k) {
     const Island& island = model_->islands()[static_cast<std::size_t>(islands[k].island())];
-    work.rigid[k].used = modes != nullptr && hold_.projected && !asleep(island, modes) &&
+    work.rigid[k].used = modes != nullptr && joint_policy_.projected && !asleep(island, modes) &&
                          std::all_of(island.joints.begin(), island.joints.end(), [&](int j) {
                            return modes->joints[static_cast<std::size_t>(j)] == JointMode::closed;
                          });
@@ -194,7 +194,7 @@ void Dynamics::join(double t, const State* modes, const State* sleepers, const W
       for (const std::vector<int>* of : {&island.joints, &island.strings})
         for (const int j : *of) joints.modes[static_cast<std::size_t>(j)] = JointMode::off;
     }
-    joints.gains = rule.gains(modes->h, hold_.step_consistent);
+    joints.gains = rule.gains(modes->h, joint_policy_.step_consistent);
     joints.most_speed = rule.speed * rule.rate;
   } else if (fixed_modes != nullptr) {
     joints.modes = fixed_modes->joints.modes;
@@ -209,7 +209,7 @@ void Dynamics::join(double t, const State* modes, const State* sleepers, const W
   } else {
     joints.modes.assign(model.joints().size(), JointMode::off);
   }
-  joints.stabilise_closed = !hold_.projected;
+  joints.stabilise_closed = !joint_policy_.projected;
   auto solve = [&](int i) {
     const Island& island = model.islands()[static_cast<std::size_t>(i)];
     if (is_rigid(island, work) || asleep(island, sleepers)) return;

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <pliant/part/patch_weights.h>
+#include <pliant/part/local/patch_weights.h>
 
 namespace pliant {
 
@@ -90,13 +90,13 @@ Model::Model(MultiBody& body) : body_(&body) {
   }
   std::sort(switch_times_.begin(), switch_times_.end());
   lay_sides();
-  lay_islands();
+  make_islands();
   Counters unused;
   for (PartModel& m : parts_)
     if (m.n_s == 0 && !m.ports.empty())
       m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
   note_loaded_parts();
-  lay_rigid_islands();
+  make_rigid_islands();
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i].island < 0) lone_parts_.push_back(static_cast<int>(i));
 }
@@ -116,7 +116,7 @@ void Model::note_loaded_parts() {
     }
 }
 
-void Model::lay_rigid_islands() {
+void Model::make_rigid_islands() {
   if (body_->changing_gravity) return;  // its power needs to know where all parts are
   for (Island& island : islands_) {
     if (!RigidIsland::takes(*this, island)) continue;
@@ -210,7 +210,7 @@ void Model::lay_sides() {
     }
 }
 
-void Model::lay_islands() {
+void Model::make_islands() {
   // Parts tied by joints get the same root.
   std::vector<int> parent(parts_.size());
   std::iota(parent.begin(), parent.end(), 0);

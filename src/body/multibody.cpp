@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <pliant/body/joint_registry.h>
+#include <pliant/body/joints/joint_registry.h>
 
 namespace pliant {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include <pliant/body/constraint/group.h>
+#include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/dynamics.h>
-#include <pliant/body/group.h>
-#include <pliant/body/one_sided_rows.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant {

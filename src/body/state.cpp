@@ -50,8 +50,8 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.at_limit);
   hash.add_each(state.joints);
   hash.add_each(state.at_rest);
-  hash.add(&state.supports_age, sizeof state.supports_age);
-  for (const Support& support : state.supports) {
+  hash.add(&state.contact_cache_age, sizeof state.contact_cache_age);
+  for (const CachedContact& support : state.contact_cache) {
     hash.add_each(support.between);
     hash.add_each(support.x);
     hash.add_each(support.force);

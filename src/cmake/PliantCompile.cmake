@@ -46,6 +46,7 @@ function(pliant_library name)
                                                    UNITY_BUILD ${PLIANT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
   target_include_directories(pliant_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                                    $<INSTALL_INTERFACE:include>)
+  target_include_directories(pliant_${name} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(pliant_${name} PUBLIC pliant_options ${arg_PUBLIC}
                                        PRIVATE $<BUILD_INTERFACE:pliant_warnings> ${arg_PRIVATE})
   if(PLIANT_UNITY)  # a source is then not the main file, whose unnamed namespace may be in its types

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include <pliant/body/group.h>
+#include <pliant/body/constraint/group.h>
 #include <pliant/math/index.h>
-#include <pliant/part/modal_deformation.h>
+#include <pliant/part/local/modal_deformation.h>
 
 namespace pliant {
 
@@ -273,7 +273,7 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
   return solution;
 }
 
-void ContactProblem::begin_at(int contact, const Vec3<double>& impulse) {
+void ContactProblem::warm_start_at(int contact, const Vec3<double>& impulse) {
   system_.impulse(contact) = axes(contacts_[at(contact)]).transpose() * impulse;
 }
 
@@ -297,7 +297,7 @@ void ContactProblem::bound_shifts(double since, double most) {
   }
 }
 
-void ContactProblem::part_bodies(const std::vector<double>& most, double enough) {
+void ContactProblem::separate_bodies(const std::vector<double>& most, double enough) {
   for (int k = 0; k < system_.size(); ++k) {
     system_.set_friction(k, 0);
     system_.impulse(k).setZero();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <pliant/body/group.h>
-#include <pliant/contact/node_motion.h>
+#include <pliant/body/constraint/group.h>
+#include <pliant/collision/mesh/node_motion.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
@@ -76,7 +76,7 @@ VecX<double> Movers::velocities(const State& state, const Workspace<double>& wor
     if (mover.node >= 0) continue;
     auto take = [&](int part, int first) {
       const PartModel& m = model_->parts()[at(part)];
-      take_velocity(m, work.parts[at(part)], state.v, x.segment(mover.first + first, m.n_x()));
+      gather_velocity(m, work.parts[at(part)], state.v, x.segment(mover.first + first, m.n_x()));
       if (const int n = n_local(part); n > 0)
         x.segment(mover.first + first_local(mover, part), n) = state.v.segment(m.v0 + 6 + m.n_s, n);
     };

@@ -4,11 +4,11 @@
 #include <string>
 #include <utility>
 
-#include <pliant/io/csv_cell.h>
-#include <pliant/io/number_text.h>
+#include <pliant/io/format/csv_cell.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/recording.h>
-#include <pliant/io/run_files.h>
-#include <pliant/io/whole_file.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/math/index.h>
 
 namespace pliant {

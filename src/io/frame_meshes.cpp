@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <pliant/contact/obstacle_mesh.h>
+#include <pliant/collision/mesh/obstacle_mesh.h>
 
 namespace pliant {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <pliant/io/number_text.h>
+#include <pliant/io/format/number_text.h>
 
 namespace pliant {
 namespace {

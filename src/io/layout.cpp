@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include <pliant/io/contact_recording.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/recording.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
-#include <pliant/io/whole_file.h>
 
 namespace pliant {
 namespace {
@@ -64,7 +64,7 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   tables[kVelocitiesFile] = part_columns(model, true);
   tables[kModesFile] = json_of(mode_columns_of(model));
   if (model.body().contact.active) {
-    tables[kSupportsFile] = json_of(support_columns());
+    tables[kContactCacheFile] = json_of(contact_cache_columns());
     layout["support_rows"] =
         "any number of rows a state: from the one that its column supports in modes.npy tells to before "
         "that of supports_end, counted from 0";

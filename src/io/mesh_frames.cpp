@@ -1,10 +1,10 @@
 #include <pliant/io/mesh_frames.h>
 
+#include <pliant/io/format/obj.h>
+#include <pliant/io/format/ply.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/frame_meshes.h>
-#include <pliant/io/obj.h>
-#include <pliant/io/ply.h>
-#include <pliant/io/run_files.h>
-#include <pliant/io/whole_file.h>
+#include <pliant/io/run/run_files.h>
 
 namespace pliant {
 

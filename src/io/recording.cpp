@@ -10,12 +10,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pliant/body/advance.h>
 #include <pliant/body/dynamics.h>
-#include <pliant/integrate/advance.h>
-#include <pliant/integrate/step_path.h>
-#include <pliant/io/number_text.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
+#include <pliant/method/step_path.h>
 
 #include "step_between.h"
 
@@ -75,12 +75,12 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
   }
 }
 
-bool has_supports(const Model& model) {
+bool has_contact_cache(const Model& model) {
   return model.body().contact.active;
 }
 
-int support_count() {
-  return static_cast<int>(support_columns().size());
+int cached_contact_count() {
+  return static_cast<int>(contact_cache_columns().size());
 }
 
 /// The rows of supports that are of a state, from the first to before the last; both -1 when its row of modes
@@ -88,7 +88,7 @@ int support_count() {
 struct SupportRows {
   std::int64_t first = -1, end = -1;
 };
-SupportRows supports_of(const std::vector<double>& modes) {
+SupportRows contact_cache_of(const std::vector<double>& modes) {
   const double first = modes[kFirstSupport], end = modes[kEndOfSupports];
   if (!(0 <= first && first <= end && end < 0x1p53 && first == std::floor(first) && end == std::floor(end)))
     return {};
@@ -103,60 +103,62 @@ std::vector<double> read_row(const NpyReader& table, std::int64_t row) {
 }  // namespace
 
 RecordingWriter::RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities,
-                                 NpyWriter modes, std::optional<NpyWriter> supports)
+                                 NpyWriter modes, std::optional<NpyWriter> contact_cache)
     : times_(std::move(times)),
       coordinates_(std::move(coordinates)),
       velocities_(std::move(velocities)),
       modes_(std::move(modes)),
-      supports_(std::move(supports)) {}
+      contact_cache_(std::move(contact_cache)) {}
 
 RecordingWriter RecordingWriter::create(const std::filesystem::path& folder, const Model& model) {
-  std::optional<NpyWriter> supports;
-  if (has_supports(model)) supports.emplace(NpyWriter::create(folder / kSupportsFile, support_count()));
+  std::optional<NpyWriter> contact_cache;
+  if (has_contact_cache(model))
+    contact_cache.emplace(NpyWriter::create(folder / kContactCacheFile, cached_contact_count()));
   return {NpyWriter::create(folder / kTimesFile, kNpyVector),
           NpyWriter::create(folder / kCoordinatesFile, model.n_q()),
           NpyWriter::create(folder / kVelocitiesFile, model.n_v()),
-          NpyWriter::create(folder / kModesFile, mode_count(model)), std::move(supports)};
+          NpyWriter::create(folder / kModesFile, mode_count(model)), std::move(contact_cache)};
 }
 
 RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, const Model& model,
                                         std::int64_t rows) {
-  std::optional<NpyWriter> supports;
-  if (has_supports(model)) {
+  std::optional<NpyWriter> contact_cache;
+  if (has_contact_cache(model)) {
     const std::int64_t end =
-        rows > 0 ? supports_of(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
-                 : 0;
+        rows > 0
+            ? contact_cache_of(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
+            : 0;
     if (end < 0)
       throw RecordingMismatch((folder / kModesFile).string() + " is damaged at row " +
                               std::to_string(rows - 1));
-    supports.emplace(NpyWriter::resume(folder / kSupportsFile, support_count(), end));
+    contact_cache.emplace(NpyWriter::resume(folder / kContactCacheFile, cached_contact_count(), end));
   }
   return {NpyWriter::resume(folder / kTimesFile, kNpyVector, rows),
           NpyWriter::resume(folder / kCoordinatesFile, model.n_q(), rows),
           NpyWriter::resume(folder / kVelocitiesFile, model.n_v(), rows),
-          NpyWriter::resume(folder / kModesFile, mode_count(model), rows), std::move(supports)};
+          NpyWriter::resume(folder / kModesFile, mode_count(model), rows), std::move(contact_cache)};
 }
 
 void RecordingWriter::append(const State& state) {
   const double time = state.time();
   coordinates_.append(state.q.data());
   velocities_.append(state.v.data());
-  if (supports_)
-    for (const Support& support : state.supports) supports_->append(row_of(support).data());
-  write_modes(state, supports_ ? supports_->rows() : 0, row_);
+  if (contact_cache_)
+    for (const CachedContact& support : state.contact_cache) contact_cache_->append(row_of(support).data());
+  write_modes(state, contact_cache_ ? contact_cache_->rows() : 0, row_);
   modes_.append(row_.data());
   times_.append(&time);
 }
 
 void RecordingWriter::flush(bool to_disk) {
-  if (supports_) to_disk ? supports_->flush_to_disk() : supports_->flush();
+  if (contact_cache_) to_disk ? contact_cache_->flush_to_disk() : contact_cache_->flush();
   for (NpyWriter* table : {&coordinates_, &velocities_, &modes_, &times_})
     to_disk ? table->flush_to_disk() : table->flush();
 }
 
 std::size_t RecordingWriter::pending_bytes() const {
   return coordinates_.pending_bytes() + velocities_.pending_bytes() + modes_.pending_bytes() +
-         (supports_ ? supports_->pending_bytes() : 0);
+         (contact_cache_ ? contact_cache_->pending_bytes() : 0);
 }
 
 Recording::Recording(const std::filesystem::path& folder, const Model& model)
@@ -167,9 +169,9 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
       modes_(open_table(folder / kModesFile, mode_count(model))) {
   const NpyReader times = open_table(folder / kTimesFile, kNpyVector);
   std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
-  if (has_supports(model)) {
-    supports_.emplace(open_table(folder / kSupportsFile, support_count()));
-    while (rows > 0 && supports_of(read_row(modes_, rows - 1)).end > supports_->rows()) --rows;
+  if (has_contact_cache(model)) {
+    contact_cache_.emplace(open_table(folder / kContactCacheFile, cached_contact_count()));
+    while (rows > 0 && contact_cache_of(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
   }
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
@@ -186,14 +188,14 @@ State Recording::state(std::int64_t row) const {
   };
   State state;
   const std::vector<double> modes = read_row(modes_, row);
-  const SupportRows rows = supports_of(modes);
-  if (rows.first < 0 || rows.end > (supports_ ? supports_->rows() : 0)) throw damaged();
+  const SupportRows rows = contact_cache_of(modes);
+  if (rows.first < 0 || rows.end > (contact_cache_ ? contact_cache_->rows() : 0)) throw damaged();
   if (rows.end > rows.first) {
-    const auto columns = static_cast<std::size_t>(support_count());
+    const auto columns = static_cast<std::size_t>(cached_contact_count());
     std::vector<double> numbers(static_cast<std::size_t>(rows.end - rows.first) * columns);
-    supports_->read(rows.first, numbers.data(), rows.end - rows.first);
+    contact_cache_->read(rows.first, numbers.data(), rows.end - rows.first);
     for (std::size_t i = 0; i < numbers.size(); i += columns)
-      if (!read_support(numbers.data() + i, state.supports.emplace_back())) throw damaged();
+      if (!read_cached_contact(numbers.data() + i, state.contact_cache.emplace_back())) throw damaged();
   }
   state.q.resize(coordinates_.columns());
   state.v.resize(velocities_.columns());

@@ -81,7 +81,7 @@ std::vector<Column> mode_columns_of(const Model& model) {
   return columns;
 }
 
-std::vector<Column> support_columns() {
+std::vector<Column> contact_cache_columns() {
   return {{"a", "1", "number of the part that the force is on"},
           {"b", "1", "of the other part; -1: none"},
           {"plane", "1", "or of the plane"},
@@ -94,14 +94,14 @@ std::vector<Column> support_columns() {
           {"force_z", "N", ""}};
 }
 
-std::vector<double> row_of(const Support& support) {
+std::vector<double> row_of(const CachedContact& support) {
   std::vector<double> row(support.between.begin(), support.between.end());
   row.insert(row.end(), support.x.data(), support.x.data() + 3);
   row.insert(row.end(), support.force.data(), support.force.data() + 3);
   return row;
 }
 
-bool read_support(const double* row, Support& support) {
+bool read_cached_contact(const double* row, CachedContact& support) {
   for (std::size_t i = 0; i < support.between.size(); ++i) {
     if (!(row[i] >= -1 && row[i] <= std::numeric_limits<int>::max() && row[i] == std::floor(row[i])))
       return false;
@@ -119,9 +119,9 @@ void write_modes(const State& state, std::int64_t end_of_supports, std::vector<d
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
   row.push_back(state.contact_residual);
-  row.push_back(static_cast<double>(end_of_supports) - static_cast<double>(state.supports.size()));
+  row.push_back(static_cast<double>(end_of_supports) - static_cast<double>(state.contact_cache.size()));
   row.push_back(static_cast<double>(end_of_supports));
-  row.push_back(state.supports_age);
+  row.push_back(state.contact_cache_age);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
   row.insert(row.end(), state.at_rest.begin(), state.at_rest.end());
@@ -141,7 +141,7 @@ bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_rest
   state.contact_residual = row[4];
   if (!(row[age] >= 0 && row[age] < std::numeric_limits<int>::max() && row[age] == std::floor(row[age])))
     return false;
-  state.supports_age = static_cast<int>(row[age]);
+  state.contact_cache_age = static_cast<int>(row[age]);
   for (int i = 0; i < kWorks; ++i) state.work[i] = row[first_work + static_cast<std::size_t>(i)];
   state.at_limit.clear();
   for (std::size_t i = first_limit; i < first_resting; ++i) {

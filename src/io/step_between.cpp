@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <pliant/integrate/dop853.h>
+#include <pliant/method/dop853.h>
 
 namespace pliant {
 
@@ -18,7 +18,7 @@ std::optional<State> step_between(const Model& model, const State& low, const St
   if (std::any_of(parts.begin(), parts.end(), [](const PartModel& m) { return m.local != nullptr; }))
     return {};
   Dynamics dynamics(model);
-  dynamics.set_hold({false, model.body().stabilization.projection.value_or(true), false});
+  dynamics.set_joint_policy({false, model.body().stabilization.projection.value_or(true), false});
   Dop853 method;
   const ErrorScale size(model, 1);
   const double start = low.time();

@@ -1,9 +1,9 @@
 #include <pliant/io/trajectory.h>
 
-#include <pliant/io/csv_cell.h>
-#include <pliant/io/number_text.h>
+#include <pliant/io/format/csv_cell.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/format/whole_file.h>
 #include <pliant/io/state_row.h>
-#include <pliant/io/whole_file.h>
 
 namespace pliant {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <mutex>
 
-#include <pliant/math/functions.h>
+#include <pliant/math/scalar/functions.h>
 
 namespace pliant {
 

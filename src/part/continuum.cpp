@@ -3,11 +3,11 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <pliant/local/corotated.h>
+#include <pliant/local/solid/corotated.h>
 #include <pliant/part/part.h>
 
+#include "part/quadrature/strain_rule.h"
 #include "strain.h"
-#include "strain_rule.h"
 
 namespace pliant {
 
@@ -107,7 +107,7 @@ ContinuumLaw continuum_law(const ContinuumSettings& settings) {
 }
 
 ContinuumEnergy::ContinuumEnergy(const Part& part, const ContinuumSettings& settings, double volume)
-    : settings_(settings), law_(continuum_law(settings)), points_(lay_strain_points(part, law_, volume)) {
+    : settings_(settings), law_(continuum_law(settings)), points_(place_strain_points(part, law_, volume)) {
   const Parameters& all = part.parameters();
   unit_.resize(all.n_dynamic());
   for (int k = 0; k < all.n_dynamic(); ++k) {

@@ -273,7 +273,7 @@ void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double
   sum_over<double>(part, points, q_s, q_s_dot, omega, out, counters);
 }
 
-LinearInertia take_linear_inertia(const Part& part, const MassPoints& points) {
+LinearInertia make_linear_inertia(const Part& part, const MassPoints& points) {
   const int n = part.parameters().n_dynamic();
   const VecMax<double> zero = VecMax<double>::Zero(n);
   const ParameterValues<double> values = part.parameters().expand<double>(zero, zero);

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "axial.h"
+#include "part/quadrature/axial.h"
 
 namespace pliant {
 

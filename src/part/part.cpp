@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include <pliant/math/eigenvalues.h>
-#include <pliant/part/folds.h>
+#include <pliant/part/mesh/folds.h>
 #include <pliant/part/sum_inertia.h>
 
 namespace pliant {
@@ -60,7 +60,7 @@ Part& Part::place(const Vec3<double>& c, const Eigen::Quaterniond& R) {
   return *this;
 }
 
-Part& Part::move(const Vec3<double>& c_dot, const Vec3<double>& omega) {
+Part& Part::velocity(const Vec3<double>& c_dot, const Vec3<double>& omega) {
   change();
   if (!c_dot.allFinite() || !omega.allFinite()) refuse("its initial velocity is not finite");
   c0_dot_ = c_dot;
@@ -350,7 +350,7 @@ void Part::prepare() {
     prepared_ = true;
     return;
   }
-  mass_points_ = lay_mass_points(*this);
+  mass_points_ = place_mass_points(*this);
   VecMax<double> q_s(n);
   for (int k = 0; k < n; ++k) q_s[k] = parameters_.moving(k).rest_value();
   Counters unused;
@@ -367,7 +367,7 @@ void Part::prepare() {
     rest_inertia_ = take();
   }
   linear_inertia_.reset();
-  if (linear()) linear_inertia_ = take_linear_inertia(*this, mass_points_);
+  if (linear()) linear_inertia_ = make_linear_inertia(*this, mass_points_);
   if (local_settings_) local_ = make_local_deformation(*this, *local_settings_);
   continuum_.reset();
   if (continuum_settings_ && n > 0)

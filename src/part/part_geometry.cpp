@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <pliant/part/folds.h>
+#include <pliant/part/mesh/folds.h>
 #include <pliant/part/part.h>
 
 namespace pliant {

@@ -1,7 +1,7 @@
 // The bar that tells what the colours of a picture mean.
 #pragma once
 
-#include <pliant/io/image.h>
+#include <pliant/io/format/image.h>
 #include <pliant/render/picture.h>
 
 namespace pliant {

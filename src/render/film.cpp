@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <pliant/io/png.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/format/png.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/render/ticks.h>
 
 namespace pliant {

@@ -10,7 +10,7 @@
 
 #include <pliant/render/picture.h>
 
-#include "gl_objects.h"
+#include "render/gl/gl_objects.h"
 
 namespace pliant {
 

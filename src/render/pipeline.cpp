@@ -10,8 +10,8 @@
 #include <pliant/render/color_map.h>
 
 #include "color_bar.h"
+#include "render/gl/shaders.h"
 #include "resolve.h"
-#include "shaders.h"
 #include "srgb.h"
 
 namespace pliant {

@@ -6,12 +6,12 @@
 #include <memory>
 #include <vector>
 
-#include <pliant/io/image.h>
+#include <pliant/io/format/image.h>
 #include <pliant/render/picture.h>
 
 #include "frame_block.h"
-#include "gl_objects.h"
 #include "mesh_batch.h"
+#include "render/gl/gl_objects.h"
 #include "tracks.h"
 
 namespace pliant {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <pliant/io/image.h>
+#include <pliant/io/format/image.h>
 
 namespace pliant {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <pliant/io/image.h>
+#include <pliant/io/format/image.h>
 
 namespace pliant {
 

@@ -6,7 +6,7 @@
 #include <pliant/render/picture.h>
 
 #include "frame_block.h"
-#include "gl_objects.h"
+#include "render/gl/gl_objects.h"
 
 namespace pliant {
 

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <tuple>
 
-#include "json_write.h"
-#include "utf8.h"
+#include "scene/json/json_write.h"
+#include "scene/json/utf8.h"
 
 namespace pliant {
 

@@ -13,7 +13,7 @@
 #include <assimp/Importer.hpp>
 
 #include <pliant/math/types.h>
-#include <pliant/scene/text_file.h>
+#include <pliant/scene/json/text_file.h>
 
 namespace pliant {
 

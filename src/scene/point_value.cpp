@@ -1,7 +1,7 @@
 #include <pliant/scene/point_value.h>
 
-#include <pliant/math/functions.h>
-#include <pliant/scene/reader.h>
+#include <pliant/math/scalar/functions.h>
+#include <pliant/scene/reader/reader.h>
 
 namespace pliant {
 

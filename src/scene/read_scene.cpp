@@ -7,23 +7,23 @@
 #include <optional>
 #include <utility>
 
-#include <pliant/integrate/choose_integrator.h>
 #include <pliant/scene/faulty_values.h>
-#include <pliant/scene/json_document.h>
-#include <pliant/scene/reader.h>
-#include <pliant/scene/scene_schema.h>
+#include <pliant/scene/json/json_document.h>
+#include <pliant/scene/reader/reader.h>
+#include <pliant/scene/schema/scene_schema.h>
 #include <pliant/scene/validate.h>
+#include <pliant/simulate/choose_integrator.h>
 
-#include "color_reader.h"
-#include "coloring_reader.h"
-#include "contact_reader.h"
-#include "direction_reader.h"
-#include "joint_reader.h"
-#include "obstacle_reader.h"
-#include "part_reader.h"
-#include "point_reader.h"
+#include "scene/reader/color_reader.h"
+#include "scene/reader/coloring_reader.h"
+#include "scene/reader/contact_reader.h"
+#include "scene/reader/direction_reader.h"
+#include "scene/reader/joint_reader.h"
+#include "scene/reader/obstacle_reader.h"
+#include "scene/reader/part_reader.h"
+#include "scene/reader/point_reader.h"
+#include "scene/reader/time_reader.h"
 #include "scene_faults.h"
-#include "time_reader.h"
 
 namespace pliant {
 

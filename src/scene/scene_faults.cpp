@@ -5,7 +5,7 @@
 
 #include <pliant/math/nearest_name.h>
 
-#include "json_write.h"
+#include "scene/json/json_write.h"
 
 namespace pliant {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <pliant/scene/diagnostics.h>
-#include <pliant/scene/json_document.h>
+#include <pliant/scene/json/json_document.h>
 
 namespace pliant {
 

@@ -2,7 +2,7 @@
 
 #include <pliant/math/formula.h>
 
-#include "json_write.h"
+#include "scene/json/json_write.h"
 
 namespace pliant {
 

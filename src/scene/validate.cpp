@@ -8,7 +8,7 @@
 #include <pliant/math/nearest_name.h>
 #include <pliant/scene/faulty_values.h>
 
-#include "json_write.h"
+#include "scene/json/json_write.h"
 
 namespace pliant {
 

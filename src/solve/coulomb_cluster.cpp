@@ -234,7 +234,7 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
 
 /// Whether searches may begin at impulses: not of one contact, which takes none, nor of points, which are
 /// many and lightly coupled.
-bool CoulombCluster::may_begin() const {
+bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !points_;
 }
 
@@ -284,7 +284,7 @@ void CoulombCluster::solve(CoulombResult& result) {
   }
   VecX<double> begun, found;
   take(begun);
-  const bool begins = may_begin() && !begun.isZero(0);
+  const bool begins = may_warm_start() && !begun.isZero(0);
   reset();
   set_scale();
   const bool solved = (begins && follow(begun)) || search(result.sweeps);
@@ -303,7 +303,7 @@ void CoulombCluster::solve(CoulombResult& result) {
       set(found);
   }
   result.residual = std::max(result.residual, left);
-  for (int i = 0; i < size_; ++i) point(i).begins = may_begin();
+  for (int i = 0; i < size_; ++i) point(i).begins = may_warm_start();
 }
 
 }  // namespace pliant

@@ -80,7 +80,7 @@ class CoulombCluster {
   void solve_linear(MoverSystem& movers);
   bool newton(bool near);
   bool follow(const VecX<double>& begun);
-  bool may_begin() const;
+  bool may_warm_start() const;
   bool search(int& sweeps);
 
   CoulombSystem& system_;

@@ -12,8 +12,8 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include "../io/new_folder.h"
 #include "catch.h"
+#include "io/new_folder.h"
 
 namespace cli_test {
 

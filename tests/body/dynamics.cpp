@@ -3,9 +3,9 @@
 
 #include <Eigen/LU>
 
-#include "../integrate/motion.h"
 #include "differences.h"
 #include "draws.h"
+#include "motion.h"
 #include "worst.h"
 
 namespace dynamics_test {
@@ -24,7 +24,7 @@ void busy_scene(MultiBody& body) {
   Part& b = test::add(body, "b", "box", {"taper"}, 800);
   b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).stiffness({{"a1", 3e4}, {"taper.tx", 100}});
   b.stiffness({"a2", "a3"}, (MatX<double>(2, 2) << 3e4, 4e3, 4e3, 2e4).finished()).damping(0, 0.03);
-  b.place({1.5, 0.3, 0.2}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).move({0, 0.4, 0}, {-1, 0.5, 2});
+  b.place({1.5, 0.3, 0.2}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).velocity({0, 0.4, 0}, {-1, 0.5, 2});
   Part& fixed = test::add(body, "post", "cylinder", {}, 1000);
   fixed.place({-1, 0, 0}).fix();
   body.spring("tie", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7), 800, 12, 0.6);
@@ -152,9 +152,9 @@ TEST_CASE("a torque of one part against another leaves their momenta, and its wo
       MultiBody body;
       body.gravity.setZero();
       Part& a = test::add(body, "a", "ellipsoid", {}, 1000);
-      a.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.25}}).move({0.2, 0.3, 0.1}, {0, 0, 0});
+      a.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.25}}).velocity({0.2, 0.3, 0.1}, {0, 0, 0});
       Part& b = test::add(body, "b", "ellipsoid", {}, 1000);
-      b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).place({0.5, 0, 0}).move({0.2, 0.3, 0.1}, {0, 0, 0});
+      b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).place({0.5, 0, 0}).velocity({0.2, 0.3, 0.1}, {0, 0, 0});
       if (rigid) {
         body.ball("hold", point(a, 0, 0), point(b, 0, kPi));  // an island of its own evaluation
       } else {
@@ -196,7 +196,7 @@ TEST_CASE("a torque against a part that does not move is one from outside, and o
   for (const Frame frame : {Frame::world, Frame::body}) {
     MultiBody body;
     Part& part = test::add(body, "part", "box", {}, 1000);
-    part.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).move({0, 0, 0}, {1, 2, 3});
+    part.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).velocity({0, 0, 0}, {1, 2, 3});
     Part& post = test::add(body, "post", "cylinder", {}, 1000);
     post.place({1, 0, 0}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).fix();
     Torque& torque = body.torque("turn", part, TimeVector(1, 2, 3), frame);

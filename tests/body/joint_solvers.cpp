@@ -11,8 +11,8 @@
 #include <pliant/body/joints/string.h>
 #include <pliant/solve/suitesparse.h>
 
-#include "../integrate/motion.h"
 #include "draws.h"
+#include "motion.h"
 
 namespace joint_solvers_test {
 
@@ -34,7 +34,7 @@ void tangle(MultiBody& body) {
   for (int i = 0; i < 5; ++i) {
     Part& part =
         test::add(body, "p" + std::to_string(i), i % 2 == 0 ? "ellipsoid" : "cylinder", {}, 500 + 200 * i);
-    part.place(draws.vector(1)).move(draws.vector(1), draws.vector(2));
+    part.place(draws.vector(1)).velocity(draws.vector(1), draws.vector(2));
     if (i == 2) part.stiffness({{"a1", 1e4}, {"a3", 2e4}});
     body.ball("b" + std::to_string(i), point(*parts.back(), draws.uniform(-1, 1), draws.uniform(-3, 3)),
               point(part, draws.uniform(-1, 1), draws.uniform(-3, 3)));
@@ -47,7 +47,7 @@ void tangle(MultiBody& body) {
             point(*parts[2], 1.2, -2));
   body.join("string", String{0.2}, {world(0.4, 1, 2), point(*parts[4], kPi / 2, 0)});
   Part& bob = test::add(body, "bob", "sphere", {}, 700);
-  bob.place({0.5, -0.4, -2}).move({0.1, 0.4, 0}, {1, 0, 2});
+  bob.place({0.5, -0.4, -2}).velocity({0.1, 0.4, 0}, {1, 0, 2});
   body.join("cord", String{1.5}, {point(*parts[3], 0, 0), point(bob, kPi / 2, 0)});
   body.hinge("hinge", point(*parts[2], 0, 0, 0), point(*parts[4], 0, 1, 0.5), {1, 0, 0});
 }

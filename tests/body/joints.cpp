@@ -3,12 +3,12 @@
 
 #include <Eigen/LU>
 
-#include <pliant/body/joint_registry.h>
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/body/joints/joint_registry.h>
 
-#include "../integrate/motion.h"
 #include "differences.h"
 #include "draws.h"
+#include "motion.h"
 
 namespace joints_test {
 
@@ -74,9 +74,9 @@ void loop(MultiBody& body) {
   a.damping(0.4, 0.02, 0.1);
   Part& b = test::add(body, "b", "box", {"taper"}, 800);
   b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).stiffness({{"a1", 3e4}, {"taper.tx", 100}});
-  b.place({1.5, 0.3, 0.2}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).move({0, 0.4, 0}, {-1, 0.5, 2});
+  b.place({1.5, 0.3, 0.2}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.6)).velocity({0, 0.4, 0}, {-1, 0.5, 2});
   Part& c = test::add(body, "c", "sphere", {}, 500);
-  c.rest({{"r", 0.3}}).place({0.4, 1, 0}).move({0.1, 0.2, 0}, {0, 1, 2});
+  c.rest({{"r", 0.3}}).place({0.4, 1, 0}).velocity({0.1, 0.2, 0}, {0, 1, 2});
   Part& post = test::add(body, "post", "cylinder", {}, 1000);
   post.place({-1, 0, 0}).fix();
   body.ball("ab", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7));

@@ -1,9 +1,9 @@
 // Points that are asked for at many states are where they would be found anew.
 #include <pliant/body/placed_point.h>
 
-#include <pliant/integrate/simulation.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/part/registry.h>
+#include <pliant/simulate/simulation.h>
 
 #include "catch.h"
 
@@ -14,7 +14,7 @@ using namespace pliant;
 TEST_CASE("a placed point is the point of its part, soft or not, and of the world") {
   MultiBody body;
   Part& soft = body.add(make_part("soft", "ellipsoid", {"twist"}, 1000));
-  soft.stiffness({{"twist.angle", 100}}).place({0, 1, 0}).move({1, 0, 0}, {1, 2, 3});
+  soft.stiffness({{"twist.angle", 100}}).place({0, 1, 0}).velocity({1, 0, 0}, {1, 2, 3});
   LocalSettings settings;
   settings.resolution = 2;
   settings.energies = {local_law("elastic", {1e5, 0.3})};

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include <pliant/collision/find_contacts.h>
 #include <pliant/contact/contact_problem.h>
-#include <pliant/contact/find_contacts.h>
 #include <pliant/part/registry.h>
 
 #include "draws.h"

@@ -1,6 +1,6 @@
 // contacts.csv and joint_impulses.csv: what touched, with which force, and what joints took up of it; broken
 // runs tell the same.
-#include <pliant/io/run.h>
+#include <pliant/io/run/run.h>
 
 #include <sstream>
 
@@ -9,7 +9,7 @@
 #include "catch.h"
 #include "new_folder.h"
 
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/part/registry.h>
 
 namespace contacts_test {

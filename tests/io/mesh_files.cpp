@@ -8,13 +8,13 @@
 #include "new_folder.h"
 #include "test_scenes.h"
 
-#include <pliant/integrate/simulation.h>
+#include <pliant/io/format/obj.h>
+#include <pliant/io/format/ply.h>
 #include <pliant/io/frame_meshes.h>
 #include <pliant/io/mesh_frames.h>
-#include <pliant/io/obj.h>
-#include <pliant/io/ply.h>
-#include <pliant/io/run.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/io/run/run.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/simulate/simulation.h>
 
 namespace mesh_files_test {
 
@@ -183,9 +183,9 @@ std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   settings.displacement = [](const Vec3<double>& X) { return Vec3<double>(0.1 * X); };
   soft.deform_locally(std::move(settings));
   Part& ball = scene->body.add(make_part("ball", "sphere", {}, 1000));
-  ball.rest({{"r", 0.5}}).initial({{"r", 0.55}}).place({-1, 0, 0}).move({1, 2, 3}, {3, 2, 1});
+  ball.rest({{"r", 0.5}}).initial({{"r", 0.55}}).place({-1, 0, 0}).velocity({1, 2, 3}, {3, 2, 1});
   Part& top = scene->body.add(make_part("top", "ellipsoid", {}, 1000));
-  top.move({1, 2, 3}, {3, 2, 1});
+  top.velocity({1, 2, 3}, {3, 2, 1});
   scene->appearance.resize(3);
   scene->coloring = Coloring{by, {}, {}};
   return scene;
@@ -234,7 +234,7 @@ TEST_CASE("a soft part that only moves has values of rounding") {
   LocalSettings settings;
   settings.resolution = 2;
   settings.energies = {local_law("neo_hookean", {1e5, 0.3})};
-  soft.deform_locally(std::move(settings)).move({5, -3, 2}, {0, 0, 0});
+  soft.deform_locally(std::move(settings)).velocity({5, -3, 2}, {0, 0, 0});
   moved->appearance.resize(1);
   for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
     moved->coloring = Coloring{by, {}, {}};

@@ -1,5 +1,5 @@
 // Tables: round trips, going on after a cut, and what a reader makes of damage.
-#include <pliant/io/npy.h>
+#include <pliant/io/format/npy.h>
 
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 #include "catch.h"
 #include "new_folder.h"
 
-#include <pliant/io/whole_file.h>
+#include <pliant/io/format/whole_file.h>
 
 namespace npy_test {
 

@@ -3,10 +3,10 @@
 
 #include <memory>
 
+#include <pliant/io/format/obj.h>
 #include <pliant/io/frame_meshes.h>
-#include <pliant/io/obj.h>
-#include <pliant/io/run.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/scene/mesh_file.h>
 #include <pliant/scene/read_scene.h>
 

@@ -12,8 +12,8 @@
 
 #include "catch.h"
 
-#include <pliant/io/png.h>
-#include <pliant/io/whole_file.h>
+#include <pliant/io/format/png.h>
+#include <pliant/io/format/whole_file.h>
 
 namespace png_test {
 

@@ -11,13 +11,13 @@
 #include "new_folder.h"
 #include "test_scenes.h"
 
-#include <pliant/integrate/simulation.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run_files.h>
 #include <pliant/io/state_row.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/box.h>
 #include <pliant/shape/ellipsoid.h>
 #include <pliant/shape/sphere.h>
+#include <pliant/simulate/simulation.h>
 
 namespace recording_test {
 
@@ -108,31 +108,31 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
   const auto scene = standing_scene();
   const std::vector<State> states = record(folder.path, *scene, 12, 3);
   const Model model(scene->body);
-  const std::string whole = bytes_of(folder / kSupportsFile);
+  const std::string whole = bytes_of(folder / kContactCacheFile);
   {
     const Recording recording(folder.path, model);
     REQUIRE(recording.rows() == static_cast<std::int64_t>(states.size()));
     for (std::size_t i = 0; i < states.size(); ++i)
       CHECK(hash(recording.state(static_cast<std::int64_t>(i))) == hash(states[i]));
-    CHECK(states.back().supports.size() > 4);
+    CHECK(states.back().contact_cache.size() > 4);
   }
   // Cut off within the last state's, it is one state less; going on from there makes the same file again.
-  set_bytes(folder / kSupportsFile, whole.substr(0, whole.size() - 8));
+  set_bytes(folder / kContactCacheFile, whole.substr(0, whole.size() - 8));
   const auto rows = static_cast<std::int64_t>(states.size() - 1);
   CHECK(Recording(folder.path, model).rows() == rows);
   RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
   writer.append(states.back());
   writer.flush();
-  CHECK(bytes_of(folder / kSupportsFile) == whole);
+  CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
   for (const std::size_t from_end : {5, 75, 85}) {  // a force, and what it is between
     std::string bytes = whole;
     bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);
-    set_bytes(folder / kSupportsFile, bytes);
+    set_bytes(folder / kContactCacheFile, bytes);
     CHECK_THROWS_AS(Recording(folder.path, model).state(rows), RecordingMismatch);
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
   }
-  set_bytes(folder / kSupportsFile, whole);
+  set_bytes(folder / kContactCacheFile, whole);
   // Which of them are a state's: a bit that flips there spoils no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
@@ -254,7 +254,7 @@ TEST_CASE("pictures between two steps to a tolerance are as near to the motion a
     } worst;
     auto build = [&](MultiBody& body) {
       Part& part = body.add<Primitive<Ellipsoid>>("body");
-      part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0, 0, 0}, {0.01, 5, 0.01});
+      part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {0.01, 5, 0.01});
       if (stiffness > 0)
         part.stiffness({{"a1", stiffness}, {"a2", stiffness}, {"a3", stiffness}}).damping(0, 1e-3);
       else

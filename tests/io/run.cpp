@@ -1,6 +1,6 @@
 // Runs in their folders: broken and resumed ones end with the same bytes as unbroken ones, folders are never
 // shared or mixed, and run.json tells the truth about every ending.
-#include <pliant/io/run.h>
+#include <pliant/io/run/run.h>
 
 #include <algorithm>
 #include <functional>
@@ -15,8 +15,8 @@
 #include "test_scenes.h"
 
 #include <pliant/body/joints/rod.h>
-#include <pliant/io/run_files.h>
-#include <pliant/part/local_laws.h>
+#include <pliant/io/run/run_files.h>
+#include <pliant/part/local/local_laws.h>
 
 namespace run_test {
 
@@ -206,7 +206,7 @@ TEST_CASE("N67: so does a stiff shell, whose steps are as long as its factors ho
     settings.resolution = 2;
     settings.energies = {local_law("membrane", {1e8, 0.3, 0.01})};
     settings.beta = 1e-4;
-    shell.deform_locally(settings).move({0, 0.5, 0}, {0.1, 0.2, 0.3});
+    shell.deform_locally(settings).velocity({0, 0.5, 0}, {0.1, 0.2, 0.3});
     scene->body.ball("string", world(0, 0, 0.5), point(shell, kPi / 2, 0));
     scene->appearance.emplace_back();
     return scene;
@@ -263,8 +263,8 @@ TEST_CASE("I53: a run in which bodies stand goes on from where it was stopped as
   broken = scene_of();
   REQUIRE(run(*broken, folder / "broken", {Existing::resume}));
   CHECK(results_of(folder / "broken") == results_of(folder / "whole"));
-  CHECK(bytes_of(folder / "broken" / kSupportsFile) == bytes_of(folder / "whole" / kSupportsFile));
-  CHECK(NpyReader(folder / "whole" / kSupportsFile).rows() > 10);
+  CHECK(bytes_of(folder / "broken" / kContactCacheFile) == bytes_of(folder / "whole" / kContactCacheFile));
+  CHECK(NpyReader(folder / "whole" / kContactCacheFile).rows() > 10);
 }
 
 TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its steps") {
@@ -275,7 +275,7 @@ TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its 
     scene->integrator = "dop853";
     scene->end = 1.5;
     Part& ball = scene->body.add(make_part("ball", "sphere", {}, 1000));
-    ball.rest({{"r", 0.1}}).place({3, 0, 1.1}).move({0.5, 0, 0}, {1, 2, 3});
+    ball.rest({{"r", 0.1}}).place({3, 0, 1.1}).velocity({0.5, 0, 0}, {1, 2, 3});
     scene->body.gravity = {0, 0, -9.81};
     scene->body.contact.active = true;
     scene->body.contact.restitution = 0.8;
@@ -389,7 +389,7 @@ TEST_CASE("the estimated error tells of joints' forces and gaps, and of contact 
   box->tolerance = 1e-6;
   box->integrator = "dop853";
   Part& part = box->body.add(make_part("box", "box", {}, 1000));
-  part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).move({1, 0, 0}, {0, 0, 0});
+  part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).velocity({1, 0, 0}, {0, 0, 0});
   box->body.contact.active = true;
   box->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   const ErrorEstimate of_contact = estimate(*box);
@@ -637,7 +637,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
   SECTION("a joint that takes hold of what moves") {
     const RunRecord record = notes_of("hold", [](MultiBody& body, Part& top) {
       body.gravity.setZero();
-      top.move({0.5, 0, 0}, {0, 0, 0});
+      top.velocity({0.5, 0, 0}, {0, 0, 0});
       body.ball("hook", world(top.c0()[0] + 0.1, top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)).during(0.2);
     });
     CHECK(count(record, "at t = 0.2 s ball 'hook' takes hold with an impulse of ") == 1);
@@ -646,7 +646,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
   SECTION("a joint that stops a spin, and one beside it that does nothing") {
     const RunRecord record = notes_of("spin", [](MultiBody& body, Part& top) {
       body.gravity.setZero();
-      top.move({0, 0, 0}, {0, 0, 5});
+      top.velocity({0, 0, 0}, {0, 0, 5});
       top.prepare();
       const Point centre = world(top.c0()[0], top.c0()[1], top.c0()[2]);
       body.ball("pivot", point(top, 0, 0, 0), centre).during(0.2);
@@ -672,7 +672,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
   SECTION("a string that gravity pulls at while it closes does so") {
     const RunRecord record = notes_of("string", [](MultiBody& body, Part& top) {
       body.gravity = {0, 0, -9.81};
-      top.move({0, 0, 0}, {0, 0, 0});
+      top.velocity({0, 0, 0}, {0, 0, 0});
       const Vec3<double> above = top.c0() + Vec3<double>(0, 0, 0.901);
       body.join("string", String{0.9}, {world(TimeVector(above)), point(top, 0, 0, 0)});
     });
@@ -683,7 +683,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     const RunRecord record = notes_of("unprojected", [](MultiBody& body, Part& top) {
       body.stabilization.projection = false;
       body.gravity = {0, 0, -9.81};
-      top.move({0, 0, 0}, {0, 0, 0});
+      top.velocity({0, 0, 0}, {0, 0, 0});
       const Vec3<double> at = top.c0() + top.R0() * Vec3<double>(0.3, 0, 0);
       body.ball("pivot", point(top, 0, 0), world(TimeVector(at)));
     });

@@ -20,7 +20,7 @@ inline std::unique_ptr<pliant::Scene> pulled_scene() {
   scene->frame_rate = 50;
   scene->integrator = "rk4";
   Part& blob = scene->body.add(make_part("blob", "superellipsoid", {"taper", "twist"}, 1000));
-  blob.place({0, 0, 1}).move({0.1, 0, 0}, {1, 2, 3});
+  blob.place({0, 0, 1}).velocity({0.1, 0, 0}, {1, 2, 3});
   blob.rest({{"a1", 0.2}, {"a2", 0.25}, {"a3", 0.3}, {"eps1", 0.7}, {"eps2", 0.8}});
   blob.stiffness({{"a1", 2e4}, {"taper.tx", 300}, {"twist.angle", 200}});
   blob.rest("a1", TimeFunction::formula("0.2 + 0.02 * sin(20 * t)"));
@@ -59,7 +59,7 @@ inline std::unique_ptr<pliant::Scene> free_top() {
   scene->integrator = "rk4";
   scene->body.gravity.setZero();
   Part& top = scene->body.add(make_part("top", "ellipsoid", {}, 1000));
-  top.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).move({0.5, 0, 0}, {1, 0.1, 2});
+  top.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0.5, 0, 0}, {1, 0.1, 2});
   scene->appearance.resize(1);
   scene->hash = 7;
   return scene;

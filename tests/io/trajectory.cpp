@@ -11,8 +11,8 @@
 #include "new_folder.h"
 #include "test_scenes.h"
 
-#include <pliant/io/run.h>
-#include <pliant/io/run_files.h>
+#include <pliant/io/run/run.h>
+#include <pliant/io/run/run_files.h>
 
 namespace trajectory_test {
 

@@ -1,6 +1,6 @@
 // Bending by mid-edge normals: exact for constant curvature, blind to rigid motion, convergent on irregular
 // meshes of plates, rolled sheets, and the laws of every energy.
-#include <pliant/local/bending.h>
+#include <pliant/local/shell/bending.h>
 
 #include "catch.h"
 #include "modes.h"

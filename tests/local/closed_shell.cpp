@@ -1,9 +1,9 @@
 // Free vibration of a closed spherical shell against the exact spectrum of its membrane (Lamb 1882, Baker
 // 1961).
-#include <pliant/local/bending.h>
-#include <pliant/local/linear_membrane.h>
-#include <pliant/part/local_laws.h>
-#include <pliant/part/nodal_deformation.h>
+#include <pliant/local/shell/bending.h>
+#include <pliant/local/shell/linear_membrane.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/nodal_deformation.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/sphere.h>
 

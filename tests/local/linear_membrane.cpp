@@ -1,5 +1,5 @@
 // The linear membrane: exact for constant strain, blind to small rotations, and the laws of every energy.
-#include <pliant/local/linear_membrane.h>
+#include <pliant/local/shell/linear_membrane.h>
 
 #include <Eigen/SparseCholesky>
 

@@ -1,10 +1,10 @@
 // The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the laws
 // of every energy.
-#include <pliant/local/loaded_membrane.h>
+#include <pliant/local/shell/loaded_membrane.h>
 #include <pliant/math/eigenvalues.h>
-#include <pliant/part/local_laws.h>
-#include <pliant/part/nodal_deformation.h>
-#include <pliant/part/parameter_mesh.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/nodal_deformation.h>
+#include <pliant/part/mesh/parameter_mesh.h>
 #include <pliant/part/registry.h>
 
 #include "catch.h"

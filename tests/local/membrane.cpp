@@ -1,8 +1,8 @@
 // Membranes that deform by any amount: their energies against those of the continuum, rigid motion, the limit
 // of small strain, and the laws of every energy.
-#include <pliant/local/membrane.h>
+#include <pliant/local/shell/membrane.h>
 
-#include <pliant/local/linear_membrane.h>
+#include <pliant/local/shell/linear_membrane.h>
 
 #include "catch.h"
 #include "energy_laws.h"

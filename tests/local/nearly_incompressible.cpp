@@ -6,8 +6,8 @@
 
 #include <Eigen/Dense>
 
-#include <pliant/local/averaged_dilatation.h>
-#include <pliant/local/solid_mass.h>
+#include <pliant/local/solid/averaged_dilatation.h>
+#include <pliant/local/solid/solid_mass.h>
 #include <pliant/math/eigenvalues.h>
 
 #include "solid_meshes.h"

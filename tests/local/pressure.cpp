@@ -1,8 +1,8 @@
 // Pressure in closed shells: its resultants, a balloon in balance with its rubber, and the laws of every
 // energy.
-#include <pliant/local/pressure.h>
+#include <pliant/local/shell/pressure.h>
 
-#include <pliant/local/membrane.h>
+#include <pliant/local/shell/membrane.h>
 #include <pliant/math/eigenvalues.h>
 
 #include "catch.h"

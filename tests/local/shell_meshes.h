@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include <pliant/local/shell_mesh.h>
+#include <pliant/local/shell/shell_mesh.h>
 
 namespace pliant::test {
 

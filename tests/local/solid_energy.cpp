@@ -1,12 +1,12 @@
 // Laws of the energies of tetrahedra: forces, derivatives, stiffness, patches, rigid motion, threads, bounds.
-#include <pliant/local/solid_energy.h>
+#include <pliant/local/solid/solid_energy.h>
 
 #include <cmath>
 
 #include <Eigen/Dense>
 
-#include <pliant/local/make_solid_energy.h>
-#include <pliant/local/solid_mass.h>
+#include <pliant/local/solid/make_solid_energy.h>
+#include <pliant/local/solid/solid_mass.h>
 #include <pliant/math/eigenvalues.h>
 
 #include "catch.h"

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <pliant/local/nodes.h>
-#include <pliant/local/tetrahedron.h>
+#include <pliant/local/solid/tetrahedron.h>
+#include <pliant/part/mesh/solid.h>
 #include <pliant/part/registry.h>
-#include <pliant/part/solid.h>
 
 #include "worst.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include <pliant/local/solid_energy.h>
-#include <pliant/local/solid_mass.h>
+#include <pliant/local/solid/solid_energy.h>
+#include <pliant/local/solid/solid_mass.h>
 
 #include "solid_meshes.h"
 #include "sparse_modes.h"

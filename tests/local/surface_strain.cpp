@@ -1,11 +1,11 @@
 // The strain that colours tell: right for known stretches, nothing for rigid motion.
-#include <pliant/local/surface_strain.h>
+#include <pliant/local/shell/surface_strain.h>
 
 #include <Eigen/Geometry>
 
-#include <pliant/math/functions.h>
+#include <pliant/math/scalar/functions.h>
+#include <pliant/part/mesh/surface.h>
 #include <pliant/part/registry.h>
-#include <pliant/part/surface.h>
 
 #include "catch.h"
 

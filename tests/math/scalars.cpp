@@ -4,10 +4,10 @@
 #include <random>
 #include <vector>
 
-#include <pliant/math/dual.h>
-#include <pliant/math/pack.h>
-#include <pliant/math/signed_power.h>
-#include <pliant/math/taylor2.h>
+#include <pliant/math/scalar/dual.h>
+#include <pliant/math/scalar/pack.h>
+#include <pliant/math/scalar/signed_power.h>
+#include <pliant/math/scalar/taylor2.h>
 
 #include "catch.h"
 

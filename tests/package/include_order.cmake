@@ -1,14 +1,14 @@
 # Scans the includes: a file includes its own folder and folders to its left only, core's headers need nothing but Eigen
 # and the standard library, and no include climbs out of its folder. Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
-set(order math shape deform local part solve body contact integrate scene io render)
+set(order math shape deform local part solve body collision project method contact simulate scene io render)
 set(outside_core scene io render)  # folders of libraries with packages of their own
 set(faults "")
 
 function(check_file path)
   cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${SOURCE} OUTPUT_VARIABLE shown)
   if(shown STREQUAL include/pliant/pliant.h)  # all of core, as if it were the last of core's folders
-    set(shown include/pliant/integrate/pliant.h)
+    set(shown include/pliant/simulate/pliant.h)
   endif()
   string(REGEX MATCH "^(include/pliant|src)/([a-z]+)/" ignored ${shown})
   set(kind ${CMAKE_MATCH_1})
@@ -25,10 +25,11 @@ function(check_file path)
   endif()
   file(STRINGS ${path} lines REGEX "^[ \t]*#[ \t]*include")
   foreach(line IN LISTS lines)
-    if(line MATCHES "<pliant/([a-z]+)/")
-      list(FIND order ${CMAKE_MATCH_1} other)
+    if(line MATCHES "<pliant/([a-z]+)/|\"([a-z]+)/[a-z0-9_/]+\\.h\"")
+      set(included ${CMAKE_MATCH_1}${CMAKE_MATCH_2})
+      list(FIND order ${included} other)
       if(other EQUAL -1 OR other GREATER place)
-        list(APPEND faults "${shown}: ${line}: ${folder} comes before ${CMAKE_MATCH_1}")
+        list(APPEND faults "${shown}: ${line}: ${folder} comes before ${included}")
       endif()
     elseif(line MATCHES "[<\"](pliant/|\\.\\./)")
       list(APPEND faults "${shown}: ${line}: write <pliant/folder/file.h>")

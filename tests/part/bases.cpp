@@ -5,9 +5,9 @@
 #include <array>
 
 #include <pliant/deform/all_deforms.h>
-#include <pliant/part/local_laws.h>
-#include <pliant/part/modal_deformation.h>
-#include <pliant/part/nodal_deformation.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/modal_deformation.h>
+#include <pliant/part/local/nodal_deformation.h>
 #include <pliant/part/registry.h>
 
 namespace bases_test {

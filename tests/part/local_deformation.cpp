@@ -2,9 +2,9 @@
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>
-#include <pliant/part/local_laws.h>
-#include <pliant/part/nodal_deformation.h>
-#include <pliant/part/parameter_mesh.h>
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/nodal_deformation.h>
+#include <pliant/part/mesh/parameter_mesh.h>
 #include <pliant/part/registry.h>
 
 #include "draws.h"

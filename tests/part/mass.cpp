@@ -329,7 +329,7 @@ test::RandomState anywhere(Draws& draws, const Part& part, int corner) {
 /// How much M and g_q change, in units of their scale, when the rule of a prepared part is doubled.
 double change_on_doubling(const Part& part, int trials) {
   Draws draws(3);
-  const MassPoints finer = lay_mass_points(part, 1);
+  const MassPoints finer = place_mass_points(part, 1);
   test::Worst worst;
   for (int trial = 0; trial < trials; ++trial) {
     const test::RandomState state = anywhere(draws, part, trial);

@@ -1,5 +1,5 @@
 // The lowest modes of a mesh by either sparse factorisation.
-#include <pliant/part/local_laws.h>
+#include <pliant/part/local/local_laws.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/sphere.h>
 #include <pliant/solve/cholmod_factor.h>

@@ -8,10 +8,10 @@
 
 #include <Eigen/LU>
 
-#include <pliant/local/tetrahedron.h>
-#include <pliant/part/folds.h>
-#include <pliant/part/solid.h>
-#include <pliant/part/surface.h>
+#include <pliant/local/solid/tetrahedron.h>
+#include <pliant/part/mesh/folds.h>
+#include <pliant/part/mesh/solid.h>
+#include <pliant/part/mesh/surface.h>
 
 #include "random_state.h"
 #include "worst.h"

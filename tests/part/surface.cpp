@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include <pliant/part/folds.h>
-#include <pliant/part/surface.h>
+#include <pliant/part/mesh/folds.h>
+#include <pliant/part/mesh/surface.h>
 
 #include "random_state.h"
 #include "worst.h"

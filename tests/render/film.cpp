@@ -2,12 +2,12 @@
 // scene kept.
 #include <pliant/render/film.h>
 
-#include "../io/new_folder.h"
-#include "../io/test_scenes.h"
 #include "catch.h"
+#include "io/new_folder.h"
+#include "io/test_scenes.h"
 #include "scenes.h"
 
-#include <pliant/io/run.h>
+#include <pliant/io/run/run.h>
 
 namespace film_test {
 

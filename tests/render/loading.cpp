@@ -5,7 +5,7 @@
 #include "catch.h"
 #include "scenes.h"
 
-#include <pliant/io/png.h>
+#include <pliant/io/format/png.h>
 #include <pliant/render/renderer.h>
 
 namespace loading_test {

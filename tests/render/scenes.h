@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include <pliant/io/image.h>
+#include <pliant/io/format/image.h>
 #include <pliant/render/picture.h>
 
 namespace pliant::test {

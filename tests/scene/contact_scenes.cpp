@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include <pliant/integrate/simulation.h>
 #include <pliant/scene/read_scene.h>
+#include <pliant/simulate/simulation.h>
 
 #include "catch.h"
 

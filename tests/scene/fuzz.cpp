@@ -13,9 +13,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <pliant/integrate/simulation.h>
 #include <pliant/io/frame_schedule.h>
 #include <pliant/scene/read_scene.h>
+#include <pliant/simulate/simulation.h>
 
 #include "catch.h"
 

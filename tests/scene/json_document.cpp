@@ -1,6 +1,6 @@
 // JSON documents: places, syntax faults in words, what is refused, --set. Tags I.. are those of the bad-input
 // catalogue.
-#include <pliant/scene/json_document.h>
+#include <pliant/scene/json/json_document.h>
 
 #include <sys/stat.h>
 #include <unistd.h>

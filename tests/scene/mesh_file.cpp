@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include <pliant/contact/obstacle_mesh.h>
+#include <pliant/collision/mesh/obstacle_mesh.h>
+#include <pliant/scene/json/text_file.h>
 #include <pliant/scene/mesh_file.h>
-#include <pliant/scene/text_file.h>
 
 #include "io/new_folder.h"
 

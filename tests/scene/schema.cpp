@@ -1,6 +1,6 @@
 // Records of a scene: what they refuse and in which words, what readers get, and the JSON Schema that follows
 // from them, judged by an independent validator. Tags I.. are those of the bad-input catalogue.
-#include <pliant/scene/schema.h>
+#include <pliant/scene/schema/schema.h>
 
 #include <fstream>
 #include <string>
@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <pliant/scene/json_document.h>
+#include <pliant/scene/json/json_document.h>
 #include <pliant/scene/point_value.h>
-#include <pliant/scene/reader.h>
+#include <pliant/scene/reader/reader.h>
 #include <pliant/scene/time_value.h>
 #include <pliant/scene/validate.h>
 

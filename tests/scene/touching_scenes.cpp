@@ -12,9 +12,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <pliant/integrate/simulation.h>
-#include <pliant/io/contact_notes.h>
+#include <pliant/io/run/contact_notes.h>
 #include <pliant/scene/read_scene.h>
+#include <pliant/simulate/simulation.h>
 
 #include "catch.h"
 #include "io/new_folder.h"

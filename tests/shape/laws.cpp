@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <pliant/math/taylor2.h>
+#include <pliant/math/scalar/taylor2.h>
 #include <pliant/part/part.h>
 #include <pliant/part/registry.h>
 #include <pliant/part/shape_face.h>

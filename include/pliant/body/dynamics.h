@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <pliant/body/constraints.h>
+#include <pliant/body/constraint/constraints.h>
+#include <pliant/body/constraint/rigid_island.h>
 #include <pliant/body/model.h>
-#include <pliant/body/rigid_island.h>
 #include <pliant/math/thread_pool.h>
 
 namespace pliant {
@@ -90,19 +90,21 @@ struct StateDirection {
   VecX<double> q, v;
 };
 
+/// How the method of integration treats joints.
+struct JointPolicy {
+  bool step_consistent = true;  ///< whether the rule `automatic` takes gains that follow the step length
+  bool projected = false;  ///< whether closed joints are projected after each step, without Baumgarte terms
+  bool first_order =
+      true;  ///< whether steps may be of first order, which leave a gap on closing joints that turn
+};
+
 class Dynamics {
  public:
   explicit Dynamics(const Model& model, ThreadPool* pool = nullptr) : model_(&model), pool_(pool) {}
   const Model& model() const { return *model_; }
 
-  /// What the method of integration means for the joints.
-  struct Hold {
-    bool step_consistent = true;  ///< what the rule `automatic` means for the method of integration
-    bool projected = false;       ///< closed joints are projected after each step: they need no Baumgarte
-    bool first_order = true;      ///< steps may be so, and leave a gap on joints that turn as they close
-  };
-  void set_hold(const Hold& hold) { hold_ = hold; }
-  const Hold& hold() const { return hold_; }
+  void set_joint_policy(const JointPolicy& policy) { joint_policy_ = policy; }
+  const JointPolicy& joint_policy() const { return joint_policy_; }
 
   /// Accelerations and powers (none of parts that sleep) at (t, q, v), with the step and the modes of limits
   /// and joints of a state. Parameters that rest at a limit, with a rate of exactly 0, may only leave it;
@@ -183,7 +185,7 @@ class Dynamics {
 
   const Model* model_;
   ThreadPool* pool_;
-  Hold hold_;
+  JointPolicy joint_policy_;
 };
 
 }  // namespace pliant

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <pliant/body/points.h>
-#include <pliant/math/functions.h>
+#include <pliant/math/scalar/functions.h>
 
 namespace pliant {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <pliant/body/constraint/rigid_island.h>
 #include <pliant/body/ledger.h>
 #include <pliant/body/multibody.h>
-#include <pliant/body/rigid_island.h>
 #include <pliant/body/state.h>
 #include <pliant/solve/block_pattern.h>
 #include <pliant/solve/symmetric_factor.h>
@@ -198,9 +198,9 @@ class Model {
   PortRef attach(const Point& point, const std::string& what);
   void add_joint(const Joint& joint);
   void lay_sides();
-  void lay_islands();
+  void make_islands();
   void note_loaded_parts();
-  void lay_rigid_islands();
+  void make_rigid_islands();
   /// A joint and which of its sides is on a part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
   void choose_solver(Island& island, const SidesOfParts& sides_of);

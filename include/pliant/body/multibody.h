@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/body/constraint/stabilization.h>
 #include <pliant/body/contact_settings.h>
-#include <pliant/body/joint.h>
-#include <pliant/body/joint_setting.h>
 #include <pliant/body/joints/ball.h>
+#include <pliant/body/joints/joint.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/points.h>
-#include <pliant/body/stabilization.h>
 #include <pliant/part/primitive.h>
 #include <pliant/solve/joint_solver.h>
 

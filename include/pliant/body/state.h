@@ -39,7 +39,7 @@ enum class JointMode : std::int8_t {
 
 /// A contact that shares what it pushes with others, and the force that it took: where the search for its
 /// impulse of the next step begins. Rows of limits and strings, and what shares lone nodes, begin at none.
-struct Support {
+struct CachedContact {
   std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
   Vec3<double> x;              ///< where it was, m, in the frame of part a
   /// Mean of the last step or, where it was taken in two, its second half; on part a, N, world.
@@ -62,10 +62,10 @@ struct State {
   /// Per part, where bodies may sleep (else empty): how long it has been at rest, s; negative: it sleeps,
   /// with those of the same number. Who moves a part that sleeps wakes it.
   std::vector<double> at_rest;
-  std::vector<Support> supports;  ///< in the order of what they are between
+  std::vector<CachedContact> contact_cache;  ///< in the order of what they are between
   /// How many steps in a row have begun at those before: after some of them one begins anew, so that forces
   /// which nothing calls for any more, as in a body between two walls, do not stay.
-  int supports_age = 0;
+  int contact_cache_age = 0;
 
   double time() const { return start + static_cast<double>(step) * h; }
 };

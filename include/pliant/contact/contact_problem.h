@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include <pliant/contact/contact.h>
+#include <pliant/collision/contact.h>
 #include <pliant/contact/movers.h>
 #include <pliant/solve/coulomb_system.h>
 
@@ -32,9 +32,9 @@ class ContactProblem {
   ContactSolution solve(double since_of_limits);
   /// Where the search for the impulse of a contact begins, if that is near what is found: piles that stand
   /// then take no sweeps, heaps that move as long as without. N s, world, on side a.
-  void begin_at(int contact, const Vec3<double>& impulse);
+  void warm_start_at(int contact, const Vec3<double>& impulse);
   /// Whether it may begin at the impulse of a contact. Once solve() was called.
-  bool may_begin(int contact) const { return system_.may_begin(contact); }
+  bool may_warm_start(int contact) const { return system_.may_warm_start(contact); }
   /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
   /// another state.
   std::vector<Vec3<double>> velocities(const State& of) const;
@@ -44,7 +44,7 @@ class ContactProblem {
   void bound_shifts(double since, double most);
   /// Adds to the shifts, without friction: what takes the gaps that these leave to zero where they are
   /// negative, each by at most its `most` m, and but for `enough` m.
-  void part_bodies(const std::vector<double>& most, double enough = 0);
+  void separate_bodies(const std::vector<double>& most, double enough = 0);
 
   const Movers& movers() const { return movers_; }
   /// Velocities of a mover before the impulses and after them, and how far they moved it, see Contact::since.

@@ -5,7 +5,7 @@
 #pragma once
 
 #include <pliant/deform/deform.h>
-#include <pliant/math/sinc.h>
+#include <pliant/math/scalar/sinc.h>
 
 namespace pliant {
 

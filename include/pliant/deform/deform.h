@@ -16,9 +16,9 @@
 #include <type_traits>
 #include <utility>
 
-#include <pliant/math/dual.h>
-#include <pliant/math/functions.h>
 #include <pliant/math/parameter_spec.h>
+#include <pliant/math/scalar/dual.h>
+#include <pliant/math/scalar/functions.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

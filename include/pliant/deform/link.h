@@ -7,8 +7,8 @@
 
 #include <pliant/deform/deform.h>
 #include <pliant/deform/jet.h>
-#include <pliant/math/dual.h>
-#include <pliant/math/taylor2.h>
+#include <pliant/math/scalar/dual.h>
+#include <pliant/math/scalar/taylor2.h>
 
 namespace pliant {
 

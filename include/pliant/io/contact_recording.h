@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <vector>
 
-#include <pliant/integrate/simulation.h>
-#include <pliant/io/column.h>
-#include <pliant/io/npy.h>
+#include <pliant/io/format/column.h>
+#include <pliant/io/format/npy.h>
+#include <pliant/simulate/simulation.h>
 
 namespace pliant {
 

@@ -10,7 +10,7 @@
 
 #include <pliant/body/model.h>
 #include <pliant/io/surface_values.h>
-#include <pliant/part/surface.h>
+#include <pliant/part/mesh/surface.h>
 #include <pliant/scene/scene.h>
 
 namespace pliant {

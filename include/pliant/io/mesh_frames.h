@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <vector>
 
-#include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
+#include <pliant/io/run/progress.h>
 #include <pliant/scene/scene.h>
 
 namespace pliant {

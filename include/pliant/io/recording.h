@@ -11,9 +11,9 @@
 #include <vector>
 
 #include <pliant/body/model.h>
-#include <pliant/io/column.h>
+#include <pliant/io/format/column.h>
+#include <pliant/io/format/npy.h>
 #include <pliant/io/frame_schedule.h>
-#include <pliant/io/npy.h>
 
 namespace pliant {
 
@@ -43,10 +43,10 @@ class RecordingWriter {
 
  private:
   RecordingWriter(NpyWriter times, NpyWriter coordinates, NpyWriter velocities, NpyWriter modes,
-                  std::optional<NpyWriter> supports);
+                  std::optional<NpyWriter> contact_cache);
 
   NpyWriter times_, coordinates_, velocities_, modes_;
-  std::optional<NpyWriter> supports_;
+  std::optional<NpyWriter> contact_cache_;
   std::vector<double> row_;
 };
 
@@ -72,7 +72,7 @@ class Recording {
  private:
   const Model* model_;
   NpyReader coordinates_, velocities_, modes_;
-  std::optional<NpyReader> supports_;
+  std::optional<NpyReader> contact_cache_;
   std::vector<double> times_;
 };
 

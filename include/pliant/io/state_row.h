@@ -8,7 +8,7 @@
 
 #include <pliant/body/model.h>
 #include <pliant/body/state.h>
-#include <pliant/io/column.h>
+#include <pliant/io/format/column.h>
 
 namespace pliant {
 
@@ -22,10 +22,10 @@ std::vector<Column> mode_columns_of(const Model& model);
 /// The columns that tell which rows of supports.npy are of a state: the first, and the one after the last.
 inline constexpr std::size_t kFirstSupport = 5, kEndOfSupports = 6;
 /// The columns of supports.npy, in order.
-std::vector<Column> support_columns();
-std::vector<double> row_of(const Support& support);
+std::vector<Column> contact_cache_columns();
+std::vector<double> row_of(const CachedContact& support);
 /// Of a row. False when one of its numbers is not that of a part, plane or obstacle.
-[[nodiscard]] bool read_support(const double* row, Support& support);
+[[nodiscard]] bool read_cached_contact(const double* row, CachedContact& support);
 
 /// The row of a state whose supports end before a row of theirs. Its last number is a hash of all bits of the
 /// state.

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include <pliant/local/surface_strain.h>
+#include <pliant/local/shell/surface_strain.h>
 #include <pliant/scene/coloring.h>
 
 namespace pliant {

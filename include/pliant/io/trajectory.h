@@ -22,10 +22,10 @@
 #include <vector>
 
 #include <pliant/body/placed_point.h>
-#include <pliant/integrate/simulation.h>
-#include <pliant/io/column.h>
+#include <pliant/io/format/column.h>
 #include <pliant/io/recording.h>
 #include <pliant/scene/scene.h>
+#include <pliant/simulate/simulation.h>
 
 namespace pliant {
 

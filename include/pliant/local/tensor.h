@@ -1,7 +1,7 @@
 // 3x3 tensors of any scalar, of Pack above all, in plain loops that compilers unroll.
 #pragma once
 
-#include <pliant/math/pack.h>
+#include <pliant/math/scalar/pack.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include <pliant/math/taylor2.h>
+#include <pliant/math/scalar/taylor2.h>
 
 namespace pliant {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include <pliant/math/sinc.h>
+#include <pliant/math/scalar/sinc.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

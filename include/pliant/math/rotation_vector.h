@@ -2,7 +2,7 @@
 //   (theta / sin theta) (Q_32 - Q_23, Q_13 - Q_31, Q_21 - Q_12) / 2,   cos theta = (tr Q - 1) / 2
 #pragma once
 
-#include <pliant/math/functions.h>
+#include <pliant/math/scalar/functions.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

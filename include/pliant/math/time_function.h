@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/math/taylor2.h>
+#include <pliant/math/scalar/taylor2.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include <pliant/local/linear_law.h>
-#include <pliant/local/neo_hookean.h>
-#include <pliant/local/sheet.h>
-#include <pliant/local/st_venant_kirchhoff.h>
-#include <pliant/math/dual.h>
+#include <pliant/local/shell/sheet.h>
+#include <pliant/local/solid/neo_hookean.h>
+#include <pliant/local/solid/st_venant_kirchhoff.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/shape/material.h>
 
 namespace pliant {

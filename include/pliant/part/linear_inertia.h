@@ -3,7 +3,7 @@
 // moments of s_0 and s_k, taken once, stand in for the sums over mass points of Eq. (11).
 #pragma once
 
-#include <pliant/math/dual.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/part/inertia.h>
 
 namespace pliant {

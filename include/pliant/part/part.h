@@ -14,11 +14,11 @@
 #include <pliant/part/continuum.h>
 #include <pliant/part/inertia.h>
 #include <pliant/part/linear_inertia.h>
-#include <pliant/part/local_deformation.h>
-#include <pliant/part/mass_points.h>
+#include <pliant/part/local/local_deformation.h>
+#include <pliant/part/mesh/triangle_mesh.h>
 #include <pliant/part/parameters.h>
 #include <pliant/part/prescribed_motion.h>
-#include <pliant/part/triangle_mesh.h>
+#include <pliant/part/quadrature/mass_points.h>
 
 namespace pliant {
 
@@ -48,7 +48,7 @@ class Part {
   /// Position of the frame (m, world) and orientation (body to world; normalised).
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
   /// Initial velocity of the frame (m/s, world) and angular velocity (rad/s, body frame).
-  Part& move(const Vec3<double>& c_dot, const Vec3<double>& omega);
+  Part& velocity(const Vec3<double>& c_dot, const Vec3<double>& omega);
   /// Rest values: of frozen parameters their values.
   Part& rest(const Named& values);
   Part& rest(const std::string& parameter, TimeFunction of_time);

@@ -10,6 +10,6 @@ void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double
                  const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
                  Counters& counters);
 /// The moments of a linear part over its mass points.
-LinearInertia take_linear_inertia(const Part& part, const MassPoints& points);
+LinearInertia make_linear_inertia(const Part& part, const MassPoints& points);
 
 }  // namespace pliant

@@ -7,8 +7,8 @@
 
 #include <pliant/body/placed_point.h>
 #include <pliant/io/frame_meshes.h>
-#include <pliant/io/progress.h>
 #include <pliant/io/recording.h>
+#include <pliant/io/run/progress.h>
 #include <pliant/render/picture.h>
 #include <pliant/render/renderer.h>
 #include <pliant/scene/scene.h>

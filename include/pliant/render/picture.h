@@ -9,7 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <pliant/math/types.h>
-#include <pliant/part/triangle_mesh.h>
+#include <pliant/part/mesh/triangle_mesh.h>
 #include <pliant/render/camera.h>
 
 namespace pliant {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include <pliant/io/image.h>
-#include <pliant/render/gl_context.h>
+#include <pliant/io/format/image.h>
+#include <pliant/render/gl/gl_context.h>
 #include <pliant/render/picture.h>
 
 namespace pliant {

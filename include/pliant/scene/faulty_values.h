@@ -5,8 +5,8 @@
 #include <unordered_set>
 
 #include <pliant/scene/diagnostics.h>
-#include <pliant/scene/json_document.h>
-#include <pliant/scene/json_value.h>
+#include <pliant/scene/json/json_document.h>
+#include <pliant/scene/json/json_value.h>
 
 namespace pliant {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <pliant/math/types.h>
-#include <pliant/scene/json_value.h>
-#include <pliant/scene/schema.h>
+#include <pliant/scene/json/json_value.h>
+#include <pliant/scene/schema/schema.h>
 
 namespace pliant {
 

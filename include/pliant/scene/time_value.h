@@ -4,8 +4,8 @@
 #include <string>
 
 #include <pliant/math/time_function.h>
-#include <pliant/scene/json_value.h>
-#include <pliant/scene/schema.h>
+#include <pliant/scene/json/json_value.h>
+#include <pliant/scene/schema/schema.h>
 
 namespace pliant {
 

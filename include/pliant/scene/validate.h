@@ -5,8 +5,8 @@
 #include <string>
 
 #include <pliant/scene/diagnostics.h>
-#include <pliant/scene/json_document.h>
-#include <pliant/scene/schema.h>
+#include <pliant/scene/json/json_document.h>
+#include <pliant/scene/schema/schema.h>
 
 namespace pliant {
 

@@ -2,8 +2,8 @@
 // as the exact cosines and sines of the two angles, so that poles and seams close without a gap.
 #pragma once
 
-#include <pliant/math/pack.h>
-#include <pliant/math/signed_power.h>
+#include <pliant/math/scalar/pack.h>
+#include <pliant/math/scalar/signed_power.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

@@ -22,8 +22,8 @@
 #include <array>
 #include <vector>
 
-#include <pliant/math/dual.h>
 #include <pliant/math/parameter_spec.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/shape/material.h>
 #include <pliant/shape/panel.h>
 

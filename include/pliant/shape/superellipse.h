@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include <pliant/math/signed_power.h>
+#include <pliant/math/scalar/signed_power.h>
 #include <pliant/shape/shape.h>
 
 namespace pliant {

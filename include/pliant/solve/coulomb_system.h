@@ -76,7 +76,7 @@ class CoulombSystem {
 
   /// Whether a search may begin at the impulse of a contact. Once solve() was called: not where it is the
   /// only one of its cluster, nor where points are among what is pushed.
-  bool may_begin(int k) const { return contacts_[at(k)].begins; }
+  bool may_warm_start(int k) const { return contacts_[at(k)].begins; }
   /// Finds the impulses; x: velocities of all movers, before them and after. enough: what the law may miss
   /// anyhow. Once this is called, no more is added.
   CoulombResult solve(VecX<double>& x, double enough = 0);

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <pliant/math/dual.h>
 #include <pliant/math/index.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

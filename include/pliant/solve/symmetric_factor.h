@@ -6,7 +6,7 @@
 #include <array>
 #include <bitset>
 
-#include <pliant/math/dual.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/math/types.h>
 
 namespace pliant {

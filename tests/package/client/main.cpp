@@ -2,7 +2,7 @@
 // layout of Eigen's types and the rounding of products must.
 #include <cmath>
 
-#include <pliant/math/dual.h>
+#include <pliant/math/scalar/dual.h>
 #include <pliant/math/time_function.h>
 
 #if EIGEN_MAX_STATIC_ALIGN_BYTES != 16

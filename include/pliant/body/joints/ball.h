@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 
 namespace pliant {
 

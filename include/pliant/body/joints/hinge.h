@@ -3,7 +3,7 @@
 // a is the first axis of the frame at x_0, b the frame at y_0; the last rows are the angle between the axes.
 #pragma once
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/material_frame.h>
 #include <pliant/math/rotation_vector.h>
 

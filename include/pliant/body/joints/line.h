@@ -2,7 +2,7 @@
 //   C = (b_2, b_3) . (x_0 - x_1),   b the frame at x_1, whose first axis is the line
 #pragma once
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/material_frame.h>
 
 namespace pliant {

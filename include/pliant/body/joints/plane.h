@@ -2,7 +2,7 @@
 //   C = n . (x_0 - x_1),   n the first axis of the frame at x_1
 #pragma once
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/material_frame.h>
 
 namespace pliant {

@@ -6,8 +6,8 @@
 #include <array>
 #include <limits>
 
-#include <pliant/body/joint_setting.h>
-#include <pliant/math/functions.h>
+#include <pliant/body/joints/joint_setting.h>
+#include <pliant/math/scalar/functions.h>
 
 namespace pliant {
 

@@ -3,7 +3,7 @@
 // a and b are the frames at x_0 and y_0; the first axis of b is the line.
 #pragma once
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/material_frame.h>
 #include <pliant/math/rotation_vector.h>
 

@@ -2,7 +2,7 @@
 //   C = (x_0 - y_0, size times the rotation vector of b^T a),   a and b the frames at x_0 and y_0
 #pragma once
 
-#include <pliant/body/joint_setting.h>
+#include <pliant/body/joints/joint_setting.h>
 #include <pliant/body/material_frame.h>
 #include <pliant/math/rotation_vector.h>
 

@@ -1,0 +1,175 @@
+// A group: parts whose velocities act on each other at once, the parts of an island or one part alone. Its
+// velocities v_r = (R^T c_dot, omega, q_s_dot) of part after part make one vector x; after those of a part
+// that deforms locally stand the d_dot of the points at which joints hold it. One-sided rows (limits
+// of parameters, strings) push on it while its joints hold.
+#pragma once
+
+#include <algorithm>
+
+#include <pliant/body/dynamics.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+/// The velocities x of a part as its group has them, of v.
+void gather_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
+                     Eigen::Ref<VecX<double>> x);
+
+/// Max: most velocities; Eigen::Dynamic for an island.
+template <class S, int Max>
+class Group {
+ public:
+  using Vector = VecMax<S, Max>;
+  static constexpr int kMax = Max;
+
+  /// Of a part alone.
+  Group(const Model& model, Workspace<S>& work, int part)
+      : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
+  /// Of an island; which of its joints hold against pushes and corrections: all that act, or the closed ones.
+  Group(const Model& model, Workspace<S>& work, const Island& island, bool closed_only)
+      : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
+    closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
+                     return work.joints.modes[at(j)] == JointMode::closing;
+                   });
+  }
+
+  int size() const { return size_; }
+  int parts() const { return island_ == nullptr ? 1 : static_cast<int>(island_->parts.size()); }
+  int part(int i) const { return island_ == nullptr ? alone_ : island_->parts[at(i)]; }
+  /// Where its part i begins in x.
+  int first(int i) const { return island_ == nullptr ? 0 : island_->first[at(i)]; }
+  const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
+  const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
+  const Island* island() const { return island_; }
+  /// The number of its island.
+  std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
+
+  /// x of what `of` gives for each of its parts, all of its velocities in x.
+  template <class F>
+  void gather(Vector& x, F&& of) const {
+    x.resize(size_);
+    for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = of(i);
+  }
+  auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
+  auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
+
+  /// What a row bounds from below.
+  S value(const OneSidedRow& row, const Vector& x) const {
+    if (row.part >= 0) return x[first(row.part) + 6 + row.k] * S(row.sign);
+    const JointModel& string = model_->joints()[at(island_->strings[at(row.k)])];
+    S sum(0.0);
+    for (const JointSide& side : string.sides) {
+      const int start = island_->first[at(side.place)];
+      for (int i = 0; i < velocities(side.part); ++i) sum += work_->joints.Cq[side.offset + i] * x[start + i];
+    }
+    return sum * S(row.sign);
+  }
+  /// The change of x by a unit push of a row, as if there were no joints.
+  Vector push(const OneSidedRow& row) const {
+    Vector x = Vector::Constant(size_, S(0.0));
+    if (row.part >= 0) {
+      auto force = share(x, row.part);
+      force[6 + row.k] = S(row.sign);
+      workspace(row.part).solve_mass(force);
+      return x;
+    }
+    for (const JointSide& side : model_->joints()[at(island_->strings[at(row.k)])].sides) {
+      VecMax<S, Max> force = work_->joints.Cq.segment(side.offset, velocities(side.part)) * S(row.sign);
+      workspace(side.place).solve_mass(force);
+      share(x, side.place) += force;
+    }
+    return x;
+  }
+  /// The same while the joints hold.
+  Vector response(const OneSidedRow& row) const {
+    Vector x = push(row);
+    if (island_ == nullptr) return x;
+    VecX<S> rows;
+    joint_rows(x, rows);
+    correct(rows, x);
+    return x;
+  }
+
+  /// rows = C_q x of the joints of the island.
+  template <class V>
+  void joint_rows(const V& x, VecX<S>& rows) const {
+    rows.setConstant(island_->rows, S(0.0));
+    for_each_side(work_->joints.Cq, [&](int row, int n_rows, int start, int n, const S* Cq) {
+      if (n == 6 && n_rows == 3) {
+        rows.template segment<3>(row) += BallSide(Cq).transpose().lazyProduct(x.template segment<6>(start));
+        return;
+      }
+      for (int r = 0; r < n_rows; ++r)
+        for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
+    });
+  }
+  /// Whether what correct() gives is to be refined.
+  bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
+  /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
+  /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
+  /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by
+  /// opposite forces. as_factored: nothing was evaluated since, and M^-1 C_q^T is known.
+  const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const {
+    const JointFactor<S>& factor = this->factor();
+    GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
+    VecX<S>&lambda = kept.correction, &change = kept.change;
+    lambda = -rows;
+    factor.solve(lambda);
+    moved_by(lambda, as_factored, change);
+    if (!factor.exact()) {
+      VecX<S> more;
+      joint_rows(change, more);
+      more = -(rows + more);
+      factor.solve(more);
+      lambda += more;
+      moved_by(lambda, as_factored, change);
+    }
+    x += change;
+    return lambda;
+  }
+
+ private:
+  /// C_q^T of a ball joint on a rigid part.
+  using BallSide = Eigen::Map<const Eigen::Matrix<S, 6, 3>>;
+
+  const JointFactor<S>& factor() const {
+    return (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
+  }
+  /// act(first row, rows, first velocity, velocities, its share) for each side of each joint of the island;
+  /// shares: C_q^T or M^-1 C_q^T of all sides.
+  template <class F>
+  void for_each_side(const VecX<S>& shares, F&& act) const {
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_->joints()[at(j)];
+      for (const JointSide& side : joint.sides)
+        act(joint.island_row, joint.rows, island_->first[at(side.place)], velocities(side.part),
+            shares.data() + side.offset);
+    }
+  }
+  /// x = M^-1 C_q^T lambda.
+  void moved_by(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const {
+    x.setConstant(size_, S(0.0));
+    const ConstraintWorkspace<S>& joints = work_->joints;
+    for_each_side(
+        as_factored ? joints.Y : joints.Cq, [&](int row, int n_rows, int start, int n, const S* of) {
+          if (n == 6 && n_rows == 3) {
+            x.template segment<6>(start) += BallSide(of).lazyProduct(lambda.template segment<3>(row));
+            return;
+          }
+          for (int r = 0; r < n_rows; ++r)
+            for (int i = 0; i < n; ++i) x[start + i] += of[r * n + i] * lambda[row + r];
+        });
+    if (as_factored) return;
+    for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));
+  }
+  int velocities(int part) const { return model_->parts()[at(part)].n_x(); }
+
+  const Model* model_;
+  Workspace<S>* work_;
+  const Island* island_ = nullptr;
+  int alone_ = -1;
+  bool closed_only_ = false;
+  int size_;
+};
+
+}  // namespace pliant

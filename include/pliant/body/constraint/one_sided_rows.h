@@ -1,0 +1,124 @@
+// One-sided rows of a group and the pushes that meet them: the least change of x in the mass metric, made of
+// pushes lambda >= 0 that act only where their row is tight, while the joints of the group hold.
+#pragma once
+
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include <pliant/body/constraint/group.h>
+#include <pliant/solve/complementarity.h>
+
+namespace pliant {
+
+template <int Max>
+class OneSidedRows {
+ public:
+  using Vector = VecMax<double, Max>;
+  static constexpr bool kAlone = Max != Eigen::Dynamic;  ///< of a part alone: nothing comes from the heap
+  static constexpr int kMaxRows = kAlone ? kMaxLimitRows : Eigen::Dynamic;
+
+  explicit OneSidedRows(const Group<double, Max>& group) : group_(group) {}
+
+  bool empty() const { return n_ == 0; }
+  void add(const OneSidedRow& row) {
+    if constexpr (!kAlone) {
+      rows_.emplace_back();
+      responses_.emplace_back();
+    }
+    rows_[n_] = row;
+    responses_[n_++] = group_.response(row);
+  }
+  /// Adds the rows, of all that the group has, that x does not meet; false when there is none. bound: of a
+  /// row whose own is not set yet.
+  template <class Bound>
+  bool add_unmet(const Vector& x, Bound&& bound) {
+    const std::size_t before = n_;
+    auto judge = [&](OneSidedRow row) {
+      row.bound = bound(row);
+      if (group_.value(row, x) < row.bound && !has(row)) add(row);
+    };
+    for (int i = 0; i < group_.parts(); ++i)
+      for (int k = 0; k < group_.model(i).n_s; ++k) {
+        if (group_.workspace(i).held(6 + k)) continue;
+        judge({i, k, 1, 0});
+        judge({i, k, -1, 0});
+      }
+    for (int k = 0; group_.island() != nullptr && k < static_cast<int>(group_.island()->strings.size());
+         ++k) {
+      judge({-1, k, 1, 0});
+      judge({-1, k, -1, 0});
+    }
+    return n_ > before;
+  }
+
+  /// x with the pushes of the rows.
+  Vector meet(const Vector& x) {
+    const auto n = static_cast<Eigen::Index>(n_);
+    MatMax<double, kMaxRows> W(n, n);
+    VecMax<double, kMaxRows> b(n);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const auto r = static_cast<Eigen::Index>(i);
+      b[r] = group_.value(rows_[i], x) - rows_[i].bound;
+      for (std::size_t j = 0; j < n_; ++j)
+        W(r, static_cast<Eigen::Index>(j)) = group_.value(rows_[i], responses_[j]);
+      W(r, r) *= 1 + rows_[i].softness;
+    }
+    lambda_ = solve_complementarity(W, b).lambda;
+    Vector after = x;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (pushed(i)) after += responses_[i] * lambda_[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < n_; ++i) {
+      const OneSidedRow& row = rows_[i];
+      if (!pushed(i)) continue;
+      if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // to the last bit
+    }
+    return after;
+  }
+  /// Takes x to where every row of bound(row) is met that it passes, if only by what the others push.
+  template <class Bound>
+  void meet_all(Vector& x, Bound&& bound) {
+    if (!add_unmet(x, bound)) return;
+    Vector now = meet(x);
+    while (add_unmet(now, bound)) now = meet(x);
+    x = now;
+  }
+
+  /// act(row, lambda) for each row that the last meet() pushed; returns their number.
+  template <class F>
+  int for_each_pushed(F&& act) const {
+    int count = 0;
+    for (std::size_t i = 0; i < n_; ++i)
+      if (pushed(i)) {
+        act(rows_[i], lambda_[static_cast<Eigen::Index>(i)]);
+        ++count;
+      }
+    return count;
+  }
+
+  /// Makes the rows soft of which which(row).
+  template <class Which>
+  void soften(double softness, Which&& which) {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (which(rows_[i])) rows_[i].softness = softness;
+  }
+
+ private:
+  template <class T>
+  using List = std::conditional_t<kAlone, std::array<T, kMaxLimitRows>, std::vector<T>>;
+
+  bool pushed(std::size_t i) const { return lambda_[static_cast<Eigen::Index>(i)] > 0; }
+  bool has(const OneSidedRow& row) const {
+    for (std::size_t i = 0; i < n_; ++i)
+      if (rows_[i].part == row.part && rows_[i].k == row.k && rows_[i].sign == row.sign) return true;
+    return false;
+  }
+
+  const Group<double, Max>& group_;
+  std::size_t n_ = 0;
+  List<OneSidedRow> rows_;
+  List<Vector> responses_;
+  VecMax<double, kMaxRows> lambda_;
+};
+
+}  // namespace pliant

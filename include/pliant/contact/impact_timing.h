@@ -1,0 +1,32 @@
+// When within a step surfaces meet.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <pliant/collision/find_contacts.h>
+#include <pliant/contact/free_motion.h>
+#include <pliant/method/integrator.h>
+
+namespace pliant {
+
+/// The step that a method takes next begins at time t and takes h (s).
+inline void set_step(State& state, double t, double h) {
+  state.start = t;
+  state.step = 0;
+  state.h = h;
+}
+
+/// The time into the step from `before` at which the first of the impacts happens; the state is that of then.
+/// None when they were not apart before.
+std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinder& finder, Integrator& method,
+                                    const State& before, double t, double h,
+                                    const std::vector<Contact>& impacts, State& state,
+                                    Workspace<double>& work, StepCounters& counters);
+
+/// How long ago each contact at the end of a motion began, were its sides to meet at the speed they have now,
+/// and the velocity it leaves them with. Those that have a `since` rest.
+void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
+                  std::vector<Contact>& contacts);
+
+}  // namespace pliant

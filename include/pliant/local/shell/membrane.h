@@ -1,0 +1,52 @@
+// Membranes that deform by any amount, of the whole map from rest to now: constant-strain triangles with
+// tensions tau_k = dW/dq_k along the edges as they are now, q_k = (|e_k|^2 - |e_k|_rest^2)/2 (edge_strain.h).
+// Exact second derivatives:   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k,   dq_k = e_k . de_k.
+#pragma once
+
+#include <pliant/local/nodal_energy.h>
+#include <pliant/local/shell/membrane_laws.h>
+
+namespace pliant {
+
+/// Law: StVenantKirchhoffSheet or NeoHookeanSheet.
+template <class Law>
+class Membrane final : public NodalEnergy {
+ public:
+  /// Throws std::invalid_argument for a sheet that cannot be.
+  Membrane(const ShellMesh& mesh, const Sheet& sheet);
+
+  Of of() const override { return Of::position; }
+  /// Not finite where a triangle of a neo-Hookean membrane has lost its area.
+  double energy(const Coordinates& x) const override;
+  void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
+  void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
+                      ThreadPool* pool) const override;
+  void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f, Buffer& buffer,
+                         ThreadPool* pool) const override;
+  void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
+  double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
+
+ private:
+  struct Batch {
+    typename Law::Triangles law;
+    std::array<Pack, 3> rest;  ///< |e_k|^2 / 2
+
+    std::array<Pack, 3> strain(const Edges<Pack>& e) const {
+      return {0.5 * e[0].dot(e[0]) - rest[0], 0.5 * e[1].dot(e[1]) - rest[1], 0.5 * e[2].dot(e[2]) - rest[2]};
+    }
+  };
+  const Batch& batch(int b) const { return triangles_[static_cast<std::size_t>(b)]; }
+  template <class Visit>
+  void each_element(const Coordinates& x, Visit&& visit) const;
+
+  ElementBatches<3> batches_;
+  std::vector<Batch> triangles_;
+};
+
+using StVenantKirchhoffMembrane = Membrane<StVenantKirchhoffSheet>;
+using NeoHookeanMembrane = Membrane<NeoHookeanSheet>;
+
+extern template class Membrane<StVenantKirchhoffSheet>;
+extern template class Membrane<NeoHookeanSheet>;
+
+}  // namespace pliant

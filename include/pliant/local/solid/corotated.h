@@ -1,0 +1,93 @@
+// Corotated linear elasticity: F = R S with the rotation R nearest to F = dx/dX,
+//   W = mu |F - R|^2 + lambda/2 (tr S - 3)^2,   P = 2 mu (F - R) + lambda (tr S - 3) R
+//   dR = R [omega]x,   (tr(S) I - S) omega = axial vector of R^T dF - dF^T R
+// R by Newton's iteration with scaling (Higham 1986).
+#pragma once
+
+#include <pliant/local/elasticity.h>
+#include <pliant/local/nodal_energy.h>
+#include <pliant/local/solid/inverted_element.h>
+#include <pliant/local/tensor.h>
+
+namespace pliant {
+
+/// The rotation nearest to F; throws InvertedElement unless det F > 0.
+template <class T>
+Mat3<T> nearest_rotation(const Mat3<T>& F) {
+  using std::sqrt;
+  constexpr int most_iterations = 60;
+  constexpr double settled = 1e-20;  // of the square of the last step; the next one squares it
+  Mat3<T> R = F;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const Mat3<T> C = cofactors(R);
+    const T J = determinant(R, C);
+    if (!(least_of(J) > 0))
+      throw InvertedElement(
+          "an element of corotated material is turned inside out; a smaller step keeps it from that, "
+          "neo-Hookean material bears it");
+    const T g = sqrt(sqrt(contraction(C, C) / (contraction(R, R) * J * J)));
+    const T keep = T(0.5) * g, inverse = T(0.5) / (g * J);
+    T step(0.0);
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const T next = keep * R(i, j) + inverse * C(i, j), change = next - R(i, j);
+        step += change * change;
+        R(i, j) = next;
+      }
+    if (least_of(T(settled) - step) > 0) return R;
+  }
+  throw InvertedElement(
+      "an element of corotated material is squeezed flat; a smaller step keeps it from that");
+}
+
+struct Corotated {
+  static constexpr NodalEnergy::Of of = NodalEnergy::Of::position;
+  static constexpr bool constant = false;
+  double lambda, mu;
+
+  explicit Corotated(const Elasticity& material) : lambda(material.lambda()), mu(material.mu()) {}
+
+  template <class T>
+  T density(const Mat3<T>& F) const {
+    const Mat3<T> R = nearest_rotation(F);
+    const Mat3<T> off = F - R;
+    const T growth = contraction(R, F) - T(3);
+    return T(mu) * contraction(off, off) + T(lambda / 2) * growth * growth;
+  }
+  template <class T>
+  Mat3<T> stress(const Mat3<T>& F) const {
+    const Mat3<T> R = nearest_rotation(F);
+    const T push = pressure(F, R);
+    Mat3<T> P;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) P(i, j) = T(2 * mu) * F(i, j) + push * R(i, j);
+    return P;
+  }
+  template <class T>
+  Mat3<T> stress_along(const Mat3<T>& F, const Mat3<T>& dF) const {
+    const Mat3<T> R = nearest_rotation(F), S = transposed_product(R, F), A = transposed_product(R, dF);
+    Mat3<T> B = scaled(T(-1), S);
+    for (int i = 0; i < 3; ++i) B(i, i) += trace(S);
+    const Mat3<T> C = cofactors(B);
+    const T inverse = T(1) / determinant(B, C);
+    const T axial[3]{A(2, 1) - A(1, 2), A(0, 2) - A(2, 0), A(1, 0) - A(0, 1)};
+    Vec3<T> omega;
+    for (int i = 0; i < 3; ++i)
+      omega[i] = (C(i, 0) * axial[0] + C(i, 1) * axial[1] + C(i, 2) * axial[2]) * inverse;
+    const Mat3<T> dR = product(R, skew(omega));
+    const T push = pressure(F, R), dpush = T(lambda) * contraction(R, dF);
+    Mat3<T> dP;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) dP(i, j) = T(2 * mu) * dF(i, j) + dpush * R(i, j) + push * dR(i, j);
+    return dP;
+  }
+
+ private:
+  /// What multiplies R in P.
+  template <class T>
+  T pressure(const Mat3<T>& F, const Mat3<T>& R) const {
+    return T(lambda) * (contraction(R, F) - T(3)) - T(2 * mu);
+  }
+};
+
+}  // namespace pliant

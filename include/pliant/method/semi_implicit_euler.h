@@ -1,0 +1,28 @@
+// Semi-implicit Euler, the paper's method (section 4), first order:
+//   v <- v + h vdot(q, v),   q <- q (+) h v
+// What oscillates freely does so exactly under the rest of vdot, and angular momenta turn with
+// the parts by what they turn, not by its first order, which would let parts that tumble gain energy without
+// end.
+#pragma once
+
+#include <pliant/method/free_stages.h>
+#include <pliant/method/integrator.h>
+
+namespace pliant {
+
+class SemiImplicitEuler final : public Integrator {
+ public:
+  const char* name() const override { return "semi_implicit_euler"; }
+  int order() const override { return 1; }
+  double reach() const override { return 1; }
+  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
+
+ private:
+  FreeStages free_;
+  // Velocities at the start of a step, coordinates at its end and their joints: kept, for no heap in a step.
+  VecX<double> v_before_, q_end_;
+  Workspace<double> ahead_;
+};
+
+}  // namespace pliant

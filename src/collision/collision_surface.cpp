@@ -1,0 +1,328 @@
+#include <pliant/collision/collision_surface.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+
+namespace pliant {
+
+namespace {
+
+/// Edges along an eighth of a great circle.
+constexpr int kSurfaceResolution = 6;
+/// The same of few points that tell how far the part reaches, and by how much it may reach beyond them.
+constexpr int kFewEdges = 2;
+constexpr double kBeyondFew = 1.1;
+/// How far the surface may lie below the chords between its points, in sizes of the part.
+constexpr double kSurfaceSag = 0.02;
+/// How far it may lie below the lowest of them, where it is thin and crosses something thin.
+constexpr double kThinSag = 0.1;
+/// Points this near in height, in sizes of the part, lie as low as each other.
+constexpr double kSameHeight = 1e-6;
+/// Points nearer than this, in sizes, are one; and how deep the chord between two may lie below a face, in
+/// sizes.
+constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
+/// Size of the stencil, in spacings, that tells whether a point is lowest already; and heights, in sizes,
+/// that differ by rounding alone: on a flat face nothing is sought among them.
+constexpr double kCorner = 1e-3, kRounding = 1e-14;
+/// Heights of a stencil that bend by less, in sizes, are those of a flat surface.
+constexpr double kFlat = 1e-13;
+/// The search ends when its stencil is this small, in spacings.
+constexpr double kSmallest = 1e-8;
+/// Nearer to a pole than this, as the sine of the angle, directions have no clear latitude and longitude.
+constexpr double kNearPole = 0.2;
+constexpr int kMostHalvings = 60;
+
+/// Nine places, rows of three along the first axis.
+using Stencil = std::array<Vec3<double>, 9>;
+
+/// Places of a mesh pattern about one of them by two coordinates: latitude and longitude of a ball, along
+/// which rims and edges run, or u and v of a torus; about the poles of a ball any two axes. Mesh points are
+/// whole spacings apart.
+class Chart {
+ public:
+  Chart(const Vec3<double>& start, bool ball) : start_(start) {
+    const double across = start.head<2>().norm();
+    by_angles_ = ball && across > kNearPole * start.norm();
+    if (by_angles_) {
+      latitude_ = std::atan2(start[2], across);
+      longitude_ = std::atan2(start[1], start[0]);
+      widening_ = std::max(1.0, 0.25 * kPi / (0.5 * kPi - std::abs(latitude_)));
+    } else if (ball) {
+      e1_ = start.unitOrthogonal();
+      e2_ = start.normalized().cross(e1_);
+    }
+  }
+  /// To its neighbours in every direction, in spacings; circles of latitude are shorter than others.
+  Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
+  Vec3<double> place(const Eigen::Vector2d& x) const {
+    if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
+    return towards(up(x[0]), round(x[1]));
+  }
+  Stencil stencil(const Eigen::Vector2d& at, double size) const {
+    Stencil places;
+    std::array<Direction, 3> ups, rounds;
+    for (std::size_t k = 0; k < 3 && by_angles_; ++k) {
+      const double offset = size * (static_cast<double>(k) - 1);
+      ups[k] = up(at[0] + offset);
+      rounds[k] = round(at[1] + offset);
+    }
+    for (std::size_t j = 0; j < 9; ++j)
+      places[j] = by_angles_ ? towards(ups[j % 3], rounds[j / 3])
+                             : place(at + size * Eigen::Vector2d(static_cast<double>(j % 3) - 1,
+                                                                 static_cast<double>(j / 3) - 1));
+    if (at.isZero(0)) places[4] = start_;
+    return places;
+  }
+
+ private:
+  struct Direction {
+    double cos, sin;
+  };
+  Direction up(double x) const { return {std::cos(latitude_ + x), std::sin(latitude_ + x)}; }
+  Direction round(double y) const {
+    return {std::cos(longitude_ + widening_ * y), std::sin(longitude_ + widening_ * y)};
+  }
+  static Vec3<double> towards(const Direction& up, const Direction& round) {
+    return {up.cos * round.cos, up.cos * round.sin, up.sin};
+  }
+
+  Vec3<double> start_, e1_{1, 0, 0}, e2_{0, 1, 0};
+  bool by_angles_;
+  double latitude_ = 0, longitude_ = 0, widening_ = 1;
+};
+
+/// Where quadratics through the heights of a stencil are lowest, in its radii: along each of its axes, as
+/// rims and lines on which a surface lies flat have it, and of both. What bends by less than `flat` tells
+/// nothing.
+std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
+  std::vector<Eigen::Vector2d> steps;
+  auto add = [&](const Eigen::Vector2d& step) {
+    const double most = step.lpNorm<Eigen::Infinity>();
+    steps.push_back(most > 1 ? Eigen::Vector2d(step / most) : step);
+  };
+  for (const auto& [before, after, axis] : {std::tuple{3, 5, 0}, std::tuple{1, 7, 1}}) {
+    const double curvature = h[before] + h[after] - 2 * h[4];
+    if (curvature > flat) add((h[before] - h[after]) / (2 * curvature) * Eigen::Vector2d::Unit(axis));
+  }
+  // h = h_0 + g.d + 1/2 d.H d by least squares over the stencil.
+  const Eigen::Vector2d g((h[2] + h[5] + h[8] - h[0] - h[3] - h[6]) / 6,
+                          (h[6] + h[7] + h[8] - h[0] - h[1] - h[2]) / 6);
+  Eigen::Matrix2d H;
+  H(0, 0) = (h[0] + h[2] + h[3] + h[5] + h[6] + h[8] - 2 * (h[1] + h[4] + h[7])) / 3;
+  H(1, 1) = (h[0] + h[1] + h[2] + h[6] + h[7] + h[8] - 2 * (h[3] + h[4] + h[5])) / 3;
+  H(0, 1) = H(1, 0) = (h[0] + h[8] - h[2] - h[6]) / 4;
+  if (H.trace() > 0 && H.determinant() > flat * H.trace()) add(-H.inverse() * g);
+  return steps;
+}
+
+/// The outermost of some points: the first, the farthest from it, the farthest from that, and the farthest
+/// from the line through them to either side.
+std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
+                                    double same) {
+  std::vector<Eigen::Index> chosen;
+  auto farthest = [&](auto&& distance) {
+    Eigen::Index best = some.front();
+    for (const Eigen::Index i : some)
+      if (distance(i) > distance(best) + 1e-9 * same) best = i;
+    return best;
+  };
+  auto add = [&](Eigen::Index i) {
+    for (const Eigen::Index j : chosen)
+      if ((p.col(i) - p.col(j)).norm() < same) return;
+    chosen.push_back(i);
+  };
+  const Eigen::Index corner =
+      farthest([&](Eigen::Index i) { return (p.col(i) - p.col(some.front())).norm(); });
+  const Eigen::Index other = farthest([&](Eigen::Index i) { return (p.col(i) - p.col(corner)).norm(); });
+  add(corner);
+  add(other);
+  const Vec3<double> along = (p.col(other) - p.col(corner)).normalized();
+  auto offset = [&](Eigen::Index i) -> Vec3<double> {
+    const Vec3<double> d = p.col(i) - p.col(corner);
+    return d - d.dot(along) * along;
+  };
+  const Eigen::Index side = farthest([&](Eigen::Index i) { return offset(i).norm(); });
+  const Vec3<double> across = offset(side);
+  if (across.norm() < same) return chosen;
+  add(side);
+  add(farthest([&](Eigen::Index i) { return -offset(i).dot(across) / across.norm(); }));
+  return chosen;
+}
+
+}  // namespace
+
+CollisionSurface::CollisionSurface(const Part& part)
+    : part_(&part), spacing_(0.5 * kPi / kSurfaceResolution) {
+  if (const std::optional<Vec3<double>> axes = semi_axes(part.parameters().rest()))
+    thickness_ = 2 * axes->minCoeff();
+  else
+    thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
+}
+
+const CollisionSurface::Laid& CollisionSurface::laid() const {
+  if (!laid_) {
+    Surface surface(*part_, kSurfaceResolution);
+    Eigen::Matrix3Xd p = part_->s(surface.material(), part_->parameters().rest());
+    const double sag = kSurfaceSag * part_->size();
+    const Eigen::AlignedBox3d box(p.rowwise().minCoeff().array() - sag, p.rowwise().maxCoeff().array() + sag);
+    const double reach = (1 + kSurfaceSag) * p.colwise().norm().maxCoeff();
+    std::vector<Material<double>> few;
+    if (part_->parameters().n_dynamic() > 0) few = Surface(*part_, kFewEdges).material();
+    laid_.emplace(Laid{std::move(surface), std::move(p), box, reach, std::move(few)});
+  }
+  return *laid_;
+}
+
+std::optional<Vec3<double>> CollisionSurface::semi_axes(const ParameterValues<double>& values) const {
+  if (!part_->parameters().links().empty()) return std::nullopt;
+  return part_->shape().semi_axes(values.b.data());
+}
+
+std::optional<Vec3<double>> CollisionSurface::half_sizes(const ParameterValues<double>& values) const {
+  if (!part_->parameters().links().empty()) return std::nullopt;
+  return part_->shape().half_sizes(values.b.data());
+}
+
+CollisionSurface::LowPoint CollisionSurface::ellipsoid_point(const ParameterValues<double>& values,
+                                                             const Vec3<double>& axes,
+                                                             const Vec3<double>& y) const {
+  return {part_->shape().mesh_label(y, values.b.data()), axes.cwiseProduct(y), 0};
+}
+
+double CollisionSurface::reach(const ParameterValues<double>& values) const {
+  if (const std::optional<Vec3<double>> axes = semi_axes(values)) return axes->maxCoeff();
+  if (part_->parameters().n_dynamic() == 0) return laid().reach;
+  return kBeyondFew * part_->s(laid().few, values).colwise().norm().maxCoeff();
+}
+
+CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
+                                                     const Field& field) const {
+  // A stencil of three by three places about the best so far; quadratics through its heights tell the next.
+  const Chart chart(laid().surface.places()[static_cast<std::size_t>(i)],
+                    part_->shape().mesh() == MeshPattern::ball);
+  auto material = [&](const Vec3<double>& place) {
+    return part_->shape().mesh_label(place, values.b.data());
+  };
+  Eigen::Vector2d at(0, 0);
+  LowPoint best;
+  std::vector<Material<double>> stencil(9);
+  auto lay = [&](double size) {
+    const Stencil places = chart.stencil(at, size);
+    for (std::size_t j = 0; j < 9; ++j) stencil[j] = material(places[j]);
+    return part_->s(stencil, values);
+  };
+  using Heights = Vec<double, 9>;
+  auto heights = [&](const Eigen::Matrix3Xd& p) {
+    Heights h;
+    for (int k = 0; k < 9; ++k) h[k] = field.descent(p.col(k));
+    return h;
+  };
+  const double rounding = kRounding * part_->size();
+  const Eigen::Vector2d farthest = spacing_ * chart.farthest();
+  double radius = 0.5 * spacing_;
+  // Corners, edges and faces have their lowest points among those of the mesh.
+  auto is_lowest = [&] {
+    const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
+    const Heights h = heights(p);
+    best = {stencil[4], p.col(4), h[4]};
+    return h.minCoeff() >= h[4] - rounding;
+  };
+  if (is_lowest()) return best;
+  std::vector<Material<double>> next_materials;
+  for (int k = 0; k < kMostHalvings && radius > kSmallest * spacing_; ++k) {
+    const Eigen::Matrix3Xd p = lay(radius);
+    const Heights h = heights(p);
+    Eigen::Vector2d next = at;
+    bool good = false;
+    auto take = [&](const Material<double>& m, const Vec3<double>& p_there, double height,
+                    const Eigen::Vector2d& there) {
+      best = {m, p_there, height};
+      next = there;
+    };
+    Eigen::Index lowest = 4;
+    h.minCoeff(&lowest);
+    if (h[lowest] < best.height - rounding)
+      take(stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest],
+           at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
+                                         static_cast<double>(lowest / 3) - 1));
+    const std::vector<Eigen::Vector2d> steps = steps_to_lowest(h, kFlat * part_->size());
+    if (steps.empty() && next == at) break;
+    next_materials.clear();
+    for (const Eigen::Vector2d& step : steps)
+      next_materials.push_back(material(chart.place(at + radius * step)));
+    const Eigen::Matrix3Xd p_next = part_->s(next_materials, values);
+    for (std::size_t j = 0; j < steps.size(); ++j) {
+      const auto column = static_cast<Eigen::Index>(j);
+      const double height = field.descent(p_next.col(column));
+      if (height > best.height + rounding) continue;
+      take(next_materials[j], p_next.col(column), height, at + radius * steps[j]);
+      good = steps[j].lpNorm<Eigen::Infinity>() < 0.5;
+    }
+    next = next.cwiseMax(-farthest).cwiseMin(farthest);
+    const Eigen::Array2d spacings = at / spacing_;
+    if (next == at && (spacings == spacings.round()).all() && is_lowest()) return best;
+    const bool stays = (next - at).norm() <= 0.5 * radius;
+    at = next;
+    if (good)
+      radius *= 0.1;
+    else if (stays)
+      radius *= 0.4;
+  }
+  return best;
+}
+
+std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const ParameterValues<double>& values,
+                                                                     const Eigen::Matrix3Xd& p,
+                                                                     const VecX<double>& heights, double most,
+                                                                     const Field& field) const {
+  const double size = part_->size(), lowest = heights.minCoeff();
+  std::vector<LowPoint> found;
+  if (lowest > most + kThinSag * size) return found;
+  auto within = [&](double band) {
+    std::vector<Eigen::Index> some;
+    for (Eigen::Index i = 0; i < heights.size(); ++i)
+      if (heights[i] <= lowest + band) some.push_back(i);
+    return some;
+  };
+  auto add = [&](const LowPoint& point) {
+    for (LowPoint& other : found)
+      if ((other.p - point.p).norm() < kSamePlace * size) {
+        if (point.height < other.height) other = point;
+        return;
+      }
+    found.push_back(point);
+  };
+  std::vector<Eigen::Index> seeds;
+  for (const double band : {kSameHeight * size, kSurfaceSag * size})
+    for (const Eigen::Index i : outermost(p, within(band), kSamePlace * size))
+      if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
+  // On a face the way down would lead to one side of it: what it rests on is its corners, as far as they lie
+  // low enough.
+  auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
+    return (a - b).norm() >= kSamePlace * size &&
+           thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlatChord * size;
+  };
+  LowPoint deepest;
+  deepest.height = most + size;
+  for (const Eigen::Index i : seeds) {
+    LowPoint point = descend(values, i, field);
+    point.height = field.height(point.p);
+    if (point.height < deepest.height) deepest = point;
+    if (!(heights[i] > most) && on_one_face(p.col(i), point.p))
+      point = {
+          part_->shape().mesh_label(laid().surface.places()[static_cast<std::size_t>(i)], values.b.data()),
+          p.col(i), heights[i]};
+    add(point);
+  }
+  if (!found.empty()) add(deepest);
+  found.erase(std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > most; }),
+              found.end());
+  return found;
+}
+
+}  // namespace pliant

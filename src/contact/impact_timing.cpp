@@ -1,0 +1,157 @@
+#include <pliant/contact/impact_timing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace {
+
+/// An impact is told in time when the gap is this small, in sizes, or the time known to this part of the
+/// step.
+constexpr double kGap = 1e-13, kTime = 1e-15;
+constexpr int kMostTrials = 60;
+/// Sides are apart whose gap is more than this, in sizes: clear of what counts as an impact.
+constexpr double kApart = 100 * kGap;
+/// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
+constexpr int kMostHalvings = 20;
+/// The path between the ends of the step is followed to this part of the step.
+constexpr double kOfPath = 1e-9;
+/// Rates are of gaps at times that are as far apart, in steps; of nearer ones they are rounding.
+constexpr double kForRate = 1e-6;
+/// Secants that have not led there in so many trials leave it to the bracket.
+constexpr int kMostSecants = 8;
+
+/// Times between which sides meet, with their gaps: above zero at the lower one, at or below at the higher.
+struct Bracket {
+  double low, f_low, high, f_high;
+  int side = 0;  ///< that the last trial was on
+
+  /// Where they would meet if the gap went straight, one that stays being halved (Dowell and Jarratt 1971).
+  double guess() const {
+    const double tau = low + f_low * (high - low) / (f_low - f_high);
+    return tau > low && tau < high ? tau : 0.5 * (low + high);
+  }
+  void narrow(double tau, double f) {
+    const int now = f > 0 ? 1 : -1;
+    if (now > 0) {
+      low = tau;
+      f_low = f;
+      if (side == now) f_high *= 0.5;
+    } else {
+      high = tau;
+      f_high = f;
+      if (side == now) f_low *= 0.5;
+    }
+    side = now;
+  }
+};
+
+/// When sides meet on a path, and how fast their gap opens then (below zero); h: of the step.
+template <class Gap>
+std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
+  double tau = meets.guess(), speed = (meets.f_high - meets.f_low) / (meets.high - meets.low);
+  double f = gap(tau);
+  for (int i = 0; i < kMostTrials; ++i) {
+    meets.narrow(tau, f);
+    const double last = tau, f_last = f;
+    tau = meets.guess();
+    if (tau == last) break;
+    f = gap(tau);
+    if (std::abs(tau - last) > kForRate * h) speed = (f - f_last) / (tau - last);
+    if (std::abs(tau - last) <= kOfPath * h) break;
+  }
+  return {tau, speed};
+}
+
+}  // namespace
+
+std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinder& finder, Integrator& method,
+                                    const State& before, double t, double h,
+                                    const std::vector<Contact>& impacts, State& state,
+                                    Workspace<double>& work, StepCounters& counters) {
+  double size = std::numeric_limits<double>::infinity(), largest = 0;
+  for (const Contact& contact : impacts) {
+    size = std::min(size, smaller_size(dynamics.model(), contact));
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      if (side->part >= 0) largest = std::max(largest, dynamics.model().parts()[at(side->part)].part->size());
+  }
+  auto least_gap = [&](const State& of, double at_time) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : impacts)
+      least = std::min(least, finder.least_gap(of, at_time, contact, 4 * largest));
+    return least;
+  };
+  const StepPath path = method.path(dynamics, before, h, state, counters);
+  double reached = h;  // how far into the step the state is
+  auto go_to = [&](double tau) {
+    if (tau == reached) return;
+    state = before;
+    set_step(state, t, tau);
+    method.step(dynamics, state, work, counters);
+    reached = tau;
+  };
+  auto gap_at = [&](double tau) {
+    go_to(tau);
+    return least_gap(state, t + tau);
+  };
+  const double f_start = least_gap(before, t);
+  Bracket meets{0, f_start, h, gap_at(h)};
+  // Those that part from a touch were apart after some part of the step, if not at its start.
+  if (!(f_start > kApart * size)) meets.f_low = 0;
+  for (int i = 0; i < (f_start > 0 ? kMostTrials : kMostHalvings) && !(meets.f_low > 0); ++i) {
+    const double tau = 0.5 * meets.high, f = gap_at(tau);
+    if (f > 0) {
+      meets.low = tau;
+      meets.f_low = f;
+    } else {
+      meets.high = tau;
+      meets.f_high = f;
+    }
+  }
+  if (!(meets.f_low > 0)) {
+    go_to(h);
+    return std::nullopt;
+  }
+  // The path between the ends of the step tells nearly when and how fast, steps then exactly when.
+  auto [tau, speed] = on_path(meets, h, [&, there = before](double into) mutable {
+    path.at(into / h, there.q);
+    return least_gap(there, t + into);
+  });
+  double last = 0, f_last = 0;
+  for (int i = 0;
+       i < kMostTrials && meets.high - meets.low > kTime * h && !(std::abs(meets.f_high) <= kGap * size);
+       ++i) {
+    const double f = gap_at(tau);
+    if (std::abs(f) <= kGap * size) return tau;
+    if (i > 0) speed = (f - f_last) / (tau - last);
+    meets.narrow(tau, f);
+    last = tau;
+    f_last = f;
+    tau -= f / speed;
+    if (i >= kMostSecants || !(tau > meets.low && tau < meets.high)) tau = meets.guess();
+  }
+  go_to(meets.high);
+  return meets.high;
+}
+
+void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
+                  std::vector<Contact>& contacts) {
+  for (Contact& contact : contacts) {
+    if (contact.since > 0) continue;
+    const double u = finder.velocity(state, contact).dot(contact.normal);
+    contact.since = u < 0 && contact.gap < 0 ? std::min(motion.h, contact.gap / u) : motion.held();
+    const double u_start = finder.velocity(motion.before, contact).dot(contact.normal);
+    if (!(u < 0 && contact.gap < 0 && u_start < -motion.slow)) continue;
+    // What pushes the sides together has done so since then too.
+    const double gained = (u - u_start) / motion.h * contact.since, approach = gained - u;
+    if (contact.restitution * approach > motion.slow)
+      contact.rebound = std::max(0.0, contact.restitution * approach + gained);
+  }
+}
+
+}  // namespace pliant

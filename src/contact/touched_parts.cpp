@@ -1,0 +1,124 @@
+#include "touched_parts.h"
+
+#include <algorithm>
+
+#include <pliant/body/advance.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace {
+
+/// In order, each once.
+void keep_once(std::vector<int>& numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
+
+/// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
+template <class F>
+void for_each_part(const std::vector<Mover>& movers, F&& act) {
+  for (const Mover& mover : movers) {
+    if (mover.node >= 0) continue;
+    if (mover.island == nullptr) {
+      act(mover, mover.part, 0);
+      continue;
+    }
+    for (std::size_t i = 0; i < mover.island->parts.size(); ++i)
+      act(mover, mover.island->parts[i], mover.island->first[i]);
+  }
+  for (const Mover& mover : movers)
+    if (mover.node >= 0) act(mover, mover.part, 0);
+}
+
+/// Adds to the displacements, or rates, of a node.
+void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Eigen::Ref<VecX<double>> q_d) {
+  const Eigen::Index n = model.parts()[at(mover.part)].local->mesh().X.rows();
+  for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
+}
+
+/// Gives a part that is moved in all its local coordinates velocities, and moves it. x, shift: of its mover,
+/// in which its v_r begins at `first` and its local coordinates at `local`.
+void move_locally(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& x,
+                  const VecX<double>& shift, int first, int local, State& state) {
+  const Eigen::Index n_r = 6 + m.n_s;
+  share_of(m, state.v) = world_velocity(w, x.segment(first, n_r));
+  state.v.segment(m.v0 + n_r, m.n_d()) = x.segment(local, m.n_d());
+  advance_part(m, state.q, world_velocity(w, shift.segment(first, n_r)), 1);
+  state.q.segment(m.q0 + 1 + n_r, m.n_d()) += shift.segment(local, m.n_d());
+}
+
+}  // namespace
+
+std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts) {
+  std::vector<int> touched;
+  std::vector<bool> islands(model.islands().size(), false);
+  for (const Contact& contact : contacts)
+    for (const int part : {contact.a.part, contact.b.part}) {
+      if (part < 0 || model.parts()[at(part)].q0 < 0) continue;
+      const int island = model.parts()[at(part)].island;
+      if (island < 0) {
+        touched.push_back(part);
+      } else if (!islands[at(island)]) {
+        islands[at(island)] = true;
+        const std::vector<int>& parts = model.islands()[at(island)].parts;
+        touched.insert(touched.end(), parts.begin(), parts.end());
+      }
+    }
+  keep_once(touched);
+  return touched;
+}
+
+bool are_driven(const Model& model, const std::vector<int>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](int part) {
+    const int island = model.parts()[at(part)].island;
+    if (island < 0) return false;
+    const std::vector<int>& joints = model.islands()[at(island)].joints;
+    return std::any_of(joints.begin(), joints.end(), [&](int j) { return model.joints()[at(j)].driven; });
+  });
+}
+
+void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
+                      const std::vector<Contact>& contacts, Workspace<double>& work) {
+  const Model& model = dynamics.model();
+  std::vector<int> alone, islands, at_once;
+  for (const Contact& contact : contacts)
+    for (const ContactSide& side : {contact.a, contact.b}) {
+      if (side.part < 0) continue;
+      const PartModel& m = model.parts()[at(side.part)];
+      if (m.q0 < 0 || (side.at_nodes() && moves_by_nodes(m, work.parts[at(side.part)]))) continue;
+      if (m.island < 0)
+        alone.push_back(side.part);
+      else
+        islands.push_back(m.island);
+      if (m.island < 0 && moves_by_nodes(m, work.parts[at(side.part)])) at_once.push_back(side.part);
+    }
+  for (std::vector<int>* numbers : {&alone, &islands, &at_once}) keep_once(*numbers);
+  dynamics.evaluate_masses(state.q, state.v, alone, work);
+  for (const int i : at_once)
+    model.parts()[at(i)].local->compliance(model.parts()[at(i)].shared, *work.parts[at(i)].local);
+  for (const int i : islands)
+    dynamics.factor_joints(t, state.q, state.v, state.joints, model.islands()[at(i)], work);
+}
+
+void move_by(const ContactProblem& problem, const Model& model, const Workspace<double>& work, State& state) {
+  for_each_part(problem.movers().all(), [&](const Mover& mover, int part, int first) {
+    const PartModel& m = model.parts()[at(part)];
+    if (problem.movers().n_local(part) > 0)
+      return move_locally(m, work.parts[at(part)], problem.after(mover), problem.shift(mover), first,
+                          problem.movers().first_local(mover, part), state);
+    if (mover.node < 0) {
+      scatter_velocity(m, work.parts[at(part)], problem.after(mover).segment(first, m.n_x()), state.v);
+      return advance_with(m, work.parts[at(part)], problem.shift(mover).segment(first, m.n_x()), 1, state.q);
+    }
+    const Eigen::Quaterniond to_body = model.orientation(state, part).conjugate();
+    const Vec3<double> shift = to_body * problem.shift(mover).head<3>(),
+                       change = to_body * (problem.after(mover) - problem.before(mover)).head<3>(),
+                       omega = state.v.segment<3>(m.v0 + 3);
+    move_node(model, mover, shift, state.q.segment(m.q0 + 7 + m.n_s, m.n_d()));
+    // Its velocity is omega x p + d_dot, and p has moved.
+    move_node(model, mover, change - omega.cross(shift), state.v.segment(m.v0 + 6 + m.n_s, m.n_d()));
+  });
+}
+
+}  // namespace pliant

@@ -1,0 +1,124 @@
+#include <pliant/io/run/estimate_error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include <pliant/contact/longest_contact_step.h>
+#include <pliant/method/error_scale.h>
+#include <pliant/simulate/simulation.h>
+
+namespace pliant {
+
+namespace {
+
+constexpr double kTighter = 10;
+
+/// What is no number stays.
+void raise(double& most, double value) {
+  if (!(value <= most) && !std::isnan(most)) most = value;
+}
+
+void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {
+  for (const PartModel& m : model.parts()) {
+    if (m.q0 < 0) continue;
+    const VecX<double> q = a.q - b.q, v = a.v - b.v;
+    raise(error.place, q.segment<3>(m.q0).norm());
+    raise(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
+    raise(error.velocity, v.segment<3>(m.v0).norm());
+    raise(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
+    for (int k = 0; k < m.n_s; ++k) {
+      const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+      raise(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
+    }
+    if (m.n_d() > 0)
+      raise(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
+  }
+}
+
+/// Forces of joints, as evaluations at both states left them, and how far those that hold are open.
+void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<double>& work_a, const State& b,
+                    const Workspace<double>& work_b, ErrorEstimate& error) {
+  const Model& model = dynamics.model();
+  for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
+    const auto k = static_cast<std::size_t>(j);
+    if (a.joints[k] == JointMode::closed) raise(error.gap, model.gap(a, j));
+    if (a.joints[k] != b.joints[k]) continue;
+    const Wrench one = dynamics.joint_wrench(a.time(), j, work_a),
+                 other = dynamics.joint_wrench(b.time(), j, work_b);
+    raise(error.joint_force, (one.force - other.force).norm());
+    raise(error.joint_torque, (one.torque - other.torque).norm());
+  }
+}
+
+/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled
+/// are half as long as those to another.
+class HalfStepsInContact {
+ public:
+  HalfStepsInContact(ContactSettings& settings, double tolerance, double of)
+      : settings_(settings), longest_(settings.longest_step) {
+    const double half = longest_contact_step(settings, of) / 2;
+    settings_.longest_step = half * longest_ / longest_contact_step(settings, tolerance);
+  }
+  ~HalfStepsInContact() { settings_.longest_step = longest_; }
+  HalfStepsInContact(const HalfStepsInContact&) = delete;
+  HalfStepsInContact& operator=(const HalfStepsInContact&) = delete;
+
+ private:
+  ContactSettings& settings_;
+  double longest_;
+};
+
+/// On to a time, in steps of one length as near to `step` as lets it be met; to a tolerance in two at least,
+/// for the same step as that of the run would tell nothing.
+void go_to(Simulation& simulation, double until, double step) {
+  const double now = simulation.time();
+  if (!(until > now)) return;
+  if (simulation.tolerance() > 0) {
+    for (const double target : {0.5 * (now + until), until})
+      while (simulation.time() < target) simulation.step_up_to(target);
+    return;
+  }
+  const double steps = std::max(1.0, std::round((until - now) / step));
+  for (double i = 0; i < steps; ++i) simulation.step((until - now) / steps);
+}
+
+}  // namespace
+
+void require_better_run(const Scene& scene) {
+  if (!(scene.tolerance > 0) || scene.tolerance > kLeastTolerance) return;
+  std::ostringstream message;
+  message << "no run is better than one to a tolerance of " << scene.tolerance
+          << ": its error cannot be estimated";
+  throw std::invalid_argument(message.str());
+}
+
+ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
+                             int threads, Progress& progress) {
+  require_better_run(scene);
+  ErrorEstimate error;
+  error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
+  error.step = scene.tolerance > 0 ? 0 : step / 2;
+  // Where many bodies lie on each other the tolerance says nothing: half the step does.
+  const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
+  Simulation simulation(scene.body, integrator, threads, error.tolerance);
+  const Dynamics& dynamics = simulation.dynamics();
+  Workspace<double> of_run, of_better;
+  const double end = run.rows() > 0 ? run.time(run.rows() - 1) : 0;
+  progress.begin("estimate error", end, "s");
+  for (std::int64_t row = 0; row < run.rows(); ++row) {
+    const State recorded = run.state(row);
+    go_to(simulation, recorded.time(), error.step);
+    const State& better = simulation.state();
+    compare(simulation.model(), recorded, better, error);
+    raise(error.energy,
+          std::abs(dynamics.ledger(recorded, of_run).energy() - dynamics.ledger(better, of_better).energy()));
+    compare_joints(dynamics, recorded, of_run, better, of_better, error);
+    progress.advance(recorded.time());
+  }
+  progress.end();
+  return error;
+}
+
+}  // namespace pliant

@@ -1,0 +1,445 @@
+#include <pliant/io/run/run.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <pliant/contact/longest_contact_step.h>
+#include <pliant/io/format/number_text.h>
+#include <pliant/io/format/ply.h>
+#include <pliant/io/format/whole_file.h>
+#include <pliant/io/run/contact_notes.h>
+#include <pliant/io/run/joint_notes.h>
+#include <pliant/io/run/run_files.h>
+#include <pliant/io/run/skipped.h>
+#include <pliant/io/trajectory.h>
+#include <pliant/part/mesh/surface_turn.h>
+#include <pliant/simulate/stable_step.h>
+
+namespace pliant {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kFlushEvery{250};
+constexpr std::size_t kFlushBytes = std::size_t{1} << 22;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+template <class Value>
+void require_same(const char* what, const Value& recorded, const Value& now, const std::string& hint = "") {
+  if (recorded == now) return;
+  std::string message = std::string("the run cannot be gone on with: ") + what + " was ";
+  if constexpr (std::is_arithmetic_v<Value>)
+    message += number_text(recorded) + " and is now " + number_text(now);
+  else
+    message += recorded + " and is now " + now;
+  throw RecordingMismatch(message + hint);
+}
+
+// The simulation of a scene whose settings are as they should be.
+std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
+  if (scene.appearance.size() != scene.body.parts().size())
+    throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) +
+                                " parts, but tells the looks of " + std::to_string(scene.appearance.size()));
+  if (scene.obstacles.size() != scene.body.contact.obstacles.size())
+    throw std::invalid_argument("the scene has " + std::to_string(scene.body.contact.obstacles.size()) +
+                                " obstacles, but tells the looks of " +
+                                std::to_string(scene.obstacles.size()));
+  for (const Track& track : scene.tracks)
+    if (track.point.part == nullptr)
+      throw std::invalid_argument("track '" + track.name + "' follows no part");
+  return std::make_unique<Simulation>(scene.body, scene.integrator, threads, scene.tolerance);
+}
+
+}  // namespace
+
+int automatic_threads(Scene& scene) {
+  // Microseconds of an evaluation at the least, as bench/step_bench measures them: of a part, and of each of
+  // its mass points for each parameter, and of a point whose strain is needed. Sending work to the pool and
+  // waiting for it takes about 10.
+  constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
+  double cost = 0;
+  for (const auto& part : scene.body.parts()) {
+    if (part->fixed()) continue;
+    part->prepare();
+    cost += part_alone + point_and_parameter * part->mass_points().n_points * part->n_s();
+    if (part->continuum() != nullptr) cost += strain_point * part->continuum()->points().n_points;
+    if (part->local() != nullptr) cost += part->local()->cost();
+  }
+  const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);
+}
+
+FrameSchedule schedule_of(const Scene& scene) {
+  return scene.tolerance > 0 ? FrameSchedule::with_free_steps(scene.end, scene.frame_rate)
+                             : FrameSchedule(scene.end, scene.step, scene.frame_rate);
+}
+
+Run::Run(Scene& scene, RunOptions options, Progress& progress)
+    : scene_(&scene), options_(std::move(options)), progress_(&progress), schedule_(schedule_of(scene)) {
+  const Clock::time_point start = Clock::now();
+  if (options_.threads <= 0) options_.threads = automatic_threads(scene);
+  simulation_ = prepare(scene, options_.threads);
+  const StableStep stable = stable_step(*simulation_);
+  const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
+  folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
+  if (options_.existing == Existing::resume)
+    begin_again();
+  else
+    start_cold();
+  record_.status = RunRecord::Status::running;
+  record_.message.clear();
+  record_.command = options_.command;
+  record_.scene = scene.name;
+  record_.scene_file = options_.scene_file;
+  record_.overrides = scene.overrides;
+  record_.end = scene.end;
+  record_.threads = options_.threads;
+  if (!options_.graphics.empty()) record_.graphics = options_.graphics;
+  record_.width = scene.width;
+  record_.height = scene.height;
+  record_.steps = schedule_.steps();
+  record_.stable_step = stable.step;
+  record_.joint_solver = solver_note(simulation_->model());
+  record_.skipped = skipped_work(simulation_->model());
+  record_.add_seconds("prepare", seconds_since(start));
+  if (scene.tolerance == 0 && schedule_.step() > stable.step) {
+    note("warning: the step of " + number_text(schedule_.step()) +
+         " s is above the largest stable one, about " + rounded_text(stable.step) + " s, set by " +
+         stable.limit);
+  }
+  if (!simulation_->choice().integrator.empty())
+    note("integrator " + simulation_->choice().integrator + ": " + simulation_->choice().why);
+  const AssemblyReport& assembly = simulation_->assembly();
+  if (assembly.iterations > 0)
+    note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
+         count_text(assembly.iterations, "iteration") +
+         (assembly.converged ? "" : ", the most that are taken; the shapes have not settled"));
+  note_redundancy();
+  write_layout(folder_->path(), simulation_->model(), schedule_,
+               TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
+  for (const char* file :
+       {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
+    if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
+  if (simulation_->model().body().contact.active) record_.add_file(kContactCacheFile);
+  if (scene.contacts)
+    for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
+  save(true);
+}
+
+Run::~Run() = default;
+
+void Run::start_cold() {
+  record_.build = build_info();
+  record_.scene_hash = scene_->hash;
+  record_.asked_step = scene_->tolerance > 0 ? 0 : scene_->step;
+  record_.tolerance = scene_->tolerance;
+  record_.step = schedule_.step();
+  record_.frame_rate = scene_->frame_rate;
+  record_.integrator = simulation_->integrator().name();
+  record_.asked_integrator = scene_->integrator;
+  if (schedule_.step() != record_.asked_step) {
+    note("the end " + number_text(scene_->end) + " s is no multiple of the step " +
+         number_text(scene_->step) + " s: steps of " + number_text(schedule_.step()) + " s are taken");
+  }
+  write_run_record(*folder_ / kRunFile, record_);  // from here on the folder is known as a run's
+  if (!scene_->document.empty())
+    write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
+  for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
+    const MeshFile& mesh = scene_->obstacles[i].mesh;
+    if (mesh.triangles.cols() == 0) continue;
+    const std::string& name = scene_->body.contact.obstacles[i].name;
+    const std::string file = recorded_mesh_name(name);
+    write_ply(folder_->path() / file,
+              {{name, scene_->obstacles[i].color, node_mesh(mesh.triangles, mesh.vertices)}});
+    record_.add_file(file);
+  }
+  writer_ = std::make_unique<RecordingWriter>(RecordingWriter::create(folder_->path(), simulation_->model()));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(ContactRecordingWriter::create(folder_->path()));
+  record_state();
+  flush();
+}
+
+void Run::begin_again() {
+  record_ = read_run_record(*folder_ / kRunFile);
+  for (const auto& [name, value] : build_info()) {
+    const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
+                                       [&key = name](const auto& entry) { return entry.first == key; });
+    require_same(("its program's " + name).c_str(),
+                 recorded == record_.build.end() ? "unknown" : recorded->second, value,
+                 "; only the same build gives the same numbers");
+  }
+  if (record_.scene_hash != scene_->hash)
+    throw RecordingMismatch(
+        "the run cannot be gone on with: the scene or its --set values are not those it began with");
+  require_same("the integrator", record_.asked_integrator, scene_->integrator);
+  require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
+  require_same("the tolerance", record_.tolerance, scene_->tolerance);
+  if (scene_->tolerance == 0) {
+    require_same("the step", record_.asked_step, scene_->step);
+    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  }
+  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
+    note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " +
+         number_text(record_.step) + " s: it goes on to " + number_text(schedule_.end()) + " s");
+  }
+
+  const Recording recorded = recording();
+  std::int64_t keep = recorded.rows();
+  // A step that was cut short by the end is taken again when that is no longer there.
+  if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
+      scene_->end > record_.end)
+    --keep;
+  if (keep > 0) {
+    State last = recorded.state(keep - 1);
+    if (last.time() > schedule_.end() * (1 + 1e-9))
+      throw RecordingMismatch("the run is at t = " + number_text(last.time()) +
+                              " s already, beyond the end of " + number_text(scene_->end) + " s");
+    // A state recorded only because the run ended there is not in the recording of an unbroken run.
+    const bool in_unbroken =
+        scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
+                              : schedule_.records(last.step);
+    if (in_unbroken)
+      recorded_time_ = last.time();
+    else
+      --keep;
+    simulation_->set_state(std::move(last));
+  }
+  writer_ =
+      std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
+  if (scene_->contacts)
+    contacts_ = std::make_unique<ContactRecordingWriter>(
+        ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
+  if (keep == 0 && simulation_->time() == 0) record_state();
+  counted_steps_ = record_.step_counters;
+  counted_work_ = record_.counters;
+  ++record_.resumed;
+}
+
+void Run::note(const std::string& text) {
+  if (std::find(record_.notes.begin(), record_.notes.end(), text) == record_.notes.end())
+    record_.notes.push_back(text);
+  progress_->note(text);
+}
+
+/// Tells of rows that depend on others when other joints act than were told of last.
+void Run::note_redundancy() {
+  std::vector<bool> acting;
+  for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
+  if (acting == told_acting_) return;
+  told_acting_ = std::move(acting);
+  for (const std::string& text : redundancy_notes(*simulation_))
+    if (told_redundant_.insert(text).second) note(text);
+}
+
+void Run::note_holds() {
+  for (const std::string& text : hold_notes(*simulation_, told_holds_)) note(text);
+  told_holds_ = simulation_->engage_impulses().size();
+}
+
+/// Tells of each part once whose parameters turn it so far that elasticity linear in d is no longer what it
+/// was at rest.
+void Run::note_turns() {
+  for (const PartModel& m : simulation_->model().parts()) {
+    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || told_turned_.count(m.part->name()) > 0) continue;
+    const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
+    if (!(turn > kMostLinearTurn)) continue;
+    told_turned_.insert(m.part->name());
+    note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
+         m.part->name() + "' turn some of its surface by " + rounded_text(turn) +
+         " rad; local elasticity that is linear in the displacements means something else there than at "
+         "rest beyond " +
+         rounded_text(kMostLinearTurn) +
+         " rad; laws of the whole map (neo_hookean, st_venant_kirchhoff, corotated, neo_hookean_membrane, "
+         "st_venant_kirchhoff_membrane) bear any turn");
+  }
+}
+
+void Run::record_state() {
+  if (simulation_->time() == recorded_time_) return;
+  recorded_time_ = simulation_->time();
+  writer_->append(simulation_->state());
+  if (contacts_) contacts_->append(*simulation_);
+  const Ledger ledger = simulation_->ledger();
+  const Gaps gaps = widest_gaps(*simulation_);
+  record_.max_gap = std::max(record_.max_gap, gaps.closed);
+  record_.open_gap = gaps.open;
+  const double depth = deepest_share(*simulation_);
+  record_.max_depth = std::max(record_.max_depth, depth);
+  if (depth > kToldOverlap)
+    for (const std::string& text : overlap_notes(*simulation_, told_overlaps_)) note(text);
+  note_redundancy();
+  note_holds();
+  note_turns();
+  record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
+  record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
+  record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
+}
+
+/// What touched comes first: every recorded state has it then, whenever the process is killed.
+void Run::flush(bool to_disk) {
+  if (contacts_) contacts_->flush(to_disk);
+  writer_->flush(to_disk);
+}
+
+void Run::write_tables() {
+  write_trajectory(*folder_ / kTrajectoryFile, *scene_, *simulation_, recording());
+  record_.add_file(kTrajectoryFile);
+  if (!contacts_) return;
+  write_contact_tables(folder_->path(), simulation_->model());
+  for (const char* file : {kContactsTable, kJointImpulsesTable}) record_.add_file(file);
+}
+
+void Run::save(bool to_disk) {
+  flush(to_disk);
+  record_.time = simulation_->time();
+  record_.states = writer_->rows();
+  write_record();
+}
+
+void Run::write_record() {
+  const StepCounters& session = simulation_->step_counters();
+  record_.step_counters.steps = counted_steps_.steps + session.steps;
+  record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
+  record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
+  record_.step_counters.rejected = counted_steps_.rejected + session.rejected;
+  record_.step_counters.uncontrolled = counted_steps_.uncontrolled + session.uncontrolled;
+  record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
+  record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
+  record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
+  record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
+  record_.step_counters.contact_fallbacks = counted_steps_.contact_fallbacks + session.contact_fallbacks;
+  record_.step_counters.contact_cutoffs = counted_steps_.contact_cutoffs + session.contact_cutoffs;
+  record_.step_counters.contact_residual =
+      std::max(counted_steps_.contact_residual, session.contact_residual);
+  record_.counters = counted_work_;
+  record_.counters += simulation_->counters();
+  const std::vector<double>& rested = simulation_->state().at_rest;
+  record_.asleep =
+      static_cast<int>(std::count_if(rested.begin(), rested.end(), [](double time) { return time < 0; }));
+  for (const std::string& held : simulation_->held())
+    if (std::find(record_.held.begin(), record_.held.end(), held) == record_.held.end())
+      record_.held.push_back(held);
+  write_run_record(*folder_ / kRunFile, record_);
+  saved_ = Clock::now();
+}
+
+bool Run::at_end() const {
+  return scene_->tolerance > 0 ? simulation_->time() >= schedule_.end()
+                               : simulation_->state().step >= schedule_.steps();
+}
+
+/// Whether the state after it is one that is recorded.
+bool Run::take_step() {
+  if (scene_->tolerance == 0) {
+    simulation_->step(schedule_.step());
+    return schedule_.records(simulation_->state().step);
+  }
+  const double before = simulation_->time();
+  simulation_->step_up_to(schedule_.end());
+  return schedule_.records(before, simulation_->time(), simulation_->state().h);
+}
+
+void Run::step_to_end() {
+  if (at_end()) return;
+  Clock::time_point flushed = Clock::now();
+  const double first_time = simulation_->time();
+  progress_->begin("simulate", schedule_.end() - first_time, "s");
+  while (!at_end()) {
+    if (options_.stop && options_.stop()) {
+      stopped_ = true;
+      break;
+    }
+    const bool records = take_step();
+    progress_->advance(simulation_->time() - first_time);
+    if (!records) continue;
+    record_state();
+    const Clock::time_point now = Clock::now();
+    const std::size_t pending = writer_->pending_bytes() + (contacts_ ? contacts_->pending_bytes() : 0);
+    if (now - flushed < kFlushEvery && pending < kFlushBytes) continue;
+    flush();
+    flushed = now;
+    if (now - saved_ > 8 * kFlushEvery) save();
+  }
+  if (stopped_) record_state();
+  progress_->end();
+}
+
+bool Run::simulate() {
+  const Clock::time_point start = Clock::now();
+  try {
+    try {
+      step_to_end();
+    } catch (const StepFailure&) {
+      // The simulation holds the last good state: what led to the failure is in the recording.
+      record_state();
+      record_.add_seconds("simulate", seconds_since(start));
+      save(true);
+      write_tables();
+      throw;
+    }
+    record_.add_seconds("simulate", seconds_since(start));
+    save(true);
+    if (record_.step_counters.uncontrolled > 0)
+      note("many bodies, or soft ones, lay on each other in " +
+           count_text(record_.step_counters.uncontrolled, "step") +
+           ", whose error is not controlled; they are of at most " +
+           rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
+           " s, and --estimate-error tells it");
+    const std::string open = open_joints_note(*simulation_);
+    if (!open.empty()) note(open);
+    write("trajectory", {}, [&] { write_tables(); });
+  } catch (const std::exception& failure) {
+    fail(failure.what());
+    throw;
+  }
+  return !stopped_;
+}
+
+void Run::write(const std::string& stage, const std::vector<std::string>& files,
+                const std::function<void()>& task) {
+  const Clock::time_point start = Clock::now();
+  try {
+    task();
+  } catch (const Interrupted& interruption) {
+    finish(RunRecord::Status::stopped, stage + ": " + interruption.what());
+    throw;
+  } catch (const std::exception& failure) {
+    fail(stage + ": " + failure.what());
+    throw;
+  }
+  record_.add_seconds(stage, seconds_since(start));
+  for (const std::string& file : files) record_.add_file(file);
+  save();
+}
+
+const ErrorEstimate& Run::estimate_error() {
+  write("estimate error", {}, [&] {
+    record_.error = pliant::estimate_error(*scene_, simulation_->integrator().name(), schedule_.step(),
+                                           recording(), options_.threads, *progress_);
+  });
+  return *record_.error;
+}
+
+void Run::finish(RunRecord::Status status, const std::string& message) {
+  record_.status = status;
+  record_.message = message;
+  save(true);
+}
+
+void Run::fail(const std::string& message) noexcept {
+  try {
+    record_.status = RunRecord::Status::failed;
+    record_.message = message;
+    write_record();  // without the tables, which may be what failed
+  } catch (const std::exception&) {
+    // The first failure is the one that is reported.
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,226 @@
+#include <pliant/io/run/run_record.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include <pliant/io/format/whole_file.h>
+#include <pliant/io/recording.h>
+#include <pliant/scene/json/text_file.h>
+
+namespace pliant {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 4> kStatus{"running", "complete", "stopped", "failed"};
+
+// JSON knows no infinity: an absent bound is null.
+Json bound(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+// "[json.exception.parse_error.101] parse error ..." without its first word.
+std::string without_tag(const std::string& message) {
+  const std::size_t end = message.find("] ");
+  return end == std::string::npos ? message : message.substr(end + 2);
+}
+
+std::string hex(std::uint64_t hash) {
+  char text[20];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+template <class Value>
+Json pairs(const std::vector<std::pair<std::string, Value>>& list) {
+  Json object = Json::object();
+  for (const auto& [name, value] : list) object[name] = value;
+  return object;
+}
+
+template <class Value>
+std::vector<std::pair<std::string, Value>> read_pairs(const Json& object) {
+  std::vector<std::pair<std::string, Value>> list;
+  for (const auto& [name, value] : object.items()) list.emplace_back(name, value.template get<Value>());
+  return list;
+}
+
+}  // namespace
+
+void RunRecord::add_seconds(const std::string& stage, double amount) {
+  for (auto& [name, sum] : seconds)
+    if (name == stage) {
+      sum += amount;
+      return;
+    }
+  seconds.emplace_back(stage, amount);
+}
+
+void RunRecord::add_file(const std::string& name) {
+  if (std::find(files.begin(), files.end(), name) == files.end()) files.push_back(name);
+}
+
+void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
+  Json json;
+  json["format"] = "pliant run";
+  json["status"] = kStatus[static_cast<std::size_t>(r.status)];
+  json["message"] = r.message;
+  json["progress"] = {{"time", r.time},
+                      {"steps", r.steps},
+                      {"steps_done", r.steps_done},
+                      {"states", r.states},
+                      {"resumed", r.resumed}};
+  json["scene"] = {
+      {"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
+  json["options"] = {{"end", r.end},
+                     {"asked_step", r.asked_step},
+                     {"step", r.step},
+                     {"tolerance", r.tolerance},
+                     {"frame_rate", r.frame_rate},
+                     {"integrator", r.integrator},
+                     {"asked_integrator", r.asked_integrator},
+                     {"joint_solver", r.joint_solver},
+                     {"threads", r.threads},
+                     {"width", r.width},
+                     {"height", r.height},
+                     {"graphics", r.graphics},
+                     {"command", r.command}};
+  json["build"] = pairs(r.build);
+  json["wall_seconds"] = pairs(r.seconds);
+  json["work"] = {{"steps", r.step_counters.steps},
+                  {"evaluations", r.step_counters.evaluations},
+                  {"rejected", r.step_counters.rejected},
+                  {"uncontrolled", r.step_counters.uncontrolled},
+                  {"limit_impulses", r.step_counters.limit_impulses},
+                  {"factorisations", r.step_counters.factorisations},
+                  {"impacts", r.step_counters.impacts},
+                  {"contact_sweeps", r.step_counters.contact_sweeps},
+                  {"contact_fallbacks", r.step_counters.contact_fallbacks},
+                  {"contact_cutoffs", r.step_counters.contact_cutoffs},
+                  {"jacobian_points", r.counters.jacobian_points},
+                  {"rate_points", r.counters.rate_points},
+                  {"mass_matrices", r.counters.mass_matrices},
+                  {"inertial_forces", r.counters.inertial_forces},
+                  {"point_jets", r.counters.point_jets},
+                  {"surfaces", r.counters.surfaces}};
+  json["monitors"] = {{"max_balance_error", r.max_balance_error},
+                      {"max_energy", r.max_energy},
+                      {"max_kinetic", r.max_kinetic},
+                      {"max_gap", r.max_gap},
+                      {"open_gap", r.open_gap},
+                      {"max_depth", r.max_depth},
+                      {"asleep", r.asleep},
+                      {"max_contact_residual", r.step_counters.contact_residual},
+                      {"largest_stable_step", bound(r.stable_step)}};
+  if (r.error) {
+    const ErrorEstimate& e = *r.error;
+    json["error_estimate"] = {{"place", e.place},
+                              {"rotation", e.rotation},
+                              {"length", e.length},
+                              {"parameter", e.parameter},
+                              {"displacement", e.displacement},
+                              {"velocity", e.velocity},
+                              {"angular_velocity", e.angular_velocity},
+                              {"energy", e.energy},
+                              {"joint_force", e.joint_force},
+                              {"joint_torque", e.joint_torque},
+                              {"gap", e.gap},
+                              {"tolerance", e.tolerance},
+                              {"step", e.step}};
+  }
+  json["held"] = r.held;
+  json["skipped"] = r.skipped;
+  json["notes"] = r.notes;
+  json["files"] = r.files;
+  const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  write_whole_file(file, text.data(), text.size(), Durable::yes);
+}
+
+RunRecord read_run_record(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream)
+    throw FileError(FileError::Reason::kMissing,
+                    "there is no run: cannot read " + file.string() + ": " + std::strerror(errno));
+  try {
+    const Json json = Json::parse(stream);
+    RunRecord r;
+    const std::string status = json.at("status");
+    const auto found = std::find(kStatus.begin(), kStatus.end(), status);
+    if (found == kStatus.end()) throw RecordingMismatch(file.string() + " has the unknown status " + status);
+    r.status = static_cast<RunRecord::Status>(found - kStatus.begin());
+    json.at("message").get_to(r.message);
+    const Json& progress = json.at("progress");
+    progress.at("time").get_to(r.time);
+    progress.at("steps").get_to(r.steps);
+    progress.at("steps_done").get_to(r.steps_done);
+    progress.at("states").get_to(r.states);
+    progress.at("resumed").get_to(r.resumed);
+    const Json& scene = json.at("scene");
+    scene.at("name").get_to(r.scene);
+    scene.at("file").get_to(r.scene_file);
+    scene.at("overrides").get_to(r.overrides);
+    r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
+    const Json& options = json.at("options");
+    options.at("end").get_to(r.end);
+    options.at("asked_step").get_to(r.asked_step);
+    options.at("step").get_to(r.step);
+    r.tolerance = options.value("tolerance", 0.0);  // older runs had none
+    options.at("frame_rate").get_to(r.frame_rate);
+    options.at("integrator").get_to(r.integrator);
+    r.asked_integrator = options.value("asked_integrator", r.integrator);
+    options.at("joint_solver").get_to(r.joint_solver);
+    options.at("threads").get_to(r.threads);
+    options.at("width").get_to(r.width);
+    options.at("height").get_to(r.height);
+    options.at("graphics").get_to(r.graphics);
+    options.at("command").get_to(r.command);
+    r.build = read_pairs<std::string>(json.at("build"));
+    r.seconds = read_pairs<double>(json.at("wall_seconds"));
+    const Json& work = json.at("work");
+    work.at("steps").get_to(r.step_counters.steps);
+    work.at("evaluations").get_to(r.step_counters.evaluations);
+    work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
+    r.step_counters.rejected = work.value("rejected", 0L);  // older runs had none of these
+    r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
+    r.step_counters.factorisations = work.value("factorisations", 0L);
+    r.step_counters.impacts = work.value("impacts", 0L);
+    r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
+    r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
+    r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
+    work.at("jacobian_points").get_to(r.counters.jacobian_points);
+    work.at("rate_points").get_to(r.counters.rate_points);
+    work.at("mass_matrices").get_to(r.counters.mass_matrices);
+    work.at("inertial_forces").get_to(r.counters.inertial_forces);
+    work.at("point_jets").get_to(r.counters.point_jets);
+    work.at("surfaces").get_to(r.counters.surfaces);
+    const Json& monitors = json.at("monitors");
+    monitors.at("max_balance_error").get_to(r.max_balance_error);
+    monitors.at("max_energy").get_to(r.max_energy);
+    monitors.at("max_kinetic").get_to(r.max_kinetic);
+    monitors.at("max_gap").get_to(r.max_gap);
+    monitors.at("open_gap").get_to(r.open_gap);
+    r.max_depth = monitors.value("max_depth", 0.0);  // older runs had none of these
+    r.asleep = monitors.value("asleep", 0);
+    r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
+    if (!monitors.at("largest_stable_step").is_null())
+      monitors.at("largest_stable_step").get_to(r.stable_step);
+    json.at("held").get_to(r.held);
+    json.at("skipped").get_to(r.skipped);
+    json.at("notes").get_to(r.notes);
+    json.at("files").get_to(r.files);
+    return r;
+  } catch (const nlohmann::json::exception& fault) {
+    throw RecordingMismatch(file.string() + " is damaged: " + without_tag(fault.what()));
+  } catch (const std::logic_error&) {
+    throw RecordingMismatch(file.string() + " is damaged: its scene hash is no number");
+  }
+}
+
+}  // namespace pliant

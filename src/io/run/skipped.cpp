@@ -1,0 +1,42 @@
+#include <pliant/io/run/skipped.h>
+
+namespace pliant {
+
+std::vector<std::string> skipped_work(const Model& model) {
+  int fixed = 0, prescribed = 0, rigid = 0, frozen = 0, moving = 0, local = 0;
+  for (const PartModel& part : model.parts()) {
+    if (part.q0 < 0) {
+      ++(part.motion != nullptr ? prescribed : fixed);
+      continue;
+    }
+    ++moving;
+    if (part.local != nullptr) ++local;
+    if (part.part->rigid())
+      ++rigid;
+    else if (part.n_s > 0)
+      frozen += part.part->parameters().size() - part.n_s;
+  }
+  std::vector<std::string> skipped;
+  if (fixed > 0) skipped.push_back("coordinates of parts that do not move: " + std::to_string(fixed));
+  if (prescribed > 0)
+    skipped.push_back("coordinates of parts whose motion is prescribed: " + std::to_string(prescribed));
+  if (rigid > 0)
+    skipped.push_back("J and Jdot qs_dot of rigid parts, whose inertia is constant: " +
+                      std::to_string(rigid));
+  if (frozen > 0)
+    skipped.push_back("rows and columns of frozen parameters in parts that deform: " +
+                      std::to_string(frozen));
+  if (moving > 0 && local == 0) skipped.push_back("meshes and elements: no part deforms locally");
+  if (local > 0 && local < moving)
+    skipped.push_back("meshes and elements of parts that do not deform locally: " +
+                      std::to_string(moving - local));
+  if (model.joints().empty()) skipped.push_back("C_q and lambda: there are no joints");
+  if (moving > 1 && model.springs().empty() && model.joints().empty())
+    skipped.push_back("coupling: no spring or joint ties the parts");
+  if (model.springs().empty() && model.forces().empty() && model.torques().empty())
+    skipped.push_back("springs, point forces and torques: there are none");
+  if (model.body().gravity.isZero(0)) skipped.push_back("gravity: it is zero");
+  return skipped;
+}
+
+}  // namespace pliant

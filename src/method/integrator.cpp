@@ -1,0 +1,88 @@
+#include <pliant/method/integrator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <pliant/method/dop853.h>
+#include <pliant/method/dormand_prince.h>
+#include <pliant/method/esdirk.h>
+#include <pliant/method/implicit_midpoint.h>
+#include <pliant/method/linearly_implicit.h>
+#include <pliant/method/rk4.h>
+#include <pliant/method/semi_implicit_euler.h>
+#include <pliant/project/project.h>
+
+namespace pliant {
+
+namespace {
+template <class Method>
+std::unique_ptr<Integrator> make() {
+  return std::make_unique<Method>();
+}
+
+/// A gap that closes decays at the rate of the stabilization (1/s) down to kClosedGap, which is then taken
+/// away at once: what that is wrong by, in place and in velocity, when all that is known is that it was
+/// within the last h s.
+double closing_error(double rate, double h, double t) {
+  const double known = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // no better, s
+  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - known)) * std::max(1.0, rate);
+}
+}  // namespace
+
+void Integrator::project(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
+                         StepCounters& counters) {
+  if (scale_ != nullptr) {
+    unprojected_ = state.q;
+    joints_before_ = state.joints;
+  }
+  project_limits(dynamics, t, state, work, counters);
+  project_joints(dynamics, t, state, work, counters);
+  if (scale_ == nullptr) return;
+  for (std::size_t j = 0; j < joints_before_.size(); ++j)
+    if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
+      return note_error(closing_error(dynamics.model().body().stabilization.rate, state.h, t) /
+                        scale_->tolerance());
+  unprojected_ -= state.q;
+  note_error(scale_->norm(unprojected_));
+}
+
+const std::vector<IntegratorInfo>& all_integrators() {
+  static const std::vector<IntegratorInfo> all{
+      {"semi_implicit_euler", 1, "the paper's: one evaluation a step; robust, first order",
+       &make<SemiImplicitEuler>},
+      {"rk4", 4, "classical Runge-Kutta: four evaluations a step; accurate for smooth motion", &make<Rk4>},
+      {"linearly_implicit", 2,
+       "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit it",
+       &make<LinearlyImplicit>},
+      {"implicit_midpoint", 2, "keeps what is quadratic in the motion: for very many steps without friction",
+       &make<ImplicitMidpoint>},
+      {"esdirk", 4, "ESDIRK 4(3): for motion with stiff springs or parameters, to a tolerance or in steps",
+       &make<Esdirk>},
+      {"dormand_prince", 5,
+       "Dormand-Prince 5(4): for smooth motion, to a tolerance or in steps of one length",
+       &make<DormandPrince>},
+      {"dop853", 8, "Dormand-Prince 8(5,3): for smooth motion at high accuracy, to a tolerance or in steps",
+       &make<Dop853>},
+  };
+  return all;
+}
+
+std::vector<std::string> controlled_integrators() {
+  std::vector<std::string> names;
+  for (const IntegratorInfo& info : all_integrators())
+    if (info.make()->error_order() > 0) names.emplace_back(info.name);
+  return names;
+}
+
+std::unique_ptr<Integrator> make_integrator(const std::string& name) {
+  std::string names;
+  for (const IntegratorInfo& info : all_integrators()) {
+    if (name == info.name) return info.make();
+    names += std::string(names.empty() ? "" : ", ") + info.name;
+  }
+  throw std::invalid_argument("no integrator '" + name + "'; there are: " + names);
+}
+
+}  // namespace pliant

@@ -1,0 +1,179 @@
+#include <pliant/part/local/local_laws.h>
+
+#include <stdexcept>
+
+#include <pliant/local/shell/bending.h>
+#include <pliant/local/shell/hinges.h>
+#include <pliant/local/shell/linear_membrane.h>
+#include <pliant/local/shell/loaded_membrane.h>
+#include <pliant/local/shell/membrane.h>
+#include <pliant/local/shell/membrane_laws.h>
+#include <pliant/local/shell/pressure.h>
+#include <pliant/local/solid/make_solid_energy.h>
+#include <pliant/part/mesh/parameter_mesh.h>
+
+namespace pliant {
+
+namespace {
+
+using Number = LocalLawInfo::Number;
+using Energy = std::unique_ptr<NodalEnergy>;
+
+const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
+const Number kPoissonShell{"nu", "1", "Poisson's ratio.", -1, true, 0.3, 0.5};
+const Number kPoissonSolid{"nu", "1", "Poisson's ratio, below 1/2.", -1, true, 0.3, 0.4999999};
+const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
+
+ShellMesh shell(const LocalMesh& mesh) {
+  return ShellMesh(mesh.X, mesh.triangles);
+}
+Sheet sheet(const double* values) {
+  return {values[0], values[1], values[2]};
+}
+
+template <class Law>
+Energy lay_membrane(const LocalMesh& mesh, const double* values) {
+  return std::make_unique<Membrane<Law>>(shell(mesh), sheet(values));
+}
+template <class Hinges>
+Energy lay_bending(const LocalMesh& mesh, const double* values) {
+  return std::make_unique<MidEdgeBending<Hinges>>(shell(mesh), sheet(values), mesh.density);
+}
+template <SolidLaw law>
+Energy lay_solid(const LocalMesh& mesh, const double* values) {
+  return make_solid_energy(law, mesh.X, mesh.tetrahedra, Elasticity(values[0], values[1]));
+}
+
+}  // namespace
+
+const std::vector<LocalLawInfo>& all_local_laws() {
+  static const std::vector<LocalLawInfo> all{
+      {"membrane",
+       "A thin elastic sheet that resists stretch, for small local deformation; quadratic in d.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LinearMembrane>(shell(mesh), sheet(values));
+       },
+       true},
+      {"st_venant_kirchhoff_membrane",
+       "A thin sheet that resists stretch from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_membrane<StVenantKirchhoffSheet>},
+      {"neo_hookean_membrane",
+       "A rubber sheet that resists stretch from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_membrane<NeoHookeanSheet>},
+      {"loaded_membrane",
+       "The membrane of Terzopoulos & Metaxas 1991 over the surface: 1/2 (w1 |grad d|^2 + w0 |d|^2) per "
+       "area.",
+       true,
+       {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0},
+        {"w1", "N/m", "Resists its variation.", 0, false}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
+       },
+       true},
+      {"loaded_membrane_uv",
+       "The same as published, over the rectangle of the parameters u and v: stiffer towards poles.",
+       true,
+       {{"w0", "N/m", "Resists the size of d.", 0, false, 0.0},
+        {"w1", "N/m", "Resists its variation.", 0, false}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<LoadedMembrane>(parameter_mesh(mesh), Load{values[0], values[1]});
+       },
+       true},
+      {"bending",
+       "A thin sheet that resists bending, for small local deformation; quadratic in d.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<LinearHinges>,
+       true},
+      {"folding",
+       "A thin sheet that resists bending from rest to now, by any rotation.",
+       true,
+       {kYoung, kPoissonShell, kThickness},
+       lay_bending<FoldingHinges>},
+      {"pressure",
+       "A constant pressure in the shell, more than outside.",
+       true,
+       {{"p", "Pa", "Inside less outside.", -std::numeric_limits<double>::infinity(), true}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         return std::make_unique<ConstantPressure>(shell(mesh), values[0]);
+       }},
+      {"gas",
+       "A gas in the shell: p V^gamma stays.",
+       true,
+       {{"p0", "Pa", "Pressure in the shell at rest.", 0, false},
+        {"gamma", "1", "Ratio of its specific heats; 1: at constant temperature.", 1, false, 1.4},
+        {"p_ext", "Pa", "Pressure outside.", 0, false, 0.0}},
+       [](const LocalMesh& mesh, const double* values) -> Energy {
+         VecX<double> X(3 * mesh.X.rows());
+         X << mesh.X.col(0), mesh.X.col(1), mesh.X.col(2);
+         const double V0 = ConstantPressure(shell(mesh), 0).volume(X);
+         return std::make_unique<GasPressure>(shell(mesh), Gas{values[0], V0, values[1], values[2]});
+       }},
+      {"elastic",
+       "Linear elasticity, for small local deformation; quadratic in d.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<SolidLaw::linear>,
+       true},
+      {"elastic_averaged",
+       "The same with the dilatation averaged around nodes: it does not lock where nu is near 1/2.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<SolidLaw::averaged_linear>,
+       true},
+      {"st_venant_kirchhoff",
+       "St. Venant-Kirchhoff elasticity from rest to now, by any rotation.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<SolidLaw::st_venant_kirchhoff>},
+      {"neo_hookean",
+       "Rubber from rest to now, by any rotation.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<SolidLaw::neo_hookean>},
+      {"corotated",
+       "Linear elasticity in a frame that turns with each element.",
+       false,
+       {kYoung, kPoissonSolid},
+       lay_solid<SolidLaw::corotated>},
+  };
+  return all;
+}
+
+const LocalLawInfo& local_law_info(const std::string& name) {
+  for (const LocalLawInfo& info : all_local_laws())
+    if (name == info.name) return info;
+  throw std::logic_error("no law '" + name + "'");
+}
+
+LocalSettings::Law local_law(const std::string& name, std::vector<double> values) {
+  std::string known;
+  for (const LocalLawInfo& info : all_local_laws()) {
+    known += std::string(" ") + info.name;
+    if (name != info.name) continue;
+    if (values.size() != info.numbers.size())
+      throw std::invalid_argument("law '" + name + "' takes " + std::to_string(info.numbers.size()) +
+                                  " numbers");
+    const bool of_shell = info.shell;
+    const auto lay = info.lay;
+    std::optional<Elasticity> linear;
+    if (name == "elastic") linear.emplace(values[0], values[1]);
+    return LocalSettings::Law(
+        [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+          if (mesh.shell() != of_shell)
+            throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
+                                        ", not of " + (of_shell ? "solids" : "shells"));
+          return lay(mesh, values.data());
+        },
+        name, linear);
+  }
+  throw std::invalid_argument("no law of local deformation '" + name + "'; there are:" + known);
+}
+
+}  // namespace pliant

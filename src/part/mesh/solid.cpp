@@ -1,0 +1,306 @@
+#include <pliant/part/mesh/solid.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include <pliant/local/solid/tetrahedron.h>
+#include <pliant/part/mesh/surface.h>
+
+#include "ball_pattern.h"
+
+namespace pliant {
+
+namespace {
+
+/// Least volume of an element, in units of the cube of its longest edge.
+constexpr double kFlat = 1e-9;
+/// More straight elements than that, or a quarter of curved ones, would not fit in a few gigabytes.
+constexpr double kMostElements = 2e6;
+
+/// Corner nodes and elements, the vertices of the surface first.
+struct Corners {
+  std::vector<Material<double>> material;
+  std::vector<std::array<int, 4>> elements;
+  /// The material point of the surface amid vertices of an edge or a triangle of it.
+  std::function<Material<double>(const std::vector<int>&)> amid;
+};
+
+/// The material point in a direction of the mesh pattern, at the radius w.
+struct Labels {
+  const ShapeFace& shape;
+  ShapeParameters a;
+  Material<double> operator()(const Vec3<double>& g, double w) const {
+    Material<double> m = shape.mesh_label(g, a);
+    m.w = w;
+    return m;
+  }
+};
+
+Corners lay_ball(const Labels& label, const Surface& surface, int m) {
+  Corners corners;
+  corners.material = surface.material();
+  const BallSurface ball(m);
+  std::map<LatticePoint, int> index = ball.index;
+  for (int i = 1 - m; i < m; ++i)
+    for (int j = 1 - m; j < m; ++j)
+      for (int k = 1 - m; k < m; ++k) {
+        const LatticePoint p{i, j, k};
+        const int shell = ball_shell(p);
+        index[p] = static_cast<int>(corners.material.size());
+        corners.material.push_back(
+            shell == 0 ? material_from(0, 1, 1, 0, 0)
+                       : label(ball_direction(p), static_cast<double>(shell) / static_cast<double>(m)));
+      }
+  for (int i = -m; i < m; ++i)
+    for (int j = -m; j < m; ++j)
+      for (int k = -m; k < m; ++k) {
+        // From the corner of the cell next to the centre, one step along each axis, in any order of them.
+        const std::array<int, 3> step{i < 0 ? -1 : 1, j < 0 ? -1 : 1, k < 0 ? -1 : 1};
+        const LatticePoint inner{i < 0 ? i + 1 : i, j < 0 ? j + 1 : j, k < 0 ? k + 1 : k};
+        std::array<std::size_t, 3> axes{0, 1, 2};
+        do {
+          LatticePoint p = inner;
+          std::array<int, 4> element{index.at(p)};
+          for (std::size_t c = 0; c < 3; ++c) {
+            p[axes[c]] += step[axes[c]];
+            element[c + 1] = index.at(p);
+          }
+          const bool even = (axes[1] + 3 - axes[0]) % 3 == 1;
+          if (even != (step[0] * step[1] * step[2] > 0)) std::swap(element[2], element[3]);
+          corners.elements.push_back(element);
+        } while (std::next_permutation(axes.begin(), axes.end()));
+      }
+  corners.amid = [label, points = ball.points](const std::vector<int>& vertices) {
+    LatticePoint sum{};
+    for (int v : vertices)
+      for (std::size_t r = 0; r < 3; ++r) sum[r] += points[static_cast<std::size_t>(v)][r];
+    return label(ball_direction(sum), 1);
+  };
+  return corners;
+}
+
+/// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
+/// triangle run from its first node to the second and third and from the second to the third: along rings as
+/// the angle does, else inwards. That is how the sides of prisms are cut on the surface.
+struct TubeSection {
+  struct Node {
+    int ring, step;  ///< n and the number in the ring; ring 0: the middle
+  };
+  std::vector<Node> nodes;
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<bool> outwards;  ///< of each triangle, whether it has one node on the outer ring and two inside
+
+  explicit TubeSection(int m) {
+    for (int n = m; n > 0; n -= 2) {
+      const int ring = static_cast<int>(nodes.size()), inside = ring + 4 * n;
+      for (int i = 0; i < 4 * n; ++i) nodes.push_back({n, i});
+      auto outer = [&](int i) { return ring + i % (4 * n); };
+      auto add = [&](std::array<int, 3> nodes_of, bool points_out) {
+        triangles.push_back(nodes_of);
+        outwards.push_back(points_out);
+      };
+      for (int side = 0; side < 4; ++side)
+        for (int k = 0; k < n; ++k) {
+          const int o = side * n + k;
+          if (n <= 2) {
+            add({outer(o), outer(o + 1), inside}, false);
+            continue;
+          }
+          // Inner points of this side face the outer steps 1 .. n - 1 of it.
+          auto inner = [&](int step) { return inside + (side * (n - 2) + step - 1) % (4 * (n - 2)); };
+          if (k == 0 || k == n - 1) {
+            add({outer(o), outer(o + 1), inner(k == 0 ? 1 : n - 1)}, false);
+          } else if (2 * k < n) {
+            add({outer(o), outer(o + 1), inner(k + 1)}, false);
+            add({outer(o), inner(k), inner(k + 1)}, true);
+          } else {
+            add({outer(o), outer(o + 1), inner(k)}, false);
+            add({outer(o + 1), inner(k), inner(k + 1)}, true);
+          }
+        }
+    }
+    nodes.push_back({0, 0});
+  }
+};
+
+Corners lay_torus(const Labels& label, const Surface& surface, int m) {
+  Corners corners;
+  corners.material = surface.material();
+  const int round = 8 * m, tube = 4 * m;
+  const TubeSection section(m);
+  const int n_section = static_cast<int>(section.nodes.size()), n_inside = n_section - tube;
+  auto at = [&](int node, int j) {
+    return node < tube ? (j % round) * tube + node : round * tube + (j % round) * n_inside + node - tube;
+  };
+  for (int j = 0; j < round; ++j)
+    for (int i = tube; i < n_section; ++i) {
+      const auto [ring, step] = section.nodes[static_cast<std::size_t>(i)];
+      const double angle = ring > 0 ? 2 * kPi * step / (4 * ring) : 0.0;
+      corners.material.push_back(
+          label({angle, 2 * kPi * j / round, 0}, static_cast<double>(ring) / static_cast<double>(m)));
+    }
+  for (int j = 0; j < round; ++j)
+    for (std::size_t t = 0; t < section.triangles.size(); ++t) {
+      const auto [a, b, c] = section.triangles[t];
+      const int a0 = at(a, j), b0 = at(b, j), c0 = at(c, j), a1 = at(a, j + 1), b1 = at(b, j + 1),
+                c1 = at(c, j + 1);
+      for (std::array<int, 4> element :
+           {std::array<int, 4>{a0, b0, c0, c1}, {a0, b0, c1, b1}, {a0, a1, b1, c1}}) {
+        if (!section.outwards[t]) std::swap(element[2], element[3]);
+        corners.elements.push_back(element);
+      }
+    }
+  corners.amid = [label, round, tube](const std::vector<int>& vertices) {
+    // The mean of numbers next to each other on circles of `tube` and `round`.
+    const int from = vertices[0];
+    double along = 0, across = 0;
+    auto step = [](int p, int q, int n) { return std::remainder(q - p, n); };
+    for (int v : vertices) {
+      across += step(from % tube, v % tube, tube) / static_cast<double>(vertices.size());
+      along += step(from / tube, v / tube, round) / static_cast<double>(vertices.size());
+    }
+    return label({2 * kPi * (from % tube + across) / tube, 2 * kPi * (from / tube + along) / round, 0}, 1);
+  };
+  return corners;
+}
+
+/// The least Jacobian determinant of an element over points spread in it, in units of 1/6 of the volume of
+/// the cube of its longest edge.
+template <class Element>
+double least_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>& points) {
+  double longest = 0, least = kInfinity;
+  for (const auto& [a, b] : kTetrahedronEdges) longest = std::max(longest, (x[a] - x[b]).norm());
+  for (const TetrahedronPoint& at : points)
+    least = std::min(least, Element::template gradient<double>(at, x).determinant());
+  return least / (longest * longest * longest);
+}
+
+/// The size of the bubble of a face or the middle of an enriched element.
+Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
+  Vec3<double> size;
+  for (int r = 0; r < 3; ++r) {
+    double face[4], middle;
+    EnrichedTetrahedron::bubbles(x, r, face, middle);
+    size[r] = node == 14 ? middle : face[node - 10];
+  }
+  return size;
+}
+
+/// Barycentric points in quarters: corners, edges, faces and inside.
+std::vector<TetrahedronPoint> spread_points() {
+  std::vector<TetrahedronPoint> points;
+  constexpr int n = 4;
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; i + j <= n; ++j)
+      for (int k = 0; i + j + k <= n; ++k)
+        points.push_back({{1.0 * (n - i - j - k) / n, 1.0 * i / n, 1.0 * j / n, 1.0 * k / n}, 0});
+  return points;
+}
+
+}  // namespace
+
+Solid::Solid(const Part& part, int resolution, Order order) {
+  if (resolution < 1 || resolution > 64)
+    throw std::invalid_argument("part '" + part.name() + "': solid resolution " + std::to_string(resolution) +
+                                " must be from 1 to 64");
+  const double elements = 48 * std::pow(resolution, 3),
+               most = order == Order::linear ? kMostElements : kMostElements / 4;
+  if (elements > most) {
+    std::ostringstream message;
+    message << "part '" << part.name() << "': solid resolution " << resolution << " makes some " << elements
+            << " elements of this order; expected at most " << most;
+    throw std::invalid_argument(message.str());
+  }
+  const ParameterValues<double> rest = part.parameters().rest();
+  const ShapeFace& shape = part.shape();
+  const ShapeParameters a = rest.b.data();
+  const Surface surface(part, resolution);
+  n_surface_ = static_cast<int>(surface.material().size());
+  const Labels label{shape, a};
+  Corners corners = shape.mesh() == MeshPattern::ball ? lay_ball(label, surface, resolution)
+                                                      : lay_torus(label, surface, resolution);
+  material_ = std::move(corners.material);
+  const bool enriched = order == Order::enriched, quadratic = order == Order::quadratic || enriched;
+  elements_.resize(enriched ? 15 : quadratic ? 10 : 4, static_cast<Eigen::Index>(corners.elements.size()));
+  boundary_.resize(enriched ? 7 : quadratic ? 6 : 3, surface.triangles().cols());
+  boundary_.topRows<3>() = surface.triangles();
+
+  std::map<std::vector<int>, int> amid;  // the node amid nodes of an edge or a face
+  auto node_amid = [&](std::vector<int> ends, auto&& place) {
+    std::sort(ends.begin(), ends.end());
+    const auto [at, fresh] = amid.try_emplace(ends, n_nodes());
+    if (fresh) material_.push_back(place(at->first));
+    return at->second;
+  };
+  auto e = [&](int node) { return shape.e(material_[static_cast<std::size_t>(node)], a); };
+  auto halfway = [&](const std::vector<int>& ends) {
+    return shape.label(0.5 * (e(ends[0]) + e(ends[1])), a);
+  };
+  if (quadratic)
+    for (Eigen::Index t = 0; t < boundary_.cols(); ++t) {
+      for (int k = 0; k < 3; ++k)
+        boundary_(3 + k, t) = node_amid({boundary_(k, t), boundary_((k + 1) % 3, t)}, corners.amid);
+      if (enriched)
+        boundary_(6, t) = node_amid({boundary_(0, t), boundary_(1, t), boundary_(2, t)}, corners.amid);
+    }
+  for (std::size_t t = 0; t < corners.elements.size(); ++t) {
+    const std::array<int, 4>& corner = corners.elements[t];
+    auto element = elements_.col(static_cast<Eigen::Index>(t));
+    for (int k = 0; k < 4; ++k) element[k] = corner[static_cast<std::size_t>(k)];
+    if (!quadratic) continue;
+    for (std::size_t k = 0; k < 6; ++k)
+      element[static_cast<Eigen::Index>(4 + k)] =
+          node_amid({corner[kTetrahedronEdges[k][0]], corner[kTetrahedronEdges[k][1]]}, halfway);
+    if (!enriched) continue;
+    // Faces inside and the middle: where the bubbles vanish.
+    std::array<Vec3<double>, 15> x;
+    for (std::size_t k = 0; k < 10; ++k) x[k] = e(element[static_cast<Eigen::Index>(k)]);
+    auto without_bubble = [&](std::size_t node) {
+      x[node].setZero();
+      const Vec3<double> size = bubble_sizes(x.data(), node);
+      return Vec3<double>(-size);
+    };
+    for (std::size_t f = 0; f < 4; ++f) {
+      std::vector<int> face(corner.begin(), corner.end());
+      face.erase(face.begin() + static_cast<std::ptrdiff_t>(f));
+      const int node =
+          node_amid(face, [&](const std::vector<int>&) { return shape.label(without_bubble(10 + f), a); });
+      element[static_cast<Eigen::Index>(10 + f)] = node;
+      x[10 + f] = e(node);
+    }
+    element[14] = n_nodes();
+    material_.push_back(shape.label(without_bubble(14), a));
+  }
+
+  const Eigen::Matrix3Xd s = part.s(material_, rest);
+  const std::vector<TetrahedronPoint> points = spread_points();
+  for (Eigen::Index t = 0; t < elements_.cols(); ++t) {
+    std::array<Vec3<double>, 15> x;
+    for (Eigen::Index k = 0; k < elements_.rows(); ++k)
+      x[static_cast<std::size_t>(k)] = s.col(elements_(k, t));
+    const double least = enriched ? least_jacobian<EnrichedTetrahedron>(x.data(), points)
+                         : quadratic
+                             ? least_jacobian<QuadraticTetrahedron>(x.data(), points)
+                             : least_jacobian<LinearTetrahedron>(x.data(), {LinearTetrahedron::rule[0]});
+    if (least > kFlat) continue;
+    const Vec3<double> middle = (x[0] + x[1] + x[2] + x[3]) / 4;
+    std::ostringstream text;
+    text << "part '" << part.name() << "': at resolution " << resolution
+         << " an element of its solid mesh is " << (least < -kFlat ? "turned inside out" : "flat")
+         << " near (" << middle[0] << ", " << middle[1] << ", " << middle[2]
+         << ") at the rest shape; a finer resolution or a milder rest shape is needed";
+    throw std::invalid_argument(text.str());
+  }
+}
+
+}  // namespace pliant

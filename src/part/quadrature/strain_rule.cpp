@@ -1,0 +1,254 @@
+#include "strain_rule.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include "part/strain.h"
+#include "rule_search.h"
+
+namespace pliant {
+
+using namespace rule_search;
+
+namespace {
+
+/// Points with derivatives along X: of a solid x, y, z at rest, of a shell two tangents.
+StrainPoints with_directions(const Part& part, const ParameterValues<double>& rest,
+                             const std::vector<RestPoint>& points) {
+  const std::size_t n = points.size();
+  StrainPoints out;
+  out.n_points = static_cast<int>(n);
+  out.directions = part.shell() ? 2 : 3;
+  Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(n));
+  std::vector<Mat3<double>> tangents(n);
+  std::vector<Material<Dual<3>>> moving(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    moving[k] = material_with_tangents(points[k].at);
+    const Vec3<Dual<3>> at = part.shape().tangents(moving[k], rest.b.data());
+    for (int i = 0; i < 3; ++i) {
+      e(i, static_cast<Eigen::Index>(k)) = at[i].v;
+      for (int j = 0; j < 3; ++j) tangents[k](i, j) = at[i].d[static_cast<std::size_t>(j)];
+    }
+  }
+  const std::vector<Mat3<double>> F = part.chain_gradient(e, rest);
+  for (std::size_t k = 0; k < n; ++k) {
+    const Mat3<double> now = F[k] * tangents[k];
+    Mat3<double> from_X = Mat3<double>::Zero();  // material directions a unit along X
+    if (part.shell()) {
+      const Eigen::Matrix<double, 3, 2> surface = now.leftCols<2>();
+      const Vec3<double> first = surface.col(0).normalized();
+      Eigen::Matrix<double, 3, 2> frame;
+      frame << first, (surface.col(1) - first * first.dot(surface.col(1))).normalized();
+      from_X.topLeftCorner<2, 2>() = Eigen::Matrix2d(frame.transpose() * surface).inverse();
+    } else {
+      from_X = now.inverse();
+    }
+    auto turn = [&](Dual<3>& x) {
+      const Eigen::RowVector3d d = Eigen::RowVector3d(x.d[0], x.d[1], x.d[2]) * from_X;
+      for (std::size_t r = 0; r < 3; ++r) x.d[r] = d[static_cast<Eigen::Index>(r)];
+    };
+    for (Trig<Dual<3>>* t : {&moving[k].cu, &moving[k].su, &moving[k].cv, &moving[k].sv}) {
+      turn(t->x);
+      turn(t->log_abs);
+    }
+    turn(moving[k].w);
+  }
+  for (std::size_t first = 0; first < n; first += Pack::kLanes) {
+    std::array<Material<Dual<3>>, Pack::kLanes> four;
+    Pack weight(0.0);
+    for (std::size_t i = 0; i < Pack::kLanes; ++i) {
+      four[i] = moving[std::min(first + i, n - 1)];
+      if (first + i < n) weight.set(static_cast<int>(i), points[first + i].mass);
+    }
+    for (std::size_t r = 0; r < static_cast<std::size_t>(out.directions); ++r)
+      out.at[r].push_back(gather(four.data(), r));
+    out.weight.push_back(weight);
+  }
+  return out;
+}
+
+/// Energy, force and stiffness along random directions at random states, each in units of its root mean
+/// square over the body, so that soft states count as much as stiff ones; and the volume.
+class StrainIntegrands {
+ public:
+  static constexpr const char* what = "strain energy";
+  static constexpr int kEach = 4;
+  static constexpr double kSettled = kStrainSettled, kThin = 1e-2 * kStrainSettled;
+  static constexpr double kPromised = 1e2 * kStrainSettled;
+
+  StrainIntegrands(const RestShape& shape, const ContinuumLaw& law)
+      : shape_(shape), law_(law), ranges_(shape.part) {
+    constexpr int coarse = 4;
+    const std::vector<AngleNode> v = ring_nodes(shape, coarse);
+    for (const AngleNode& u : profile_nodes(shape, coarse))
+      for (const QuadratureNode& w : depth_nodes(shape, coarse)) add_ring(shape, u, w, v, sample_);
+    sample_points_ = with_directions(shape.part, shape.rest, sample_);
+  }
+  int n() const { return ranges_.n(); }
+
+  Eigen::MatrixXd shares(const Columns& line, int n_states) const {
+    Eigen::MatrixXd F = Eigen::MatrixXd::Zero(line.n_nodes, kEach * n_states);
+    Draw draw;
+    std::vector<StrainPoints> points;
+    for (const Column& column : line.columns)
+      points.push_back(with_directions(shape_.part, shape_.rest, column.points));
+    for (int number = 0; number < n_states; ++number) {
+      State state;
+      ranges_.draw(draw, number, state.q, state.first);
+      VecMax<double> unused;
+      ranges_.draw(draw, number, unused, state.second);
+      const Densities& unit = units(number, state);
+      const std::size_t place = static_cast<std::size_t>(number) % line.columns.size();
+      const Column& column = line.columns[place];
+      for_each_point(points[place], column.points.size(), state,
+                     [&](std::size_t k, const Densities& density) {
+                       for (std::size_t c = 0; c < kEach; ++c)
+                         F(column.node[k], kEach * number + static_cast<int>(c)) +=
+                             column.points[k].mass * density[c] / unit[c];
+                     });
+    }
+    return F;
+  }
+
+ private:
+  using Densities = std::array<double, kEach>;
+  struct State {
+    VecMax<double> q, first, second;
+  };
+
+  /// act(number, densities) for n points.
+  template <class Act>
+  void for_each_point(const StrainPoints& points, std::size_t n, const State& state, Act&& act) const {
+    const auto values = shape_.part.parameters().expand<Dual<1>>(
+        state.q, VecMax<double>(VecMax<double>::Zero(state.q.size())));
+    const int packs = static_cast<int>(points.weight.size()), n_s = static_cast<int>(state.q.size());
+    strain::Block block;
+    for (int begin = 0; begin < packs; begin += strain::kBlock) {
+      const int count = std::min(strain::kBlock, packs - begin);
+      strain::evaluate(shape_.part, values, points, begin, count, n_s, Level::jacobian, block);
+      for (int i = 0; i < count; ++i) {
+        const std::array<Pack, kEach> four =
+            densities(block.F[static_cast<std::size_t>(i)], block.dF[static_cast<std::size_t>(i)], state);
+        for (int lane = 0; lane < Pack::kLanes; ++lane) {
+          const std::size_t k = static_cast<std::size_t>((begin + i) * Pack::kLanes + lane);
+          if (k < n) act(k, Densities{four[0][lane], four[1][lane], four[2][lane], four[3][lane]});
+        }
+      }
+    }
+  }
+
+  std::array<Pack, kEach> densities(const Mat3<Pack>& F, const std::array<Mat3<Pack>, kMaxGlobal>& by_q,
+                                    const State& state) const {
+    const Mat3<Pack> dF = strain::combine(by_q, state.first), other = strain::combine(by_q, state.second);
+    Mat3<Dual<1, Pack>> along;
+    for (int c = 0; c < 9; ++c) {
+      along.data()[c] = Dual<1, Pack>(F.data()[c]);
+      along.data()[c].d[0] = dF.data()[c];
+    }
+    return std::visit(
+        [&](const auto& law) -> std::array<Pack, kEach> {
+          const Mat3<Dual<1, Pack>> P = law.stress(along);
+          Pack force(0.0), stiffness(0.0);
+          for (int c = 0; c < 9; ++c) {
+            force += P.data()[c].v * dF.data()[c];
+            stiffness += P.data()[c].d[0] * other.data()[c];
+          }
+          return {law.density(F), force, stiffness, Pack(1.0)};
+        },
+        law_);
+  }
+
+  /// Root mean squares over the body in a state; of what is but rounding beside the stiffness, infinite.
+  const Densities& units(int number, const State& state) const {
+    const auto known = units_.size();
+    if (static_cast<std::size_t>(number) < known) return units_[static_cast<std::size_t>(number)];
+    Densities squares{};
+    double mass = 0;
+    for_each_point(sample_points_, sample_.size(), state, [&](std::size_t k, const Densities& density) {
+      mass += sample_[k].mass;
+      for (std::size_t c = 0; c < kEach; ++c) squares[c] += sample_[k].mass * density[c] * density[c];
+    });
+    constexpr double noise = 1e-10;
+    constexpr std::size_t stiffness = 2;
+    const double least = noise * noise * squares[stiffness];
+    for (double& square : squares) square = square > least ? std::sqrt(square / mass) : kInfinity;
+    units_.push_back(squares);
+    return units_.back();
+  }
+
+  const RestShape& shape_;
+  const ContinuumLaw& law_;
+  StateRanges ranges_;
+  std::vector<RestPoint> sample_;  ///< over the whole body
+  StrainPoints sample_points_;
+  mutable std::vector<Densities> units_;  ///< of each state, in the order in which they are drawn
+};
+
+/// Keeps as many of all points as the integrals need; many a group at a time, as long as that helps.
+void thin_points(const StrainIntegrands& integrands, std::vector<RestPoint>& points) {
+  constexpr std::size_t group = 400;
+  struct Weighted {
+    RestPoint point;
+    double weight = 1;
+  };
+  for (std::size_t before = 2 * points.size(); 4 * points.size() < 3 * before;) {
+    before = points.size();
+    std::vector<RestPoint> kept;
+    for (std::size_t first = 0; first < before; first += group) {
+      Columns line;
+      line.columns.emplace_back();
+      std::vector<Weighted> nodes;
+      for (std::size_t k = first; k < std::min(first + group, before); ++k) {
+        line.columns[0].points.push_back(points[k]);
+        line.columns[0].node.push_back(line.n_nodes++);
+        nodes.push_back({points[k]});
+      }
+      thin(integrands, line, nodes);
+      for (const Weighted& node : nodes) kept.push_back({node.point.at, node.weight * node.point.mass});
+    }
+    points = std::move(kept);
+  }
+}
+
+std::string dynamic_names(const Part& part) {
+  std::string names;
+  for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
+  return names;
+}
+
+}  // namespace
+
+StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume) {
+  RestShape shape(part);
+  if (shape.follows == Follows::affine && !part.shell()) {
+    // Every point is strained alike: any stands for all.
+    StrainPoints one = with_directions(part, shape.rest, {{material_at(0.4, 0.7, 0.5), volume}});
+    one.rule = "affine";
+    return one;
+  }
+  shape.by_sections = false;
+  shape.points_apart = true;
+  const StrainIntegrands integrands(shape, law);
+  Laid laid = lay_rings(shape, integrands, true, 0);
+  if (laid.left > StrainIntegrands::kPromised || !std::isfinite(laid.left)) {
+    std::ostringstream message;
+    message << "part '" << part.name()
+            << "': the strain energy of its elasticity does not settle over the ranges of "
+            << dynamic_names(part) << " (the finest rule still changes it by " << laid.left
+            << " of itself); freeze some of them, or narrow their limits (min, max)";
+    throw std::invalid_argument(message.str());
+  }
+  laid.points.erase(std::remove_if(laid.points.begin(), laid.points.end(),
+                                   [](const RestPoint& p) { return !(p.mass > 0); }),
+                    laid.points.end());
+  thin_points(integrands, laid.points);
+  StrainPoints points = with_directions(part, shape.rest, laid.points);
+  points.rule = "rings";
+  points.settled = std::max(laid.left, kStrainSettled);
+  return points;
+}
+
+}  // namespace pliant

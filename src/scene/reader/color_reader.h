@@ -1,0 +1,12 @@
+// Colours of a scene.
+#pragma once
+
+#include <pliant/scene/json/json_value.h>
+#include <pliant/scene/scene.h>
+
+namespace pliant {
+
+/// "#rrggbb" or [red, green, blue].
+Color read_color(const JsonValue& value);
+
+}  // namespace pliant

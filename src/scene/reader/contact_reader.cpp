@@ -1,0 +1,176 @@
+#include "contact_reader.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <pliant/part/local/local_deformation.h>
+#include <pliant/scene/time_value.h>
+
+#include "color_reader.h"
+#include "direction_reader.h"
+
+namespace pliant {
+
+schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
+  using namespace schema;
+  const Record shown{
+      "shown",
+      "A rectangle about the point of a plane.",
+      {required("width", number(above(0), "m"), "Its level sides; along x of a level plane.", "1"),
+       required("height", number(above(0), "m"), "Its other sides.", "1"),
+       optional("color", color, "Colour in pictures.", "\"#9a9488\"")}};
+  const Record plane{
+      "plane",
+      "What lies behind a plane is solid.",
+      {required("name", name(), "Name, that no part has.", "\"floor\""),
+       optional("point", time_vector("m"), "A point on it; it may move in time.", "[0, 0, 0]"),
+       optional("normal", vector3("1"), "Its direction, away from what is solid.", "[0, 0, 1]"),
+       optional("on", number(at_least(0), "s"), "When it appears.", "0"),
+       optional("off", number(above(0), "s"), "When it goes; never when not given."),
+       optional("shown", record(shown),
+                "What pictures and meshes show of it while it is there, which is all solid; nothing when not "
+                "given.")}};
+  const Record pair{
+      "pair",
+      "How two parts, or a part and a plane or an obstacle, touch; a group stands for all of its members.",
+      {required("between", array(name(), 2, 2), "Their names, or those of groups.", "[\"ball\", \"floor\"]"),
+       optional("touch", boolean(),
+                "Whether they touch; parts that a joint ties do so only where a pair names both.", "true"),
+       optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
+       optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
+  const Record sleep{
+      "sleep",
+      "Bodies at rest, and all that they touch and are tied to with them, are left as they are until "
+      "something meets or drives them.",
+      {required("speed", number(above(0), "m/s"), "No point of a body at rest is faster.", "0.001"),
+       optional("after", number(above(0), "s"), "How long they have rested before.", "0.5")}};
+  return {"contact",
+          "Parts touch planes, obstacles and each other; when not given, they pass through everything.",
+          {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
+           optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
+                    "0"),
+           optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
+           optional("longest_step", number(above(0), "s"),
+                    "Longest step to a tolerance in which many bodies lie on each other, or some that deform "
+                    "locally, whose errors are not controlled, or any where forces act; to tolerances above "
+                    "5e-4 steps are longer in proportion, up to ten times.",
+                    "0.002"),
+           optional("sleep", record(sleep), "Whether bodies at rest sleep; they do not when not given."),
+           optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
+           optional("obstacles", array(record(obstacle_record(orientation, color))),
+                    "Meshes and plates that do not move.", "[]"),
+           optional("groups", map(array(name(), 1)),
+                    "Names of parts, planes and obstacles by the name of their group.", "{}"),
+           optional("pairs", array(record(pair)),
+                    "Pairs that are out of the ordinary. Where several fit, the one with the fewest groups "
+                    "counts, and of these the last.",
+                    "[]")}};
+}
+
+namespace {
+
+void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, const TimeReader& times,
+                SceneFaults& faults, Scene& scene) {
+  MultiBody& body = scene.body;
+  const std::optional<TimeVector> point =
+      r.given("point") ? times.vector(r, "point", Needs::value_and_rate) : TimeVector(Vec3<double>(0, 0, 0));
+  const Vec3<double> normal =
+      r.given("normal") ? read_direction(r.at("normal"), faults) : Vec3<double>(0, 0, 1);
+  if (r.given("off") && !(r.number("on") < r.number("off")))
+    faults.value(r.at("off"), "expected a time after \"on\", which is " + brief(r.number("on")) + " s");
+  if (!r.complete() || !point) return;
+  const auto part = parts.find(r.text("name"));
+  if (part != parts.end()) return faults.twice(*part->second.name, r.at("name"));
+  for (const ContactPlane& other : body.contact.planes)
+    if (other.name == r.text("name"))
+      return faults.value(r.at("name"), "another plane has this name; expected one of its own");
+  ContactPlane& plane = body.plane(r.text("name"), *point, normal);
+  plane.on = r.number("on");
+  if (r.given("off")) plane.off = r.number("off");
+  if (!r.given("shown")) return;
+  const Reader shown = r.object("shown");
+  if (shown.complete())
+    scene.planes.push_back({body.contact.planes.size() - 1, shown.number("width"), shown.number("height"),
+                            read_color(shown.at("color"))});
+}
+
+/// Whether all names of a list are among those known; faults tell which are not.
+bool are_known(const JsonValue& list, const char* kind, const std::vector<std::string>& known,
+               SceneFaults& faults) {
+  bool all = true;
+  for (const JsonValue& name : list.array())
+    if (std::find(known.begin(), known.end(), name.string()) == known.end()) {
+      faults.unknown(name, kind, known);
+      all = false;
+    }
+  return all;
+}
+
+/// Adds the groups, and their names to those of things.
+void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFaults& faults,
+                 ContactSettings& settings) {
+  if (!contact.given("groups")) return;
+  const std::vector<std::string> things = names;
+  const JsonValue& groups = contact.at("groups");
+  for (const JsonValue::Member& group : groups.members()) {
+    if (schema::is_ignored_key(group.key)) continue;
+    names.push_back(group.key);
+    if (contact.is_faulty(group.value)) continue;
+    if (std::find(things.begin(), things.end(), group.key) != things.end())
+      faults.key(groups, group.key, "a part, plane or obstacle has this name; expected one of its own");
+    if (!are_known(group.value, "part, plane or obstacle", things, faults)) continue;
+    settings.groups.push_back({group.key, {}});
+    for (const JsonValue& member : group.value.array())
+      settings.groups.back().members.push_back(member.string());
+  }
+}
+
+void read_pair(const Reader& r, const std::vector<std::string>& names, std::size_t n_things,
+               SceneFaults& faults, ContactSettings& settings) {
+  if (!r.complete() || !r.given("between")) return;
+  const JsonValue& between = r.at("between");
+  if (!are_known(between, "part, plane, obstacle or group", names, faults)) return;
+  ContactPair pair;
+  pair.a = between.array()[0].string();
+  pair.b = between.array()[1].string();
+  const auto things_end = names.begin() + static_cast<std::ptrdiff_t>(n_things);
+  if (pair.a == pair.b && std::find(names.begin(), things_end, pair.a) != things_end)
+    return faults.value(between.array()[1],
+                        "it is named twice; expected two things, or a group of them twice");
+  pair.touch = r.boolean("touch");
+  if (r.given("friction")) pair.friction = r.number("friction");
+  if (r.given("restitution")) pair.restitution = r.number("restitution");
+  settings.pairs.push_back(std::move(pair));
+}
+
+}  // namespace
+
+void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
+                  const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene) {
+  MultiBody& body = scene.body;
+  ContactSettings& settings = body.contact;
+  settings.active = true;
+  settings.friction = contact.number("friction");
+  settings.restitution = contact.number("restitution");
+  settings.between_parts = contact.boolean("between_parts");
+  settings.longest_step = contact.number("longest_step");
+  if (contact.given("sleep")) {
+    const Reader sleep = contact.object("sleep");
+    if (sleep.complete()) settings.sleep = Sleep{sleep.number("speed"), sleep.number("after")};
+  }
+  for (const Reader& r : contact.objects("planes")) read_plane(r, parts, times, faults, scene);
+  std::vector<std::string> names;
+  for (const auto& [name, part] : parts) names.push_back(name);
+  for (const ContactPlane& plane : settings.planes) names.push_back(plane.name);
+  for (const Reader& r : contact.objects("obstacles")) {
+    read_obstacle(r, names, folder, faults, scene);
+    if (r.given("name")) names.push_back(r.text("name"));
+  }
+  const std::size_t n_things = names.size();
+  read_groups(contact, names, faults, settings);
+  for (const Reader& r : contact.objects("pairs")) read_pair(r, names, n_things, faults, settings);
+}
+
+}  // namespace pliant

@@ -1,0 +1,24 @@
+// Reading what touches what.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <pliant/scene/reader/reader.h>
+#include <pliant/scene/scene.h>
+#include <pliant/scene/schema/schema.h>
+
+#include "obstacle_reader.h"
+#include "point_reader.h"
+#include "scene/scene_faults.h"
+#include "time_reader.h"
+
+namespace pliant {
+
+schema::Record contact_record(const schema::Type& orientation, const schema::Type& color);
+
+/// contact: an object of the record above. parts: by name. folder: of the files it names.
+void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
+                  const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene);
+
+}  // namespace pliant

@@ -1,0 +1,122 @@
+#include "joint_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <pliant/body/joints/joint_registry.h>
+
+#include "direction_reader.h"
+
+namespace pliant {
+
+JointSolver::Choice joint_solver(const std::string& name) {
+  using Choice = JointSolver::Choice;
+  if (name == "blocks") return Choice::blocks;
+  return name == "augmented" ? Choice::augmented : Choice::automatic;
+}
+
+Stabilization read_stabilization(const Reader& r, SceneFaults& faults) {
+  Stabilization rule;
+  static constexpr std::array<std::pair<const char*, BaumgarteRule>, 4> rules{
+      {{"automatic", BaumgarteRule::automatic},
+       {"free", BaumgarteRule::free},
+       {"critical", BaumgarteRule::critical},
+       {"step_consistent", BaumgarteRule::step_consistent}}};
+  for (const auto& [name, value] : rules)
+    if (r.text("rule") == name) rule.rule = value;
+  rule.rate = r.number("rate");
+  rule.stab_alpha = r.number("stab_alpha");
+  rule.stab_beta = r.number("stab_beta");
+  rule.speed = r.number("speed");
+  rule.assemble_first = r.text("assembly") == "before_start";
+  rule.projection = r.boolean("projection");
+  if (rule.rule == BaumgarteRule::free && rule.stab_beta == 0 && !r.faulty("stab_beta"))
+    faults.place(r.json(),
+                 "the rule \"free\" without \"stab_beta\" closes no gap; expected a number > 0 (1/s)");
+  return rule;
+}
+
+namespace {
+
+/// Whether two ends are both of the world or of parts that do not move, or of one part between whose points
+/// nothing changes.
+bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
+  auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
+  if (!moves(from) && !moves(to)) {
+    faults.place(r.json(), "neither end is on a part that moves; expected at least one");
+    return true;
+  }
+  if (from.part != to.part) return false;
+  if (same_point(from.material, to.material)) {
+    faults.place(r.at("to"), "this is the same point as \"from\"; expected another");
+    return true;
+  }
+  if (!from.part->rigid()) return false;
+  faults.place(r.json(), "both ends are on part \"" + from.part->name() +
+                             "\", which does not deform; expected two parts, or a part with a dynamic "
+                             "parameter or local deformation");
+  return true;
+}
+
+/// Whether an end is moved in time by a path that jumps in place while the joint acts.
+bool jumps(const Reader& r, const char* key, const Point& end, const PointReader& points,
+           SceneFaults& faults) {
+  const double on = r.given("on") ? r.number("on") : 0;
+  const double off = r.given("off") ? r.number("off") : std::numeric_limits<double>::infinity();
+  const std::optional<double> time = points.jump(end, on, off);
+  if (!time) return false;
+  faults.place(r.at(key), "it jumps in place at t = " + brief(*time) +
+                              " s, which no part can follow; expected a path of which the rate alone jumps, "
+                              "such as key frames");
+  return true;
+}
+
+/// What the type of a joint takes from the scene; none of it when there are faults.
+bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneFaults& faults) {
+  const std::size_t before = faults.errors();
+  if (keys.has(JointKey::length)) {
+    if (r.faulty("length")) return false;
+    setting.length = r.given("length")
+                         ? r.number("length")
+                         : (position_at_start(setting.from) - position_at_start(setting.to)).norm();
+    if (!(setting.length > 0))
+      faults.place(r.json(), "its points are at the same place at time 0; expected a \"length\"");
+  }
+  if (keys.has(JointKey::axis)) setting.axis = read_direction(r.at("axis"), faults);
+  if (keys.has(JointKey::from_axis) && r.given("from_axis"))
+    setting.from_axis = read_direction(r.at("from_axis"), faults);
+  if (keys.has(JointKey::rotation) && r.given("rotation"))
+    setting.rotation = read_orientation(r.object("rotation"), faults);
+  if (r.given("off") && !(r.number("on") < r.number("off")))
+    faults.value(r.at("off"), "expected a time after \"on\", which is " + brief(r.number("on")) + " s");
+  return faults.errors() == before;
+}
+
+}  // namespace
+
+void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
+  const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
+  if (!from || !to || !r.complete() || ties_nothing(r, *from, *to, faults)) return;
+  if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return;
+  const auto info = std::find_if(all_joints().begin(), all_joints().end(),
+                                 [&](const JointInfo& i) { return i.name == r.name(); });
+  JointSetting setting{*from, *to};
+  if (!read_setting(r, info->keys, setting, faults)) return;
+  std::string name = name_of(r, info->name, body.joints().size());
+  while (body.has_joint(name)) name += "'";  // a name of the scene's own can be one that is made here
+  try {
+    Joint& joint = body.join(info->make(std::move(name), setting));
+    if (r.given("off"))
+      joint.during(r.number("on"), r.number("off"));
+    else if (r.given("on"))
+      joint.during(r.number("on"));
+  } catch (const std::invalid_argument& e) {
+    faults.place(r.json(), e.what());
+  }
+}
+
+}  // namespace pliant

@@ -1,0 +1,48 @@
+// The global parameters of a part in a scene: rest values, limits and starting values, each judged at its
+// place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <pliant/part/part.h>
+#include <pliant/scene/reader/reader.h>
+
+#include "scene/scene_faults.h"
+#include "time_reader.h"
+
+namespace pliant {
+
+class ParameterReader {
+ public:
+  /// in_matrix: the parameters of the part's stiffness matrix, which makes them dynamic. end: of the run, s.
+  ParameterReader(Part& part, const std::vector<std::string>& in_matrix, double end, SceneFaults& faults)
+      : part_(part), in_matrix_(in_matrix), times_(end, faults), faults_(faults) {}
+
+  /// Reads the key "parameters" of a part; values with known faults are passed over.
+  void read(const Reader& part);
+
+ private:
+  struct Entry {
+    const Parameter& parameter;
+    const JsonValue& value;
+    const JsonValue *rest, *initial, *stiffness, *min, *max, *said;  ///< said: "dynamic"
+    bool in_matrix, dynamic;
+  };
+
+  Entry entry(const std::string& name, const JsonValue& value) const;
+  void unknown(const JsonValue& parameters, const std::string& name);
+  void read(const Entry& e);
+  bool contradicts(const Entry& e);
+  bool read_rest(const Entry& e);
+  /// The limits, with the rest value and the initial value of a dynamic parameter between them.
+  void read_limits(const Entry& e);
+  bool admissible(const Entry& e, const Range& allowed);
+
+  Part& part_;
+  const std::vector<std::string>& in_matrix_;
+  TimeReader times_;
+  SceneFaults& faults_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,56 @@
+// A part of a scene: from its record to a Part.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <pliant/part/part.h>
+#include <pliant/scene/reader/reader.h>
+
+#include "scene/scene_faults.h"
+
+namespace pliant {
+
+class PartReader {
+ public:
+  /// materials: those of the scene by name. make_factor: see LocalSettings. end: of the run, s.
+  PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
+             const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
+      : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
+
+  /// The part; null when its shape or its deformations are not known. Faults are reported.
+  std::unique_ptr<Part> read();
+  /// Its rest shape is known and its constants are taken: points on it can be resolved.
+  bool prepared() const { return prepared_; }
+
+ private:
+  double property(const char* key) const;
+  void read_elasticity();
+  void read_stiffness(const Reader& r);
+  bool check_names(const JsonValue& names);
+  bool check_square(const JsonValue& K, std::size_t n);
+  /// Numbers across the diagonal of [[...], ...] that differ are reported.
+  bool check_symmetric(const JsonValue& rows);
+  void read_inertia(const Reader& r);
+  /// What prescribes its motion, "fixed" or "motion"; null when it is free.
+  const JsonValue* unmoved() const;
+  void read_motion(const Reader& r);
+  void check_rigid();
+  void refused(const std::invalid_argument& e);
+  void refused_locally(const LocalFault& e);
+  std::string without_name(const std::invalid_argument& e) const;
+  void prepare();
+
+  const Reader& r_;
+  const std::map<std::string, Reader>& materials_;
+  const MakeSparseFactor& make_factor_;
+  double end_;
+  SceneFaults& faults_;
+  std::unique_ptr<Part> part_;
+  bool prepared_ = false;
+};
+
+}  // namespace pliant

@@ -1,0 +1,318 @@
+// Steps to a tolerance in which bodies lie on each other.
+#include "catch.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/joints/all_joints.h>
+
+#include "motion.h"
+
+namespace lasting_contact_test {
+
+using namespace pliant;
+
+namespace {
+
+constexpr double kGravity = 9.81;
+
+void go_to(Simulation& simulation, double end) {
+  while (simulation.time() < end) simulation.step_up_to(end);
+}
+
+Part& ball_on_floor(MultiBody& body, double friction) {
+  body.contact.active = true;
+  body.contact.friction = friction;
+  body.contact.planes.emplace_back().name = "floor";
+  return body.add<Primitive<Sphere>>("ball")
+      .rest({{"r", 0.1}})
+      .place({0, 0, 0.1})
+      .velocity({1, 0, 0}, {0, 0, 0});
+}
+
+/// A ball that starts at rest on top of another, this far from its top, rad.
+constexpr double kStart = 0.2;
+void hill(MultiBody& body) {
+  body.contact.active = true;
+  body.contact.friction = 2;
+  body.add<Primitive<Sphere>>("hill").rest({{"r", 1}}).fix();
+  body.add<Primitive<Sphere>>("ball")
+      .rest({{"r", 0.1}})
+      .place({1.1 * std::sin(kStart), 0, 1.1 * std::cos(kStart)});
+}
+
+/// How far it has rolled then, rad: (R + r) angle'' = 5/7 g sin(angle).
+double angle_on_hill(double t) {
+  constexpr int steps = 4000;
+  const double h = t / steps;
+  auto acceleration = [](double angle) { return 5.0 / 7 * kGravity * std::sin(angle) / 1.1; };
+  double angle = kStart, rate = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double k1 = rate, l1 = acceleration(angle), k2 = rate + 0.5 * h * l1,
+                 l2 = acceleration(angle + 0.5 * h * k1), k3 = rate + 0.5 * h * l2,
+                 l3 = acceleration(angle + 0.5 * h * k2), k4 = rate + h * l3,
+                 l4 = acceleration(angle + h * k3);
+    angle += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    rate += h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+  }
+  return angle;
+}
+
+}  // namespace
+
+TEST_CASE("what slides to a stop, or comes to roll, does so within the tolerance", "[error][contact]") {
+  for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
+    CAPTURE(tolerance);
+    {  // v^2 / (2 mu g)
+      MultiBody body;
+      body.add<Primitive<Box>>("box")
+          .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
+          .place({0, 0, 0.1})
+          .velocity({1, 0, 0}, {0, 0, 0});
+      body.contact.active = true;
+      body.contact.friction = 0.5;
+      body.contact.planes.emplace_back().name = "floor";
+      Simulation simulation(body, "dop853", 1, tolerance);
+      go_to(simulation, 0.5);
+      CHECK(std::abs(simulation.state().q[0] - 1 / (2 * 0.5 * kGravity)) < std::max(0.5 * tolerance, 1e-8));
+      CHECK(simulation.state().v.norm() < 1e-9);
+      CHECK(simulation.step_counters().uncontrolled == 0);
+      CHECK(simulation.step_counters().steps < 40);
+    }
+    {  // It rolls from 2 v / (7 mu g) on, at 5/7 of its speed.
+      MultiBody body;
+      ball_on_floor(body, 0.2);
+      Simulation simulation(body, "dop853", 1, tolerance);
+      go_to(simulation, 1);
+      const double rolls = 2 / (7 * 0.2 * kGravity),
+                   x = rolls - 0.5 * 0.2 * kGravity * rolls * rolls + 5.0 / 7 * (1 - rolls);
+      CHECK(std::abs(simulation.state().q[0] - x) < 0.5 * tolerance);
+      CHECK(simulation.step_counters().steps < 40);
+    }
+  }
+}
+
+TEST_CASE("a ball that rolls down another one keeps to the tolerance, in steps of its square root",
+          "[error][contact]") {
+  const double angle = angle_on_hill(0.5);
+  auto rolled = [&](double tolerance) {
+    MultiBody body;
+    hill(body);
+    Simulation simulation(body, "dop853", 1, tolerance);
+    go_to(simulation, 0.5);
+    const auto& q = simulation.state().q;
+    CAPTURE(tolerance);
+    CHECK(std::hypot(q[0] - 1.1 * std::sin(angle), q[2] - 1.1 * std::cos(angle)) < 0.3 * tolerance);
+    CHECK(std::abs(std::hypot(q[0], q[2]) - 1.1) < 1e-7);
+    CHECK(std::abs(simulation.ledger().balance) < tolerance);
+    CHECK(simulation.step_counters().uncontrolled == 0);
+    CHECK(simulation.step_counters().rejected < 10);
+    return simulation.step_counters().steps;
+  };
+  rolled(1e-3);
+  const auto rough = rolled(1e-4), fine = rolled(1e-6);
+  CHECK(fine < 12 * rough);
+  CHECK(fine < 900);
+}
+
+TEST_CASE("what rests does so exactly, in steps as long as it sinks little without what is below",
+          "[error][contact]") {
+  for (const double tolerance : {1e-2, 1e-7}) {
+    MultiBody body;
+    body.contact.active = true;
+    body.contact.planes.emplace_back().name = "floor";
+    for (int i = 0; i < 5; ++i)
+      body.add<Primitive<Box>>("box" + std::to_string(i))
+          .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
+          .place({0.01 * (i % 2), 0, 0.1 + 0.2 * i});
+    Simulation simulation(body, "dop853", 1, tolerance);
+    go_to(simulation, 10);
+    for (int i = 0; i < 5; ++i) {
+      CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
+      CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
+    }
+    CHECK(simulation.step_counters().steps < 120);  // 2.5 g h^2 of a box's 0.2 m is 0.4 of them
+    CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);  // no halves
+  }
+}
+
+TEST_CASE("a ball that rolls off a table falls from where it left it", "[error][contact]") {
+  auto place = [](double tolerance) {
+    MultiBody body;
+    body.contact.active = true;
+    body.contact.friction = 1;
+    body.add<Primitive<Box>>("table").rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.1}}).place({0, 0, -0.1}).fix();
+    body.add<Primitive<Sphere>>("ball")
+        .rest({{"r", 0.1}})
+        .place({0.3, 0, 0.1})
+        .velocity({1, 0, 0}, {0, 10, 0});
+    Simulation simulation(body, "dop853", 1, tolerance);
+    go_to(simulation, 0.6);
+    return Vec3<double>(simulation.state().q.head<3>());
+  };
+  const Vec3<double> exact = place(1e-8);
+  CHECK(exact[0] > 0.6);
+  CHECK(exact[2] < -0.1);
+  for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6}) {
+    CAPTURE(tolerance, place(tolerance).transpose(), exact.transpose());
+    CHECK((place(tolerance) - exact).norm() < 3 * tolerance);
+  }
+}
+
+TEST_CASE("a board that carries a ball round, and is struck, keeps to the tolerance", "[error][contact]") {
+  auto end = [](double tolerance, long most) {
+    MultiBody body;
+    Part& board = body.add<Primitive<Box>>("board").rest({{"a1", 1}, {"a2", 0.2}, {"a3", 0.03}});
+    body.hinge("pivot", world(0, 0, 0), point(board, 0, 0, 0), Vec3<double>::UnitY());
+    body.add<Primitive<Sphere>>("faller").rest({{"r", 0.1}}).place({0.7, 0, 1});
+    body.add<Primitive<Sphere>>("flyer").rest({{"r", 0.1}}).place({-0.7, 0, 0.2});
+    body.contact.active = true;
+    Simulation simulation(body, "dop853", 1, tolerance);
+    go_to(simulation, 0.8);
+    CAPTURE(tolerance);
+    CHECK(simulation.step_counters().uncontrolled == 0);
+    CHECK(simulation.step_counters().steps < most);
+    CHECK(simulation.model().gap(simulation.state(), 0) < 1e-12);
+    return simulation.state();
+  };
+  const State exact = end(1e-7, 5000);
+  for (const auto& [tolerance, most] :
+       std::vector<std::pair<double, long>>{{1e-2, 60}, {1e-3, 80}, {1e-5, 600}}) {
+    const State state = end(tolerance, most);
+    for (int part = 0; part < 3; ++part)
+      CHECK((state.q - exact.q).segment<3>(7 * part).norm() < std::max(0.5 * tolerance, 1e-6));
+  }
+}
+
+TEST_CASE("stiff parameters of what lies on a floor are followed", "[error][contact]") {
+  auto end = [](double tolerance) {
+    MultiBody body;
+    body.contact.active = true;
+    body.contact.planes.emplace_back().name = "floor";
+    Part& egg = body.add<Primitive<Ellipsoid>>("egg");
+    egg.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}})
+        .place({0, 0, 0.11})
+        .velocity({0.5, 0, 0}, {0.3, 0.1, 0.2});
+    egg.stiffness({{"a1", 1e5}, {"a2", 1e5}, {"a3", 1e5}}).damping(0, 1e-3);
+    Simulation simulation(body, "esdirk", 1, tolerance);
+    go_to(simulation, 0.5);
+    CHECK(simulation.step_counters().uncontrolled == 0);
+    return simulation.state();
+  };
+  const State exact = end(1e-6), rough = end(1e-4);
+  CHECK((exact.q - rough.q).head<3>().norm() < 1e-4);
+  CHECK((exact.q - rough.q).tail<3>().norm() < 1e-4);
+}
+
+TEST_CASE("of many bodies that lie on each other steps are short, and counted", "[error][contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 0.5;
+  body.contact.planes.emplace_back().name = "floor";
+  for (int i = 0; i < 9; ++i)
+    body.add<Primitive<Box>>("box" + std::to_string(i))
+        .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
+        .place({0, static_cast<double>(i), 0.1})
+        .velocity({1, 0, 0}, {0, 0, 0});
+  Simulation simulation(body, "dop853", 1, 1e-6);
+  go_to(simulation, 0.25);
+  CHECK(simulation.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(1e-3));
+  CHECK(simulation.state().v.norm() < 1e-9);
+  CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
+  CHECK(simulation.step_counters().steps < 150);
+  const auto steps = [&](double longest) {
+    body.contact.longest_step = longest;
+    Simulation other(body, "dop853", 1, 1e-6);
+    go_to(other, 0.1);
+    return other.step_counters().uncontrolled;
+  };
+  const auto usual = steps(2e-3);
+  CHECK(usual >= 50);
+  CHECK(usual < 60);
+  CHECK(steps(5e-4) >= 4 * usual - 20);
+  body.contact.longest_step = 2e-3;
+  Simulation rough(body, "dop853", 1, 1e-2);
+  go_to(rough, 0.5);
+  CHECK(rough.step_counters().uncontrolled <= 27);
+  CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(0.2e-2));
+}
+
+TEST_CASE("what a force drives at a thin plate does not pass it, from far or near",
+          "[error][contact][long]") {
+  for (const double tolerance : {0.0, 1e-3, 1e-6})
+    for (const double from : {0.1, 0.37, 0.83, 1.9})
+      for (const double force : {0.5, 5.0, 40.0}) {
+        MultiBody body;
+        body.gravity.setZero();
+        body.contact.active = true;
+        body.add<Primitive<Box>>("plate").rest({{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.005}}).fix();
+        Part& ball = body.add<Primitive<Sphere>>("ball").rest({{"r", 0.02}}).place({0.03, 0.01, from});
+        body.force("push", point(ball, 0, 0, 0), {0, 0, -force});
+        Simulation simulation(body, "dop853", 1, tolerance);
+        for (int i = 0; i < 40; ++i) simulation.step(0.05);
+        CAPTURE(tolerance, from, force);
+        CHECK(simulation.state().q[2] > 0.02);
+      }
+}
+
+TEST_CASE("a plane that is back where it was at the end of a step is seen to have moved",
+          "[error][contact]") {
+  // It goes up and down with three times the acceleration of gravity: a box on it is thrown.
+  MultiBody body;
+  body.contact.active = true;
+  body.add<Primitive<Box>>("box").rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.2}}).place({0, 0, 0.2});
+  ContactPlane& plane = body.contact.planes.emplace_back();
+  plane.name = "table";
+  plane.point = TimeVector(0, 0, TimeFunction::formula("0.00745 * (1 - cos(20 * pi * t))"));
+  Simulation simulation(body, "dop853", 1, 1e-4);
+
+  for (int i = 0; i < 20; ++i) simulation.step(0.1);  // a period
+  CHECK(simulation.step_counters().impacts >= 10);
+  CHECK(simulation.step_counters().steps > 40);
+}
+
+TEST_CASE("the longest step of what is not controlled changes nothing of what is", "[error][contact]") {
+  auto end = [](double longest) {
+    MultiBody body;
+    hill(body);
+    body.contact.longest_step = longest;
+    Simulation simulation(body, "dop853", 1, 1e-4);
+    go_to(simulation, 0.5);
+    return simulation.state().q;
+  };
+  CHECK(end(2e-3) == end(100));
+}
+
+TEST_CASE("a support that goes ends a step, whatever the time and the tolerance", "[error][contact]") {
+  for (const double off : {0.5, 100.0}) {
+    MultiBody body;
+    body.contact.active = true;
+    body.add<Primitive<Box>>("box").rest({{"a1", 2e-3}, {"a2", 2e-3}, {"a3", 2e-3}}).place({0, 0, 2e-3});
+    ContactPlane& plane = body.contact.planes.emplace_back();
+    plane.name = "table";
+    plane.off = off;
+    Simulation simulation(body, "dop853", 1, 1e-10);
+    go_to(simulation, off + 0.1);
+    CAPTURE(off);
+    CHECK(simulation.state().q[2] == Approx(2e-3 - 0.5 * kGravity * 0.01).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("what slides fast along a floor takes whole steps, however thin it is", "[contact]") {
+  MultiBody body;
+  body.contact.active = true;
+  body.contact.friction = 0;
+  body.contact.planes.emplace_back().name = "floor";
+  body.add<Primitive<Box>>("puck")
+      .rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 0.01}})
+      .place({0, 0, 0.01})
+      .velocity({10, 0, 0}, {0, 0, 0});
+  Simulation simulation(body, "semi_implicit_euler");
+  for (int i = 0; i < 20; ++i) simulation.step(0.01);
+  CHECK(simulation.step_counters().evaluations == 20);
+  CHECK(simulation.state().q[0] == Approx(2).epsilon(1e-12));
+}
+
+}  // namespace lasting_contact_test

@@ -1,0 +1,533 @@
+// Motion of parts whose nodes deform locally: what a push does, reference conditions, free flight, dust.
+#include "catch.h"
+
+#include <string>
+
+#include <pliant/part/local/local_laws.h>
+#include <pliant/part/local/nodal_deformation.h>
+#include <pliant/part/mesh/surface.h>
+
+#include "draws.h"
+#include "motion.h"
+#include "spring_net.h"
+
+namespace local_motion_test {
+
+using namespace pliant;
+
+using test::bump;
+using test::net;
+using test::rush;
+
+namespace {
+
+/// What is soft about a part. order: of the elements, 0 for a shell.
+struct Kind {
+  const char* name;
+  int order;
+  std::vector<LocalLaw> laws;
+};
+/// Energies that are quadratic in displacements, and energies of positions.
+std::vector<Kind> kinds() {
+  const std::vector<double> solid{300, 0.3}, sheet{300, 0.3, 0.05};
+  return {{"a shell, linear", 0, {local_law("membrane", sheet), local_law("bending", sheet)}},
+          {"a shell of rubber with gas in it",
+           0,
+           {local_law("neo_hookean_membrane", sheet), local_law("folding", sheet),
+            local_law("gas", {10, 1.4, 8})}},
+          {"a solid, linear", 1, {local_law("elastic", solid)}},
+          {"a curved solid, linear", 2, {local_law("elastic", solid)}},
+          {"a solid of rubber", 1, {local_law("neo_hookean", solid)}},
+          {"a curved solid of rubber", 2, {local_law("neo_hookean", solid)}}};
+}
+
+/// A tumbling part whose global parameters move too, where they are soft; with a net of springs where no laws
+/// are given. order: of the elements, 0 for a shell.
+Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
+               const std::vector<LocalLaw>& laws = {}) {
+  body.gravity.setZero();
+  auto& part = body.add(make_part("shell", "superellipsoid", {"taper", "twist"}, 2));
+  if (order == 0) part.make_shell();
+  part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}, {"taper.tx", 0.2}})
+      .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
+      .velocity({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
+  if (soft)
+    part.stiffness({{"a1", 200}, {"a2", 300}, {"a3", 150}, {"taper.tx", 20}, {"twist.angle", 15}})
+        .initial({{"a1", 0.52}, {"twist.angle", 0.3}})
+        .initial_rate({{"a3", 0.4}, {"taper.tx", 0.3}});
+  LocalSettings settings = net(resolution, 20);
+  if (order > 0) settings.energies = {local_law("elastic", {200, 0.3})};
+  if (!laws.empty()) settings.energies = laws;
+  settings.order = std::max(order, 1);
+  settings.displacement = bump;
+  settings.velocity = rush;
+  part.deform_locally(settings);
+  return part;
+}
+
+/// A force at each of some points of a part, which moves or does not, one at a time: the sums of m x_ddot and
+/// x x m x_ddot over the nodes are its own.
+void check_pushes(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
+  const Vec3<double> force(1, -2, 0.5);
+  std::size_t pushed = 0;
+  Vec3<double> place = Vec3<double>::Zero();
+  for (std::size_t k = 0; k < at.size(); ++k)
+    body.force("push" + std::to_string(k), point(part, at[k]),
+               [&, k](double, const Vec3<double>& x, const Vec3<double>&) -> Vec3<double> {
+                 if (k != pushed) return {0, 0, 0};
+                 place = x;
+                 return force;
+               });
+  Simulation simulation(body, "rk4");
+  State state = simulation.state();
+  if (!moving) state.v.setZero();
+  Workspace<double> work;
+  for (pushed = 0; pushed < at.size(); ++pushed) {
+    simulation.dynamics().accelerations(0, state.q, state.v, state, work);
+    const PartWorkspace<double>& w = work.parts[0];
+    const NodalDeformation& local = *part.local()->nodal();
+    const NodalWorkspace& now = NodalDeformation::of(*w.local);
+    const Eigen::Index n = local.n_nodes();
+    Nodes a = nodes(work.v_dot.tail(local.n_d()), n);
+    local.add_frame_velocities(w.a_r, 1, now, a.data(), a.data());
+    const Eigen::Map<const Nodes> u(now.rates_of_p(n), n, 3);
+    const Vec3<double> omega = w.v_r.segment<3>(3);
+    Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Vec3<double> p = nodes(now.x, n).row(i).transpose(), rate = u.row(i).transpose();
+      Vec3<double> x_ddot = a.row(i).transpose() + omega.cross(omega.cross(p) + 2 * rate);
+      if (part.n_s() > 0) x_ddot += now.s2.row(i).transpose();
+      const Vec3<double> ma = local.mesh().mass[i] * x_ddot;
+      sum += ma;
+      turning += p.cross(ma);
+    }
+    const Vec3<double> f = w.R.transpose() * force, p = w.R.transpose() * (place - w.c);
+    CHECK((sum - f).norm() <= 1e-12 * f.norm());
+    CHECK((turning - p.cross(f)).norm() <= 1e-12 * f.norm());
+  }
+}
+
+/// How far parts are from their reference conditions: W^T d, of the scale of its largest term, and what those
+/// of the motion would change (c_dot, omega, q_s_dot) by, which are of the scale of 1.
+struct Unmet {
+  double of_place = 0, of_motion = 0;
+};
+Unmet unmet(const Simulation& simulation, Workspace<double>& work) {
+  const State& state = simulation.state();
+  Unmet worst;
+  for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
+    const PartModel& m = simulation.model().parts()[i];
+    simulation.dynamics().evaluate_masses(state.q, state.v, {static_cast<int>(i)}, work);
+    const PartWorkspace<double>& w = work.parts[i];
+    const NodalWorkspace& now = NodalDeformation::of(*w.local);
+    const NodalDeformation& local = *m.local->nodal();
+    const Eigen::Index n = local.n_nodes();
+    const VecMax<double> of_d = local.frame_share(nodes(now.d, n), now);
+    Nodes x_dot = nodes(now.d_dot, n);
+    local.add_frame_velocities(w.v_r, 1, now, x_dot.data(), x_dot.data());
+    const VecMax<double> v_r = now.solve_transposed(local.frame_share(x_dot, now));
+    worst.of_place = std::max(worst.of_place, of_d.norm() / (m.part->total_mass() * m.part->size()));
+    worst.of_motion = std::max(worst.of_motion, (v_r - w.v_r).norm());
+  }
+  return worst;
+}
+
+/// The worst after each of some steps.
+Unmet worst_unmet(Simulation& simulation, double h, int steps) {
+  Workspace<double> work;
+  Unmet worst;
+  for (int i = 0; i < steps; ++i) {
+    simulation.step(h);
+    const Unmet now = unmet(simulation, work);
+    worst.of_place = std::max(worst.of_place, now.of_place);
+    worst.of_motion = std::max(worst.of_motion, now.of_motion);
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("nodes carry the mass, the centre and the inertia of the part", "[local]") {
+  MultiBody body;
+  Part& part = tumbling(body, 4);
+  const Model model(body);
+  const LocalMesh& mesh = part.local()->mesh();
+  CHECK(mesh.mass.minCoeff() > 0);
+  CHECK(mesh.mass.sum() == Approx(part.total_mass()).epsilon(1e-12));
+  Mat3<double> I = Mat3<double>::Zero();
+  Vec3<double> moment = Vec3<double>::Zero();
+  for (Eigen::Index k = 0; k < mesh.X.rows(); ++k) {
+    const Vec3<double> x = mesh.X.row(k).transpose();
+    moment += mesh.mass[k] * x;
+    I += mesh.mass[k] * (x.squaredNorm() * Mat3<double>::Identity() - x * x.transpose());
+  }
+  const Inertia<double>& whole = part.rest_inertia();
+  CHECK((moment - whole.moment).norm() <= 1e-12 * whole.mass);
+  CHECK((I - whole.M.block<3, 3>(3, 3)).norm() <= 1e-12 * I.norm());
+}
+
+TEST_CASE("free flight of a shell that rings, tumbles and changes its shape: order 4, and what is conserved",
+          "[local][motion][long]") {
+  std::vector<double> energy, momentum, turning;
+  for (const int steps : {50, 100, 200, 400}) {
+    MultiBody body;
+    tumbling(body, 3);
+    Simulation simulation(body, "rk4");
+    const Ledger start = simulation.ledger();
+    Workspace<double> work;
+    CHECK(unmet(simulation, work).of_place <= 1e-12);
+    const Unmet worst = worst_unmet(simulation, 1.0 / steps, steps);
+    CHECK(worst.of_place <= 1e-12);
+    CHECK(worst.of_motion <= 1e-12);
+    const Ledger end = simulation.ledger();
+    energy.push_back(std::abs(end.energy() - start.energy()) / start.energy());
+    momentum.push_back((end.momentum - start.momentum).norm() / start.momentum.norm());
+    turning.push_back((end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm());
+  }
+  CHECK(test::observed_order(energy) >= 3.9);
+  CHECK(test::observed_order(momentum) >= 3.9);
+  CHECK(test::observed_order(turning) >= 3.9);
+  CHECK(energy.back() <= 1e-6);
+}
+
+namespace {
+
+/// A part of a kind in free flight, hung from a point of its surface, or falling onto a plane.
+enum class Way { flying, hung, falling };
+void lay(MultiBody& body, const Kind& kind, bool soft, Way way) {
+  Part& part = tumbling(body, 1, soft, kind.order, kind.laws);
+  if (way == Way::flying) return;
+  body.gravity = {0, 0, -9.81};
+  if (way == Way::hung) {
+    const Material<double> top = material_at(kPi / 2, 0);
+    const Vec3<double> place = [&] {
+      const Model model(body);
+      return model.world_point(model.initial_state(), 0, top);
+    }();
+    body.ball("top", world(place), point(part, top));
+    return;
+  }
+  part.velocity({0.3, -0.2, -3}, {1, 0.6, -0.8});
+  body.plane("floor", Vec3<double>(0, 0, 2.4), {0, 0, 1});
+  body.contact.friction = 0.3;
+}
+
+}  // namespace
+
+TEST_CASE("W^T d = 0 holds to rounding along the way: laws of every kind, free, on a joint, in contact",
+          "[local][motion][joints][contact][long]") {
+  // What brings parts back onto their joints leaves some of the motion's, to the end of the next step.
+  for (const auto& [method, of_joints] :
+       {std::pair("rk4", 1e-11), {"semi_implicit_euler", 1e-5}, {"linearly_implicit", 1e-8}})
+    for (const Way way : {Way::flying, Way::hung, Way::falling})
+      for (const Kind& kind : kinds())
+        for (const bool soft : {false, true}) {
+          CAPTURE(method, static_cast<int>(way), kind.name, soft);
+          if (kind.order == 2 && soft && method == std::string("linearly_implicit")) continue;  // dear
+          MultiBody body;
+          lay(body, kind, soft, way);
+          Simulation simulation(body, method);
+          const Unmet worst = worst_unmet(simulation, 1e-3, 80);
+          CHECK(worst.of_place <= 1e-12);
+          CHECK(worst.of_motion <= (way == Way::hung ? of_joints : 1e-12));
+          if (way == Way::hung) CHECK(simulation.state().joints[0] == JointMode::closed);
+          if (way == Way::falling) CHECK(simulation.step_counters().contact_sweeps > 0);
+        }
+}
+
+TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P and L follow it for long",
+          "[local][motion][long]") {
+  const Vec3<double> g(0.5, 0, -9.81);
+  for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"})
+    for (const Kind& kind : kinds()) {
+      if (kind.order == 2 && method == "linearly_implicit") continue;  // dear: factored at each step
+      CAPTURE(method, kind.name);
+      MultiBody body;
+      body.gravity = g;
+      auto& part = body.add<Primitive<Ellipsoid>>("soft", 2);
+      if (kind.order == 0) part.make_shell();
+      part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})
+          .place({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.1, 0.3))
+          .velocity({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
+      LocalSettings settings;
+      settings.resolution = 1;
+      settings.order = std::max(kind.order, 1);
+      settings.displacement = bump;
+      settings.velocity = rush;
+      settings.energies = kind.laws;
+      part.deform_locally(settings);
+      Simulation simulation(body, method);
+      const int steps = 5000;
+      const double h = 1e-4;
+      const double m = part.local()->mesh().mass.sum(), t = steps * h;
+      const Ledger start = simulation.ledger();
+      const Vec3<double> c0 = simulation.state().q.head<3>();
+      const Unmet worst = worst_unmet(simulation, h, steps);
+      const Ledger end = simulation.ledger();
+      const Vec3<double> c = simulation.state().q.head<3>(), P = start.momentum + m * t * g,
+                         fallen = c0 + t / m * start.momentum + 0.5 * t * t * g;
+      CHECK(worst.of_place <= 1e-13);
+      CHECK(worst.of_motion <= 1e-12);
+      CHECK((end.momentum - P).norm() <= 1e-13 * P.norm());
+      if (method != "semi_implicit_euler") CHECK((c - fallen).norm() <= 1e-12 * fallen.norm());
+      const Vec3<double> L0 = start.angular_momentum - c0.cross(start.momentum),
+                         L = end.angular_momentum - c.cross(end.momentum);
+      const double scale = start.kinetic + start.local;
+      if (method != "rk4") continue;
+      CHECK((L - L0).norm() <= 1e-11 * L0.norm());
+      CHECK(std::abs(end.balance) <= 1e-8 * scale);
+    }
+}
+
+TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns the body by its torque",
+          "[local][long]") {
+  std::vector<Kind> all = kinds();
+  all.push_back({"a net of springs", 0, {}});
+  for (const Kind& kind : all)
+    for (const bool soft : {false, true})
+      for (const bool moving : {false, true}) {
+        CAPTURE(kind.name, soft, moving);
+        MultiBody body;
+        Part& part = tumbling(body, 1, soft, kind.order, kind.laws);
+        part.prepare();
+        const std::vector<Material<double>> every = part.local()->mesh().nodes;
+        check_pushes(body, part, every, moving);
+      }
+}
+
+TEST_CASE("N09: a force inside an element does so too, of shells and of solids of both orders", "[local]") {
+  test::Draws draw(9);
+  for (const bool soft : {false, true})
+    for (const bool moving : {false, true})
+      for (const int order : {0, 1, 2}) {  // 0: a shell
+        CAPTURE(soft, moving, order);
+        std::vector<Material<double>> at;
+        for (int i = 0; i < 6; ++i) {
+          const double u = draw.uniform(-1.4, 1.4), v = draw.uniform(-3, 3), w = draw.uniform(0, 1);
+          at.push_back(material_at(u, v, order == 0 ? 1 : w));
+        }
+        MultiBody body;
+        Part& part = tumbling(body, 2, soft, order);
+        check_pushes(body, part, at, moving);
+        for (const Material<double>& m : at) CHECK(part.local()->weights(part, m).node.size() >= 3);
+      }
+}
+
+TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves straight", "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Ellipsoid>>("dust", 1);
+  part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).velocity({0.1, 0, 0}, {0.5, 0.3, 1});
+  part.make_dynamic({"a1", "a2", "a3"});
+  LocalSettings settings;
+  settings.resolution = 3;
+  settings.velocity = rush;
+  part.deform_locally(settings);
+  std::vector<double> errors;
+  for (const int steps : {50, 100, 200}) {
+    Simulation simulation(body, "rk4");
+    auto places = [&] {
+      Workspace<double> work;
+      const State& s = simulation.state();
+      simulation.dynamics().evaluate_masses(s.q, s.v, {0}, work);
+      const PartWorkspace<double>& w = work.parts[0];
+      const NodalDeformation& local = *part.local()->nodal();
+      const Eigen::Index n = local.n_nodes();
+      Nodes v = nodes(w.local->d_dot, local.n_nodes());
+      local.add_frame_velocities(w.v_r, 1, *w.local, v.data(), v.data());
+      v *= w.R.transpose();
+      const Nodes x =
+          (nodes(NodalDeformation::of(*w.local).x, n) * w.R.transpose()).rowwise() + w.c.transpose();
+      return std::make_pair(x, v);
+    };
+    const auto [x0, v0] = places();
+    test::run(simulation, 1, steps);
+    errors.push_back((places().first - x0 - v0).norm() / x0.norm());
+  }
+  CHECK(test::observed_order(errors) >= 3.9);
+  CHECK(errors.back() <= 1e-7);
+}
+
+namespace {
+
+struct Twisted {
+  double least = 3, most = -3;
+  double condition = 0;  ///< the worst of what tells the twist from the motion of the nodes
+  double balance = 0;    ///< of the energy at the start
+};
+/// What the twist of a tube, its only parameter, comes to.
+Twisted twist(MultiBody& body, double h, int steps) {
+  Simulation simulation(body, "rk4");
+  const double start = simulation.ledger().energy();
+  Workspace<double> work;
+  Twisted all;
+  for (int i = 0; i < steps; ++i) {
+    simulation.step(h);
+    const State& state = simulation.state();
+    simulation.dynamics().evaluate_masses(state.q, state.v, {0}, work);
+    all.condition = std::max(all.condition, work.parts[0].local->condition());
+    all.least = std::min(all.least, state.q[7]);
+    all.most = std::max(all.most, state.q[7]);
+  }
+  all.balance = simulation.ledger().balance / start;
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a shell twists through 2.5 rad per half length, and its conditions still tell its coordinates apart",
+    "[local][long]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add(make_part("tube", "cylinder", {"twist"}, 2));
+  part.make_shell()
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.6}})
+      .stiffness({{"twist.angle", 2}})
+      .initial({{"twist.angle", 2.5}});
+  LocalSettings settings = net(3, 20);
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * rush(X); };
+  part.deform_locally(settings);
+  const Twisted all = twist(body, 1e-3, 1500);
+  CAPTURE(all.least, all.most, all.condition, all.balance);
+  CHECK(all.most >= 2.4);
+  CHECK(all.least <= -2.2);
+  CHECK(all.condition <= 2);
+  CHECK(std::abs(all.balance) <= 1e-6);
+}
+
+TEST_CASE("a square tube with two dents in its membrane swings from 2.5 rad to as much the other way",
+          "[local][long]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add(make_part("tube", "superellipsoid", {"twist"}, 1));
+  part.make_shell()
+      .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.7}, {"eps1", 0.2}, {"eps2", 0.3}})
+      .stiffness({{"twist.angle", 1}})
+      .initial({{"twist.angle", 2.5}});
+  LocalSettings settings;
+  settings.resolution = 5;
+  settings.energies = {local_law("loaded_membrane", {150, 6})};
+  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> {
+    const auto dent = [&](const Vec3<double>& at) {
+      return std::max(0.0, 1 - (X - at).squaredNorm() / (0.14 * 0.14));
+    };
+    return {0.1 * dent({0.2, 0, -0.3}), 0.13 * dent({0, -0.2, 0.25}), 0};
+  };
+  part.deform_locally(settings);
+  const Twisted all = twist(body, 1e-3, 1200);
+  CAPTURE(all.least, all.most, all.condition, all.balance);
+  CHECK(all.most >= 2.4);
+  CHECK(all.least <= -2.4);
+  CHECK(all.condition <= 2);
+  CHECK(std::abs(all.balance) <= 1e-6);
+}
+
+namespace {
+
+/// Adds an ellipsoid without elasticity whose nodes are, and go, towards its long axis.
+void needle(MultiBody& body, bool soft, double closed, double closing) {
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Ellipsoid>>("needle", 1);
+  part.rest({{"a1", 0.6}, {"a2", 0.4}, {"a3", 0.5}});
+  if (soft) part.make_dynamic({"a1"});
+  LocalSettings settings;
+  settings.resolution = 2;
+  settings.displacement = [=](const Vec3<double>& X) -> Vec3<double> {
+    return {0, -closed * X[1], -closed * X[2]};
+  };
+  settings.velocity = [=](const Vec3<double>& X) -> Vec3<double> {
+    return {0, -closing * X[1], -closing * X[2]};
+  };
+  part.deform_locally(settings);
+}
+
+/// Whether something stops since nodes do not tell frame and parameters apart.
+bool stops(const std::function<void()>& act) {
+  std::string what;
+  try {
+    act();
+  } catch (const NumericalFailure& failure) {
+    what = failure.what();
+  }
+  if (what.empty()) return false;
+  CHECK_THAT(what, test::has_text("part 'needle'"));
+  CHECK_THAT(what, test::has_text("no longer tells its frame and global parameters apart"));
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("nodes on a line do not tell how their part is turned about it: the run stops, and names the part",
+          "[local][failure]") {
+  for (const bool soft : {false, true}) {
+    CAPTURE(soft);
+    MultiBody near, there;
+    needle(near, soft, 1 - 1e-7, 0);
+    needle(there, soft, 1 - 1e-9, 0);
+    CHECK_FALSE(stops([&] { Simulation(near, "rk4"); }));
+    CHECK(stops([&] { Simulation(there, "rk4"); }));
+    // On the way.
+    for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"}) {
+      CAPTURE(method);
+      MultiBody body;
+      needle(body, soft, 0, 1);
+      Simulation simulation(body, method);
+      for (int i = 0; i < 63; ++i) simulation.step(1.0 / 64);
+      const State before = simulation.state();
+      CHECK(stops([&] { simulation.step(1.0 / 64); }));
+      CHECK(hash(simulation.state()) == hash(before));
+    }
+  }
+}
+
+TEST_CASE("N66: a soft shell has the same bits on any number of threads", "[local]") {
+  std::vector<std::uint64_t> bits;
+  for (const int threads : {1, 2, 3}) {
+    MultiBody body;
+    // Enough triangles for several ranges of elements.
+    auto& part = body.add<Primitive<Sphere>>("ball", 1);
+    part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
+    LocalSettings settings;
+    settings.resolution = 12;
+    settings.velocity = rush;
+    settings.energies = {local_law("membrane", {1e3, 0.3, 0.01}), local_law("pressure", {2})};
+    part.deform_locally(settings);
+    Simulation simulation(body, "rk4", threads);
+    test::run(simulation, 0.01, 10);
+    bits.push_back(hash(simulation.state()));
+  }
+  CHECK(bits[0] == bits[1]);
+  CHECK(bits[0] == bits[2]);
+}
+
+TEST_CASE("N20: the largest stable step of a soft shell is on the safe side, and not far from the edge",
+          "[local]") {
+  MultiBody body;
+  body.gravity.setZero();
+  auto& part = body.add<Primitive<Sphere>>("ball", 1);
+  part.make_shell().rest({{"r", 0.5}});
+  LocalSettings settings = net(2, 20);
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * rush(X); };
+  part.deform_locally(settings);
+  for (const char* method : {"rk4", "semi_implicit_euler"}) {
+    const double step = largest_stable_step(Simulation(body, method));
+    auto grows = [&](double h) {
+      Simulation simulation(body, method);
+      const double start = simulation.ledger().energy();
+      try {
+        for (int i = 0; i < 2000; ++i) {
+          simulation.step(h);
+          if (!(simulation.ledger().energy() < 100 * start)) return true;
+        }
+      } catch (const NumericalFailure&) {
+        return true;
+      }
+      return false;
+    };
+    CHECK_FALSE(grows(0.98 * step));
+    CHECK(grows(3 * step));
+  }
+}
+
+}  // namespace local_motion_test

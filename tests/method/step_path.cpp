@@ -1,0 +1,91 @@
+// What is known between the ends of a step: its order of every method, and what it takes.
+#include "catch.h"
+
+#include <functional>
+
+#include <pliant/method/dop853.h>
+#include <pliant/method/dormand_prince.h>
+#include <pliant/method/rk4.h>
+
+#include "motion.h"
+
+namespace step_path_test {
+
+using namespace pliant;
+
+namespace {
+
+void stretching_link(MultiBody& body) {
+  Part& link = body.add<Primitive<Ellipsoid>>("link");
+  link.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).stiffness({{"a1", 2e4}, {"a2", 2e4}, {"a3", 2e4}});
+  link.place({0.3, 0, 0}).velocity({0, 0.6, 0}, {0, 0, 2});
+  body.ball("joint", world(0, 0, 0), point(link, 0, kPi));
+}
+
+/// What a path errs by at the worst of some places, over one step of h from the start; taken: the evaluations
+/// that it needs.
+double error_of(const std::function<void(MultiBody&)>& build, Integrator& method, bool controlled, double h,
+                long* taken) {
+  MultiBody body;
+  build(body);
+  Simulation simulation(body, "rk4");
+  const ErrorScale scale(simulation.model(), 1);
+  method.measure(controlled ? &scale : nullptr);
+  const State low = simulation.state();
+  State high = low;
+  high.h = h;
+  Workspace<double> work;
+  StepCounters counters;
+  method.step(simulation.dynamics(), high, work, counters);
+  method.measure(nullptr);
+  const long before = counters.evaluations;
+  const StepPath path = method.path(simulation.dynamics(), low, h, high, counters);
+  *taken = counters.evaluations - before;
+  VecX<double> q;
+  path.at(0, q);
+  CHECK((q - low.q).norm() < 1e-15);
+  path.at(1, q);
+  CHECK((q - high.q).norm() < 1e-14);
+  double worst = 0;
+  for (const double x : {0.25, 0.6, 0.85}) {
+    MultiBody again;
+    build(again);
+    Simulation exact(again, "dop853");
+    test::run(exact, x * h, 16);
+    path.at(x, q);
+    worst = std::max(worst, (q - exact.state().q).norm());
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("a step is known in between to the order of its method's path", "[path][long]") {
+  struct Case {
+    std::unique_ptr<Integrator> method;
+    bool controlled;
+    double order, h;  ///< of the path over a step
+    long evaluations;
+  };
+  std::vector<Case> cases;
+  cases.push_back({std::make_unique<Dop853>(), false, 8, 0.02, 4});
+  cases.push_back({std::make_unique<Dop853>(), true, 8, 0.02, 4});
+  cases.push_back({std::make_unique<DormandPrince>(), false, 5, 0.005, 1});
+  cases.push_back({std::make_unique<DormandPrince>(), true, 5, 0.005, 0});
+  cases.push_back({std::make_unique<Rk4>(), false, 4, 0.005, 0});
+  for (const auto& build : {std::function<void(MultiBody&)>(stretching_link),
+                            std::function<void(MultiBody&)>([](MultiBody& b) { test::tumbling_solid(b); })}) {
+    for (const Case& of : cases) {
+      std::vector<double> errors;
+      for (int halving = 0; halving < 3; ++halving) {
+        long taken = -1;
+        errors.push_back(error_of(build, *of.method, of.controlled, of.h / (1 << halving), &taken));
+        CHECK(taken == of.evaluations);
+      }
+      CAPTURE(of.method->name(), of.controlled, errors);
+      CHECK(test::observed_order(errors) > of.order - 0.5);
+    }
+  }
+}
+
+}  // namespace step_path_test

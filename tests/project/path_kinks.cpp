@@ -1,0 +1,208 @@
+// Hands that move ends of joints by paths whose rates jump: the impulse that takes, and its work.
+#include "catch.h"
+
+#include <sstream>
+
+#include <Eigen/Geometry>
+
+#include <pliant/body/joints/string.h>
+
+#include "motion.h"
+
+namespace path_kinks_test {
+
+using namespace pliant;
+
+namespace {
+
+constexpr int kAnchors = static_cast<int>(Work::anchors);
+
+/// An ellipsoid of half axes 0.3, 0.1, 0.1 held at the end of its long axis, which is along x, by a hand that
+/// is at the origin.
+Part& held(MultiBody& body, const TimeVector& path) {
+  Part& part = test::add(body, "held", "ellipsoid", {}, 1000);
+  part.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}}).place({0.3, 0, 0});
+  body.ball("hand", point(part, 0, kPi), world(path));
+  return part;
+}
+
+/// Along z, from a time on at a speed, and with lasts > 0 for so long.
+TimeVector lift(double start, double speed, double lasts = 0) {
+  if (lasts > 0) return {0, 0, TimeFunction::key_frames({start, start + lasts}, {0, lasts * speed})};
+  std::ostringstream text;
+  text.precision(17);
+  text << speed << " * max(t - " << start << ", 0)";
+  return {0, 0, TimeFunction::formula(text.str())};
+}
+
+void go(Simulation& simulation, double end, double step) {
+  if (simulation.tolerance() > 0)
+    while (simulation.time() < end) simulation.step_up_to(end);
+  else
+    test::run(simulation, end, static_cast<int>(std::lround(end / step)));
+}
+
+}  // namespace
+
+TEST_CASE("a hand that moves off at once gives an impulse, and the work of it is booked", "[joints]") {
+  const double m = 1000 * 4. / 3 * kPi * 0.3 * 0.1 * 0.1, I = m / 5 * (0.09 + 0.01), speed = 0.8;
+  const double push = speed / (1 / m + 0.09 / I);
+  struct Case {
+    const char* method;
+    double tolerance;
+  };
+  for (const auto& [method, tolerance] : {Case{"rk4", 0},
+                                          {"semi_implicit_euler", 0},
+                                          {"implicit_midpoint", 0},
+                                          {"linearly_implicit", 0},
+                                          {"dop853", 1e-9},
+                                          {"esdirk", 1e-9},
+                                          {kAutomatic, 1e-9}})
+    for (const double start : {0.2, 0.20371, 0.2 + 3e-17, 1. / 3}) {
+      for (const double lasts : {0., 1.}) {
+        INFO(method << ", at " << start << " for " << lasts);
+        MultiBody body;
+        body.gravity.setZero();
+        held(body, lift(start, speed, lasts));
+        Simulation simulation(body, method, 1, tolerance);
+        go(simulation, 0.2, 1e-3);
+        go(simulation, tolerance > 0 ? 0.34 : 0.14, 1e-3);
+        REQUIRE(simulation.engage_impulses().size() == 1);
+        const ImpulseOnEngage& impulse = simulation.engage_impulses().front();
+        CHECK(impulse.of_path);
+        CHECK(impulse.time == Approx(start).epsilon(1e-14));
+        CHECK((impulse.impulse.force - Vec3<double>(0, 0, push)).norm() <= 1e-9 * push);
+        const Ledger ledger = simulation.ledger();
+        CHECK(ledger.work[kAnchors] >= push * speed / 2);
+        const bool coarse = method == std::string("semi_implicit_euler");
+        CHECK(std::abs(ledger.balance) <= (coarse ? 1e-2 : 1e-6) * push * speed);
+        CHECK(simulation.model().gap(simulation.state(), 0) <= 1e-13);
+      }
+    }
+}
+
+TEST_CASE("hands that move off and stop keep the balance to the error of the method", "[joints]") {
+  // Under gravity, so that all goes on between the kinks.
+  auto balance = [](const char* method, double step, double tolerance, auto&& make) {
+    MultiBody body;
+    make(body);
+    Simulation simulation(body, method, 1, tolerance);
+    double worst = 0;
+    if (tolerance > 0) {
+      while (simulation.time() < 1) {
+        simulation.step_up_to(1);
+        worst = std::max(worst, std::abs(simulation.ledger().balance));
+      }
+    } else {
+      for (int i = 0; i < std::lround(1 / step); ++i) {
+        simulation.step(step);
+        worst = std::max(worst, std::abs(simulation.ledger().balance));
+      }
+    }
+    CHECK_FALSE(simulation.engage_impulses().empty());
+    return worst;
+  };
+  auto by_hand = [](MultiBody& body) { held(body, lift(0.2, 0.8, 0.6)); };
+  auto to_and_fro = [](MultiBody& body) {
+    held(body, {0, TimeFunction::formula("0.1 * abs(sin(7 * t))"),
+                TimeFunction::formula("0.3 * abs(t - 0.4) - 0.12")});
+  };
+  auto on_a_carrier = [](MultiBody& body) {
+    Part& carrier = test::add(body, "carrier", "box", {}, 1000);
+    PrescribedMotion motion;
+    motion.position = {TimeFunction::formula("0.2 * max(t - 0.3, 0)"), 0, 0};
+    motion.axis = {0, 1, 0};
+    motion.angle = TimeFunction::key_frames({0.5, 0.9}, {0, 0.4});
+    carrier.prescribe(motion);
+    Part& a = test::add(body, "a", "ellipsoid", {}, 1000);
+    Part& b = test::add(body, "b", "ellipsoid", {}, 500);
+    a.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}}).place({1.3, 0, 0});
+    b.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}}).place({1.9, 0, 0});
+    carrier.prepare();
+    a.prepare();
+    body.ball("first", point(a, 0, kPi),
+              point(carrier, carrier.label({1, 0, 0}, carrier.parameters().rest())));
+    body.ball("second", point(b, 0, kPi), point(a, 0, 0));
+  };
+  for (const char* method : {"rk4", "implicit_midpoint"})
+    for (const double step : {1e-3, 1.7e-3}) {
+      INFO(method << " with steps of " << step);
+      const double allowed = method == std::string("rk4") ? 1e-6 : 1e-2;
+      CHECK(balance(method, step, 0, by_hand) <= allowed);
+      CHECK(balance(method, step, 0, to_and_fro) <= allowed);
+      CHECK(balance(method, step, 0, on_a_carrier) <= allowed);
+    }
+  for (const char* method : {"dop853", "esdirk", kAutomatic}) {
+    INFO(method);
+    CHECK(balance(method, 0, 1e-9, by_hand) <= 1e-6);
+    CHECK(balance(method, 0, 1e-9, to_and_fro) <= 1e-6);
+    CHECK(balance(method, 0, 1e-9, on_a_carrier) <= 1e-6);
+  }
+}
+
+TEST_CASE("a taut string that is drawn at once books the work of the hand", "[joints]") {
+  MultiBody body;
+  Part& bob = test::add(body, "bob", "sphere", {}, 1000);
+  bob.rest({{"r", 0.1}}).place({0, 0, -1});
+  body.join("string", String{1}, {point(bob, 0, 0, 0), world(lift(0.3333, 0.7))});
+  Simulation simulation(body, "rk4");
+  test::run(simulation, 1, 500);
+  const double m = 1000 * 4. / 3 * kPi * 1e-3, t = 1 - 0.3333;
+  REQUIRE(simulation.engage_impulses().size() == 1);
+  CHECK(simulation.state().v[2] == Approx(0.7));
+  CHECK(simulation.ledger().work[kAnchors] == Approx(m * 0.7 * 0.7 / 2 + m * 9.81 * 0.7 * t).epsilon(1e-9));
+  CHECK(std::abs(simulation.ledger().balance) <= 1e-9);
+}
+
+TEST_CASE("a path that jumps in place is named when its joint holds", "[joints]") {
+  for (const double tolerance : {0., 1e-6}) {
+    MultiBody body;
+    held(body, {0, 0, TimeFunction::formula("0.01 * step(t - 0.5)")});
+    Simulation simulation(body, tolerance > 0 ? "dop853" : "rk4", 1, tolerance);
+    try {
+      go(simulation, 1, 1e-3);
+      FAIL("it went on");
+    } catch (const UnsatisfiableModel& failure) {
+      CHECK_THAT(failure.what(),
+                 test::has_text("at t = 0.5 s ball 'hand' would be torn open: the path of its end jumps"));
+      CHECK(simulation.time() <= 0.5);
+    }
+  }
+}
+
+TEST_CASE("a run goes on from a state at a kink to the same bits", "[joints]") {
+  MultiBody one, two;
+  held(one, lift(0.2, 0.8, 0.3));
+  held(two, lift(0.2, 0.8, 0.3));
+  Simulation whole(one, "rk4"), parts(two, "rk4");
+  for (int i = 0; i < 20; ++i) whole.step(0.01);
+  parts.set_state(whole.state());
+  for (int i = 0; i < 50; ++i) {
+    whole.step(0.01);
+    parts.step(0.01);
+  }
+  CHECK(hash(whole.state()) == hash(parts.state()));
+}
+
+TEST_CASE("impulses of what did not happen are not kept", "[joints]") {
+  MultiBody body;
+  held(body, lift(0.2, 0.8, 0.3));
+  Simulation simulation(body, "rk4");
+  const State start = simulation.state();
+  test::run(simulation, 1, 100);
+  CHECK(simulation.engage_impulses().size() == 2);
+  simulation.set_state(start);
+  CHECK(simulation.engage_impulses().empty());
+  test::run(simulation, 0.3, 30);
+  CHECK(simulation.engage_impulses().size() == 1);
+  // A step that fails where the path jumps has met a kink before.
+  MultiBody torn;
+  held(torn, {0, 0, TimeFunction::formula("0.8 * max(t - 0.49, 0) + 0.2 * step(t - 0.5)")});
+  Simulation fails(torn, "rk4");
+  for (int i = 0; i < 24; ++i) fails.step(0.02);
+  CHECK_THROWS_AS(fails.step(0.03), UnsatisfiableModel);
+  CHECK(fails.engage_impulses().empty());
+  CHECK(fails.time() == Approx(0.48));
+}
+
+}  // namespace path_kinks_test

@@ -1,0 +1,260 @@
+// The predicted largest stable step against the measured one (N20, stress.md 1.1).
+#include "catch.h"
+
+#include <chrono>
+#include <cmath>
+
+#include <pliant/body/joints/rod.h>
+
+#include "motion.h"
+
+namespace stable_step_test {
+
+using namespace pliant;
+
+namespace {
+
+using Build = std::function<void(MultiBody&)>;
+
+/// Whether the motion about the state stays bounded for steps of h.
+bool bounded(const Build& build, const char* method, double h) {
+  MultiBody body;
+  body.gravity.setZero();
+  build(body);
+  Simulation simulation(body, method);
+  const double start = simulation.state().v.norm() + 1e-6;
+  try {
+    for (int i = 0; i < 3000; ++i) {
+      simulation.step(h);
+      if (simulation.state().v.norm() > 1e3 * start) return false;
+    }
+  } catch (const NumericalFailure&) {
+    return false;
+  }
+  return true;
+}
+
+void check_limit(const std::string& what, const Build& build) {
+  for (const char* method : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
+    MultiBody body;
+    body.gravity.setZero();
+    build(body);
+    const double predicted = largest_stable_step(Simulation(body, method));
+    INFO(what << " " << method << " predicted " << predicted);
+    CHECK(bounded(build, method, 0.98 * predicted));
+    CHECK_FALSE(bounded(build, method, 1.02 * predicted));
+  }
+}
+
+/// A scale of a solid with stiffness, and damping by alpha and beta; small enough a motion that no limit is
+/// met.
+Build breathing(double stiffness, double alpha, double beta, double drag = 0) {
+  return [=](MultiBody& body) {
+    auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
+    part.mass(5).stiffness({{"a3", stiffness}}).initial_rate({{"a3", 1e-9}}).damping(alpha, beta, drag);
+  };
+}
+/// A ball held at its centre by a spring and damper.
+Build ball(double stiffness, double damping) {
+  return [=](MultiBody& body) {
+    auto& part = body.add<Primitive<Sphere>>("ball", 1000);
+    part.mass(2).velocity({1e-9, 0, 0}, {0, 0, 0});
+    body.spring("spring", point(part, 0, 0, 0), world(0, 0, 0), stiffness, damping);
+  };
+}
+
+}  // namespace
+
+TEST_CASE("N20: the closed form of semi-implicit Euler", "[stable]") {
+  // omega^2 h^2 + 2 h (nu + beta omega^2) < 4, with omega^2 = 5 k / m: x'' + (alpha + beta omega^2) x' +
+  // omega^2 x = 0.
+  for (double k : {1.0, 1e4})
+    for (double alpha : {0.0, 3.0})
+      for (double beta : {0.0, 0.01}) {
+        MultiBody body;
+        body.gravity.setZero();
+        breathing(k, alpha, beta)(body);
+        const double w2 = k, d = alpha + beta * w2;
+        const double expected = (-d + std::sqrt(d * d + 4 * w2)) / w2;
+        CHECK(largest_stable_step(Simulation(body)) == Approx(expected).epsilon(1e-4));
+      }
+}
+
+TEST_CASE("N20: RK4 on the imaginary and on the real axis", "[stable]") {
+  {
+    MultiBody body;
+    breathing(100, 0, 0)(body);
+    CHECK(largest_stable_step(Simulation(body, "rk4")) * 10 == Approx(2 * std::sqrt(2.0)).epsilon(1e-3));
+  }
+  {
+    MultiBody body;
+    breathing(1e-9, 50, 0)(body);
+    CHECK(largest_stable_step(Simulation(body, "rk4")) * 50 == Approx(2.785).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("N20: measured limits are the predicted ones", "[stable]") {
+  check_limit("scale", breathing(500, 0, 0));
+  check_limit("scale, alpha", breathing(500, 8, 0));
+  check_limit("scale, beta", breathing(500, 0, 0.05));
+  check_limit("scale, drag", breathing(500, 0, 0.01, 5));
+  check_limit("spring", ball(300, 0));
+  check_limit("spring and damper", ball(300, 20));
+  check_limit("strong damper", ball(300, 400));
+}
+
+TEST_CASE("N20: two parts tied by a spring, and coupled parameters", "[stable]") {
+  check_limit("two balls", [](MultiBody& body) {
+    auto& a = body.add<Primitive<Sphere>>("a", 1000);
+    auto& b = body.add<Primitive<Sphere>>("b", 1000);
+    a.mass(1).velocity({1e-9, 0, 0}, {0, 0, 0});
+    b.mass(3);
+    body.spring("tie", point(a, 0, 0, 0), point(b, 0, 0, 0), 100, 2);
+  });
+  check_limit("hung at the pole", [](MultiBody& body) {
+    auto& a = body.add<Primitive<Ellipsoid>>("a", 1000);
+    a.mass(1).stiffness({{"a3", 60}}).velocity({0, 0, 1e-9}, {0, 0, 0});
+    body.spring("string", point(a, material_at(kPi / 2, 0)), world(0, 0, 1), 200, 1);
+  });
+  check_limit("all parameters", [](MultiBody& body) {
+    Part& part = test::add(body, "part", "box", {"taper", "shear"}, 1);
+    part.rest({{"a1", 0.3}, {"taper.tx", 0.3}});
+    part.stiffness({{"a1", 30}, {"a3", 20}, {"taper.tx", 3}, {"taper.ty", 1}, {"shear.sx", 4}});
+    part.initial_rate({{"a1", 1e-9}, {"taper.ty", 1e-9}, {"shear.sx", 1e-9}});
+  });
+}
+
+TEST_CASE("nothing stiff and nothing turning: any step", "[stable]") {
+  MultiBody body;
+  body.add<Primitive<Box>>("box", 1000).velocity({1, 0, 0}, {0, 0, 0});
+  CHECK(std::isinf(largest_stable_step(Simulation(body))));
+}
+
+TEST_CASE("N19: a spin allows half a radian a step", "[stable]") {
+  auto spinning = [](MultiBody& body) {
+    auto& part = body.add<Primitive<Box>>("box", 1000);
+    part.rest({{"a1", 0.1}, {"a2", 0.2}, {"a3", 0.3}}).velocity({0, 0, 0}, {30, 40, 120});
+    body.gravity.setZero();
+  };
+  MultiBody body;
+  spinning(body);
+  CHECK(largest_stable_step(Simulation(body)) == Approx(0.5 / 130));
+  // Far beyond it semi-implicit Euler keeps |L|, and with it omega within bounds, whatever the direction.
+  MultiBody kept;
+  spinning(kept);
+  Simulation simulation(kept, "semi_implicit_euler");
+  const double L = simulation.ledger().angular_momentum.norm();
+  for (int i = 0; i < 2000; ++i) simulation.step(10.0 / 130);
+  CHECK(simulation.ledger().angular_momentum.norm() == Approx(L).epsilon(1e-9));
+  // By others the motion is lost, and the failure says what would work.
+  MultiBody lost;
+  spinning(lost);
+  Simulation losing(lost, "rk4");
+  std::string message;
+  try {
+    for (int i = 0; i < 2000; ++i) losing.step(10.0 / 130);
+  } catch (const NumericalFailure& failure) {
+    message = failure.what();
+  }
+  INFO(message);
+  CHECK(message.find("the largest stable step here is about") != std::string::npos);
+}
+
+/// A chain of points that hangs by rods of 1 m, in a field of 1 m/s^2; the last is displaced.
+void hang(MultiBody& body, int n, double sideways = 0) {
+  body.gravity = {0, 0, -1};
+  const Part* above = nullptr;
+  for (int i = 0; i < n; ++i) {
+    auto& mass = body.add<Primitive<Sphere>>("mass" + std::to_string(i), 1000);
+    mass.rest({{"r", 0.01}}).place({0, 0, -1.0 - i});
+    if (i == n - 1) mass.velocity({sideways, 0, 0}, {0, 0, 0});
+    body.join("rod" + std::to_string(i), Rod{1},
+              {above == nullptr ? world(0, 0, 0) : point(*above, 0, 0, 0), point(mass, 0, 0, 0)});
+    above = &mass;
+  }
+}
+
+TEST_CASE("N20: joints under load: a hanging chain swings at the largest root of Laguerre's polynomial",
+          "[stable]") {
+  for (const auto& [n, root] : {std::pair<int, double>{1, 1}, {2, 3.414213562373}, {5, 12.640800844276}}) {
+    MultiBody body;
+    hang(body, n);
+    INFO(n);
+    CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / root)).epsilon(1e-3));
+    CHECK(largest_stable_step(Simulation(body, "semi_implicit_euler")) ==
+          Approx(2 / std::sqrt(root)).epsilon(1e-3));
+  }
+  // What falls over has no limit of its own; what swings beside it has.
+  MultiBody body;
+  hang(body, 2);
+  auto& top = body.add<Primitive<Sphere>>("top", 1000);
+  top.rest({{"r", 0.01}}).place({5, 0, 0.01});
+  body.join("rod", Rod{0.01}, {world(5, 0, 0), point(top, 0, 0, 0)});
+  CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / 3.414213562373)).epsilon(1e-2));
+}
+
+TEST_CASE("N20: the predicted limit of a hanging chain is the measured one", "[stable]") {
+  for (const char* method : {"semi_implicit_euler", "rk4"}) {
+    MultiBody body;
+    hang(body, 5);
+    const double predicted = largest_stable_step(Simulation(body, method));
+    for (const double part : {0.95, 1.05}) {
+      MultiBody swaying;
+      hang(swaying, 5, 1e-9);
+      Simulation simulation(swaying, method);
+      double fastest = 0;
+      try {
+        for (int i = 0; i < 1000 && fastest < 1e-3; ++i) {
+          simulation.step(part * predicted);
+          fastest = std::max(fastest, simulation.state().v.norm());
+        }
+      } catch (const StepFailure&) {
+        fastest = 1;
+      }
+      INFO(method << " at " << part << " of " << predicted);
+      CHECK((fastest < 1e-6) == (part < 1));
+    }
+  }
+}
+
+TEST_CASE("N20: Baumgarte's terms, where a gap is left to them", "[stable]") {
+  auto limit = [](const char* method, BaumgarteRule rule, bool projection) {
+    MultiBody body;
+    body.gravity.setZero();
+    body.ball("joint", point(body.add<Primitive<Sphere>>("ball", 1000), 0, 0, 0), world(0, 0, 0));
+    body.stabilization.rule = rule;
+    body.stabilization.rate = 10;
+    body.stabilization.projection = projection;
+    return largest_stable_step(Simulation(body, method));
+  };
+  CHECK(limit("semi_implicit_euler", BaumgarteRule::critical, false) == Approx(0.0828427).epsilon(1e-4));
+  CHECK(limit("rk4", BaumgarteRule::critical, false) == Approx(0.27853).epsilon(1e-4));
+  CHECK(std::isinf(limit("rk4", BaumgarteRule::critical, true)));
+  CHECK(std::isinf(limit("semi_implicit_euler", BaumgarteRule::step_consistent, false)));
+}
+
+TEST_CASE("long chains: bounded part by part, safely and at once", "[stable]") {
+  auto chain = [](int n) {
+    MultiBody body;
+    body.gravity.setZero();
+    std::vector<Part*> balls;
+    for (int i = 0; i < n; ++i) {
+      auto& ball = body.add<Primitive<Sphere>>("ball" + std::to_string(i), 1000);
+      ball.mass(1).place({2.5 * i, 0, 0});
+      balls.push_back(&ball);
+      if (i > 0)
+        body.spring("tie" + std::to_string(i), point(*balls[static_cast<std::size_t>(i) - 1], 0, 0),
+                    point(ball, 0, kPi), 100);
+    }
+    return largest_stable_step(Simulation(body));
+  };
+  const double together = chain(20), one_by_one = chain(21);  // 120 velocities are taken together, not more
+  CHECK(one_by_one <= together);
+  CHECK(one_by_one >= 0.5 * together);
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(chain(1000) == Approx(one_by_one));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  CHECK(taken.count() < 10);
+}
+
+}  // namespace stable_step_test

@@ -1,0 +1,18 @@
+// How far the joints of a simulation are open.
+#pragma once
+
+#include <algorithm>
+
+#include <pliant/simulate/simulation.h>
+
+namespace pliant::test {
+
+/// The widest gap of all joints, m.
+inline double widest_gap(const Simulation& simulation) {
+  double widest = 0;
+  for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
+    widest = std::max(widest, simulation.model().gap(simulation.state(), j));
+  return widest;
+}
+
+}  // namespace pliant::test
