@@ -101,7 +101,7 @@ ContactRecordingWriter ContactRecordingWriter::create(const std::filesystem::pat
 }
 
 ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::path& folder, double t) {
-  auto go_on = [&](const char* name, const std::vector<Column>& columns) {
+  auto resume_table = [&](const char* name, const std::vector<Column>& columns) {
     try {
       return NpyWriter::resume(folder / name, static_cast<int>(columns.size()), rows_until(folder / name, t));
     } catch (const std::system_error&) {
@@ -110,13 +110,14 @@ ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::pat
       throw RecordingMismatch(fault.what());
     }
   };
-  return {go_on(kContactsFile, contact_columns()), go_on(kJointImpulsesFile, joint_impulse_columns())};
+  return {resume_table(kContactsFile, contact_columns()),
+          resume_table(kJointImpulsesFile, joint_impulse_columns())};
 }
 
 namespace {
 
 /// Of what a part touches, among the parts, planes and obstacles.
-int number_of_b(const Model& model, const Contact& contact) {
+int number_of_other_thing(const Model& model, const Contact& contact) {
   const std::size_t parts = model.parts().size(), planes = model.body().contact.planes.size();
   if (contact.b.part >= 0) return contact.b.part;
   if (contact.plane >= 0) return static_cast<int>(parts) + contact.plane;
@@ -132,7 +133,7 @@ void ContactRecordingWriter::append(const Simulation& simulation) {
   std::vector<double> row;
   for (std::size_t k = 0; k < record.contacts.size(); ++k) {
     const Contact& contact = record.contacts[k];
-    const int b = number_of_b(simulation.model(), contact);
+    const int b = number_of_other_thing(simulation.model(), contact);
     row = {state.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
     add_vector(row, contact.x);
     add_vector(row, contact.normal);

@@ -56,7 +56,7 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
     else
       shown.nodes = surface_nodes(part.local()->mesh());
     if (shown.rigid) shown.body = shown.surface->body_mesh(part, part.parameters().rest());
-    if (!scene.coloring || values == Values::left_out) continue;
+    if (!scene.coloring || values == Values::omitted) continue;
     const ParameterValues<double> rest = part.parameters().rest();
     meshes_.back().by_values = colors(*scene.coloring, part);
     if (shown.surface)
@@ -65,26 +65,26 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
     else
       shown.values.emplace(scene.coloring->by, shown.nodes.of(part.local()->mesh().X), shown.nodes.triangles);
   }
-  lay_obstacles(scene, values);
-  lay_planes(scene, values);
+  add_obstacles(scene, values);
+  add_planes(scene, values);
 }
 
-void FrameMeshes::lay_obstacles(const Scene& scene, Values values) {
+void FrameMeshes::add_obstacles(const Scene& scene, Values values) {
   const auto& obstacles = model_->body().contact.obstacles;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (!scene.obstacles.at(k).visible) continue;
     const ObstacleMesh mesh(obstacles[k].vertices, obstacles[k].triangles);
     NamedMesh named{obstacles[k].name, scene.obstacles[k].color, faceted(mesh)};
-    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    if (scene.coloring && values == Values::included) named.values = VecX<double>::Zero(named.mesh.x.cols());
     obstacles_.push_back({&obstacles[k], std::move(named)});
   }
 }
 
-void FrameMeshes::lay_planes(const Scene& scene, Values values) {
+void FrameMeshes::add_planes(const Scene& scene, Values values) {
   for (const PlaneLook& look : scene.planes) {
     const ContactPlane& plane = model_->body().contact.planes.at(look.plane);
     NamedMesh named{plane.name, look.color, faceted(rectangle(look, plane.normal))};
-    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    if (scene.coloring && values == Values::included) named.values = VecX<double>::Zero(named.mesh.x.cols());
     planes_.push_back({&plane, std::move(named)});
   }
 }

@@ -76,9 +76,9 @@ std::int64_t FrameRange::size(std::int64_t count) const {
   const std::int64_t chosen = std::max<std::int64_t>(0, end.value_or(count) - first);
   const std::int64_t strided = chosen > 0 ? (chosen - 1) / stride + 1 : 0;
   const std::int64_t most = shard < strided ? (strided - 1 - shard) / shards + 1 : 0;
-  if (most > kMostFrames)
+  if (most > kMaxFrames)
     throw std::invalid_argument(std::to_string(most) + " frames are asked for as files; at most " +
-                                std::to_string(kMostFrames) + " can be written at once");
+                                std::to_string(kMaxFrames) + " can be written at once");
   return most;
 }
 

@@ -10,7 +10,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kMostSteps = 1e12;
+constexpr double kMaxSteps = 1e12;
 /// Part of a step within which a frame counts as on the step.
 constexpr double kOnStep = 1e-6;
 
@@ -26,10 +26,10 @@ double steps_between(double end, double step, double rate) {
   require(std::isfinite(rate) && rate > 0, "the frame rate", rate, "a number per second > 0");
   const double exact = end / step, near = std::round(exact);
   const double steps = std::abs(exact - near) <= 1e-9 * std::max(1.0, exact) ? near : std::ceil(exact);
-  if (!(steps <= kMostSteps))
+  if (!(steps <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) +
                                 " s takes " + number_text(steps) + " steps; the limit is 1e12");
-  if (!(end * rate <= kMostSteps))
+  if (!(end * rate <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s has " + number_text(end * rate) +
                                 " frames; the limit is 1e12");
   return steps;

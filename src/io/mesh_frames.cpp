@@ -12,8 +12,8 @@ void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, c
                        const Model& model, const Recording& recording, double frame_rate,
                        const std::vector<std::int64_t>& frames, Progress& progress) {
   // An .obj file has no place for values.
-  FrameMeshes meshes(scene, model,
-                     format == MeshFormat::obj ? FrameMeshes::Values::left_out : FrameMeshes::Values::told);
+  FrameMeshes meshes(
+      scene, model, format == MeshFormat::obj ? FrameMeshes::Values::omitted : FrameMeshes::Values::included);
   progress.begin("meshes", static_cast<double>(frames.size()), "frames");
   double done = 0;
   for (const std::int64_t frame : frames) {

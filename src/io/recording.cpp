@@ -85,11 +85,11 @@ int cached_contact_count() {
 
 /// The rows of supports that are of a state, from the first to before the last; both -1 when its row of modes
 /// is damaged there.
-struct SupportRows {
+struct CachedContactRows {
   std::int64_t first = -1, end = -1;
 };
-SupportRows contact_cache_of(const std::vector<double>& modes) {
-  const double first = modes[kFirstSupport], end = modes[kEndOfSupports];
+CachedContactRows cached_contact_rows(const std::vector<double>& modes) {
+  const double first = modes[kFirstCachedContact], end = modes[kEndOfCachedContacts];
   if (!(0 <= first && first <= end && end < 0x1p53 && first == std::floor(first) && end == std::floor(end)))
     return {};
   return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
@@ -126,7 +126,7 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
   if (has_contact_cache(model)) {
     const std::int64_t end =
         rows > 0
-            ? contact_cache_of(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
+            ? cached_contact_rows(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
             : 0;
     if (end < 0)
       throw RecordingMismatch((folder / kModesFile).string() + " is damaged at row " +
@@ -144,7 +144,8 @@ void RecordingWriter::append(const State& state) {
   coordinates_.append(state.q.data());
   velocities_.append(state.v.data());
   if (contact_cache_)
-    for (const CachedContact& support : state.contact_cache) contact_cache_->append(row_of(support).data());
+    for (const CachedContact& support : state.contact_cache)
+      contact_cache_->append(cached_contact_row(support).data());
   write_modes(state, contact_cache_ ? contact_cache_->rows() : 0, row_);
   modes_.append(row_.data());
   times_.append(&time);
@@ -171,7 +172,7 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
   std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
   if (has_contact_cache(model)) {
     contact_cache_.emplace(open_table(folder / kContactCacheFile, cached_contact_count()));
-    while (rows > 0 && contact_cache_of(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
+    while (rows > 0 && cached_contact_rows(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
   }
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
@@ -188,7 +189,7 @@ State Recording::state(std::int64_t row) const {
   };
   State state;
   const std::vector<double> modes = read_row(modes_, row);
-  const SupportRows rows = contact_cache_of(modes);
+  const CachedContactRows rows = cached_contact_rows(modes);
   if (rows.first < 0 || rows.end > (contact_cache_ ? contact_cache_->rows() : 0)) throw damaged();
   if (rows.end > rows.first) {
     const auto columns = static_cast<std::size_t>(cached_contact_count());

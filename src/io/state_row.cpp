@@ -94,7 +94,7 @@ std::vector<Column> contact_cache_columns() {
           {"force_z", "N", ""}};
 }
 
-std::vector<double> row_of(const CachedContact& support) {
+std::vector<double> cached_contact_row(const CachedContact& support) {
   std::vector<double> row(support.between.begin(), support.between.end());
   row.insert(row.end(), support.x.data(), support.x.data() + 3);
   row.insert(row.end(), support.force.data(), support.force.data() + 3);
@@ -112,15 +112,16 @@ bool read_cached_contact(const double* row, CachedContact& support) {
   return true;
 }
 
-void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row) {
+void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row) {
   row.clear();
   row.push_back(state.start);
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
   row.push_back(state.contact_residual);
-  row.push_back(static_cast<double>(end_of_supports) - static_cast<double>(state.contact_cache.size()));
-  row.push_back(static_cast<double>(end_of_supports));
+  row.push_back(static_cast<double>(end_of_cached_contacts) -
+                static_cast<double>(state.contact_cache.size()));
+  row.push_back(static_cast<double>(end_of_cached_contacts));
   row.push_back(state.contact_cache_age);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
@@ -130,7 +131,8 @@ void write_modes(const State& state, std::int64_t end_of_supports, std::vector<d
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
-  constexpr std::size_t age = kEndOfSupports + 1, first_work = age + 1, first_limit = first_work + kWorks;
+  constexpr std::size_t age = kEndOfCachedContacts + 1, first_work = age + 1,
+                        first_limit = first_work + kWorks;
   const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
                     first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;

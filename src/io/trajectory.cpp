@@ -32,7 +32,7 @@ bool has_torque(const JointModel& joint) {
 TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulation)
     : scene_(&scene),
       simulation_(&simulation),
-      parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMostParts)) {
+      parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMaxParts)) {
   // A part that deforms has its centre of mass somewhere else sooner or later, unless its shape is symmetric:
   // then the column would only repeat c, which the state at time 0 alone cannot tell. So it is shown for
   // every such part with links.

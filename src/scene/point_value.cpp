@@ -10,7 +10,7 @@ namespace schema {
 namespace {
 
 /// Pi, as people write it.
-constexpr double kMostAngle = 3.1416;
+constexpr double kMaxAngle = 3.1416;
 
 Field radial() {
   return optional("w", number(between(0, 1), "1"), "Radial coordinate: 0 at the centre, 1 on the surface.",
@@ -26,9 +26,9 @@ Field patch() {
 Record by_coordinates() {
   return {"point_at_coordinates",
           "A material point by its coordinates.",
-          {required("u", number(between(-kMostAngle, kMostAngle), "rad"),
+          {required("u", number(between(-kMaxAngle, kMaxAngle), "rad"),
                     "Latitude of the shape, from -pi/2 to pi/2; round the tube of a torus.", "0"),
-           required("v", number(between(-kMostAngle, kMostAngle), "rad"), "Longitude of the shape.", "0"),
+           required("v", number(between(-kMaxAngle, kMaxAngle), "rad"), "Longitude of the shape.", "0"),
            radial(), patch()}};
 }
 

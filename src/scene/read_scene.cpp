@@ -271,7 +271,7 @@ class SceneReader {
 };
 
 /// FNV-1a of the document with its overrides, and the meshes it names.
-std::uint64_t hash_of(const std::string& text) {
+std::uint64_t fnv1a_hash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) {
     hash ^= static_cast<unsigned char>(c);
@@ -280,8 +280,8 @@ std::uint64_t hash_of(const std::string& text) {
   return hash;
 }
 
-std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::string>& overrides,
-                                MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
+std::unique_ptr<Scene> make_scene(JsonDocument document, const std::vector<std::string>& overrides,
+                                  MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
   const MeshFolder folder{std::filesystem::path(document.name()).parent_path(), files == MeshFiles::of_a_run};
   for (const std::string& assignment : overrides) document.set(assignment, diagnostics);
   validate(document, scene_record(), diagnostics);
@@ -297,7 +297,7 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
     resolved.append(reinterpret_cast<const char*>(mesh.triangles.data()),
                     static_cast<std::size_t>(mesh.triangles.size()) * sizeof(int));
   }
-  scene->hash = hash_of(resolved);
+  scene->hash = fnv1a_hash(resolved);
   scene->document = document.text();
   scene->overrides = overrides;
   return scene;
@@ -307,13 +307,13 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
 
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
                                   Diagnostics& diagnostics, const JointSolver& solver, MeshFiles files) {
-  return scene_of(JsonDocument::read(file, diagnostics), overrides, files, solver, diagnostics);
+  return make_scene(JsonDocument::read(file, diagnostics), overrides, files, solver, diagnostics);
 }
 
 std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
                                    const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
-  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named, {},
-                  diagnostics);
+  return make_scene(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named,
+                    {}, diagnostics);
 }
 
 }  // namespace pliant

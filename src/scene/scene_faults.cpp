@@ -42,7 +42,7 @@ void SceneFaults::twice(const JsonValue& first, const JsonValue& again) {
 void SceneFaults::unknown(const JsonValue& name, const std::string& kind,
                           const std::vector<std::string>& names) {
   value(name, "unknown " + kind +
-                  (names.empty() ? "; the scene has no " + kind + "s" : among(name.string(), names)));
+                  (names.empty() ? "; the scene has no " + kind + "s" : name_hint(name.string(), names)));
 }
 
 std::string brief(double x) {
@@ -51,7 +51,7 @@ std::string brief(double x) {
   return shortest(std::strtod(text, nullptr));
 }
 
-std::string among(std::string_view word, const std::vector<std::string>& names) {
+std::string name_hint(std::string_view word, const std::vector<std::string>& names) {
   const std::string near = did_you_mean(word, names);
   if (!near.empty()) return near;
   constexpr std::size_t kMost = 32;

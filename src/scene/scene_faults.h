@@ -44,6 +44,6 @@ class SceneFaults {
 std::string brief(double x);
 
 /// "; did you mean "NAME"?", or where no name is near "; expected one of "A", "B"".
-std::string among(std::string_view word, const std::vector<std::string>& names);
+std::string name_hint(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace pliant

@@ -35,7 +35,7 @@ Check key_rule(const char* values) {
 }
 
 Type times() {
-  return array(number(any(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
+  return array(number(unbounded(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
 }
 
 Type formula() {
@@ -48,9 +48,9 @@ Type key_frames() {
                  "before the "
                  "first and after the last key.",
                  {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
-                  required("y", array(number(any(), ""), 1), "Values at these times, in the unit of the key.",
-                           "[0, 0.5, 0]"),
-                  optional("end_rates", array(number(any(), ""), 2, 2),
+                  required("y", array(number(unbounded(), ""), 1),
+                           "Values at these times, in the unit of the key.", "[0, 0.5, 0]"),
+                  optional("end_rates", array(number(unbounded(), ""), 2, 2),
                            "Rates of change at the first and the last key; without them the second "
                            "derivative is zero "
                            "there.")}})
@@ -78,7 +78,7 @@ std::string in(const std::string& unit) {
 Type time_function(std::string unit) {
   const std::string words =
       "a number" + in(unit) + ", a formula of t in quotes, or key frames {\"t\": [...], \"y\": [...]}";
-  return one_of({number(any(), std::move(unit)), formula(), key_frames()})
+  return one_of({number(unbounded(), std::move(unit)), formula(), key_frames()})
       .expecting(words)
       .defined_as("time_function");
 }

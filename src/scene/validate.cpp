@@ -76,11 +76,11 @@ bool has_control_byte(const std::string& text) {
 class Validator {
  public:
   Validator(const JsonDocument& document, Diagnostics& faults)
-      : document_(document), faults_(faults), told_(faulty_values(document, faults)) {}
+      : document_(document), faults_(faults), reported_(faulty_values(document, faults)) {}
 
   void run(const JsonValue& value, const Type& type, std::string pointer, bool root) {
-    whole_ = &type;
-    whole_at_ = pointer;
+    root_type_ = &type;
+    root_pointer_ = pointer;
     pointer_ = std::move(pointer);
     root_ = root ? &value : nullptr;
     check(value, type);
@@ -108,7 +108,7 @@ class Validator {
   }
 
   void check(const JsonValue& value, const Type& type) {
-    if (faults_.full() || is_told(value)) return;
+    if (faults_.full() || is_reported(value)) return;
     if (!accepts(type, value.kind())) return wrong_type(value, type);
     const std::size_t before = faults_.errors();
     switch (type.kind) {
@@ -153,8 +153,8 @@ class Validator {
   }
 
   /// A number or a text in which the parser has found a fault already.
-  bool is_told(const JsonValue& value) const {
-    return !value.is_array() && !value.is_object() && told_.count(&value) > 0;
+  bool is_reported(const JsonValue& value) const {
+    return !value.is_array() && !value.is_object() && reported_.count(&value) > 0;
   }
 
   void wrong_type(const JsonValue& value, const Type& type) {
@@ -310,7 +310,7 @@ class Validator {
     std::vector<std::string> keys;
     if (!tag.empty()) keys.push_back(tag);
     for (const Field& field : record.fields) keys.push_back(field.key);
-    if (places_.empty()) collect(*whole_, whole_at_, &places_);
+    if (places_.empty()) collect(*root_type_, root_pointer_, &places_);
     std::string hint;
     const std::string near = nearest_name(member.key, keys);
     const bool slip = !near.empty() && edit_distance(member.key, near) == 1;
@@ -360,11 +360,11 @@ class Validator {
 
   const JsonDocument& document_;
   Diagnostics& faults_;
-  FaultyValues told_;
+  FaultyValues reported_;
   Places places_;  ///< made when the first unknown key asks for it
-  const Type* whole_ = nullptr;
+  const Type* root_type_ = nullptr;
   const Type* alternatives_ = nullptr;  ///< of which the record to be checked next is one
-  std::string whole_at_;
+  std::string root_pointer_;
   std::string pointer_;
   const JsonValue* root_ = nullptr;
 };

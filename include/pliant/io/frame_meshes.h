@@ -26,11 +26,11 @@ struct NamedMesh {
 class FrameMeshes {
  public:
   /// Whether the values of vertices are told that the scene's coloring asks for.
-  enum class Values { told, left_out };
+  enum class Values { included, omitted };
 
   /// Lays the surfaces of the visible parts, obstacles and planes, these from both sides when they are open.
   /// Both must outlive it. Throws std::invalid_argument on a bad resolution.
-  FrameMeshes(const Scene& scene, const Model& model, Values values = Values::told);
+  FrameMeshes(const Scene& scene, const Model& model, Values values = Values::included);
 
   /// The meshes at a state, in the order of the parts, the obstacles and planes that are there after them;
   /// the reference is valid until the next call. Meshes of rigid parts are evaluated once and then only
@@ -53,8 +53,8 @@ class FrameMeshes {
     TriangleMesh body;               // of a rigid part, body frame
     std::optional<SurfaceValues> values;
   };
-  void lay_obstacles(const Scene& scene, Values values);
-  void lay_planes(const Scene& scene, Values values);
+  void add_obstacles(const Scene& scene, Values values);
+  void add_planes(const Scene& scene, Values values);
   Eigen::Matrix3Xd vertices(const Shown& shown, const State& state) const;
   TriangleMesh body_mesh(const Shown& shown, const State& state) const;
 

@@ -11,7 +11,7 @@ namespace pliant {
 /// Frames first, first + stride, ... below `end`; of these, for shard i of n, every n-th from the i-th.
 struct FrameRange {
   /// Frames are files with six digits in their names.
-  static constexpr std::int64_t kMostFrames = 1000000;
+  static constexpr std::int64_t kMaxFrames = 1000000;
 
   std::int64_t first = 0;
   std::optional<std::int64_t> end;  ///< one past the last; all when not given
@@ -25,7 +25,7 @@ struct FrameRange {
   void parse_shard(const std::string& text);
 
   /// How many are chosen of `count` frames that there are. Throws std::invalid_argument when the range asks
-  /// for others, or for more than kMostFrames.
+  /// for others, or for more than kMaxFrames.
   std::int64_t size(std::int64_t count) const;
   /// Their numbers. Throws as size().
   std::vector<std::int64_t> frames(std::int64_t count) const;

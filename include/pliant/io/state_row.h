@@ -20,16 +20,16 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
 std::vector<Column> mode_columns_of(const Model& model);
 
 /// The columns that tell which rows of supports.npy are of a state: the first, and the one after the last.
-inline constexpr std::size_t kFirstSupport = 5, kEndOfSupports = 6;
+inline constexpr std::size_t kFirstCachedContact = 5, kEndOfCachedContacts = 6;
 /// The columns of supports.npy, in order.
 std::vector<Column> contact_cache_columns();
-std::vector<double> row_of(const CachedContact& support);
+std::vector<double> cached_contact_row(const CachedContact& support);
 /// Of a row. False when one of its numbers is not that of a part, plane or obstacle.
 [[nodiscard]] bool read_cached_contact(const double* row, CachedContact& support);
 
 /// The row of a state whose supports end before a row of theirs. Its last number is a hash of all bits of the
 /// state.
-void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row);
+void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row);
 
 /// Fills in the rest of a state whose q, v and supports are set, of a model with so many limits, and parts
 /// whose rest is told. False when the row's hash is not that of the state.

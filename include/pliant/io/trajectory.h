@@ -2,7 +2,7 @@
 // is whole or absent. One header line, one line a recorded state, numbers in the shortest form that reads
 // back exactly. Columns:
 //   t                                        s
-//   of every moving part, by its name (of up to kMostParts parts, or as the scene asks; else totals alone):
+//   of every moving part, by its name (of up to kMaxParts parts, or as the scene asks; else totals alone):
 //     NAME.c.x y z, NAME.quat.w x y z        position (m) and orientation (body to world) of the frame
 //     NAME.PARAMETER                         dynamic parameters
 //     NAME.c_dot.x y z, NAME.omega.x y z     m/s in the world, rad/s in the body frame
@@ -31,7 +31,7 @@ namespace pliant {
 
 class TrajectoryTable {
  public:
-  static constexpr std::size_t kMostParts = 100;
+  static constexpr std::size_t kMaxParts = 100;
 
   /// scene: the tracks; simulation: the model, its dynamics and the energy that the balance refers to. Both
   /// must outlive the table.

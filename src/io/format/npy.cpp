@@ -206,9 +206,9 @@ void NpyReader::read(std::int64_t row, double* numbers, std::int64_t count) cons
   if (row < 0 || count < 0 || row > rows_ - count)
     throw std::out_of_range(path_.string() + " has no row " +
                             std::to_string(row < 0 ? row : row + count - 1));
-  const auto a_row = static_cast<std::int64_t>(row_bytes(columns_));
-  const auto bytes = static_cast<std::size_t>(count * a_row);
-  if (read_at(descriptor_, numbers, bytes, data_ + row * a_row, path_) != bytes)
+  const auto row_size = static_cast<std::int64_t>(row_bytes(columns_));
+  const auto bytes = static_cast<std::size_t>(count * row_size);
+  if (read_at(descriptor_, numbers, bytes, data_ + row * row_size, path_) != bytes)
     refuse(path_, "row " + std::to_string(row + count - 1) + " is cut");
 }
 

@@ -12,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-constexpr std::size_t kMostTold = 10;
+constexpr std::size_t kMaxReported = 10;
 
 /// "the plane 'floor'"
 std::string other_side(const Model& model, const Contact& contact) {
@@ -57,7 +57,7 @@ std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<To
   std::map<TouchingPair, const Contact*> deepest;
   for (const Contact& contact : overlaps) {
     const TouchingPair pair{contact.a.part, contact.b.part, contact.plane, contact.obstacle};
-    if (!(contact.gap < -kToldOverlap * smaller_size(model, contact)) || told.count(pair) > 0) continue;
+    if (!(contact.gap < -kReportedOverlap * smaller_size(model, contact)) || told.count(pair) > 0) continue;
     const Contact*& known = deepest[pair];
     if (known == nullptr || contact.gap < known->gap) known = &contact;
   }
@@ -69,13 +69,13 @@ std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<To
   std::stable_sort(now.begin(), now.end(),
                    [](const Contact* one, const Contact* other) { return one->gap < other->gap; });
   std::vector<std::string> notes;
-  for (std::size_t k = 0; k < std::min(now.size(), kMostTold); ++k)
+  for (std::size_t k = 0; k < std::min(now.size(), kMaxReported); ++k)
     notes.push_back("warning: at t = " + rounded_text(simulation.time()) + " s part '" +
                     model.parts()[at(now[k]->a.part)].part->name() + "' and " + other_side(model, *now[k]) +
                     " overlap by " + rounded_text(-now[k]->gap) + " m; they are parted at a bounded speed" +
                     holding_joint(simulation, *now[k]));
-  if (now.size() > kMostTold)
-    notes.push_back("and " + std::to_string(now.size() - kMostTold) + " pairs more overlap less");
+  if (now.size() > kMaxReported)
+    notes.push_back("and " + std::to_string(now.size() - kMaxReported) + " pairs more overlap less");
   return notes;
 }
 

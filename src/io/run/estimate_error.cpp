@@ -16,7 +16,7 @@ namespace {
 constexpr double kTighter = 10;
 
 /// What is no number stays.
-void raise(double& most, double value) {
+void raise_max(double& most, double value) {
   if (!(value <= most) && !std::isnan(most)) most = value;
 }
 
@@ -24,16 +24,16 @@ void compare(const Model& model, const State& a, const State& b, ErrorEstimate& 
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
     const VecX<double> q = a.q - b.q, v = a.v - b.v;
-    raise(error.place, q.segment<3>(m.q0).norm());
-    raise(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
-    raise(error.velocity, v.segment<3>(m.v0).norm());
-    raise(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
+    raise_max(error.place, q.segment<3>(m.q0).norm());
+    raise_max(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
+    raise_max(error.velocity, v.segment<3>(m.v0).norm());
+    raise_max(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
     for (int k = 0; k < m.n_s; ++k) {
       const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
-      raise(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
+      raise_max(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
     }
     if (m.n_d() > 0)
-      raise(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
+      raise_max(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
   }
 }
 
@@ -43,12 +43,12 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   const Model& model = dynamics.model();
   for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
     const auto k = static_cast<std::size_t>(j);
-    if (a.joints[k] == JointMode::closed) raise(error.gap, model.gap(a, j));
+    if (a.joints[k] == JointMode::closed) raise_max(error.gap, model.gap(a, j));
     if (a.joints[k] != b.joints[k]) continue;
     const Wrench one = dynamics.joint_wrench(a.time(), j, work_a),
                  other = dynamics.joint_wrench(b.time(), j, work_b);
-    raise(error.joint_force, (one.force - other.force).norm());
-    raise(error.joint_torque, (one.torque - other.torque).norm());
+    raise_max(error.joint_force, (one.force - other.force).norm());
+    raise_max(error.joint_torque, (one.torque - other.torque).norm());
   }
 }
 
@@ -72,7 +72,7 @@ class HalfStepsInContact {
 
 /// On to a time, in steps of one length as near to `step` as lets it be met; to a tolerance in two at least,
 /// for the same step as that of the run would tell nothing.
-void go_to(Simulation& simulation, double until, double step) {
+void step_to(Simulation& simulation, double until, double step) {
   const double now = simulation.time();
   if (!(until > now)) return;
   if (simulation.tolerance() > 0) {
@@ -104,17 +104,17 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();
-  Workspace<double> of_run, of_better;
+  Workspace<double> run_work, better_work;
   const double end = run.rows() > 0 ? run.time(run.rows() - 1) : 0;
   progress.begin("estimate error", end, "s");
   for (std::int64_t row = 0; row < run.rows(); ++row) {
     const State recorded = run.state(row);
-    go_to(simulation, recorded.time(), error.step);
+    step_to(simulation, recorded.time(), error.step);
     const State& better = simulation.state();
     compare(simulation.model(), recorded, better, error);
-    raise(error.energy,
-          std::abs(dynamics.ledger(recorded, of_run).energy() - dynamics.ledger(better, of_better).energy()));
-    compare_joints(dynamics, recorded, of_run, better, of_better, error);
+    raise_max(error.energy, std::abs(dynamics.ledger(recorded, run_work).energy() -
+                                     dynamics.ledger(better, better_work).energy()));
+    compare_joints(dynamics, recorded, run_work, better, better_work, error);
     progress.advance(recorded.time());
   }
   progress.end();

@@ -143,7 +143,7 @@ std::string open_joints_note(const Simulation& simulation) {
          " '" + joint.name() + "', by " + rounded_text(model.gap(simulation.state(), widest)) + " m";
 }
 
-std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first) {
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first) {
   const std::vector<ImpulseOnEngage>& all = simulation.engage_impulses();
   auto joint_of = [&](const ImpulseOnEngage& impulse) -> const JointModel& {
     return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];

@@ -88,9 +88,9 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
   folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
   if (options_.existing == Existing::resume)
-    begin_again();
+    resume_recording();
   else
-    start_cold();
+    begin_recording();
   record_.status = RunRecord::Status::running;
   record_.message.clear();
   record_.command = options_.command;
@@ -133,7 +133,7 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
 
 Run::~Run() = default;
 
-void Run::start_cold() {
+void Run::begin_recording() {
   record_.build = build_info();
   record_.scene_hash = scene_->hash;
   record_.asked_step = scene_->tolerance > 0 ? 0 : scene_->step;
@@ -165,7 +165,7 @@ void Run::start_cold() {
   flush();
 }
 
-void Run::begin_again() {
+void Run::resume_recording() {
   record_ = read_run_record(*folder_ / kRunFile);
   for (const auto& [name, value] : build_info()) {
     const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
@@ -216,8 +216,8 @@ void Run::begin_again() {
     contacts_ = std::make_unique<ContactRecordingWriter>(
         ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
   if (keep == 0 && simulation_->time() == 0) record_state();
-  counted_steps_ = record_.step_counters;
-  counted_work_ = record_.counters;
+  earlier_steps_ = record_.step_counters;
+  earlier_counters_ = record_.counters;
   ++record_.resumed;
 }
 
@@ -231,25 +231,25 @@ void Run::note(const std::string& text) {
 void Run::note_redundancy() {
   std::vector<bool> acting;
   for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
-  if (acting == told_acting_) return;
-  told_acting_ = std::move(acting);
+  if (acting == reported_acting_) return;
+  reported_acting_ = std::move(acting);
   for (const std::string& text : redundancy_notes(*simulation_))
-    if (told_redundant_.insert(text).second) note(text);
+    if (reported_redundant_.insert(text).second) note(text);
 }
 
-void Run::note_holds() {
-  for (const std::string& text : hold_notes(*simulation_, told_holds_)) note(text);
-  told_holds_ = simulation_->engage_impulses().size();
+void Run::note_engagements() {
+  for (const std::string& text : engage_notes(*simulation_, reported_impulses_)) note(text);
+  reported_impulses_ = simulation_->engage_impulses().size();
 }
 
 /// Tells of each part once whose parameters turn it so far that elasticity linear in d is no longer what it
 /// was at rest.
 void Run::note_turns() {
   for (const PartModel& m : simulation_->model().parts()) {
-    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || told_turned_.count(m.part->name()) > 0) continue;
+    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || reported_turned_.count(m.part->name()) > 0) continue;
     const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
     if (!(turn > kMostLinearTurn)) continue;
-    told_turned_.insert(m.part->name());
+    reported_turned_.insert(m.part->name());
     note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
          m.part->name() + "' turn some of its surface by " + rounded_text(turn) +
          " rad; local elasticity that is linear in the displacements means something else there than at "
@@ -271,10 +271,10 @@ void Run::record_state() {
   record_.open_gap = gaps.open;
   const double depth = deepest_share(*simulation_);
   record_.max_depth = std::max(record_.max_depth, depth);
-  if (depth > kToldOverlap)
-    for (const std::string& text : overlap_notes(*simulation_, told_overlaps_)) note(text);
+  if (depth > kReportedOverlap)
+    for (const std::string& text : overlap_notes(*simulation_, reported_overlaps_)) note(text);
   note_redundancy();
-  note_holds();
+  note_engagements();
   note_turns();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
@@ -304,20 +304,20 @@ void Run::save(bool to_disk) {
 
 void Run::write_record() {
   const StepCounters& session = simulation_->step_counters();
-  record_.step_counters.steps = counted_steps_.steps + session.steps;
+  record_.step_counters.steps = earlier_steps_.steps + session.steps;
   record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
-  record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
-  record_.step_counters.rejected = counted_steps_.rejected + session.rejected;
-  record_.step_counters.uncontrolled = counted_steps_.uncontrolled + session.uncontrolled;
-  record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
-  record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
-  record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
-  record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
-  record_.step_counters.contact_fallbacks = counted_steps_.contact_fallbacks + session.contact_fallbacks;
-  record_.step_counters.contact_cutoffs = counted_steps_.contact_cutoffs + session.contact_cutoffs;
+  record_.step_counters.evaluations = earlier_steps_.evaluations + session.evaluations;
+  record_.step_counters.rejected = earlier_steps_.rejected + session.rejected;
+  record_.step_counters.uncontrolled = earlier_steps_.uncontrolled + session.uncontrolled;
+  record_.step_counters.limit_impulses = earlier_steps_.limit_impulses + session.limit_impulses;
+  record_.step_counters.factorisations = earlier_steps_.factorisations + session.factorisations;
+  record_.step_counters.impacts = earlier_steps_.impacts + session.impacts;
+  record_.step_counters.contact_sweeps = earlier_steps_.contact_sweeps + session.contact_sweeps;
+  record_.step_counters.contact_fallbacks = earlier_steps_.contact_fallbacks + session.contact_fallbacks;
+  record_.step_counters.contact_cutoffs = earlier_steps_.contact_cutoffs + session.contact_cutoffs;
   record_.step_counters.contact_residual =
-      std::max(counted_steps_.contact_residual, session.contact_residual);
-  record_.counters = counted_work_;
+      std::max(earlier_steps_.contact_residual, session.contact_residual);
+  record_.counters = earlier_counters_;
   record_.counters += simulation_->counters();
   const std::vector<double>& rested = simulation_->state().at_rest;
   record_.asleep =

@@ -30,7 +30,7 @@ class Builder final : public nlohmann::json_sax<json> {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF") at_ = 3;
   }
 
-  JsonValue take_root() { return std::move(root_); }
+  JsonValue release_root() { return std::move(root_); }
 
   bool null() override { return add(word_token(), std::monostate()); }
   bool boolean(bool value) override { return add(word_token(), value); }
@@ -210,7 +210,7 @@ JsonValue parse(std::string_view text, const ParseOptions& options) {
   if (is_foreign(text, &foreign)) throw foreign;
   Builder builder(text, options);
   json::sax_parse(text.begin(), text.end(), &builder);
-  return builder.take_root();
+  return builder.release_root();
 }
 
 }  // namespace pliant::json

@@ -8,7 +8,7 @@ schema::Record coloring_record() {
   using namespace schema;
   std::vector<Choice> quantities;
   for (const QuantityInfo& info : all_quantities()) quantities.push_back({info.name, info.meaning});
-  const Type range = array(number(any(), "m or 1"), 2, 2)
+  const Type range = array(number(unbounded(), "m or 1"), 2, 2)
                          .checked([](const JsonValue& value, const ReportAt& report) {
                            const JsonValue::Array& ends = value.array();
                            const double span = ends[1].number() - ends[0].number();

@@ -44,7 +44,7 @@ namespace {
 
 /// Whether two ends are both of the world or of parts that do not move, or of one part between whose points
 /// nothing changes.
-bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
+bool constrains_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
   auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
   if (!moves(from) && !moves(to)) {
     faults.place(r.json(), "neither end is on a part that moves; expected at least one");
@@ -100,7 +100,7 @@ bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneF
 
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
-  if (!from || !to || !r.complete() || ties_nothing(r, *from, *to, faults)) return;
+  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return;
   if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return;
   const auto info = std::find_if(all_joints().begin(), all_joints().end(),
                                  [&](const JointInfo& i) { return i.name == r.name(); });

@@ -59,7 +59,7 @@ void ParameterReader::unknown(const JsonValue& parameters, const std::string& na
     if (longer.empty() && dot != std::string::npos && known[i].name.substr(dot + 1) == name)
       longer = known[i].name;
   }
-  std::string hint = longer.empty() ? among(name, names) : "; did you mean \"" + longer + "\"?";
+  std::string hint = longer.empty() ? name_hint(name, names) : "; did you mean \"" + longer + "\"?";
   const std::string link = name.substr(0, name.find('.'));
   const auto is_link = [&](const DeformationInfo& info) { return info.name == link; };
   const auto has_link = [&](const LinkInfo& info) { return info.type == link; };

@@ -60,7 +60,7 @@ std::unique_ptr<Part> PartReader::read() {
     ParameterReader(*part_, in_matrix, end_, faults_).read(r_);
     if (has_matrix) read_stiffness(r_.object("stiffness_matrix"));
   } catch (const std::invalid_argument& e) {
-    refused(e);
+    report_at_parameters(e);
   }
   if (r_.given("inertia")) read_inertia(r_.object("inertia"));
   part_->place(r_.vector3("position"), read_orientation(r_.object("orientation"), faults_));
@@ -69,7 +69,7 @@ std::unique_ptr<Part> PartReader::read() {
   if (r_.given("motion")) read_motion(r_.object("motion"));
   if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), make_factor_, faults_, *part_);
   read_elasticity();
-  check_rigid();
+  check_rigid_keys();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
   if (known && faults_.errors() == before) prepare();
   return std::move(part_);
@@ -186,7 +186,7 @@ void PartReader::read_inertia(const Reader& r) {
   part_->inertia(r.number("mass"), about_origin, c);
 }
 
-const JsonValue* PartReader::unmoved() const {
+const JsonValue* PartReader::fixed_or_motion() const {
   if (r_.boolean("fixed")) return &r_.at("fixed");
   return r_.given("motion") ? &r_.at("motion") : nullptr;
 }
@@ -215,7 +215,7 @@ void PartReader::read_motion(const Reader& r) {
 }
 
 /// What only parts without dynamic parameters can be.
-void PartReader::check_rigid() {
+void PartReader::check_rigid_keys() {
   const Parameters& all = part_->parameters();
   if (all.n_dynamic() > 0) {
     const std::string because = all.moving(0).name + " is dynamic; expected ";
@@ -227,7 +227,7 @@ void PartReader::check_rigid() {
       faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
   }
   if (r_.given("local")) {
-    if (unmoved() != nullptr)
+    if (fixed_or_motion() != nullptr)
       faults_.place(r_.at("local"),
                     std::string(r_.given("motion") ? "a part that moves as prescribed" : "a fixed part") +
                         " does not deform; expected no \"local\"");
@@ -235,7 +235,7 @@ void PartReader::check_rigid() {
       faults_.place(r_.at("inertia"),
                     "a part that deforms locally takes its inertia from its density or mass");
   }
-  if (unmoved() == nullptr) return;
+  if (fixed_or_motion() == nullptr) return;
   for (const char* key : {"velocity", "angular_velocity"})
     if (!r_.vector3(key).isZero(0))
       faults_.warn(r_.at(key), r_.given("motion") ? "it has no effect beside \"motion\""
@@ -243,11 +243,11 @@ void PartReader::check_rigid() {
 }
 
 /// What shows only when all parameters come together: too many that are dynamic, a shape that folds.
-void PartReader::refused(const std::invalid_argument& e) {
+void PartReader::report_at_parameters(const std::invalid_argument& e) {
   faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), without_name(e));
 }
 
-void PartReader::refused_locally(const LocalFault& e) {
+void PartReader::report_local_fault(const LocalFault& e) {
   const Reader local = r_.object("local");
   const JsonValue& at =
       e.law < 0 ? local.json() : local.objects("laws")[static_cast<std::size_t>(e.law)].json();
@@ -266,9 +266,9 @@ void PartReader::prepare() {
   try {
     part_->prepare();
   } catch (const LocalFault& e) {
-    return refused_locally(e);
+    return report_local_fault(e);
   } catch (const std::invalid_argument& e) {
-    return refused(e);
+    return report_at_parameters(e);
   }
   const Inertia<double>& inertia = part_->rest_inertia();
   for (int i = 0; i < 3; ++i) {

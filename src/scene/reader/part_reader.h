@@ -36,11 +36,11 @@ class PartReader {
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
   /// What prescribes its motion, "fixed" or "motion"; null when it is free.
-  const JsonValue* unmoved() const;
+  const JsonValue* fixed_or_motion() const;
   void read_motion(const Reader& r);
-  void check_rigid();
-  void refused(const std::invalid_argument& e);
-  void refused_locally(const LocalFault& e);
+  void check_rigid_keys();
+  void report_at_parameters(const std::invalid_argument& e);
+  void report_local_fault(const LocalFault& e);
   std::string without_name(const std::invalid_argument& e) const;
   void prepare();
 

@@ -66,12 +66,12 @@ Type orientation() {
   const Record quaternion{
       "by_quaternion",
       "A unit quaternion, body to world.",
-      {required("quaternion", array(number(any(), "1"), 4, 4).expecting("4 numbers [w, x, y, z]"),
+      {required("quaternion", array(number(unbounded(), "1"), 4, 4).expecting("4 numbers [w, x, y, z]"),
                 "w, x, y, z.", "[1, 0, 0, 0]")}};
   const Record axis{"by_axis",
                     "A turn about an axis of the world.",
                     {required("axis", vector3("1"), "The axis.", "[0, 1, 0]"),
-                     required("angle", number(any(), "rad"), "The angle, right-handed.", "1.5708")}};
+                     required("angle", number(unbounded(), "rad"), "The angle, right-handed.", "1.5708")}};
   return one_of({record(quaternion), record(axis)})
       .expecting("{\"quaternion\": [w, x, y, z]} or {\"axis\": [x, y, z], \"angle\": radians}");
 }
@@ -96,12 +96,12 @@ Record part_record() {
                          "A full stiffness matrix over some parameters.",
                          {required("parameters", array(name(), 1),
                                    "The parameters, in the order of the rows.", "[\"a1\", \"a2\"]"),
-                          required("K", array(array(number(any(), "1"), 1), 1),
+                          required("K", array(array(number(unbounded(), "1"), 1), 1),
                                    "Symmetric, no negative eigenvalue; SI units.", "[[2, 1], [1, 2]]")}};
   const Record inertia{"inertia",
                        "Mass and inertia of a rigid part, instead of its density.",
                        {required("mass", number(above(0), "kg"), "Mass.", "1"),
-                        required("moments", array(array(number(any(), "kg m^2"), 3, 3), 3, 3),
+                        required("moments", array(array(number(unbounded(), "kg m^2"), 3, 3), 3, 3),
                                  "Inertia tensor about the origin of the body frame, body axes.",
                                  "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]"),
                         optional("centre", vector3("m"), "Centre of mass in the body frame.", "[0, 0, 0]")}};
@@ -228,7 +228,7 @@ Record make_scene_record() {
       "ground",
       "The drawn ground; it does not touch the parts, planes of \"contact\" do.",
       {optional("visible", boolean(), "Whether it is drawn.", "true"),
-       optional("height", number(any(), "m"), "Its z; just below the motion when not given.")}};
+       optional("height", number(unbounded(), "m"), "Its z; just below the motion when not given.")}};
   const Record material = damping_fields("material", "What parts can share.", {});
   return {"scene",
           "A scene of pliant. SI units, z up, right-handed; angles in radians. Keys \"//\" and x-... are "
@@ -262,21 +262,23 @@ Record make_scene_record() {
 const Type& parameter_type() {
   static const Type type =
       one_of(
-          {number(any(), "m, rad or 1"),
-           record({"parameter",
-                   "A global parameter. It is dynamic, a degree of freedom, when it says so or has an "
-                   "initial value, a "
-                   "rate or a stiffness; else frozen at its rest value.",
-                   {optional("rest", time_function("m, rad or 1"),
-                             "Rest value; of a dynamic parameter it may move in time."),
-                    optional("dynamic", boolean(), "Whether it is a degree of freedom.", "false"),
-                    optional("initial", number(any(), "m, rad or 1"),
-                             "Value at time 0; the rest value when not given."),
-                    optional("initial_rate", number(any(), "m/s, rad/s or 1/s"), "Rate at time 0.", "0"),
-                    optional("stiffness", number(at_least(0), "N/m for a length, else N m"),
-                             "K of the energy 1/2 K (q - rest)^2.", "0"),
-                    optional("min", number(any(), "m, rad or 1"), "Lower limit of a dynamic parameter."),
-                    optional("max", number(any(), "m, rad or 1"), "Upper limit of a dynamic parameter.")}})})
+          {number(unbounded(), "m, rad or 1"),
+           record(
+               {"parameter",
+                "A global parameter. It is dynamic, a degree of freedom, when it says so or has an "
+                "initial value, a "
+                "rate or a stiffness; else frozen at its rest value.",
+                {optional("rest", time_function("m, rad or 1"),
+                          "Rest value; of a dynamic parameter it may move in time."),
+                 optional("dynamic", boolean(), "Whether it is a degree of freedom.", "false"),
+                 optional("initial", number(unbounded(), "m, rad or 1"),
+                          "Value at time 0; the rest value when not given."),
+                 optional("initial_rate", number(unbounded(), "m/s, rad/s or 1/s"), "Rate at time 0.", "0"),
+                 optional("stiffness", number(at_least(0), "N/m for a length, else N m"),
+                          "K of the energy 1/2 K (q - rest)^2.", "0"),
+                 optional("min", number(unbounded(), "m, rad or 1"), "Lower limit of a dynamic parameter."),
+                 optional("max", number(unbounded(), "m, rad or 1"),
+                          "Upper limit of a dynamic parameter.")}})})
           .expecting(
               "a number, or {\"rest\", \"dynamic\", \"initial\", \"initial_rate\", \"stiffness\", \"min\", "
               "\"max\"}")

@@ -69,9 +69,9 @@ std::string record_words(const Record& record) {
   return keys.empty() ? "an object" : "an object with " + keys;
 }
 
-bool takes_objects(const Type& type) {
+bool accepts_objects(const Type& type) {
   using Kind = Type::Kind;
-  if (type.kind == Kind::kOneOf) return std::any_of(type.inner.begin(), type.inner.end(), takes_objects);
+  if (type.kind == Kind::kOneOf) return std::any_of(type.inner.begin(), type.inner.end(), accepts_objects);
   return type.kind == Kind::kMap || type.kind == Kind::kRecord || type.kind == Kind::kTagged;
 }
 
@@ -98,7 +98,7 @@ int weight(const Type& type, const JsonValue& object) {
 bool Range::contains(double x) const {
   return (min_excluded ? x > min : x >= min) && (max_excluded ? x < max : x <= max);
 }
-Range any() {
+Range unbounded() {
   return {};
 }
 Range at_least(double min) {
@@ -278,7 +278,7 @@ const Type* chosen_alternative(const Type& one_of, const JsonValue& object) {
   const Type* only = nullptr;
   int most = 0, candidates = 0;
   for (const Type& inner : one_of.inner) {
-    if (!takes_objects(inner)) continue;
+    if (!accepts_objects(inner)) continue;
     only = &inner;
     ++candidates;
     const int heavy = weight(inner, object);

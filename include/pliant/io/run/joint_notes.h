@@ -18,7 +18,7 @@ std::string open_joints_note(const Simulation& simulation);
 
 /// The impulses of joints that took hold of moving parts, from number `first` of simulation.engage_impulses()
 /// on, in words: of each moment the largest; and those of paths whose rate jumps, of each joint the first.
-std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first);
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first);
 
 /// How the systems of the joints are solved: "blocks", "augmented", "blocks and augmented", or nothing.
 std::string solver_note(const Model& model);

@@ -67,8 +67,8 @@ class Run {
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
-  void start_cold();
-  void begin_again();
+  void begin_recording();
+  void resume_recording();
   void record_state();
   bool at_end() const;
   bool take_step();
@@ -81,7 +81,7 @@ class Run {
   void fail(const std::string& message) noexcept;
   void note(const std::string& text);
   void note_redundancy();
-  void note_holds();
+  void note_engagements();
   void note_turns();
 
   Scene* scene_;
@@ -93,13 +93,13 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;                           // of the last recorded state
-  std::size_t told_holds_ = 0;                          ///< of the impulses of joints that took hold
-  std::set<std::string> told_redundant_, told_turned_;  // texts; names of parts
-  std::set<TouchingPair> told_overlaps_;
-  std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
-  StepCounters counted_steps_;     // of the sessions before
-  Counters counted_work_;
+  double recorded_time_ = -1;                                   // of the last recorded state
+  std::size_t reported_impulses_ = 0;                           ///< of the impulses of joints that took hold
+  std::set<std::string> reported_redundant_, reported_turned_;  // texts; names of parts
+  std::set<TouchingPair> reported_overlaps_;
+  std::vector<bool> reported_acting_;  ///< the joints that acted when redundant rows were told of
+  StepCounters earlier_steps_;         // of the sessions before
+  Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
 };

@@ -28,7 +28,7 @@ struct Range {
 
   bool contains(double x) const;
 };
-Range any();
+Range unbounded();
 Range at_least(double min);
 Range above(double min);
 Range at_most(double max);
@@ -105,7 +105,7 @@ Type choice(std::vector<Choice> choices);
 Type array(Type element, std::size_t min_count = 0,
            std::size_t max_count = std::numeric_limits<std::size_t>::max());
 /// [x, y, z].
-Type vector3(const std::string& unit, Range range = any());
+Type vector3(const std::string& unit, Range range = unbounded());
 /// An object whose keys are free names.
 Type map(Type element);
 Type record(Record fields);
