@@ -1,5 +1,5 @@
-// Runs a scene into a folder: simulates, records, and keeps run.json true. Everything here happens without a
-// GL library.
+// Running a scene into a folder: simulation, recording, and the run record run.json. No graphics library is
+// needed.
 #pragma once
 
 #include <chrono>
@@ -23,39 +23,40 @@ namespace pliant {
 struct RunOptions {
   std::filesystem::path folder;
   Existing existing = Existing::refuse;
-  int threads = 0;                   ///< 0: as many as the scene and the machine have a use for
-  std::string scene_file;            ///< path it was read from, "-" for standard input; empty for none
+  int threads = 0;                   ///< 0: chosen by automatic_threads()
+  std::string scene_file;            ///< path of the scene, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
-  std::string graphics;              ///< what draws pictures, for run.json; empty without
-  std::function<bool()> stop;        ///< asked after every step; true ends the run in good order
+  std::string graphics;              ///< graphics library, for run.json; empty without pictures
+  std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
 };
 
-/// A run in its folder. The scene's end, step, frame rate, integrator and picture size are what the run uses;
-/// they may be changed before it begins.
+/// A run in its folder. It uses end, step, tolerance, frame rate, integrator and picture size of the scene,
+/// which may be changed before the run is constructed.
 class Run {
  public:
-  /// Prepares the model first, then makes, locks and begins the folder (or, resuming, reads it). Throws
-  /// std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming another scene, build,
-  /// step, method or frame rate), std::system_error. The scene must outlive the run.
+  /// Prepares the model, then creates and locks the folder and records the first state; or, resuming, reads
+  /// the folder. Throws std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming with
+  /// another scene, build, step, method or frame rate), std::system_error. The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Steps to the end and writes trajectory.csv. False when `stop` ended it: the last state is recorded and
-  /// the run can be resumed. Throws StepFailure (the last good state is then recorded),
+  /// Steps to the end and writes trajectory.csv. Returns false if `stop` ended the run; the last state is
+  /// then recorded and the run can be resumed. Throws StepFailure (the last good state is then recorded),
   /// std::system_error.
   bool simulate();
 
-  /// A stage after the simulation, its wall time and files noted in run.json: write("meshes",
-  /// "meshes/frame_*.obj", ...).
+  /// Performs a task after the simulation and records its wall time and files in run.json: write("meshes",
+  /// {"meshes/frame_*.obj"}, ...).
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
-  /// Runs it again more exactly and notes how far the two are apart; a stage like those of write().
+  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json; a stage as in
+  /// write().
   const ErrorEstimate& estimate_error();
 
-  /// Writes the last word into run.json: complete, or stopped with a message.
+  /// Writes the final status to run.json: complete, or stopped with a message.
   void finish(RunRecord::Status status, const std::string& message = "");
 
   const Scene& scene() const { return *scene_; }
@@ -63,7 +64,7 @@ class Run {
   const FrameSchedule& schedule() const { return schedule_; }
   const std::filesystem::path& folder() const { return folder_->path(); }
   const RunRecord& record() const { return record_; }
-  /// The states recorded so far.
+  /// Returns the states recorded so far.
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
@@ -75,7 +76,7 @@ class Run {
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
-  /// What people read: trajectory.csv, and what touched where the scene asks for it.
+  /// Writes trajectory.csv and, if the scene asks for them, the tables of contacts.
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
@@ -104,11 +105,11 @@ class Run {
   bool stopped_ = false;
 };
 
-/// The steps and frames of a scene.
+/// Returns the steps and frames of a scene.
 FrameSchedule schedule_of(const Scene& scene);
 
-/// As many threads as the parts of a scene have a use for, at most what the machine has; results do not
-/// depend on it. Prepares the parts, and throws what that throws.
+/// Returns the number of threads that the parts of a scene can use, at most that of the machine. Results do
+/// not depend on it. Prepares the parts and throws as Part::prepare().
 int automatic_threads(Scene& scene);
 
 }  // namespace pliant
