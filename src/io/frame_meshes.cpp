@@ -9,10 +9,10 @@ namespace pliant {
 
 namespace {
 
-/// A rectangle about the origin, across a normal.
+/// Returns a rectangle centred at the origin and normal to `normal`.
 ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   constexpr double kLevel = 1e-9;
-  const Vec3<double> level(-normal[1], normal[0], 0);  // across z and the normal
+  const Vec3<double> level(-normal[1], normal[0], 0);  // perpendicular to z and to the normal
   const Vec3<double> along = level.norm() > kLevel ? level.normalized() : Vec3<double>(Vec3<double>::UnitX());
   const Vec3<double> x = 0.5 * look.width * along, y = 0.5 * look.height * normal.cross(along);
   Eigen::Matrix3Xd corners(3, 4);
@@ -22,7 +22,7 @@ ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   return {corners, triangles};
 }
 
-/// The triangles with a normal each; of an open mesh both sides.
+/// Returns the triangles of an obstacle with one normal each; an open mesh gets both sides.
 TriangleMesh faceted(const ObstacleMesh& obstacle) {
   const Eigen::Index n = obstacle.triangles().cols(), all = obstacle.closed() ? n : 2 * n;
   TriangleMesh mesh;
@@ -120,7 +120,7 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there = shown_.size();  // obstacles and planes come and go
+  std::size_t there = shown_.size();  // obstacles and planes may appear and disappear
   auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
     if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);

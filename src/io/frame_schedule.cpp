@@ -11,7 +11,7 @@ namespace pliant {
 namespace {
 
 constexpr double kMaxSteps = 1e12;
-/// Part of a step within which a frame counts as on the step.
+/// Tolerance, as a fraction of a step, within which a frame is at the end of the step.
 constexpr double kOnStep = 1e-6;
 
 void require(bool good, const char* what, double value, const char* expected) {
@@ -19,7 +19,8 @@ void require(bool good, const char* what, double value, const char* expected) {
     throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
 }
 
-// end / step rounded up, but to the nearest where that is as good as exact.
+// Returns end / step, rounded to the nearest integer if it is equal up to rounding errors, or else rounded
+// up.
 double steps_between(double end, double step, double rate) {
   require(std::isfinite(end) && end >= 0, "the end time", end, "a number of seconds >= 0");
   require(std::isfinite(step) && step > 0, "the step", step, "a number of seconds > 0");
@@ -75,7 +76,7 @@ bool FrameSchedule::records(std::int64_t step) const {
 }
 
 bool FrameSchedule::records(double before, double time, double next) const {
-  const double reach = time + 1.02 * next;  // the last step before the end may be a little longer
+  const double reach = time + 1.02 * next;  // the last step before the end may be slightly longer
   return time == 0 || reach >= end_ || frames(reach) != frames(before);
 }
 

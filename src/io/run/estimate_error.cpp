@@ -13,13 +13,14 @@ namespace pliant {
 
 namespace {
 
-constexpr double kTighter = 10;
+constexpr double kTighter = 10;  // ratio of the two tolerances
 
-/// What is no number stays.
-void raise_max(double& most, double value) {
-  if (!(value <= most) && !std::isnan(most)) most = value;
+/// Replaces a maximum by a larger value; NaN is kept.
+void raise_max(double& max, double value) {
+  if (!(value <= max) && !std::isnan(max)) max = value;
 }
 
+/// Raises the differences of coordinates and velocities between two states.
 void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
@@ -37,7 +38,8 @@ void compare(const Model& model, const State& a, const State& b, ErrorEstimate& 
   }
 }
 
-/// Forces of joints, as evaluations at both states left them, and how far those that hold are open.
+/// Raises the differences of joint forces between two states, and the gaps of closed joints. work_a, work_b:
+/// results of evaluations at the states.
 void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<double>& work_a, const State& b,
                     const Workspace<double>& work_b, ErrorEstimate& error) {
   const Model& model = dynamics.model();
@@ -52,13 +54,13 @@ void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<do
   }
 }
 
-/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled
-/// are half as long as those to another.
+/// During its lifetime, the longest contact step of a scene is half as long as that of the original
+/// tolerance.
 class HalfStepsInContact {
  public:
-  HalfStepsInContact(ContactSettings& settings, double tolerance, double of)
+  HalfStepsInContact(ContactSettings& settings, double tolerance, double original_tolerance)
       : settings_(settings), longest_(settings.longest_step) {
-    const double half = longest_contact_step(settings, of) / 2;
+    const double half = longest_contact_step(settings, original_tolerance) / 2;
     settings_.longest_step = half * longest_ / longest_contact_step(settings, tolerance);
   }
   ~HalfStepsInContact() { settings_.longest_step = longest_; }
@@ -70,8 +72,8 @@ class HalfStepsInContact {
   double longest_;
 };
 
-/// On to a time, in steps of one length as near to `step` as lets it be met; to a tolerance in two at least,
-/// for the same step as that of the run would tell nothing.
+/// Advances a simulation to a time `until` (s): with fixed steps, in equal steps of about `step`; with a
+/// tolerance, in at least two steps, because a step equal to that of the run would show no difference.
 void step_to(Simulation& simulation, double until, double step) {
   const double now = simulation.time();
   if (!(until > now)) return;
@@ -89,8 +91,8 @@ void step_to(Simulation& simulation, double until, double step) {
 void require_better_run(const Scene& scene) {
   if (!(scene.tolerance > 0) || scene.tolerance > kLeastTolerance) return;
   std::ostringstream message;
-  message << "no run is better than one to a tolerance of " << scene.tolerance
-          << ": its error cannot be estimated";
+  message << "the error of a run with the tolerance " << scene.tolerance
+          << " cannot be estimated, because no run is more accurate; choose a larger tolerance";
   throw std::invalid_argument(message.str());
 }
 
@@ -100,7 +102,7 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   ErrorEstimate error;
   error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
-  // Where many bodies lie on each other the tolerance says nothing: half the step does.
+  // The tolerance does not control the error of resting contacts of many bodies; there the step is halved.
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();

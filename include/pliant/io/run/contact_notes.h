@@ -21,9 +21,10 @@ inline constexpr double kReportedOverlap = 1e-3;
 /// Two things in contact: part, part (-1 if none), plane (-1 if none), obstacle (-1 if none).
 using TouchingPair = std::array<int, 4>;
 
-/// Bodies that overlap at the state of a simulation by more than kReportedOverlap, in words, the deepest
-/// contact of each pair that was not told of, with the joints that may hold it there; of many the deepest
-/// ones and how many there are. told: gets them; of each once.
-std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told);
+/// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation: the
+/// deepest contact of each pair that is not yet in `reported`, with a joint that may keep the overlap. If
+/// there are many, only the deepest ones are listed, with the number of the others. The pairs are added to
+/// `reported`.
+std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
 
 }  // namespace pliant

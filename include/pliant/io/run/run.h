@@ -17,6 +17,7 @@
 #include <pliant/io/run/run_folder.h>
 #include <pliant/io/run/run_record.h>
 #include <pliant/scene/scene.h>
+#include <pliant/simulate/stable_step.h>
 
 namespace pliant {
 
@@ -68,11 +69,18 @@ class Run {
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
+  /// Writes the first state and the files of a new run.
   void begin_recording();
+  /// Checks that the recorded run fits to the scene, and sets the simulation to its last state.
   void resume_recording();
+  void check_resumable() const;
+  void set_last_state(const Recording& recorded, std::int64_t& keep);
+  void describe(const StableStep& stable);
+  void note_setup(const StableStep& stable);
+  void list_files();
   void record_state();
   bool at_end() const;
-  bool take_step();
+  bool step_once();
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
@@ -80,6 +88,7 @@ class Run {
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
+  /// Shows a note and adds it to run.json, unless it is there already.
   void note(const std::string& text);
   void note_redundancy();
   void note_engagements();
@@ -94,12 +103,14 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;                                   // of the last recorded state
-  std::size_t reported_impulses_ = 0;                           ///< of the impulses of joints that took hold
-  std::set<std::string> reported_redundant_, reported_turned_;  // texts; names of parts
+  double recorded_time_ = -1;  // of the last recorded state, s
+  // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
+  // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.
+  std::size_t reported_impulses_ = 0;
+  std::set<std::string> reported_redundant_, reported_turned_;
   std::set<TouchingPair> reported_overlaps_;
-  std::vector<bool> reported_acting_;  ///< the joints that acted when redundant rows were told of
-  StepCounters earlier_steps_;         // of the sessions before
+  std::vector<bool> reported_acting_;
+  StepCounters earlier_steps_;  // of earlier sessions of a resumed run
   Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
