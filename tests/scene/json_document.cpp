@@ -241,7 +241,7 @@ TEST_CASE("I07 numbers rounded to zero") {
       faults("{\"a\": 1e-400, \"b\": [-1e-999]}") ==
       "s.json:1:7: error: /a: 1e-400; too small for a number, it would become 0; expected 0 or at least "
       "4.95e-324 in "
-      "size\n"
+      "magnitude\n"
       "s.json:1:21: error: /b/0: -1e-999; too small for a number, it would become 0; expected 0 or at least "
       "4.95e-324 in magnitude\n");
   CHECK(sound("[0e-999, 5e-324, 0.0, -0.0]").root().array()[1].number() == 5e-324);
