@@ -14,9 +14,9 @@ constexpr double kMaxSteps = 1e12;
 /// Tolerance, as a fraction of a step, within which a frame is at the end of the step.
 constexpr double kOnStep = 1e-6;
 
-void require(bool good, const char* what, double value, const char* expected) {
+void require(bool good, const char* name, double value, const char* expected) {
   if (!good)
-    throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
+    throw std::invalid_argument(std::string(name) + " " + number_text(value) + " must be " + expected);
 }
 
 // Returns end / step, rounded to the nearest integer if it is equal up to rounding errors, or else rounded
@@ -29,7 +29,7 @@ double steps_between(double end, double step, double rate) {
   const double steps = std::abs(exact - near) <= 1e-9 * std::max(1.0, exact) ? near : std::ceil(exact);
   if (!(steps <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) +
-                                " s takes " + number_text(steps) + " steps; the limit is 1e12");
+                                " s needs " + number_text(steps) + " steps; the limit is 1e12");
   if (!(end * rate <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s has " + number_text(end * rate) +
                                 " frames; the limit is 1e12");

@@ -1,5 +1,5 @@
-// Faults found while a validated document is read, such as unknown part names. Each is reported at its value,
-// as
+// Faults found while a validated document is read, for example unknown part names. Each is reported at its
+// value, as
 //   value; the fault; expected ...; nearest name
 #pragma once
 

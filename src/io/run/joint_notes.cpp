@@ -23,10 +23,10 @@ class NamedRows {
     else if (joints_ == kShown + 1)
       names_ += " and others";
   }
-  /// "<what>: N rows of M joints, <names>"; empty without rows.
-  std::string text(const std::string& what) const {
+  /// "HEADING: N rows of M joints, NAMES"; empty without rows.
+  std::string text(const std::string& heading) const {
     if (rows_ == 0) return {};
-    return what + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
+    return heading + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
   }
 
  private:
