@@ -1,6 +1,7 @@
 # Checks what the pages show: README.md the scene scenes/two_parts.json and the program two_parts.cpp, apps/examples/README.md
 # excerpts of the examples, scenes/README.md a scene that the program accepts and the messages about its mistakes.
 # SOURCE: the project; PROGRAM: pliant, where it is built; FOLDER: a folder for scenes.
+cmake_minimum_required(VERSION 3.25)
 include(${SOURCE}/tests/package/page_block.cmake)
 
 function(expect_equal page shown path)
@@ -16,7 +17,7 @@ expect_equal(README.md "${shown}" apps/examples/two_parts.cpp)
 
 # Every C++ block of apps/examples/README.md is part of an example.
 set(code "")
-foreach(name write_meshes add_a_shape add_a_deformation add_a_joint)
+foreach(name write_meshes add_a_shape add_a_deformation add_a_joint add_a_law)
   file(READ ${SOURCE}/apps/examples/${name}.cpp text)
   string(APPEND code "${text}")
 endforeach()

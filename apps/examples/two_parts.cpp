@@ -15,7 +15,7 @@ int main() {
   arm.damping(0, 0.01);                               // D = alpha M + beta K: alpha (1/s), beta (s)
   arm.place({0.4, 0, 1.4}, Eigen::Quaterniond(Eigen::AngleAxisd(-kPi / 2, Eigen::Vector3d::UnitY())));
 
-  auto& ball = body.add<Primitive<Ellipsoid>>("ball", 1000.0);  // no degree of freedom but those of its frame
+  auto& ball = body.add<Primitive<Ellipsoid>>("ball", 1000.0);  // a rigid part: it has no dynamic parameter
   ball.rest({{"a1", 0.15}, {"a2", 0.15}, {"a3", 0.2}}).place({0.8, 0, 1.2});
 
   const double top = kPi / 2, bottom = -kPi / 2;  // the latitude u of the two poles of a surface

@@ -1,4 +1,4 @@
-// Two parts hang from the world and from each other on springs; their surfaces are written as meshes.
+// Two parts hang on springs, one below the other. The program writes the surface of the upper part as meshes.
 #include <cstdio>
 #include <filesystem>
 
@@ -8,7 +8,7 @@
 using namespace pliant;
 
 int main(int argc, char** argv) {
-  const std::filesystem::path folder = argc > 1 ? argv[1] : "out/two_parts";
+  const std::filesystem::path folder = argc > 1 ? argv[1] : "out/meshes";
 
   MultiBody body;
   body.gravity = {0, 0, -9.81};
@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       {{"a1", 4e5}, {"a2", 4e5}, {"a3", 4e5}, {"taper.tx", 2e3}, {"taper.ty", 2e3}, {"bend.angle", 2e3}});
   upper.damping(0, 1e-3);
 
-  auto& lower = body.add<Primitive<Ellipsoid>>("lower", 1000.0);  // nothing made dynamic: a rigid part
+  auto& lower = body.add<Primitive<Ellipsoid>>("lower", 1000.0);  // no dynamic parameter: rigid
   lower.place({0, 0, -1.4});
   lower.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.4}});
 
