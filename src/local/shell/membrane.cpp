@@ -1,2 +1,9 @@
-// Compiles the functions of shell/membrane.h once for the library.
+// Explicit instances of Membrane for both laws.
 #include <pliant/local/shell/membrane-inl.h>
+
+namespace pliant {
+
+template class Membrane<StVenantKirchhoffSheet>;
+template class Membrane<NeoHookeanSheet>;
+
+}  // namespace pliant

@@ -1,10 +1,16 @@
-#include <pliant/local/shell/edge_strain.h>
+// Strain tensors and stiffness of a triangle in terms of its edges.
+#pragma once
+
+#include <cmath>
 
 #include <Eigen/Geometry>
 
+#include <pliant/local/shell/edge_strain.h>
+#include <pliant/math/header_only.h>
+
 namespace pliant {
 
-std::array<Mat3<double>, 3> edge_strains(const Edges<double>& e) {
+PLIANT_INLINE std::array<Mat3<double>, 3> edge_strains(const Edges<double>& e) {
   const Vec3<double> twice_area = e[0].cross(e[1]);
   const Vec3<double> normal = twice_area.normalized();
   std::array<Mat3<double>, 3> B;
@@ -15,12 +21,12 @@ std::array<Mat3<double>, 3> edge_strains(const Edges<double>& e) {
   return B;
 }
 
-Vec3<double> edge_traces(const Edges<double>& e) {
+PLIANT_INLINE Vec3<double> edge_traces(const Edges<double>& e) {
   const double four_area2 = e[0].cross(e[1]).squaredNorm();  // (2A)^2
   return -Vec3<double>(e[1].dot(e[2]), e[2].dot(e[0]), e[0].dot(e[1])) / four_area2;
 }
 
-Mat3<double> edge_stiffness(const Edges<double>& e, const Sheet& sheet) {
+PLIANT_INLINE Mat3<double> edge_stiffness(const Edges<double>& e, const Sheet& sheet) {
   const double four_area2 = e[0].cross(e[1]).squaredNorm(), area = 0.5 * std::sqrt(four_area2);
   const Vec3<double> trace = edge_traces(e);
   auto dot = [&](int i, int j) {

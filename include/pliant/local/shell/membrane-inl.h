@@ -1,5 +1,7 @@
-#include <pliant/local/shell/membrane.h>
+// Forces, energy and stiffness of membranes for large deformation.
+#pragma once
 
+#include <pliant/local/shell/membrane.h>
 #include <pliant/local/solid/element_matrix.h>
 #include <pliant/math/scalar/dual.h>
 
@@ -11,11 +13,12 @@ Membrane<Law>::Membrane(const ShellMesh& mesh, const Sheet& sheet)
   sheet.check();
   const VecX<double> X = mesh.X().reshaped();
   for (int b = 0; b < batches_.n_batches(); ++b) {
-    Batch& of = triangles_[static_cast<std::size_t>(b)];
+    Batch& triangles = triangles_[static_cast<std::size_t>(b)];
     for (int lane = 0; lane < Pack::kLanes; ++lane)
-      of.law.set(lane, edges_of(mesh, batches_.element(b, lane)), sheet);
-    of.rest = {0.0, 0.0, 0.0};
-    of.rest = of.strain(edges_of(batches_.corners(X, b)));  // in the same operations: nothing at rest
+      triangles.law.set(lane, edges_of(mesh, batches_.element(b, lane)), sheet);
+    // Uses the operations of a later evaluation, so that q is exactly 0 at rest.
+    triangles.rest = {0.0, 0.0, 0.0};
+    triangles.rest = triangles.strain(edges_of(batches_.corners(X, b)));
   }
 }
 
@@ -53,8 +56,8 @@ void Membrane<Law>::add_derivative(const Coordinates& x, const Coordinates& dx, 
     }
     const std::array<D, 3> tau = batch(b).law.tension(strain);
     ElementBatches<3>::Corners df = corner_forces<Pack>({tau[0].d[0], tau[1].d[0], tau[2].d[0]}, e);
-    const ElementBatches<3>::Corners turned = corner_forces<Pack>({tau[0].v, tau[1].v, tau[2].v}, de);
-    for (std::size_t k = 0; k < 3; ++k) df[k] += turned[k];
+    const ElementBatches<3>::Corners geometric = corner_forces<Pack>({tau[0].v, tau[1].v, tau[2].v}, de);
+    for (std::size_t k = 0; k < 3; ++k) df[k] += geometric[k];
     return df;
   });
 }
@@ -65,7 +68,8 @@ void Membrane<Law>::add_viscous_force(const Coordinates& x, const Coordinates& x
   buffer.numbers.resize(batches_.buffer_size());
   batches_.add(f, buffer.numbers.data(), pool, [&](int b) {
     const Edges<Pack> e = edges_of(batches_.corners(x, b)), e_dot = edges_of(batches_.corners(x_dot, b));
-    // Tensions of the rates q_dot by the law about rest: constant, symmetric and positive.
+    // The tensions are the law at rest applied to the rates q_dot, with a constant positive semi-definite
+    // matrix.
     return corner_forces<Pack>(batch(b).law.linear_tension(strain_change(e, e_dot)), e);
   });
 }
@@ -114,10 +118,7 @@ void Membrane<Law>::add_stiffness(const Coordinates& x, std::vector<Eigen::Tripl
 
 template <class Law>
 double Membrane<Law>::frequency_bound(const Coordinates& x, const VecX<double>& M) const {
-  return largest_of_elements([&](auto&& visit) { each_element(x, visit); }, M);
+  return largest_element_frequency([&](auto&& visit) { each_element(x, visit); }, M);
 }
-
-template class Membrane<StVenantKirchhoffSheet>;
-template class Membrane<NeoHookeanSheet>;
 
 }  // namespace pliant
