@@ -205,8 +205,8 @@ void MidEdgeBending<Hinges>::set_coupling(const ShellMesh& mesh, int t, const do
     Mat3<double> kappa = -0.5 * (b * B[l] + B[l] * b);
     for (std::size_t k = 0; k < 3; ++k)
       kappa += rest[k][lane] * across[k].cwiseProduct(B[l]).sum() * e[k].norm() / area * across[k];
-    // The component of kappa along n_k n_k^T, by the dual tensor -(e_i e_j^T + e_j e_i^T)/(8 A^2) of t_k
-    // t_k^T.
+    // The component of kappa along n_k n_k^T. Dual to t_k t_k^T is the tensor -(e_i e_j^T + e_j e_i^T)/(8
+    // A^2).
     for (std::size_t k = 0; k < 3; ++k)
       triangles.C[k][l].set(lane, -e[k].norm() * e[(k + 1) % 3].dot(kappa * e[(k + 2) % 3]) / (4 * area));
   }
@@ -388,8 +388,8 @@ void MidEdgeBending<Hinges>::add_derivative(const Coordinates& x, const Coordina
   }
 }
 
-/// A triangle has 21 local coordinates: its corners (0 .. 8), the corners opposite to it across its edges (9
-/// .. 17) and phi of its edges (18 .. 20).
+/// A triangle has 21 local coordinates: its corners (0 to 8), the opposite corners of the three neighbouring
+/// triangles (9 to 17) and phi of its edges (18 to 20).
 template <class Hinges>
 struct MidEdgeBending<Hinges>::Stiffness {
   static constexpr int kCoordinates = 21;

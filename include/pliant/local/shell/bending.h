@@ -1,10 +1,10 @@
 // Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
 // 2006). Each edge has a normal at its middle, which can rotate about the edge. Its rotation phi from the
-// mean of the normals of both triangles is an own coordinate of the energy (nodal_energy.h). Against the two
-// triangles the normal has rotated by
+// mean of the normals of both triangles is an own coordinate of the energy (nodal_energy.h). Relative to the
+// two triangles the normal has rotated since rest by
 //   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),
-// with dtheta the change of the angle between the triangles since rest (hinge.h). The curvature of a triangle
-// is constant,
+// with dtheta the change of the angle between the triangles (hinge.h). The curvature of a triangle is
+// constant,
 //   kappa = 1/A sum_k alpha_k |e_k| n_k n_k^T,   n_k normal to edge k in the plane of the triangle, outwards,
 // and the energy is
 //   E = 1/2 sum over triangles of alpha Q alpha,

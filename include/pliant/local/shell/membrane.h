@@ -1,7 +1,8 @@
 // Membranes for large deformation: constant-strain triangles, with the energy of the whole map from rest to
-// the current positions. Tensions tau_k = dW/dq_k act along the current edges e_k, q_k = (|e_k|^2 -
-// |e_k|_rest^2)/2 (edge_strain.h). Derivatives are exact:
-//   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k,   dq_k = e_k . de_k.
+// the current positions. Tensions tau_k = dW/dq_k act along the current edges e_k (edge_strain.h):
+//   q_k = (|e_k|^2 - |e_k|_rest^2)/2,   dq_k = e_k . de_k,
+//   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k.
+// Derivatives are exact.
 #pragma once
 
 #include <array>

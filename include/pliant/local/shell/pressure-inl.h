@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -113,8 +114,8 @@ PLIANT_INLINE void Pressure::add_derivative(const Coordinates& x, const Coordina
   });
 }
 
-/// d2V/dx2 couples only the ends a and b of an edge: d2V/(dx_a dx_b) = -[c - d]x/6 with the opposite nodes c
-/// and d.
+/// d2V/dx2 couples only the ends a and b of an edge: d2V/(dx_a dx_b) = -[x_c - x_d]x/6, with the opposite
+/// nodes c and d.
 template <class Visit>
 void Pressure::each_element(const Coordinates& x, Visit&& visit) const {
   const double slope = law(volume(x)).slope;
@@ -161,11 +162,12 @@ PLIANT_INLINE Pressure::Law ConstantPressure::law(double V) const {
 }
 
 PLIANT_INLINE GasPressure::GasPressure(const ShellMesh& mesh, const Gas& gas) : Pressure(mesh), gas_(gas) {
-  if (!(gas.p0 >= 0) || !(gas.V0 > 0) || !(gas.gamma >= 1) || !std::isfinite(gas.p_ext))
-    throw std::invalid_argument(
-        "a gas has p0 = " + std::to_string(gas.p0) + " Pa, V0 = " + std::to_string(gas.V0) +
-        " m^3, gamma = " + std::to_string(gas.gamma) + ", p_ext = " + std::to_string(gas.p_ext) +
-        " Pa; it needs p0 >= 0, V0 > 0, gamma >= 1 and a finite p_ext");
+  if (!(gas.p0 >= 0) || !(gas.V0 > 0) || !(gas.gamma >= 1) || !std::isfinite(gas.p_ext)) {
+    std::ostringstream text;
+    text << "a gas has p0 = " << gas.p0 << " Pa, V0 = " << gas.V0 << " m^3, gamma = " << gas.gamma
+         << " and p_ext = " << gas.p_ext << " Pa; it needs p0 >= 0, V0 > 0, gamma >= 1 and a finite p_ext";
+    throw std::invalid_argument(text.str());
+  }
 }
 
 PLIANT_INLINE Pressure::Law GasPressure::law(double V) const {

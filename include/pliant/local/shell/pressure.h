@@ -1,7 +1,9 @@
 // Pressure in a closed shell: an energy E(V) of the enclosed volume V, m^3,
-//   V = 1/6 sum over triangles of x_a . (x_b x x_c),   dE/dx = E' dV/dx,   K = E' d2V/dx2 + E''
-//   (dV/dx)(dV/dx)^T. constant pressure p   E = -p V gas                   E = p0 V0/(gamma - 1)
-//   (V0/V)^(gamma - 1) + p_ext V   (adiabatic; gamma = 1: isothermal)
+//   V = 1/6 sum over triangles of x_a . (x_b x x_c),
+//   dE/dx = E' dV/dx,   K = E' d2V/dx2 + E'' (dV/dx)(dV/dx)^T.
+//   constant pressure p   E = -p V
+//   gas                   E = p0 V0/(gamma - 1) (V0/V)^(gamma - 1) + p_ext V   (adiabatic)
+//                         E = p0 V0 log(V0/V) + p_ext V                        (isothermal, gamma = 1)
 // The gas has pressure p0 at volume V0; p_ext is the pressure outside.
 #pragma once
 
@@ -50,8 +52,8 @@ class Pressure : public NodalEnergy {
   void each_element(const Coordinates& x, Visit&& visit) const;
 
   ElementBatches<3> batches_;
-  Eigen::Matrix4Xi
-      edges_;  ///< nodes a and b of each edge, then opposite nodes c on its left and d on its right
+  /// Nodes a and b of each edge, then the opposite nodes c on its left and d on its right.
+  Eigen::Matrix4Xi edges_;
 };
 
 class ConstantPressure final : public Pressure {

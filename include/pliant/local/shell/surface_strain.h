@@ -1,6 +1,7 @@
-// Stretch of a triangulated surface for pictures: the largest principal value of Green's strain G = (F^T F -
-// 1)/2 from rest to the current positions. A value of 0.1 is an elongation of 9.5 %. A vertex has the mean of
-// its triangles, weighted by their areas at rest.
+// Stretch of a triangulated surface for pictures: the largest principal value of Green's strain
+//   G = (F^T F - 1)/2
+// from rest to the current positions. A value of 0.1 is an elongation of 9.5 %. A vertex has the mean of its
+// triangles, weighted by their areas at rest.
 #pragma once
 
 #include <vector>

@@ -43,7 +43,7 @@ class AveragedLinearSolid final : public NodalEnergy {
     return gradients_.data() + static_cast<std::ptrdiff_t>(pack) * 3 * N;
   }
 
-  SolidEnergy<Element, LinearLaw> full_, shear_;  // without averages; with lambda = 0
+  SolidEnergy<Element, LinearLaw> full_, shear_;  // full_: without averages; shear_: lambda = 0
   ElementCorners<N> corners_;
   std::vector<Pack> gradients_;  // [pack][corner][direction]: int of dN_a/dX_r, m^2
   std::vector<double> volume_;   // of each patch, m^3

@@ -101,7 +101,7 @@ ElementCorners<N>::ElementCorners(const Eigen::MatrixXi& elements, int n_nodes)
     : n_nodes_(n_nodes), n_elements_(static_cast<int>(elements.cols())) {
   if (elements.rows() != N)
     throw std::invalid_argument("elements have " + std::to_string(elements.rows()) +
-                                " nodes; this energy needs " + std::to_string(N));
+                                " nodes; this energy needs elements with " + std::to_string(N) + " nodes");
   if (n_elements_ > 0 && (elements.minCoeff() < 0 || elements.maxCoeff() >= n_nodes))
     throw std::invalid_argument("elements refer to nodes " + std::to_string(elements.minCoeff()) + " to " +
                                 std::to_string(elements.maxCoeff()) + "; the mesh has nodes 0 to " +

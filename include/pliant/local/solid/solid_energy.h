@@ -56,7 +56,7 @@ class SolidEnergy final : public NodalEnergy {
     Mat3<Pack> inverse;  ///< (dX/dxi)^-1, 1/m
     Pack weight;         ///< weight of the rule times det dX/dxi, m^3; 0 in lanes without an element
   };
-  /// Derivatives of the stress and of the gradient with respect to the gradient and to nodal vectors.
+  /// dP/dG and dG/dx_a; see the functions below.
   using StressDerivative = Eigen::Matrix<double, 9, 9>;
   using GradientMatrix = Eigen::Matrix<double, 9, 3 * N>;
   /// Subtracts from f the nodal forces of the stress P = stress(G) of all elements. G: gradients of the given
@@ -64,7 +64,7 @@ class SolidEnergy final : public NodalEnergy {
   template <int Fields, class Stress>
   void subtract_forces(const std::array<const double*, Fields>& fields, VecX<double>& f, Buffer& buffer,
                        ThreadPool* pool, Stress&& stress) const;
-  /// Returns dG/dx_a at a point of an element: row 3 r + c is G_rc, column 3 a + i is direction i of corner
+  /// Returns dG/dx_a at a point of an element. Row 3 r + c is G_rc, column 3 a + i is direction i of corner
   /// a.
   static GradientMatrix gradient_matrix(const TetrahedronPoint& at, const Mat3<double>& inverse);
   /// Returns dP/dG of the law at G, components in the order of gradient_matrix.
