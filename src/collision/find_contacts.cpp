@@ -363,7 +363,7 @@ void ContactFinder::find_on_pair(int a, int b, const ContactRule& rule, double m
 /// Finds the pairs of parts whose boxes are at most max_gap apart and of which at least one part is marked.
 /// The pairs of enlarged boxes are kept from call to call and are valid while all boxes are inside the
 /// enlarged ones.
-void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* of) const {
+void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* marked) const {
   Scratch& s = *scratch_;
   s.boxes.clear();
   for (const int i : smooth_parts_) s.boxes.push_back(world_box(i));
@@ -387,20 +387,20 @@ void ContactFinder::find_near_pairs(double max_gap, const std::vector<bool>* of)
   s.pairs.clear();
   for (const auto& [one, other] : s.wide_pairs) {
     const int i = smooth_parts_[at(one)], j = smooth_parts_[at(other)];
-    if (of != nullptr && !(*of)[at(i)] && !(*of)[at(j)]) continue;
+    if (marked != nullptr && !(*marked)[at(i)] && !(*marked)[at(j)]) continue;
     if (s.boxes[at(one)].squaredExteriorDistance(s.boxes[at(other)]) <= max_gap * max_gap)
       s.pairs.emplace_back(i, j);
   }
 }
 
 std::vector<Contact> ContactFinder::find(const State& state, double t, double max_gap,
-                                         const std::vector<bool>* of) const {
+                                         const std::vector<bool>* marked) const {
   Scratch& s = *scratch_;
   place_planes(t);
   std::vector<Contact> found;
   for (const int i : smooth_parts_) {
     place(state, t, i);
-    if (of != nullptr && !(*of)[at(i)]) continue;
+    if (marked != nullptr && !(*marked)[at(i)]) continue;
     const bool asleep = sleeps(state, i);
     for (std::size_t k = 0; k < s.planes.size(); ++k) {
       const bool at_rest = asleep && model_->body().contact.planes[k].point.is_constant();
@@ -411,7 +411,7 @@ std::vector<Contact> ContactFinder::find(const State& state, double t, double ma
       if (on_obstacles_[at(i) * obstacles_.size() + k].touch) find_on_obstacle(i, k, t, max_gap, found);
   }
   if (!has_pairs_) return found;
-  find_near_pairs(max_gap, of);
+  find_near_pairs(max_gap, marked);
   for (const auto& [i, j] : s.pairs) {
     if (model_->lies_still(state, i) && model_->lies_still(state, j)) continue;
     const ContactRule rule = rules_.of_parts(i, j);
@@ -427,21 +427,21 @@ bool ContactFinder::precedes(const Contact& one, const Contact& other) {
   return place(one) < place(other);
 }
 
-double ContactFinder::least_gap(const State& state, double t, const Contact& of, double max_gap) const {
+double ContactFinder::least_gap(const State& state, double t, const Contact& contact, double max_gap) const {
   std::vector<Contact> found;
-  place(state, t, of.a.part);
-  if (of.obstacle >= 0) {
-    max_gap = std::min(max_gap, kMaxReportedGap * model_->parts()[at(of.a.part)].part->size());
-    find_on_obstacle(of.a.part, at(of.obstacle), t, max_gap, found);
-  } else if (of.b.part < 0) {
+  place(state, t, contact.a.part);
+  if (contact.obstacle >= 0) {
+    max_gap = std::min(max_gap, kMaxReportedGap * model_->parts()[at(contact.a.part)].part->size());
+    find_on_obstacle(contact.a.part, at(contact.obstacle), t, max_gap, found);
+  } else if (contact.b.part < 0) {
     place_planes(t);
-    find_on_plane(of.a.part, at(of.plane), max_gap, found);
+    find_on_plane(contact.a.part, at(contact.plane), max_gap, found);
   } else {
-    place(state, t, of.b.part);
-    find_on_pair(of.a.part, of.b.part, {}, max_gap, found);
+    place(state, t, contact.b.part);
+    find_on_pair(contact.a.part, contact.b.part, {}, max_gap, found);
   }
   double least = max_gap;
-  for (const Contact& contact : found) least = std::min(least, contact.gap);
+  for (const Contact& one : found) least = std::min(least, one.gap);
   return least;
 }
 

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Whether the shape is that at rest at all times.
+/// Whether the shape never changes.
 bool ContactFinder::has_fixed_shape(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
 }

@@ -53,11 +53,11 @@ struct ContactFinder::Scratch {
   std::vector<Eigen::AlignedBox3d> boxes;
   BoxTree tree;
   std::vector<std::pair<int, int>> pairs;
-  std::vector<Eigen::AlignedBox3d>
-      wide;  ///< enlarged boxes of the smooth parts; pairs stay valid inside them
+  /// Enlarged boxes of the smooth parts, and their pairs, which are valid while all parts stay inside. The
+  /// boxes are larger by wide_reach (for the gap searched) and by at least wide_margin, m.
+  std::vector<Eigen::AlignedBox3d> wide;
   std::vector<std::pair<int, int>> wide_pairs;
-  double wide_reach = 0,
-         wide_margin = 0;  ///< enlargement for the gap searched, and the least margin beyond, m
+  double wide_reach = 0, wide_margin = 0;
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
   std::vector<Material<double>> material{1};

@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// Removes those contacts from number `first` on that lie between others with an equal normal and are not the
+/// Removes those contacts from number `first` on that are between others with an equal normal and are not the
 /// deepest. Non-penetration at the others implies it at these. All contacts from `first` on must belong to
 /// one pair. size: of the smaller part, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);

@@ -26,9 +26,9 @@ struct BoxTouch {
 /// Returns the eight corners of a box with these half sizes, in its own frame.
 std::array<Vec3<double>, 8> box_corners(const Vec3<double>& half);
 
-/// Appends the contacts of boxes a and b whose gap is at most max_gap (m): one point for two crossing edges
-/// or for corners beside each other, up to eight points for a face. The gap of separated boxes is the
-/// distance between the two parallel planes that separate them along the chosen axis.
+/// Appends the contacts of boxes a and b whose gap is at most max_gap (m): one point for two crossing edges,
+/// up to eight points for a face, or the nearest corner if the faces do not overlap. The gap of separated
+/// boxes is the distance between the two parallel planes that separate them along the chosen axis.
 void touch_boxes(const PlacedBox& a, const PlacedBox& b, double max_gap, std::vector<BoxTouch>& found);
 
 /// Returns the point of a ball (centre and radius in m, world) that is nearest to a box, or deepest inside

@@ -25,11 +25,11 @@ class ContactFinder {
   /// Meshes of the obstacles, in the order of the settings; references stay valid as long as this object.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). of: if given, only
-  /// contacts of the parts that it marks. Order: part by part, first planes and then obstacles; after these
+  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). marked: if given, only
+  /// contacts of marked parts. Order: part by part, first planes and then obstacles; after these
   /// all pairs of parts.
   std::vector<Contact> find(const State& state, double t, double max_gap,
-                            const std::vector<bool>* of = nullptr) const;
+                            const std::vector<bool>* marked = nullptr) const;
   /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
   /// Velocity of side a relative to side b at a contact, m/s, world.
@@ -62,7 +62,7 @@ class ContactFinder {
                                  const Neighbourhood& foreseen) const;
   /// Returns the least gap of the part of a contact over its other part, plane or obstacle, m; at most
   /// max_gap.
-  double least_gap(const State& state, double t, const Contact& of, double max_gap) const;
+  double least_gap(const State& state, double t, const Contact& contact, double max_gap) const;
 
  private:
   struct Placed;
@@ -79,7 +79,7 @@ class ContactFinder {
   Eigen::AlignedBox3d body_box(int part) const;
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;
-  void find_near_pairs(double max_gap, const std::vector<bool>* of) const;
+  void find_near_pairs(double max_gap, const std::vector<bool>* marked) const;
   void find_on_plane(int a, std::size_t plane, double max_gap, std::vector<Contact>& found) const;
   void find_on_obstacle(int a, std::size_t obstacle, double t, double max_gap,
                         std::vector<Contact>& found) const;

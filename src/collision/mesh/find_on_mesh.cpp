@@ -213,8 +213,8 @@ class Search {
     const double lowest = 0.5 * (low + high);
     // The slope along the edge changes its sign at the minimum. At a kink the weighted mean of the one-sided
     // gradients has no slope along the edge.
-    const double beside = kSideStep * size_;
-    const Vec3<double> before = slope(x(lowest - beside)), after = slope(x(lowest + beside));
+    const double side_step = kSideStep * size_;
+    const Vec3<double> before = slope(x(lowest - side_step)), after = slope(x(lowest + side_step));
     const double down = before.dot(e), up = after.dot(e);
     Vec3<double> gradient = slope(x(lowest));
     if (down < 0 && up > 0) gradient = (up * before - down * after) / (up - down);

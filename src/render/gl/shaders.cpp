@@ -68,7 +68,7 @@ const char* const kContactFragment = R"(
 uniform sampler2D heights;
 out vec4 result;
 float inside(float r, float h2) { return h2 / (r * r + h2); }
-float taken(vec2 at, float r0, float r1) {
+float blocked(vec2 at, float r0, float r1) {
   float depth = textureLod(heights, at, 0.0).r;
   float h = depth * fade.w + 0.25 * fade.z;
   return depth < 1.0 ? inside(r0, h * h) - inside(r1, h * h) : 0.0;
@@ -76,14 +76,14 @@ float taken(vec2 at, float r0, float r1) {
 void main() {
   vec2 size = vec2(textureSize(heights, 0));
   vec2 at = gl_FragCoord.xy / size;
-  float sum = taken(at, 0.0, fade.z);
+  float sum = blocked(at, 0.0, fade.z);
   float inner = 1.0;
   vec2 turn = vec2(1.0, 0.0);
   for (int ring = 0; ring < 6; ++ring) {
     float outer = inner * 1.85;
     float middle = sqrt(inner * outer);
     for (int sector = 0; sector < 12; ++sector) {
-      sum += taken(at + turn * middle / size, inner * fade.z, outer * fade.z) / 12.0;
+      sum += blocked(at + turn * middle / size, inner * fade.z, outer * fade.z) / 12.0;
       turn = vec2(0.8660254 * turn.x - 0.5 * turn.y, 0.5 * turn.x + 0.8660254 * turn.y);
     }
     turn = vec2(0.95106 * turn.x - 0.30902 * turn.y, 0.30902 * turn.x + 0.95106 * turn.y);
