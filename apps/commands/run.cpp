@@ -193,6 +193,41 @@ std::vector<std::string> integrator_names() {
   return names;
 }
 
+// Declares the options of time integration.
+void add_time_options(CLI::App& command, RunCommand& options) {
+  command.add_option("--end", options.end, "End time of the run (s)")
+      ->check(number_from_zero())
+      ->type_name("T");
+  CLI::Option* step = command.add_option("--step", options.step, "Fixed time step (s)")
+                          ->check(positive_number())
+                          ->type_name("H");
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "Error tolerance of a step; the step length is then adaptive")
+      ->check(positive_number())
+      ->excludes(step)
+      ->type_name("E");
+  command
+      .add_option("--integrator", options.integrator,
+                  "Method of time integration (see pliant list integrators)")
+      ->check(CLI::IsMember(integrator_names()))
+      ->option_text("NAME");
+  command.add_option("--fps", options.frame_rate, "Recorded states and frames per second of simulated time")
+      ->check(positive_number())
+      ->type_name("N");
+}
+
+// Declares the options of meshes and pictures.
+void add_output_options(CLI::App& command, RunCommand& options) {
+  command.add_flag("--obj", options.obj, "Write the surfaces of every frame as OBJ files");
+  command.add_flag("--png", options.png, "Draw a picture of every frame");
+  command.add_option("--size", options.size, "Size of the pictures in pixels")
+      ->check(picture_size())
+      ->type_name("WxH");
+  add_color_options(command, options.colors);
+  add_graphics_option(command, options.backend);
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line) {
@@ -201,33 +236,8 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   CLI::App* command = app.add_subcommand("run", "Simulate a scene and record its motion");
   add_scene_options(*command, options->scene);
   command->add_option("-o,--out", options->folder, "Folder for all output [out/SCENE]")->type_name("DIR");
-  command->add_option("--end", options->end, "End time of the run (s)")
-      ->check(number_from_zero())
-      ->type_name("T");
-  CLI::Option* step = command->add_option("--step", options->step, "Fixed time step (s)")
-                          ->check(positive_number())
-                          ->type_name("H");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "Error tolerance of a step; the step length is then adaptive")
-      ->check(positive_number())
-      ->excludes(step)
-      ->type_name("E");
-  command
-      ->add_option("--integrator", options->integrator,
-                   "Method of time integration (see pliant list integrators)")
-      ->check(CLI::IsMember(integrator_names()))
-      ->option_text("NAME");
-  command->add_option("--fps", options->frame_rate, "Recorded states and frames per second of simulated time")
-      ->check(positive_number())
-      ->type_name("N");
-  command->add_flag("--obj", options->obj, "Write the surfaces of every frame as OBJ files");
-  command->add_flag("--png", options->png, "Draw a picture of every frame");
-  command->add_option("--size", options->size, "Size of the pictures in pixels")
-      ->check(picture_size())
-      ->type_name("WxH");
-  add_color_options(*command, options->colors);
-  add_graphics_option(*command, options->backend);
+  add_time_options(*command, *options);
+  add_output_options(*command, *options);
   command
       ->add_option("--threads", options->threads,
                    "Number of threads [as many as are useful]; results do not depend on it")
