@@ -18,6 +18,9 @@ foreach(page IN LISTS pages)
   string(REGEX REPLACE "[][;]" "" text "${text}")
 
   string(REGEX MATCHALL "`[a-z0-9_-]+/[a-z0-9_/-]+\\.(h|cpp|cmake|json|md|py|sh|csv)`" names "${text}")
+  if(shown STREQUAL CHANGELOG.md)  # it names files of older versions
+    set(names "")
+  endif()
   foreach(name IN LISTS names)
     string(REPLACE "`" "" name "${name}")
     if(NOT EXISTS ${SOURCE}/${name} AND NOT EXISTS ${folder}/${name} AND NOT EXISTS ${SOURCE}/include/pliant/${name})
