@@ -1,4 +1,5 @@
-// The records of joints, one per type of body/joints/joint_registry.h, and of their stabilization (Baumgarte's equation, which replaces gamma in Eq. (14)).
+// The records of joints, one per type of body/joints/joint_registry.h, and of their stabilization
+// (Baumgarte's equation, which replaces gamma in Eq. (14)).
 #pragma once
 
 #include <pliant/scene/schema/schema.h>
