@@ -1,3 +1,5 @@
+// Parser of formulas (recursive descent) and evaluation of the postfix program on second-order Taylor
+// numbers.
 #include <pliant/math/formula.h>
 
 #include <array>
@@ -17,10 +19,10 @@ using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
 
 constexpr int kSmallStack = 16;
-/// A level of nesting holds at most a sum, a product, a base and two arguments that wait for the level below.
+/// Each level of nesting adds at most five numbers to the stack: a sum, a product, a base and two arguments.
 constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
 
-/// The sign of x just after t: of the first of its value, rate and second derivative that is not zero.
+/// Returns the sign of x just after t: the sign of its value, or of the first derivative that is not zero.
 double sign_ahead(const Taylor& x) {
   for (const double a : {x.v, x.d, x.dd}) {
     if (a != 0) return a > 0 ? 1 : -1;
@@ -28,6 +30,7 @@ double sign_ahead(const Taylor& x) {
   return 0;
 }
 
+/// Returns f(a) from the value and the first and second derivative of f at a.v.
 Taylor chain(const Taylor& a, double value, double slope, double curvature) {
   return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
 }
@@ -38,32 +41,35 @@ Taylor tan(const Taylor& a) {
   return chain(a, y, slope, 2 * y * slope);
 }
 
-/// a^n. A factor n or n - 1 that is zero ends the derivatives, whatever a is.
+/// Returns a^n. If the factor n or n - 1 of a derivative is zero, the derivative is 0 for every a.
 Taylor power(const Taylor& a, double n) {
   const double slope = n == 0 ? 0 : n * std::pow(a.v, n - 1);
   const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.v, n - 2);
   return chain(a, std::pow(a.v, n), slope, curvature);
 }
 
+/// Returns a^b for a variable exponent.
 Taylor power(const Taylor& a, const Taylor& b) {
   const Taylor exponent = b * log(a);
   const double value = std::pow(a.v, b.v);
   return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
 }
 
-/// The larger argument for `sign` 1, the smaller one for -1; not a number where either is none.
+/// Returns the larger argument for `sign` 1 and the smaller one for -1; NaN if one of them is NaN.
 Taylor choose(const Taylor& x, const Taylor& y, double sign) {
   const Taylor difference = x - y;
   if (std::isnan(difference.v)) return difference;
   return sign * sign_ahead(difference) >= 0 ? x : y;
 }
 
+/// Returns 0 for x < edge, 1 for x >= edge, NaN for NaN.
 Taylor step(const Taylor& x, double edge) {
   if (x.v < edge) return 0.0;
   return x.v >= edge ? Taylor(1.0) : x;
 }
 
-/// 0 up to a, 1 from b on, between them the quintic whose first and second derivatives vanish at both ends.
+/// Returns 0 up to a, 1 from b on, and between them the quintic whose first and second derivatives vanish at
+/// both ends. With a = b it is a step.
 Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
   if (a.v == b.v) return step(x, a.v);
   const Taylor s = (x - a) / (b - a);
@@ -72,6 +78,7 @@ Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
   return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
 }
 
+/// Returns the number of arguments of an operation.
 int arguments(Code code) {
   switch (code) {
     case Code::kNumber:
@@ -92,7 +99,8 @@ int arguments(Code code) {
   }
 }
 
-/// The result of one instruction on its arguments, x[0] the first.
+/// Returns the result of one instruction on its arguments, x[0] the first. One case per operation: the
+/// function is long but has no other content.
 Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x) {
   switch (instruction.code) {
     case Code::kNumber:
@@ -144,8 +152,8 @@ bool has_branches(Code code) {
          code == Code::kSmoothstep;
 }
 
-/// Which branch an instruction takes on its arguments. Those of a smoothstep join smoothly, unless it is a
-/// step.
+/// Returns which of its two branches an instruction uses on its arguments. The branches of a smoothstep join
+/// smoothly, so it has a branch only if it is a step (a = b).
 bool branch(const Instruction& instruction, const Taylor* x) {
   switch (instruction.code) {
     case Code::kAbs:
@@ -162,7 +170,8 @@ bool branch(const Instruction& instruction, const Taylor* x) {
   }
 }
 
-/// see(instruction, its arguments) is called for each instruction.
+/// Evaluates a program at t with a stack of Size numbers. Calls see(instruction, arguments) for each
+/// instruction.
 template <int Size, class See>
 Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
   const Taylor time(t, 1.0, 0.0);
@@ -177,6 +186,7 @@ Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
   return stack[0];
 }
 
+/// A function of the formula language.
 struct Entry {
   const char* name;
   Code code;
@@ -189,12 +199,13 @@ constexpr Entry kFunctions[] = {
     {"exp", Code::kExp, "exponential"},
     {"log", Code::kLog, "natural logarithm"},
     {"sqrt", Code::kSqrt, "square root"},
-    {"abs", Code::kAbs, "size without sign"},
+    {"abs", Code::kAbs, "absolute value"},
     {"min", Code::kMin, "the smaller of two"},
     {"max", Code::kMax, "the larger of two"},
     {"step", Code::kStep, "step(x): 0 for x < 0, else 1"},
     {"smoothstep", Code::kSmoothstep,
-     "smoothstep(a, b, x): 0 up to a, 1 from b on, between them a quintic with continuous second derivative"},
+     "smoothstep(a, b, x): 0 up to a, 1 from b on, and between them a quintic with continuous second "
+     "derivative"},
 };
 
 bool is_digit(char c) {
@@ -204,7 +215,7 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Recursive descent; each function reads its rule of the grammar and appends the program of it.
+/// Recursive descent: each function parses one rule of the grammar (formula.h) and appends its instructions.
 class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
@@ -220,7 +231,7 @@ class Parser {
   }
 
  private:
-  /// Counts nesting while one rule calls itself.
+  /// Counts the levels of nesting while it exists.
   struct Level {
     explicit Level(Parser* parser) : p(parser) {
       if (++p->depth_ > Formula::kMaxDepth + 1) {
@@ -372,7 +383,7 @@ class Parser {
     fault_after_operand();
   }
 
-  /// Appends an instruction; one whose arguments are all numbers is replaced by its result.
+  /// Appends an instruction. If all its arguments are numbers, appends the result in their place.
   void emit(const Instruction& instruction, std::size_t place) {
     const std::size_t n = static_cast<std::size_t>(arguments(instruction.code));
     bool constant = n > 0;
@@ -404,7 +415,7 @@ class Parser {
       ++at_;
     }
   }
-  /// The next character that is not a space; 0 at the end.
+  /// Returns the next character that is not a space; 0 at the end.
   char next() {
     skip_spaces();
     return at_ < text_.size() ? text_[at_] : '\0';
@@ -418,7 +429,7 @@ class Parser {
   std::string but_found() {
     next();
     if (at_ >= text_.size()) return ", but the formula ends here";
-    std::size_t length = 1;  // a character of UTF-8 is shown whole
+    std::size_t length = 1;  // bytes of one UTF-8 character
     while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80)
       ++length;
     return ", found \"" + std::string(text_.substr(at_, length)) + "\"";

@@ -1,4 +1,4 @@
-// Optimal string alignment distance by dynamic programming over three rows.
+// Edit distance: the optimal string alignment distance, by dynamic programming over three rows.
 #include <pliant/math/nearest_name.h>
 
 #include <algorithm>
@@ -33,15 +33,15 @@ int edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& names) {
-  int least = wrong.size() <= 2 ? 2 : 3;
+  int best = wrong.size() <= 2 ? 2 : 3;
   std::string nearest;
   for (const std::string& name : names) {
     const std::size_t difference =
         name.size() > wrong.size() ? name.size() - wrong.size() : wrong.size() - name.size();
-    if (difference >= static_cast<std::size_t>(least)) continue;
+    if (difference >= static_cast<std::size_t>(best)) continue;
     const int distance = edit_distance(wrong, name);
-    if (distance < least) {
-      least = distance;
+    if (distance < best) {
+      best = distance;
       nearest = name;
     }
   }

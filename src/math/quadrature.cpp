@@ -1,3 +1,4 @@
+// Gauss-Legendre rules and their graded variants for end-point singularities.
 #include <pliant/math/quadrature.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@ namespace {
 std::vector<QuadratureNode> make_gauss_rule(int n) {
   std::vector<QuadratureNode> rule(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) {
-    // Newton on the Legendre polynomial P_n from the Chebyshev-like first guess.
+    // Newton iteration for a root of the Legendre polynomial P_n, from the usual cosine estimate.
     double x = std::cos(kPi * (i + 0.75) / (n + 0.5)), slope = 1;
     for (int iteration = 0; iteration < 20; ++iteration) {
       double before = 1, p = x;
@@ -28,7 +29,7 @@ std::vector<QuadratureNode> make_gauss_rule(int n) {
       x -= dx;
       if (std::abs(dx) < 1e-16) break;
     }
-    // Ascending in [0, 1].
+    // Roots descend in [-1, 1]; x ascends in [0, 1].
     rule[static_cast<std::size_t>(i)] = {(1 - x) / 2, (1 + x) / 2, 1 / ((1 - x * x) * slope * slope)};
   }
   return rule;
@@ -37,7 +38,7 @@ std::vector<QuadratureNode> make_gauss_rule(int n) {
 }  // namespace
 
 std::vector<QuadratureNode> gauss_rule(int n) {
-  // Parts ask for the same few rules again and again while they are loaded.
+  // Cached: loading a scene needs a few rules many times.
   static std::mutex busy;
   static std::map<int, std::vector<QuadratureNode>> made;
   const std::lock_guard<std::mutex> lock(busy);

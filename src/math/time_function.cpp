@@ -1,7 +1,7 @@
-// Key frames: the cubic between keys i and i+1, at a = (t_{i+1} - t)/h and b = (t - t_i)/h, is
+// Key frames: with a = (t_{i+1} - t)/h and b = (t - t_i)/h, the cubic between the keys i and i+1 is
 //   y = a y_i + b y_{i+1} + ((a^3 - a) m_i + (b^3 - b) m_{i+1}) h^2/6,  m the second derivatives at the keys.
-// Equal slopes from both sides of each key give a tridiagonal system for m; an end is either natural, m = 0,
-// or has its rate given.
+// Equal slopes from both sides of each key give a tridiagonal system for m. An end is either natural (m = 0)
+// or has a given rate.
 #include <pliant/math/time_function.h>
 
 #include <algorithm>
@@ -16,13 +16,14 @@ namespace pliant {
 
 namespace {
 
-/// Rates that differ by less than this part are the same.
+/// Relative difference of two rates below which they count as equal.
 constexpr double kRounding = 1e-12;
 
 struct EndRates {
   double first, last;
 };
 
+/// A cubic spline, constant beyond its ends.
 class Spline final : public TimeFunction::Impl {
  public:
   Spline(std::vector<double> t, std::vector<double> y, const std::optional<EndRates>& rates)
@@ -53,6 +54,7 @@ class Spline final : public TimeFunction::Impl {
   }
 
  private:
+  /// Solves the tridiagonal system for the second derivatives at the keys.
   std::vector<double> second_derivatives(const std::optional<EndRates>& rates) const {
     const std::size_t n = t_.size();
     std::vector<double> diagonal(n, 1.0), above(n, 0.0), m(n, 0.0);
@@ -80,20 +82,22 @@ class Spline final : public TimeFunction::Impl {
   std::vector<double> t_, y_, m_, kinks_;
 };
 
+/// A formula. Its kinks are found by bisection for changes of its branches.
 class FormulaFunction final : public TimeFunction::Impl {
  public:
   explicit FormulaFunction(Formula formula) : formula_(std::move(formula)) {}
   Taylor2<double> at(double t) const override { return formula_.at(t); }
 
   Kink first_kink(double after, double until) const override {
-    constexpr int looks = 4, most = 64;  // changes of branches between two looks
+    constexpr int samples = 4,
+                  max_changes = 64;  // samples of the interval; branch changes between two samples
     if (!formula_.has_branches()) return {};
     double low = after;
     std::uint64_t branches = formula_.branches(low);
-    for (int i = 1; i <= looks; ++i) {
-      const double end = i == looks ? until : after + (until - after) * i / looks;
+    for (int i = 1; i <= samples; ++i) {
+      const double end = i == samples ? until : after + (until - after) * i / samples;
       const std::uint64_t at_end = formula_.branches(end);
-      for (int n = 0; n < most && branches != at_end; ++n) {
+      for (int n = 0; n < max_changes && branches != at_end; ++n) {
         double high = end;
         for (double middle = low + (high - low) / 2; middle > low && middle < high;
              middle = low + (high - low) / 2)
@@ -110,9 +114,9 @@ class FormulaFunction final : public TimeFunction::Impl {
   }
 
  private:
-  /// The kink between two times next to each other, if there is one.
+  /// Returns the kink between two adjacent floating-point times, if there is one.
   Kink between(double low, double high) const {
-    constexpr double smooth = 8;  // times what a smooth function changes by
+    constexpr double smooth = 8;  // tolerance, in units of the change of a smooth function
     const Taylor2<double> a = at(low), b = at(high);
     auto apart = [&](double x, double y, double slope) {
       return std::abs(y - x) > smooth * slope * (high - low) + kRounding * (std::abs(x) + std::abs(y));
@@ -125,6 +129,7 @@ class FormulaFunction final : public TimeFunction::Impl {
   Formula formula_;
 };
 
+/// Returns the spline through the keys; throws std::invalid_argument if they are not valid.
 TimeFunction spline(std::vector<double> t, std::vector<double> y, const std::optional<EndRates>& rates) {
   if (t.size() != y.size()) {
     throw std::invalid_argument("key frames: " + std::to_string(t.size()) + " times, but " +
