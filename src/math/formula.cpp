@@ -99,8 +99,7 @@ int arguments(Code code) {
   }
 }
 
-/// Returns the result of one instruction on its arguments, x[0] the first. One case per operation: the
-/// function is long but has no other content.
+/// Returns the result of one instruction on its arguments, x[0] the first.
 Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x) {
   switch (instruction.code) {
     case Code::kNumber:

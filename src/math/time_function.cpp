@@ -89,8 +89,8 @@ class FormulaFunction final : public TimeFunction::Impl {
   Taylor2<double> at(double t) const override { return formula_.at(t); }
 
   Kink first_kink(double after, double until) const override {
-    constexpr int samples = 4,
-                  max_changes = 64;  // samples of the interval; branch changes between two samples
+    constexpr int samples = 4;       // of the interval
+    constexpr int max_changes = 64;  // of branches between two samples
     if (!formula_.has_branches()) return {};
     double low = after;
     std::uint64_t branches = formula_.branches(low);

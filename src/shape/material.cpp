@@ -1,3 +1,4 @@
+// Conversions of material points: from angles and directions, with derivatives, into packs.
 #include <pliant/shape/material.h>
 
 #include <cmath>
@@ -5,11 +6,13 @@
 namespace pliant {
 
 namespace {
+/// Returns x, or 0 or +-1 if x is within rounding of them.
 double snap(double x) {
   return std::abs(x) < 4e-16 ? 0.0 : (std::abs(x) > 1 - 1e-16 ? std::copysign(1.0, x) : x);
 }
 
-/// sqrt(x^2 + y^2); std::hypot, which takes several times as long, where squares leave the range of numbers.
+/// Returns sqrt(x^2 + y^2). Calls std::hypot, which is several times slower, only if the squares could
+/// overflow or underflow.
 double length(double x, double y) {
   const double square = x * x + y * y;
   return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::hypot(x, y);
@@ -34,7 +37,8 @@ Material<Dual<3>> material_with_tangents(double u, double v, double w) {
 
 Material<Dual<3>> material_with_tangents(const Material<double>& m) {
   Material<Dual<3>> r;
-  // Along d/du, or along cos sin d/du next to a corner, where the derivatives of logarithms would overflow.
+  // The derivatives are along d/du. Next to a corner, where the derivatives of the logarithms would overflow,
+  // they are along cos u sin u d/du. The angle v is treated in this way too.
   auto turn = [](const Trig<double>& c, const Trig<double>& s, std::size_t slot, Trig<Dual<3>>& rc,
                  Trig<Dual<3>>& rs) {
     constexpr double small = 1e-30;

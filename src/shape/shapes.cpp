@@ -1,4 +1,5 @@
-// Labels, panels and sections of the shapes: what is done once, at load.
+// Material points, quadrature panels and sections of the shapes. These functions run once, when a scene is
+// loaded.
 #include <cmath>
 
 #include <pliant/shape/all_shapes.h>
@@ -9,11 +10,12 @@ namespace {
 
 constexpr double kQuarter = kPi / 4, kHalf = kPi / 2;
 
-/// Profile of shapes with rims at |u| = pi/4.
+/// Returns the profile panels of shapes with rims at |u| = pi/4.
 std::vector<Panel> rimmed_profile() {
   using K = Panel::Kind;
   return {{K::smooth, -kHalf, -kQuarter}, {K::smooth, -kQuarter, kQuarter}, {K::smooth, kQuarter, kHalf}};
 }
+/// Returns the ring panel of shapes with elliptic sections.
 std::vector<Panel> round_ring() {
   return {{Panel::Kind::periodic, 0, 2 * kPi}};
 }
@@ -116,7 +118,7 @@ Material<double> Cone::mesh_label(const Vec3<double>& g, const Vec<double, 4>& a
   const double ring = std::hypot(g[0], g[1]);
   const double tip = a[3] == -1 ? 1.0 : -1.0;
   if (std::abs(a[3]) != 1 || ring == 0 || tip * g[2] <= -ring) return material_towards(g);
-  // From the rim at -45 degrees to the tip at 90, by even steps along z.
+  // Map the latitudes from the rim (-45 degrees) to the tip (90 degrees) linearly to z.
   const double rise = (std::atan2(tip * g[2], ring) + kQuarter) / (3 * kQuarter);
   const double k = tip * (2 * rise - 1), size = std::hypot(1.0, k);
   return material_from(1 / size, k / size, g[0] / ring, g[1] / ring);
@@ -128,7 +130,7 @@ std::vector<Panel> Cone::ring(const Vec<double, 4>&, bool) {
   return round_ring();
 }
 Section Cone::section(double zeta, double gap, const Vec<double, 4>& a) {
-  // 1 + t zeta without cancellation at the tip.
+  // width = 1 + t zeta, without cancellation at the tip.
   const double end = zeta < 0 ? -1.0 : 1.0;
   const double width = (1 + a[3] * end) - a[3] * end * gap, width2 = width * width;
   return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
@@ -217,8 +219,8 @@ std::vector<Panel> Supertoroid::ring(const Vec<double, 6>& a, bool dynamic_expon
 Section Supertoroid::section(double zeta, double gap, const Vec<double, 6>& a) {
   const double q = superellipse_width(zeta, gap, a[4]), inner = a[3] - q, outer = a[3] + q;
   const Section unit = superellipse_section(a[5]);
-  // Between two similar superellipses: area outer^2 - inner^2 = 4 a4 q, mean square (outer^2 + inner^2) of
-  // the unit one.
+  // The section is between two similar superellipses. In units of the unit superellipse its area is outer^2 -
+  // inner^2 = 4 a4 q, and its mean square is outer^2 + inner^2.
   const double area = 4 * a[3] * q, spread = inner * inner + outer * outer;
   return {unit.area * a[0] * a[1] * area, unit.xx * a[0] * a[0] * spread, unit.yy * a[1] * a[1] * spread};
 }

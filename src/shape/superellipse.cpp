@@ -1,3 +1,4 @@
+// Moments, inverse map and quadrature panels of the superellipse.
 #include <pliant/shape/superellipse.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 namespace pliant {
 
 namespace {
+/// Returns the Beta function B(x, y).
 double beta(double x, double y) {
   return std::tgamma(x) * std::tgamma(y) / std::tgamma(x + y);
 }
@@ -20,7 +22,7 @@ Section superellipse_section(double eps) {
 std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, double eps) {
   const double ax = std::abs(x), ay = std::abs(y), big = std::max(ax, ay);
   if (big == 0) return {trig(1.0), trig(0.0)};
-  // In logarithms, so that nothing underflows for small exponents.
+  // Computed with logarithms, so that small exponents cause no underflow.
   const double lx = ax > 0 ? std::log(ax / big) / eps : kLogZero,
                ly = ay > 0 ? std::log(ay / big) / eps : kLogZero;
   const double log_size = 0.5 * std::log(std::exp(2 * lx) + std::exp(2 * ly));

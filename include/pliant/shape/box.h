@@ -1,6 +1,5 @@
-// Box of half sizes a1, a2, a3, a cylinder whose section is the unit square (X, Y) = (C_v, S_v) / max(|C_v|,
-// |S_v|):
-//   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
+// Box with half sizes a1, a2, a3: a cylinder whose section is the unit square,
+//   (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|),   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
 #pragma once
 
 #include <pliant/shape/shape.h>

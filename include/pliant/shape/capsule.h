@@ -1,7 +1,8 @@
-// Capsule: a cylinder of radius r and length l along z between two half balls. With |u| <= pi/4 the side,
-// beyond it the caps, whose polar angle is twice that of the material direction:
-//   side (r C_v, r S_v, (l/2) tan u),   cap (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 -
-//   C_u^2)))
+// Capsule: a cylinder of radius r and length l along z between two half balls. The side is at |u| <= pi/4,
+// the caps beyond. The polar angle on a cap is twice the polar angle of the material direction. The surface
+// points, of which e is the multiple w, are:
+//   side  (r C_v, r S_v, (l/2) tan u)
+//   cap   (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
 #pragma once
 
 #include <pliant/shape/shape.h>
@@ -41,8 +42,8 @@ struct Capsule {
     const T ring = math::sqrt_from_zero(ring2);
     const T side = ring / a[0];
     const T on_cap = z - half * side;
-    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0,
-    // smallest w > 0.
+    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0; w is
+    // the smallest positive root.
     const T s2 = ring2 + z * z;
     const T root2 = half * half * z * z + (a[0] * a[0] - half * half) * s2;
     const T off_centre = root2 - T(1e-300);

@@ -1,6 +1,6 @@
-// Cone and frustum: a cylinder whose section shrinks or grows along z by the factor 1 + t z / a3 (t = -1: a
-// cone with its tip at z = a3). Surface (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z) with k on the unit
-// cylinder; e = w times it.
+// Cone and frustum: a cylinder whose section scales along z by the factor 1 + t z / a3. With t = -1 it is a
+// cone with its tip at z = a3. With k on the surface of the unit cylinder,
+//   e = w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z)
 #pragma once
 
 #include <pliant/shape/cylinder.h>
@@ -39,7 +39,7 @@ struct Cone {
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
-  /// Of a cone with a tip the side is drawn over the end that has no face.
+  /// If the cone has a tip (|t| = 1), the grid of its missing end face covers the side too.
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);

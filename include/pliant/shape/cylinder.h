@@ -1,5 +1,5 @@
-// Elliptic cylinder: e = w diag(a1, a2, a3) k, k the point of the unit cylinder |(k_x, k_y)| <= 1, |k_z| <= 1
-// in the direction n = (C_u C_v, C_u S_v, S_u); the rim is at |u| = pi/4.
+// Elliptic cylinder: e = w diag(a1, a2, a3) k. The point k is on the surface of the unit cylinder,
+// |(k_x, k_y)| <= 1 and |k_z| <= 1, in the direction n = (C_u C_v, C_u S_v, S_u). The rim is at |u| = pi/4.
 #pragma once
 
 #include <pliant/shape/shape.h>
@@ -18,7 +18,7 @@ struct Cylinder {
   static constexpr MeshPattern mesh = MeshPattern::ball;
   static constexpr bool linear_lengths = true;
 
-  /// The point of the unit cylinder in the direction of m.
+  /// Returns the surface point k of the unit cylinder in the direction of m.
   template <class U>
   static Vec3<U> unit_point(const Material<U>& m) {
     const U reach = U(1) / math::max(math::abs(m.cu.x), math::abs(m.su.x));

@@ -39,7 +39,7 @@ struct Superellipsoid {
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   static std::vector<Panel> profile(const Vec<double, 5>& a, bool dynamic_exponents);
-  /// The exponent with which a ring runs round.
+  /// Returns the exponent of the superellipse that a ring (u, w) = const follows.
   static double ring_exponent(const Vec<double, 5>& a) { return a[4]; }
   static std::vector<Panel> ring(const Vec<double, 5>& a, bool dynamic_exponents);
   static Section section(double zeta, double gap, const Vec<double, 5>& a);

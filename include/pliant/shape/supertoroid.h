@@ -1,4 +1,4 @@
-// Supertoroid (Barr 1981): a superellipse carried round a superellipse; -pi <= u, v < pi, w = 0 on the core
+// Supertoroid (Barr 1981): a superellipse swept along a superellipse; -pi <= u, v < pi, w = 0 on the core
 // ring:
 //   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
 #pragma once
@@ -41,7 +41,7 @@ struct Supertoroid {
   static Material<double> label(const Vec3<double>& x, const Vec<double, 6>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 6>& a);
   static std::vector<Panel> profile(const Vec<double, 6>& a, bool dynamic_exponents);
-  /// The exponent with which a ring runs round.
+  /// Returns the exponent of the superellipse that a ring (u, w) = const follows.
   static double ring_exponent(const Vec<double, 6>& a) { return a[5]; }
   static std::vector<Panel> ring(const Vec<double, 6>& a, bool dynamic_exponents);
   static Section section(double zeta, double gap, const Vec<double, 6>& a);

@@ -68,17 +68,17 @@ inline T polynomial(const double (&c)[N], const T& x) {
 
 /// Returns e^x for every x.
 template <class T>
-inline T exp(const T& any) {
+inline T exp(const T& x) {
   constexpr double log2_e = 0x1.71547652b82fep+0, ln2_high = 0x1.62e42fefp-1, ln2_low = 0x1.473de6af278edp-34;
   // (e^r - 1 - r) / r^2
   constexpr double series[] = {1. / 2,       1. / 6,        1. / 24,        1. / 120,
                                1. / 720,     1. / 5040,     1. / 40320,     1. / 362880,
                                1. / 3628800, 1. / 39916800, 1. / 479001600, 1. / 6227020800};
-  const T least(-746), most(710);  // e^x is 0 below and infinite above; NaN passes through
-  const T above = where_positive(T(least - any), least, any);
-  const T x = where_positive(T(above - most), most, above);
-  const T n = nearest_integer(T(x * log2_e));
-  const T r = (x - n * ln2_high) - n * ln2_low;
+  const T lowest(-746), highest(710);  // e^x is 0 below and infinite above; NaN passes through
+  const T above = where_positive(T(lowest - x), lowest, x);
+  const T clamped = where_positive(T(above - highest), highest, above);
+  const T n = nearest_integer(T(clamped * log2_e));
+  const T r = (clamped - n * ln2_high) - n * ln2_low;
   const T e = r * r * polynomial(series, r) + r + 1.0;
   const T half = nearest_integer(T(n * 0.5));  // two factors, so that subnormal results are exact too
   return e * power_of_two(half) * power_of_two(T(n - half));
