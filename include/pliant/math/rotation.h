@@ -29,9 +29,9 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
 inline Eigen::Quaterniond quaternion(const Vec3<double>& turn) {
   const Vec3<double> half = 0.5 * turn;
   const double angle = half.norm();
-  const math::SinCos<double> of_angle = math::sin_cos(angle);
-  const Vec3<double> axis = sinc(angle, of_angle) * half;
-  return {of_angle.cos, axis[0], axis[1], axis[2]};
+  const math::SinCos<double> sin_cos_half = math::sin_cos(angle);
+  const Vec3<double> axis = sinc(angle, sin_cos_half) * half;
+  return {sin_cos_half.cos, axis[0], axis[1], axis[2]};
 }
 
 }  // namespace pliant
