@@ -1,3 +1,4 @@
+// Orders of elimination, fill-in and storage of block matrices.
 #include <pliant/solve/block_pattern.h>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ std::vector<int> minimum_degree_order(const std::vector<int>& first, const std::
 
 std::vector<int> cardinality_order(const std::vector<int>& first, const std::vector<int>& neighbour) {
   const std::size_t n = first.size() - 1;
-  // Nodes that are not numbered yet, in stacks by their numbered neighbours; what has moved on stays below.
+  // Stack s contains the nodes that have s numbered neighbours and no number yet. A node that gains a
+  // neighbour is pushed on the next stack; its old entry remains and is skipped later.
   std::vector<std::vector<int>> stack(1);
   std::vector<int> numbered(n, 0), order(n);
   for (std::size_t i = n; i-- > 0;) stack[0].push_back(static_cast<int>(i));
@@ -79,9 +81,9 @@ Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair
   auto size_at = [&](int place) -> long {
     return sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(place)])];
   };
-  // What is below the diagonal of a column goes on to the column of its first block.
+  // Fill-in: the places below the diagonal of a column are added to the column of its first block below.
   result.below.resize(n);
-  std::vector<long> products(n);  // of each column
+  std::vector<long> products(n);  // cost of each column
   for (std::size_t j = 0; j < n; ++j) {
     std::vector<int>& places = result.below[j];
     for (const int v : next[static_cast<std::size_t>(result.node_at[j])])
@@ -90,7 +92,7 @@ Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair
     std::sort(places.begin(), places.end());
     places.erase(std::unique(places.begin(), places.end()), places.end());
     const long size = size_at(static_cast<int>(j));
-    long rows = 0, squares = 0;  // of the blocks below
+    long rows = 0, squares = 0;  // sums over the blocks below
     for (const int i : places) {
       rows += size_at(i);
       squares += size_at(i) * size_at(i);
@@ -103,7 +105,7 @@ Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair
     parent.insert(parent.end(), places.begin() + 1, places.end());
   }
 
-  // Dense from where every column has all that follow below it.
+  // The dense matrix begins where each column has blocks in all later places.
   const auto nodes = static_cast<int>(n);
   int first_dense = nodes;
   long rows = 0;

@@ -1,3 +1,4 @@
+// The active-set method for one-sided rows.
 #include <pliant/solve/complementarity.h>
 
 #include <algorithm>
@@ -9,11 +10,12 @@ namespace pliant {
 
 namespace {
 
-/// Rounding of a row, in units of its terms; a row that is open by no more than this is met.
+/// Rounding of a row relative to the sum of its terms. A row violated by at most this is satisfied.
 constexpr double kRowRounding = 1e-14;
-/// A row that adds less than this part of its own diagonal to the tight ones depends on them.
+/// A row depends on the active rows if its Schur complement is at most this fraction of its diagonal entry.
 constexpr double kDependent = 1e-12;
 
+/// The impulses and the set of active rows (W lambda + b = 0).
 template <int Max>
 class ActiveSet {
   using Matrix = MatMax<double, Max>;
@@ -28,7 +30,7 @@ class ActiveSet {
         is_tight_(VecMax<int, Max>::Zero(b.size())),
         out_(VecMax<int, Max>::Zero(b.size())) {}
 
-  /// The row that is open most, in the metric of W; -1 when none is.
+  /// Returns the most violated row, in the metric of W; -1 if no row is violated.
   int most_open() const {
     int worst = -1;
     double most = 0;
@@ -49,10 +51,10 @@ class ActiveSet {
     return worst;
   }
 
-  /// Makes row j tight; other rows may come loose on the way. Returns the number of systems solved.
+  /// Makes row j active. Other rows can be released on the way. Returns the number of linear systems solved.
   int tighten(int j) {
     for (int solved = 1;; ++solved) {
-      // W_PP y = W_Pj: what a unit impulse of row j takes from the tight ones.
+      // W_PP y = W_Pj: the decrease of the impulses of the active rows P for a unit impulse of row j.
       Vector y(n_);
       for (int k = 0; k < n_; ++k) y[k] = W_(tight_[k], j);
       solve_tight(y);
@@ -61,7 +63,7 @@ class ActiveSet {
         pivot -= W_(j, tight_[k]) * y[k];
         slack += W_(j, tight_[k]) * lambda_[tight_[k]];
       }
-      // As far as the row closes, or as the first of the others comes loose.
+      // The step ends when row j is satisfied, or when the impulse of the first active row becomes zero.
       const bool dependent = !(pivot > kDependent * W_(j, j));
       double reach = dependent ? -1 : std::max(0.0, -slack / pivot);
       int loose = -1;
@@ -73,7 +75,7 @@ class ActiveSet {
           loose = k;
         }
       }
-      if (reach < 0) {  // it contradicts the tight rows: no impulse closes it
+      if (reach < 0) {  // the row contradicts the active rows: no impulse satisfies it
         out_[j] = 1;
         lambda_[j] = 0;
         return solved;
@@ -93,11 +95,13 @@ class ActiveSet {
   const Vector& lambda() const { return lambda_; }
 
  private:
+  /// Makes the active row number k inactive, with impulse 0.
   void release(int k) {
     lambda_[tight_[k]] = 0;
     is_tight_[tight_[k]] = 0;
     for (--n_; k < n_; ++k) tight_[k] = tight_[k + 1];
   }
+  /// Solves W_PP x = x for the active rows P.
   void solve_tight(Vector& x) const {
     if (n_ == 0) return;
     Matrix block(n_, n_);
@@ -106,7 +110,7 @@ class ActiveSet {
     const Eigen::LDLT<Matrix> factor(block);
     x = factor.solve(x);
   }
-  /// The impulses of the tight rows anew, so that rounding does not pile up over many changes.
+  /// Recomputes the impulses of the active rows, so that rounding does not accumulate over many changes.
   void refine() {
     Vector x(n_);
     for (int k = 0; k < n_; ++k) x[k] = -b_[tight_[k]];
@@ -117,7 +121,7 @@ class ActiveSet {
   const Matrix& W_;
   const Vector& b_;
   Vector lambda_;
-  int n_ = 0;  ///< tight rows, in the order in which they came
+  int n_ = 0;  ///< number of active rows; tight_ lists them in the order of activation
   VecMax<int, Max> tight_, is_tight_, out_;
 };
 

@@ -1,3 +1,5 @@
+// The solution of Coulomb's law at one contact: separation, sticking, or sliding with a scalar Newton
+// iteration.
 #include <pliant/solve/coulomb.h>
 
 #include <cmath>
@@ -9,11 +11,11 @@ namespace pliant {
 
 namespace {
 constexpr int kMostIterations = 200;
-/// Rates of sliding grow by no more than this at a time while nothing bounds them.
+/// Maximum growth factor of the rate of sliding in one iteration, while it has no upper bound.
 constexpr double kGrowth = 16;
-/// Rates of sliding that differ by less than this part are one.
+/// Relative difference of two rates of sliding below which the iteration ends.
 constexpr double kSameRate = 2 * std::numeric_limits<double>::epsilon();
-/// W that differs from a multiple of 1 by less than this part is one.
+/// Relative difference of W from a multiple of the identity below which it counts as one.
 constexpr double kEven = 1e-11;
 }  // namespace
 
@@ -33,7 +35,7 @@ CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
 
 Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
   if (!(b[0] < 0)) return Vec3<double>::Zero();
-  const double p_alone = -b[0] / W_n_;  // without friction
+  const double p_alone = -b[0] / W_n_;  // normal impulse without friction
   if (!(mu_ > 0)) return {p_alone, 0, 0};
   if (even_) {
     const Eigen::Vector2d stop = -b.tail<2>() / W_n_;
@@ -47,13 +49,14 @@ Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
 }
 
 Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
-  // It slides at u_t = -s p_t, s > 0, with u_n = 0: (A + s) p_t = -c, A the Schur complement of the normal.
+  // Sliding: u_t = -s p_t with s > 0, and u_n = 0. Then (A + s) p_t = -c, where A is the Schur complement of
+  // the normal and c = b_t + coupling p_alone.
   const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_alone);
   const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
   Eigen::Array2d t;  // p_t along the modes
   double p_n = 0;
-  // The root of mu p_n / |p_t| - 1, which rises nearly straight with s: |p_t| falls to 0 and p_n goes to
-  // p_alone > 0. By Newton's method, within bounds.
+  // Newton's method with bounds for the root of mu p_n / |p_t| - 1. The function is nearly linear and
+  // increases with s: |p_t| decreases to 0 and p_n tends to p_alone > 0.
   double low = 0, high = std::numeric_limits<double>::infinity(), s = 0;
   for (int i = 0; i < kMostIterations; ++i) {
     const Eigen::Array2d share = 1 / (stiffness_ + s);
@@ -62,7 +65,7 @@ Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
     const double size = std::sqrt(t.square().sum()), f = mu_ * p_n / size - 1;
     if (f == 0) break;
     (f < 0 ? low : high) = s;
-    const Eigen::Array2d t_s = -t * share;  // its change with s
+    const Eigen::Array2d t_s = -t * share;  // dt/ds
     const double slope = -mu_ * ((coupling * t_s).sum() + p_n * (t * t_s).sum() / (size * size)) / size;
     const bool bounded = std::isfinite(high);
     double next = s - f / slope;

@@ -1,3 +1,4 @@
+// Sweeps with extrapolation, and the order in which the methods are tried.
 #include "coulomb_cluster.h"
 
 #include <algorithm>
@@ -12,26 +13,27 @@ namespace pliant {
 
 namespace {
 
-/// Sweeps end when impulses change velocities by less than this, relative to what there is to stop; or by so
-/// many units of rounding of the velocities themselves.
+/// Tolerance of the sweeps: relative to the largest initial contact velocity, and in units of the rounding of
+/// the velocities themselves.
 constexpr double kExact = 1e-13, kUlps = 8;
-/// The same where points are pushed, many at a time and lightly coupled.
+/// Relative tolerance for clusters with points, which are many and weakly coupled.
 constexpr double kExactOfPoints = 1e-6;
-/// Rounds of so many sweeps, which are extrapolated from so many before them.
+/// Rounds of the search: number of sweeps, and number of earlier sweeps for the extrapolation.
 constexpr std::array<std::pair<int, int>, 4> kRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
 constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
-/// Extrapolation starts anew when it has made things worse by this factor.
+/// Growth of the residual, relative to the best one, that restarts the extrapolation.
 constexpr double kWorse = 4;
-/// Sweeps that depend on each other by more than this are not told apart.
+/// Relative regularisation of the extrapolation, for linearly dependent sweeps.
 constexpr double kSameSweep = 1e-14;
-/// kLeft of many contacts, or of points; and what contacts yield by, as a share of their W.
+/// kLeft for large clusters and for points; the compliance of the second search, as a fraction of W.
 constexpr double kLeftOfMany = 1e-2, kYielding = 1e-4;
-/// Impulses that stay bounded may leave this many times what others leave.
+/// The result of the search with compliant contacts, whose impulses are bounded, is preferred if its residual
+/// is less than this multiple of the other residual.
 constexpr double kBounded = 2;
-/// A search has stalled where a round leaves more than this share of what the one before left: contacts that
-/// hardly differ may leave what no impulse in reason takes off.
+/// A search stalls if a round leaves more than this fraction of the residual before it. Nearly equal contacts
+/// can leave a residual that only unreasonably large impulses would remove.
 constexpr double kStalledShare = 0.1;
-/// A search goes on from impulses that leave less than this share of what there is to stop.
+/// A warm start is used if its residual is less than this fraction of the largest initial contact velocity.
 constexpr double kNear = 0.1;
 
 }  // namespace
@@ -48,7 +50,7 @@ CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
       points_ = points_ || system_.mover_size(system_.seen_sides_[at(s)].mover) == 3;
 }
 
-/// Velocities that count as zero, and those that may be left.
+/// Computes scale_, exact_ and allowed_ for the present velocities, which are those without impulses.
 void CoulombCluster::set_scale() {
   double terms = 0;
   scale_ = 0;
@@ -66,7 +68,7 @@ void CoulombCluster::set_scale() {
   allowed_ = std::max(exact_, (points_ || size_ > kMany ? kLeftOfMany : kLeft) * scale_);
 }
 
-/// Contacts give way by this share of W.
+/// Sets the compliance of all contacts, as a fraction of the diagonal of W.
 void CoulombCluster::yield(double softness) {
   softness_ = softness;
   for (int i = 0; i < size_; ++i) {
@@ -76,13 +78,14 @@ void CoulombCluster::yield(double softness) {
   }
 }
 
+/// Returns the velocity u of contact i, including its compliance.
 Vec3<double> CoulombCluster::velocity(int i) const {
   Vec3<double> u = system_.velocity_at(contacts_[i], system_.seen_sides_, system_.x_);
   if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
   return u;
 }
 
-/// The impulse that its law asks for when u is the velocity with the impulse it has.
+/// Returns the impulse that satisfies the law of contact i alone. u: the velocity with its present impulse.
 Vec3<double> CoulombCluster::met(int i, const Vec3<double>& u) const {
   const Mat3<double>& W = point(i).W;
   if (point(i).rows == 1) return {std::max(0.0, p(i)[0] - u[0] / ((1 + softness_) * W(0, 0))), 0, 0};
@@ -91,7 +94,7 @@ Vec3<double> CoulombCluster::met(int i, const Vec3<double>& u) const {
   return point(i).law.push(b);
 }
 
-/// Changes an impulse and what it moves.
+/// Changes the impulse of contact i and the velocities of the movers.
 void CoulombCluster::push(int i, const Vec3<double>& dp) {
   p(i) += dp;
   for (int r = point(i).first_push; r < point(i).last_push; ++r) {
@@ -107,8 +110,8 @@ void CoulombCluster::push(int i, const Vec3<double>& dp) {
   }
 }
 
-/// Velocities that count as zero by the present impulses: these leave rounding of what they push by, which is
-/// great where something light holds something heavy.
+/// Returns exact_, or the rounding level of the present impulses if that is larger. It is large where a light
+/// part supports a heavy one.
 double CoulombCluster::exact_now() const {
   double most = 0;
   for (int i = 0; i < size_; ++i)
@@ -116,6 +119,8 @@ double CoulombCluster::exact_now() const {
   return std::max(exact_, std::min(allowed_, kUlps * std::numeric_limits<double>::epsilon() * most));
 }
 
+/// Solves the law of each contact once, in ascending or descending order. Returns the largest change of a
+/// velocity.
 double CoulombCluster::sweep(bool forward) {
   double change = 0;
   for (int k = 0; k < size_; ++k) {
@@ -128,10 +133,11 @@ double CoulombCluster::sweep(bool forward) {
   return change;
 }
 
+/// Returns the largest violation of the law, as a velocity.
 double CoulombCluster::residual() const {
   double worst = 0;
   for (int i = 0; i < size_; ++i) {
-    if (is_fixed(i)) {  // nothing can stop it
+    if (is_fixed(i)) {  // no impulse can change it
       worst = std::max(worst, -velocity(i)[0]);
       continue;
     }
@@ -141,12 +147,13 @@ double CoulombCluster::residual() const {
   return worst;
 }
 
+/// Copies the present impulses, 3 for each contact.
 void CoulombCluster::take(VecX<double>& impulses) const {
   impulses.resize(3 * size_);
   for (int i = 0; i < size_; ++i) impulses.segment<3>(3 * i) = p(i);
 }
 
-/// There are no impulses.
+/// Sets all impulses to zero, and the velocities to those without impulses.
 void CoulombCluster::reset() {
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
@@ -156,20 +163,21 @@ void CoulombCluster::reset() {
   for (int i = 0; i < size_; ++i) p(i).setZero();
 }
 
-/// Velocities are those by these impulses, anew.
+/// Sets the impulses, and recomputes the velocities from them.
 void CoulombCluster::set(const VecX<double>& impulses) {
   reset();
   for (int i = 0; i < size_; ++i) push(i, impulses.segment<3>(3 * i));
 }
 
-/// Sweeps there and back as a fixed point p = g(p), extrapolated from the last of them to where p - g(p)
-/// would be least if g were linear (Anderson 1965), which it is once contacts have settled on whether they
-/// slide. Leaves the best it has seen; returns whether that is exact.
+/// Runs pairs of sweeps (forward, backward) as a fixed-point iteration p = g(p) with Anderson acceleration
+/// (1965): the next p minimises |p - g(p)| over the last `history` pairs as if g were linear. g is linear
+/// once no contact changes between sticking, sliding and separation. Sets the best impulses found; returns
+/// whether they are exact.
 bool CoulombCluster::relax(int most, int history, int& sweeps) {
   const Eigen::Index n = 3 * size_;
   auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
   VecX<double>& best = scratch_.best;
-  weight.resize(n);  // impulses as velocities
+  weight.resize(n);  // scale of each impulse to a velocity
   for (int i = 0; i < size_; ++i)
     weight.segment<3>(3 * i).setConstant(std::max(point(i).W(0, 0), std::numeric_limits<double>::min()));
   if (dr.rows() < n || dr.cols() < history) {
@@ -182,7 +190,7 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   take(now);
   double best_left = std::numeric_limits<double>::infinity();
   int filled = 0, slot = 0;
-  bool follows = false;  // whether there is a sweep before, to compare with
+  bool follows = false;  // whether last and last_r contain the pair before
   for (int i = 0; i < most; i += 2) {
     sweep(true);
     const double change = sweep(false);
@@ -232,13 +240,14 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
   return false;
 }
 
-/// Whether searches may begin at impulses: not of one contact, which takes none, nor of points, which are
-/// many and lightly coupled.
+/// Returns whether the cluster uses warm starts: not for one contact, which is solved directly, and not for
+/// points, which are many and weakly coupled.
 bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !points_;
 }
 
-/// From impulses that may be near the solution: returns whether it found that, and begins at none otherwise.
+/// Tries Newton's method from a warm start. Returns whether it found the solution; otherwise clears all
+/// impulses.
 bool CoulombCluster::follow(const VecX<double>& begun) {
   set(begun);
   if (begun.allFinite() && residual() <= kNear * scale_ && newton(true)) return true;
@@ -246,17 +255,18 @@ bool CoulombCluster::follow(const VecX<double>& begun) {
   return false;
 }
 
-/// Returns whether it found the solution.
+/// Runs the rounds of sweeps and Newton's method. Returns whether it found the solution.
 bool CoulombCluster::search(int& sweeps) {
-  // Newton's method is fast near a solution, plain sweeps are slow but sure, extrapolated ones are between.
+  // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
+  // between.
   const bool many = size_ > kMany;
   const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
   const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
   double before = std::numeric_limits<double>::infinity();
-  VecX<double> kept;  // what the round before found
+  VecX<double> kept;  // the impulses of the round before
   for (const auto* round = first; round != last; ++round) {
     const auto& [most, history] = *round;
-    if (many && history == 0) continue;  // it would take too long, as Newton's method would with many points
+    if (many && history == 0) continue;  // too slow, like Newton's method for many points
     if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
     if (!(many && points_) && newton(false)) return true;
     const double left = residual();
@@ -270,8 +280,9 @@ bool CoulombCluster::search(int& sweeps) {
   return false;
 }
 
-/// What has no solution, as where joints and contacts contradict each other, or where none is found, is
-/// solved with contacts that yield, which has one; the better of the two stays.
+/// If the problem has no solution (joints and contacts contradict each other) or the search fails, the search
+/// is repeated with compliant contacts, for which a solution exists. The better one of the two results is
+/// used.
 void CoulombCluster::solve(CoulombResult& result) {
   yield(0);
   if (size_ == 1) {

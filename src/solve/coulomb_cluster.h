@@ -1,5 +1,5 @@
-// The search for the impulses of one cluster of contacts: sweeps, one contact at a time, that are
-// extrapolated, and Newton's method on all of them at once.
+// The search for the impulses of one cluster of contacts: sweeps that solve one contact at a time, with
+// extrapolation, and Newton's method for all contacts together.
 #pragma once
 
 #include <utility>
@@ -11,49 +11,50 @@
 
 namespace pliant {
 
-/// More contacts than this are many.
+/// A cluster with more contacts than this is large.
 inline constexpr int kMany = 100;
-/// What is left in a cluster, relative to what there is to stop, that calls for contacts that yield; of less
-/// a search that stalls is content.
+/// Relative residual of a cluster (in units of the largest initial contact velocity) that is acceptable for a
+/// search that stalls. Above it, the search is repeated with compliant contacts.
 inline constexpr double kLeft = 1e-6;
 
-/// The law of a contact, linear about its impulse: F + T du + D dp = 0.
+/// The law of a contact, linearised about its impulse: F + T du + D dp = 0.
 struct LinearContactLaw {
   int contact = 0;
-  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: where it is linear
+  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: the velocity at which the law is linearised
   Mat3<double> T = Mat3<double>::Zero(), D = T;
 };
 
-/// What Newton's method solves for each cluster, and where what contacts push and their sides are
-/// in it.
+/// The linear systems of Newton's method, and the position of the pushes and sides of the contacts in them.
 struct Coupling {
-  std::vector<MoverSystem> clusters;
-  std::vector<int> numbers;                ///< of movers in theirs; -1 of those that no contact pushes
-  std::vector<int> push_rows, side_rows;   ///< of each push and side; -1 of those of no mover there
-  std::vector<std::size_t> first_block;    ///< of each contact
-  std::vector<MoverSystem::Block> blocks;  ///< of each side in a mover and each push
+  std::vector<MoverSystem> clusters;       ///< the system of each cluster
+  std::vector<int> numbers;                ///< number of each mover in its system; -1 if no contact pushes it
+  std::vector<int> push_rows, side_rows;   ///< first row of each push and side; -1 for a mover without number
+  std::vector<std::size_t> first_block;    ///< first block of each contact
+  std::vector<MoverSystem::Block> blocks;  ///< the block of each pair of a side and a push of a contact
 };
 
-/// What a search works with, kept from cluster to cluster.
+/// Workspace of the search, reused for all clusters.
 struct CoulombScratch {
   struct Sweeps {
     VecX<double> now, next, last, r, last_r, weight;
     MatX<double> dr, dp;
   } sweeps;
   struct Linear {
-    std::vector<LinearContactLaw> open;
-    std::vector<std::pair<int, Vec3<double>>> drop;  ///< contacts and changes of their impulses
+    std::vector<LinearContactLaw> open;              ///< contacts with a normal impulse
+    std::vector<std::pair<int, Vec3<double>>> drop;  ///< other contacts, with the change that makes p zero
   } linear;
   Coupling coupling;
-  VecX<double> best;  ///< impulses
-  Eigen::Matrix3Xd TS;
+  VecX<double> best;    ///< the best impulses found so far
+  Eigen::Matrix3Xd TS;  ///< T times a side
 };
 
+/// One cluster of a contact problem.
 class CoulombCluster {
  public:
-  /// Of a number. system: its velocities are those by its impulses; enough: see there.
+  /// number: the cluster. The velocities of the system must be those with its impulses. enough: see
+  /// CoulombSystem::solve.
   CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
-  /// Leaves the impulses in the system.
+  /// Finds the impulses and stores them in the system; adds the residual and the cost to result.
   void solve(CoulombResult& result);
 
  private:
@@ -89,11 +90,11 @@ class CoulombCluster {
   int size_;
   double enough_;
   CoulombScratch& scratch_;
-  bool points_ = false;  // whether points are among the movers
-  double scale_ = 0;     // of the velocities that there are to stop
-  double exact_ = 0;     // velocities below this are rounding
-  double allowed_ = 0;   // and what may be left
-  double softness_ = 0;  // of all contacts, as a share of their W
+  bool points_ = false;  // whether the cluster contains points
+  double scale_ = 0;     // the largest contact velocity without impulses
+  double exact_ = 0;     // residuals up to this velocity are rounding
+  double allowed_ = 0;   // residuals up to this velocity are acceptable
+  double softness_ = 0;  // compliance of all contacts, as a fraction of the diagonal of W
 };
 
 }  // namespace pliant

@@ -1,11 +1,12 @@
-// Newton's method on Coulomb's law of all contacts of a cluster at once, in the form of Alart and Curnier
-// (1991),
+// Newton's method for Coulomb's law at all contacts of a cluster, in the form of Alart and Curnier (1991):
 //   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t.
-// Contacts couple what they push to few others each, often by more rows than that can move. Linear at each
-// contact that pushes,
-//   F + T du + D dp = 0,
-// and with du = S dx, dx = sum Y dp of all contacts what they push changes by
+// Linearised at each contact with a normal impulse,
+//   F + T du + D dp = 0.
+// With the sides S, du = S dx, and the pushes Y, dx = sum Y dp over all contacts, the velocities of the
+// movers change by
 //   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
+// The unknowns are velocities and not impulses: each mover is coupled to few others, often by more rows than
+// it has velocities.
 #include <algorithm>
 #include <limits>
 
@@ -16,27 +17,27 @@
 namespace pliant {
 
 namespace {
-/// Most steps (near: where it begins near the solution, and would be there by then).
+/// Maximum number of steps; the second value is for warm starts, which converge in fewer steps or not at all.
 constexpr int kMostNewton = 30, kMostNewtonNear = 10;
-/// Where many bodies are packed all around, sweeps take less time, and memory, than equations that have this
-/// many times the numbers of the bodies' own.
+/// Maximum size of the factor, in multiples of the diagonal blocks of the movers. Above it (many bodies
+/// packed closely on all sides), sweeps need less time and memory.
 constexpr double kMostFill = 10;
-/// What is found is made better while that is one step's work, to this share of what counts as exact (near:
-/// where it begins near the solution, so that what is left does not add up from step to step).
+/// The residual is reduced to this fraction of the exact level, because one more step does that. The second
+/// value is for warm starts, so that residuals do not accumulate from time step to time step.
 constexpr double kBeyondExact = 0.1, kBeyondExactNear = 0.01;
-/// Shares of each step in u, so that impulses that depend on each other stay near those before: less by a
-/// factor from step to step, from the first (near: where it begins near the solution) to the least, below
-/// which rounding outweighs the gain.
+/// Weight of the proximal term, which keeps linearly dependent impulses near their present values. It
+/// decreases by the factor in each step, from the first value (kProximalNear for warm starts) to the least,
+/// below which rounding outweighs the gain.
 constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kLeastProximal = 3e-8, kProximalNear = 1e-5;
 constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
-/// Where so many steps have led away, by this factor, the search goes on from the best with shares that are
-/// greater by that one.
+/// After this number of steps without progress, a residual above kFarOff times the best one resets the
+/// impulses to the best ones, and the proximal weight grows by kBack.
 constexpr int kMostFutile = 4;
 constexpr double kFarOff = 1e3, kBack = 10;
-/// Equations of a mover, of the velocities that contacts see of it, that are too many: sweeps take less time.
+/// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
 constexpr int kMostOfMover = 1000;
 
-/// Adds Y T S to a block of N velocities pushed and N at a side.
+/// Adds Y T S to a block: a push of N velocities and a side of N velocities.
 template <int N>
 void add_product(const double* Y, const Eigen::Matrix3Xd& TS, const MoverSystem::Block& block,
                  MoverSystem& movers) {
@@ -46,8 +47,8 @@ void add_product(const double* Y, const Eigen::Matrix3Xd& TS, const MoverSystem:
 
 }  // namespace
 
-/// The laws of all contacts, linear about the present impulses. What lifts off goes to zero, and so does
-/// friction without a force on it.
+/// Linearises the laws of all contacts about the present impulses. The impulse of a separating contact is set
+/// to zero, and so is the friction of a contact without normal impulse.
 void CoulombCluster::linearise(double proximal) {
   auto& [open, drop] = scratch_.linear;
   open.clear();
@@ -67,7 +68,7 @@ void CoulombCluster::linearise(double proximal) {
     law.D = proximal * Mat3<double>::Identity();
     law.F = r * u;
     const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
-    if (point(i).rows == 1 || radius == 0) {  // it pushes along its normal
+    if (point(i).rows == 1 || radius == 0) {  // a normal impulse without friction
       drop.push_back({i, {0, -p(i)[1], -p(i)[2]}});
       law.T.bottomRows<2>().setZero();
       law.F.tail<2>().setZero();
@@ -85,7 +86,8 @@ void CoulombCluster::linearise(double proximal) {
   }
 }
 
-/// The changes of the impulses of open contacts, by equations for what they push.
+/// Computes the changes dp of the impulses of the linearised contacts: assembles and solves the system for
+/// dx.
 void CoulombCluster::solve_linear(MoverSystem& movers) {
   const Coupling& coupling = scratch_.coupling;
   Eigen::Matrix3Xd& TS = scratch_.TS;
@@ -134,8 +136,8 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
   }
 }
 
-/// Contacts couple what each of them pushes with all at its sides that any contact pushes. That is found
-/// once for each cluster; nullptr where there is too much of it.
+/// Returns the linear system of the cluster, or nullptr if it would be too large. Its pattern is computed
+/// once: a contact couples each mover that it pushes with each mover at its sides.
 MoverSystem* CoulombCluster::couple_movers() {
   Coupling& coupling = scratch_.coupling;
   if (coupling.clusters.empty()) {
@@ -192,7 +194,8 @@ MoverSystem* CoulombCluster::couple_movers() {
   return &movers;
 }
 
-/// Leaves the best it has seen; returns whether that is exact. near: whether that is thought to be near.
+/// Runs Newton's method. Sets the best impulses found; returns whether they are exact. near: for a warm
+/// start.
 bool CoulombCluster::newton(bool near) {
   const double beyond = near ? kBeyondExactNear : kBeyondExact;
   double exact = exact_now();

@@ -1,3 +1,4 @@
+// Assembly of the contact problem, its clusters, and the velocities that the search uses.
 #include <pliant/solve/coulomb_system.h>
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 namespace pliant {
 
 namespace {
-/// W of a contact is made of full rank by this share of its largest entry.
+/// Fraction of its largest diagonal entry that is added to the diagonal of W of a contact, so that W has full
+/// rank.
 constexpr double kSoft = 1e-12;
 }  // namespace
 
@@ -124,7 +126,8 @@ void CoulombSystem::complete() {
   find_clusters();
 }
 
-/// Terms for the velocities that sides depend on; of a mover that no side is of all count.
+/// Selects the velocities that a side depends on, and copies the terms for them. All velocities of a mover
+/// without sides are selected.
 void CoulombSystem::keep_seen() {
   std::vector<char> is_seen(at(n_x()), 0);
   std::vector<char> has_side(movers_.size() - 1, 0);
@@ -135,7 +138,7 @@ void CoulombSystem::keep_seen() {
   for (int i = 0; i < movers(); ++i)
     if (!has_side[at(i)]) std::fill_n(is_seen.begin() + first(i), mover_size(i), 1);
   seen_.clear();
-  std::vector<int> before{0};  // how many of those before each velocity are seen
+  std::vector<int> before{0};  // number of selected velocities before each velocity
   for (int i = 0; i < n_x(); ++i) {
     if (is_seen[at(i)]) seen_.push_back(i);
     before.push_back(static_cast<int>(seen_.size()));
@@ -163,7 +166,7 @@ void CoulombSystem::keep_seen() {
   }
 }
 
-/// Contacts by what they push, those of one cluster after each other, in their order.
+/// Finds the clusters: the contacts are sorted by cluster; within a cluster their order does not change.
 void CoulombSystem::find_clusters() {
   DisjointSets tied(movers_.size() - 1);
   std::vector<int> mover(contacts_.size());
@@ -200,7 +203,7 @@ CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
   }
   for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)
     CoulombCluster(*this, i, enough, *scratch_).solve(result);
-  // Rounding has grown on the way: what is pushed moves as its impulses say.
+  // The search accumulates rounding errors in the velocities. Compute them from the final impulses.
   for (int k = 0; k < size(); ++k) add_change(k, 1, x);
   return result;
 }

@@ -1,11 +1,13 @@
+// The cost model that chooses between blocks and the augmented matrix.
 #include <pliant/solve/joint_solver.h>
 
 namespace pliant {
 
 namespace {
-/// ns for each multiplication, block by block and where the factor is dense, and each number of the factor.
+/// Cost of the blocks in ns: for a multiplication in a block and in the dense matrix, and for a number of the
+/// factor.
 constexpr double kBlockProduct = 0.6, kDenseProduct = 0.25, kBlockValue = 1;
-/// The same of a general sparse factor, and what it costs to begin.
+/// Cost of a general sparse factor in ns: for a multiplication, for a number of the factor, and a constant.
 constexpr double kSparseProduct = 1.2, kSparseValue = 12, kSparseStart = 4000;
 }  // namespace
 

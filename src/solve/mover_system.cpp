@@ -1,3 +1,4 @@
+// Pattern and elimination of the linear system of Newton's method.
 #include "mover_system.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace pliant {
 
 namespace {
 
+/// Inserts i into a sorted list unless the list contains it.
 void insert(std::vector<int>& sorted, int i) {
   const auto place = std::lower_bound(sorted.begin(), sorted.end(), i);
   if (place == sorted.end() || *place != i) sorted.insert(place, i);
@@ -30,7 +32,7 @@ void MoverSystem::couple(int i, int j) {
 }
 
 bool MoverSystem::order(double most) {
-  std::set<std::pair<std::size_t, int>> left;  // by the number of their neighbours
+  std::set<std::pair<std::size_t, int>> left;  // remaining movers, sorted by the number of their neighbours
   for (int i = 0; i < static_cast<int>(movers_.size()); ++i) left.insert({movers_[at(i)].near.size(), i});
   std::vector<int> merged;
   int row = 0;
@@ -92,7 +94,7 @@ void MoverSystem::clear() {
     Eigen::Map<MatX<double>>(numbers_.data() + mover.numbers, mover.size, mover.size).setIdentity();
 }
 
-/// x_k = b_k - sum of A_kj x_j over the neighbours that are left.
+/// Eliminates mover k: x_k = b_k - sum of A_kj x_j over its remaining neighbours.
 template <int N>
 void MoverSystem::eliminate(const Mover& k) {
   using Numbers = Eigen::Matrix<double, N, N>;

@@ -130,8 +130,7 @@ template <class Deform, class P, class S>
   }
   const DeformBy<Deform, T> deform_t(h_t, b_t);
   const DeformBy<Deform, D> deform_d(h_d, b_d);
-  // One pass computes the time derivatives and the partial derivatives, so that the compiler shares common
-  // terms.
+  // One pass for time and partial derivatives: the compiler shares their common terms.
   auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];
