@@ -34,20 +34,20 @@ std::vector<int> cardinality_order(const std::vector<int>& first, const std::vec
   for (std::size_t i = n; i-- > 0;) stack[0].push_back(static_cast<int>(i));
   for (std::size_t left = n; left > 0;) {
     const int node = stack.back().back();
-    const auto most = static_cast<int>(stack.size()) - 1;
+    const auto largest = static_cast<int>(stack.size()) - 1;
     stack.back().pop_back();
-    const bool current = numbered[static_cast<std::size_t>(node)] == most;
+    const bool current = numbered[static_cast<std::size_t>(node)] == largest;
     if (current) {
       order[--left] = node;
       numbered[static_cast<std::size_t>(node)] = -1;
       const auto begin = static_cast<std::size_t>(first[static_cast<std::size_t>(node)]),
                  end = static_cast<std::size_t>(first[static_cast<std::size_t>(node) + 1]);
       for (std::size_t k = begin; k < end; ++k) {
-        int& of = numbered[static_cast<std::size_t>(neighbour[k])];
-        if (of < 0) continue;
-        ++of;
-        if (stack.size() == static_cast<std::size_t>(of)) stack.emplace_back();
-        stack[static_cast<std::size_t>(of)].push_back(neighbour[k]);
+        int& count = numbered[static_cast<std::size_t>(neighbour[k])];
+        if (count < 0) continue;
+        ++count;
+        if (stack.size() == static_cast<std::size_t>(count)) stack.emplace_back();
+        stack[static_cast<std::size_t>(count)].push_back(neighbour[k]);
       }
     }
     while (stack.size() > 1 && stack.back().empty()) stack.pop_back();
@@ -55,20 +55,32 @@ std::vector<int> cardinality_order(const std::vector<int>& first, const std::vec
   return order;
 }
 
-Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
-                      NodeOrder order) {
-  const std::size_t n = sizes.size();
+namespace {
+
+/// Returns the neighbours of each of n nodes, in ascending order, from a list of edges that may repeat.
+std::vector<std::vector<int>> neighbours_of(std::size_t n, const std::vector<std::pair<int, int>>& edges) {
   std::vector<std::vector<int>> next(n);
   for (const auto& [u, v] : edges) {
     if (u == v) continue;
     next[static_cast<std::size_t>(u)].push_back(v);
     next[static_cast<std::size_t>(v)].push_back(u);
   }
+  for (std::vector<int>& list : next) {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+  return next;
+}
+
+}  // namespace
+
+Elimination eliminate(const std::vector<int>& sizes, const std::vector<std::pair<int, int>>& edges,
+                      NodeOrder order) {
+  const std::size_t n = sizes.size();
+  const std::vector<std::vector<int>> next = neighbours_of(n, edges);
   std::vector<int> first(1, 0), neighbour;
-  for (std::vector<int>& of : next) {
-    std::sort(of.begin(), of.end());
-    of.erase(std::unique(of.begin(), of.end()), of.end());
-    neighbour.insert(neighbour.end(), of.begin(), of.end());
+  for (const std::vector<int>& list : next) {
+    neighbour.insert(neighbour.end(), list.begin(), list.end());
     first.push_back(static_cast<int>(neighbour.size()));
   }
   Elimination result;

@@ -26,69 +26,69 @@ class ActiveSet {
       : W_(W),
         b_(b),
         lambda_(Vector::Zero(b.size())),
-        tight_(b.size()),
-        is_tight_(VecMax<int, Max>::Zero(b.size())),
-        out_(VecMax<int, Max>::Zero(b.size())) {}
+        active_(b.size()),
+        is_active_(VecMax<int, Max>::Zero(b.size())),
+        excluded_(VecMax<int, Max>::Zero(b.size())) {}
 
   /// Returns the most violated row, in the metric of W; -1 if no row is violated.
-  int most_open() const {
+  int most_violated() const {
     int worst = -1;
-    double most = 0;
+    double largest = 0;
     for (int i = 0; i < b_.size(); ++i) {
-      if (out_[i] != 0 || is_tight_[i] != 0 || !(W_(i, i) > 0)) continue;
+      if (excluded_[i] != 0 || is_active_[i] != 0 || !(W_(i, i) > 0)) continue;
       double slack = b_[i], terms = std::abs(b_[i]);
       for (int k = 0; k < n_; ++k) {
-        const double term = W_(i, tight_[k]) * lambda_[tight_[k]];
+        const double term = W_(i, active_[k]) * lambda_[active_[k]];
         slack += term;
         terms += std::abs(term);
       }
-      const double open = slack < -kRowRounding * terms ? slack * slack / W_(i, i) : 0;
-      if (open > most) {
+      const double violation = slack < -kRowRounding * terms ? slack * slack / W_(i, i) : 0;
+      if (violation > largest) {
         worst = i;
-        most = open;
+        largest = violation;
       }
     }
     return worst;
   }
 
   /// Makes row j active. Other rows can be released on the way. Returns the number of linear systems solved.
-  int tighten(int j) {
+  int activate(int j) {
     for (int solved = 1;; ++solved) {
       // W_PP y = W_Pj: the decrease of the impulses of the active rows P for a unit impulse of row j.
       Vector y(n_);
-      for (int k = 0; k < n_; ++k) y[k] = W_(tight_[k], j);
-      solve_tight(y);
+      for (int k = 0; k < n_; ++k) y[k] = W_(active_[k], j);
+      solve_active(y);
       double pivot = W_(j, j), slack = b_[j] + W_(j, j) * lambda_[j];
       for (int k = 0; k < n_; ++k) {
-        pivot -= W_(j, tight_[k]) * y[k];
-        slack += W_(j, tight_[k]) * lambda_[tight_[k]];
+        pivot -= W_(j, active_[k]) * y[k];
+        slack += W_(j, active_[k]) * lambda_[active_[k]];
       }
       // The step ends when row j is satisfied, or when the impulse of the first active row becomes zero.
       const bool dependent = !(pivot > kDependent * W_(j, j));
-      double reach = dependent ? -1 : std::max(0.0, -slack / pivot);
-      int loose = -1;
+      double step = dependent ? -1 : std::max(0.0, -slack / pivot);
+      int released = -1;
       for (int k = 0; k < n_; ++k) {
         if (!(y[k] > 0)) continue;
-        const double until = lambda_[tight_[k]] / y[k];
-        if (reach < 0 || until < reach) {
-          reach = until;
-          loose = k;
+        const double limit = lambda_[active_[k]] / y[k];
+        if (step < 0 || limit < step) {
+          step = limit;
+          released = k;
         }
       }
-      if (reach < 0) {  // the row contradicts the active rows: no impulse satisfies it
-        out_[j] = 1;
+      if (step < 0) {  // the row contradicts the active rows: no impulse satisfies it
+        excluded_[j] = 1;
         lambda_[j] = 0;
         return solved;
       }
-      lambda_[j] += reach;
-      for (int k = 0; k < n_; ++k) lambda_[tight_[k]] -= reach * y[k];
-      if (loose < 0) {
-        tight_[n_++] = j;
-        is_tight_[j] = 1;
+      lambda_[j] += step;
+      for (int k = 0; k < n_; ++k) lambda_[active_[k]] -= step * y[k];
+      if (released < 0) {
+        active_[n_++] = j;
+        is_active_[j] = 1;
         refine();
         return solved;
       }
-      release(loose);
+      release(released);
     }
   }
 
@@ -97,32 +97,32 @@ class ActiveSet {
  private:
   /// Makes the active row number k inactive, with impulse 0.
   void release(int k) {
-    lambda_[tight_[k]] = 0;
-    is_tight_[tight_[k]] = 0;
-    for (--n_; k < n_; ++k) tight_[k] = tight_[k + 1];
+    lambda_[active_[k]] = 0;
+    is_active_[active_[k]] = 0;
+    for (--n_; k < n_; ++k) active_[k] = active_[k + 1];
   }
   /// Solves W_PP x = x for the active rows P.
-  void solve_tight(Vector& x) const {
+  void solve_active(Vector& x) const {
     if (n_ == 0) return;
     Matrix block(n_, n_);
     for (int i = 0; i < n_; ++i)
-      for (int j = 0; j < n_; ++j) block(i, j) = W_(tight_[i], tight_[j]);
+      for (int j = 0; j < n_; ++j) block(i, j) = W_(active_[i], active_[j]);
     const Eigen::LDLT<Matrix> factor(block);
     x = factor.solve(x);
   }
   /// Recomputes the impulses of the active rows, so that rounding does not accumulate over many changes.
   void refine() {
     Vector x(n_);
-    for (int k = 0; k < n_; ++k) x[k] = -b_[tight_[k]];
-    solve_tight(x);
-    for (int k = 0; k < n_; ++k) lambda_[tight_[k]] = std::max(0.0, x[k]);
+    for (int k = 0; k < n_; ++k) x[k] = -b_[active_[k]];
+    solve_active(x);
+    for (int k = 0; k < n_; ++k) lambda_[active_[k]] = std::max(0.0, x[k]);
   }
 
   const Matrix& W_;
   const Vector& b_;
   Vector lambda_;
-  int n_ = 0;  ///< number of active rows; tight_ lists them in the order of activation
-  VecMax<int, Max> tight_, is_tight_, out_;
+  int n_ = 0;  ///< number of active rows; active_ lists them in the order of activation
+  VecMax<int, Max> active_, is_active_, excluded_;
 };
 
 }  // namespace
@@ -131,9 +131,9 @@ template <int Max>
 ComplementarityResult<Max> solve_complementarity(const MatMax<double, Max>& W, const VecMax<double, Max>& b) {
   ComplementarityResult<Max> result;
   ActiveSet<Max> rows(W, b);
-  const int n = static_cast<int>(b.size()), most = 50 * n + 50;
-  for (int next = rows.most_open(); next >= 0 && result.pivots < most; next = rows.most_open())
-    result.pivots += rows.tighten(next);
+  const int n = static_cast<int>(b.size()), max_pivots = 50 * n + 50;
+  for (int next = rows.most_violated(); next >= 0 && result.pivots < max_pivots; next = rows.most_violated())
+    result.pivots += rows.activate(next);
   result.lambda = rows.lambda();
   for (int i = 0; i < n; ++i) {
     double slack = b[i];

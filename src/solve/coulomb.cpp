@@ -10,13 +10,13 @@
 namespace pliant {
 
 namespace {
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 /// Maximum growth factor of the rate of sliding in one iteration, while it has no upper bound.
 constexpr double kGrowth = 16;
 /// Relative difference of two rates of sliding below which the iteration ends.
 constexpr double kSameRate = 2 * std::numeric_limits<double>::epsilon();
 /// Relative difference of W from a multiple of the identity below which it counts as one.
-constexpr double kEven = 1e-11;
+constexpr double kIsotropic = 1e-11;
 }  // namespace
 
 CoulombLaw::CoulombLaw() = default;
@@ -24,8 +24,8 @@ CoulombLaw::CoulombLaw() = default;
 CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
     : mu_(mu), W_n_(W(0, 0)), coupling_(W.block<2, 1>(1, 0)) {
   if (!(mu > 0)) return;
-  even_ = (W - W_n_ * Mat3<double>::Identity()).lpNorm<Eigen::Infinity>() <= kEven * W_n_;
-  if (even_) return;
+  isotropic_ = (W - W_n_ * Mat3<double>::Identity()).lpNorm<Eigen::Infinity>() <= kIsotropic * W_n_;
+  if (isotropic_) return;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes;
   modes.computeDirect(Eigen::Matrix2d(W.block<2, 2>(1, 1) - coupling_ * coupling_.transpose() / W_n_));
   stiffness_ = modes.eigenvalues();
@@ -33,35 +33,35 @@ CoulombLaw::CoulombLaw(const Mat3<double>& W, double mu)
   factor_.compute(W);
 }
 
-Vec3<double> CoulombLaw::push(const Vec3<double>& b) const {
+Vec3<double> CoulombLaw::impulse(const Vec3<double>& b) const {
   if (!(b[0] < 0)) return Vec3<double>::Zero();
-  const double p_alone = -b[0] / W_n_;  // normal impulse without friction
-  if (!(mu_ > 0)) return {p_alone, 0, 0};
-  if (even_) {
+  const double p_frictionless = -b[0] / W_n_;  // normal impulse without friction
+  if (!(mu_ > 0)) return {p_frictionless, 0, 0};
+  if (isotropic_) {
     const Eigen::Vector2d stop = -b.tail<2>() / W_n_;
-    const double most = mu_ * p_alone, size = stop.norm();
-    const double share = size > most ? most / size : 1;
-    return {p_alone, share * stop[0], share * stop[1]};
+    const double limit = mu_ * p_frictionless, size = stop.norm();
+    const double share = size > limit ? limit / size : 1;
+    return {p_frictionless, share * stop[0], share * stop[1]};
   }
   const Vec3<double> stick = -factor_.solve(b);
   if (stick[0] > 0 && stick.tail<2>().norm() <= mu_ * stick[0]) return stick;
-  return slide(b, p_alone);
+  return slide(b, p_frictionless);
 }
 
-Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
+Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_frictionless) const {
   // Sliding: u_t = -s p_t with s > 0, and u_n = 0. Then (A + s) p_t = -c, where A is the Schur complement of
-  // the normal and c = b_t + coupling p_alone.
-  const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_alone);
+  // the normal and c = b_t + coupling p_frictionless.
+  const Eigen::Array2d along = modes_.transpose() * (b.tail<2>() + coupling_ * p_frictionless);
   const Eigen::Array2d coupling = modes_.transpose() * coupling_ / W_n_;
   Eigen::Array2d t;  // p_t along the modes
   double p_n = 0;
   // Newton's method with bounds for the root of mu p_n / |p_t| - 1. The function is nearly linear and
-  // increases with s: |p_t| decreases to 0 and p_n tends to p_alone > 0.
+  // increases with s: |p_t| decreases to 0 and p_n tends to p_frictionless > 0.
   double low = 0, high = std::numeric_limits<double>::infinity(), s = 0;
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const Eigen::Array2d share = 1 / (stiffness_ + s);
     t = -along * share;
-    p_n = p_alone - (coupling * t).sum();
+    p_n = p_frictionless - (coupling * t).sum();
     const double size = std::sqrt(t.square().sum()), f = mu_ * p_n / size - 1;
     if (f == 0) break;
     (f < 0 ? low : high) = s;
@@ -72,7 +72,7 @@ Vec3<double> CoulombLaw::slide(const Vec3<double>& b, double p_alone) const {
     if (!bounded) next = std::min(next, kGrowth * std::max(s, stiffness_[1]));
     if (!(next > low && next < high))
       next = bounded ? 0.5 * (low + high) : kGrowth * std::max(s, stiffness_[1]);
-    if (!std::isfinite(next)) return {p_alone, 0, 0};
+    if (!std::isfinite(next)) return {p_frictionless, 0, 0};
     if (std::abs(next - s) <= kSameRate * next || (bounded && high - low <= kSameRate * high)) break;
     s = next;
   }

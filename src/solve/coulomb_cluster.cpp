@@ -25,8 +25,8 @@ constexpr std::array<std::pair<int, int>, 3> kRoundsOfPoints{{{12, 4}, {120, 0},
 constexpr double kWorse = 4;
 /// Relative regularisation of the extrapolation, for linearly dependent sweeps.
 constexpr double kSameSweep = 1e-14;
-/// kLeft for large clusters and for points; the compliance of the second search, as a fraction of W.
-constexpr double kLeftOfMany = 1e-2, kYielding = 1e-4;
+/// kAcceptable for large clusters and for points; the compliance of the second search, as a fraction of W.
+constexpr double kAcceptableOfMany = 1e-2, kCompliance = 1e-4;
 /// The result of the search with compliant contacts, whose impulses are bounded, is preferred if its residual
 /// is less than this multiple of the other residual.
 constexpr double kBounded = 2;
@@ -35,6 +35,24 @@ constexpr double kBounded = 2;
 constexpr double kStalledShare = 0.1;
 /// A warm start is used if its residual is less than this fraction of the largest initial contact velocity.
 constexpr double kNear = 0.1;
+
+/// Maximum number of pairs of sweeps in the extrapolation, and the matrix of their products.
+constexpr int kMaxHistory = 8;
+using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxHistory, kMaxHistory>;
+
+/// Moves `now` to the point at which the linear model of the residual r is smallest. G: products of the
+/// columns of dr; filled: number of columns. Changes nothing if the linear system is singular.
+void extrapolate(const Gram& G, int filled, CoulombScratch::Sweeps& sweeps) {
+  auto& [now, next, last, r, last_r, weight, dr, dp] = sweeps;
+  const Eigen::Index n = r.size();
+  Gram A = G.topLeftCorner(filled, filled);
+  A.diagonal() *= 1 + kSameSweep;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxHistory, 1> gamma(filled);
+  for (int j = 0; j < filled; ++j) gamma[j] = dr.col(j).head(n).dot(r);
+  gamma = A.ldlt().solve(gamma).eval();
+  if (gamma.allFinite())
+    for (int j = 0; j < filled; ++j) now -= gamma[j] * dp.col(j).head(n);
+}
 
 }  // namespace
 
@@ -47,29 +65,30 @@ CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
       scratch_(scratch) {
   for (int i = 0; i < size_; ++i)
     for (int s = point(i).first_side; s < point(i).last_side; ++s)
-      points_ = points_ || system_.mover_size(system_.seen_sides_[at(s)].mover) == 3;
+      has_points_ = has_points_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
 }
 
-/// Computes scale_, exact_ and allowed_ for the present velocities, which are those without impulses.
+/// Computes scale_, exact_ and acceptable_ for the present velocities, which are those without impulses.
 void CoulombCluster::set_scale() {
   double terms = 0;
   scale_ = 0;
   for (int i = 0; i < size_; ++i) {
     scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
       terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
                                   system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
     }
   }
-  exact_ = std::max({(points_ ? kExactOfPoints : kExact) * scale_,
+  exact_ = std::max({(has_points_ ? kExactOfPoints : kExact) * scale_,
                      kUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
-  allowed_ = std::max(exact_, (points_ || size_ > kMany ? kLeftOfMany : kLeft) * scale_);
+  acceptable_ =
+      std::max(exact_, (has_points_ || size_ > kManyContacts ? kAcceptableOfMany : kAcceptable) * scale_);
 }
 
 /// Sets the compliance of all contacts, as a fraction of the diagonal of W.
-void CoulombCluster::yield(double softness) {
+void CoulombCluster::soften(double softness) {
   softness_ = softness;
   for (int i = 0; i < size_; ++i) {
     Mat3<double> W = point(i).W;
@@ -80,25 +99,25 @@ void CoulombCluster::yield(double softness) {
 
 /// Returns the velocity u of contact i, including its compliance.
 Vec3<double> CoulombCluster::velocity(int i) const {
-  Vec3<double> u = system_.velocity_at(contacts_[i], system_.seen_sides_, system_.x_);
+  Vec3<double> u = system_.velocity_at(contacts_[i], system_.used_sides_, system_.x_);
   if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
   return u;
 }
 
 /// Returns the impulse that satisfies the law of contact i alone. u: the velocity with its present impulse.
-Vec3<double> CoulombCluster::met(int i, const Vec3<double>& u) const {
+Vec3<double> CoulombCluster::law_impulse(int i, const Vec3<double>& u) const {
   const Mat3<double>& W = point(i).W;
   if (point(i).rows == 1) return {std::max(0.0, p(i)[0] - u[0] / ((1 + softness_) * W(0, 0))), 0, 0};
   Vec3<double> b = u - W * p(i);
   if (softness_ > 0) b -= softness_ * W.diagonal().cwiseProduct(p(i));
-  return point(i).law.push(b);
+  return point(i).law.impulse(b);
 }
 
 /// Changes the impulse of contact i and the velocities of the movers.
-void CoulombCluster::push(int i, const Vec3<double>& dp) {
+void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
   p(i) += dp;
   for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-    const CoulombSystem::Term& term = system_.seen_pushes_[at(r)];
+    const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
     const double* Y = system_.numbers_.data() + term.numbers;
     if (term.size == 3)
       system_.x_.segment<3>(term.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * dp;
@@ -112,11 +131,11 @@ void CoulombCluster::push(int i, const Vec3<double>& dp) {
 
 /// Returns exact_, or the rounding level of the present impulses if that is larger. It is large where a light
 /// part supports a heavy one.
-double CoulombCluster::exact_now() const {
-  double most = 0;
+double CoulombCluster::exact_level() const {
+  double largest = 0;
   for (int i = 0; i < size_; ++i)
-    most = std::max(most, point(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
-  return std::max(exact_, std::min(allowed_, kUlps * std::numeric_limits<double>::epsilon() * most));
+    largest = std::max(largest, point(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
+  return std::max(exact_, std::min(acceptable_, kUlps * std::numeric_limits<double>::epsilon() * largest));
 }
 
 /// Solves the law of each contact once, in ascending or descending order. Returns the largest change of a
@@ -126,8 +145,8 @@ double CoulombCluster::sweep(bool forward) {
   for (int k = 0; k < size_; ++k) {
     const int i = forward ? k : size_ - 1 - k;
     if (is_fixed(i)) continue;
-    const Vec3<double> dp = met(i, velocity(i)) - p(i);
-    push(i, dp);
+    const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
+    add_impulse(i, dp);
     change = std::max(change, (point(i).W * dp).lpNorm<Eigen::Infinity>());
   }
   return change;
@@ -141,39 +160,39 @@ double CoulombCluster::residual() const {
       worst = std::max(worst, -velocity(i)[0]);
       continue;
     }
-    const Vec3<double> dp = met(i, velocity(i)) - p(i);
+    const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
     worst = std::max(worst, (point(i).W * dp).lpNorm<Eigen::Infinity>());
   }
   return worst;
 }
 
 /// Copies the present impulses, 3 for each contact.
-void CoulombCluster::take(VecX<double>& impulses) const {
+void CoulombCluster::copy_impulses(VecX<double>& impulses) const {
   impulses.resize(3 * size_);
   for (int i = 0; i < size_; ++i) impulses.segment<3>(3 * i) = p(i);
 }
 
 /// Sets all impulses to zero, and the velocities to those without impulses.
-void CoulombCluster::reset() {
+void CoulombCluster::clear_impulses() {
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const CoulombSystem::Term& term = system_.seen_pushes_[at(r)];
+      const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
       system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
     }
   for (int i = 0; i < size_; ++i) p(i).setZero();
 }
 
 /// Sets the impulses, and recomputes the velocities from them.
-void CoulombCluster::set(const VecX<double>& impulses) {
-  reset();
-  for (int i = 0; i < size_; ++i) push(i, impulses.segment<3>(3 * i));
+void CoulombCluster::set_impulses(const VecX<double>& impulses) {
+  clear_impulses();
+  for (int i = 0; i < size_; ++i) add_impulse(i, impulses.segment<3>(3 * i));
 }
 
 /// Runs pairs of sweeps (forward, backward) as a fixed-point iteration p = g(p) with Anderson acceleration
 /// (1965): the next p minimises |p - g(p)| over the last `history` pairs as if g were linear. g is linear
 /// once no contact changes between sticking, sliding and separation. Sets the best impulses found; returns
 /// whether they are exact.
-bool CoulombCluster::relax(int most, int history, int& sweeps) {
+bool CoulombCluster::accelerated_sweeps(int max_sweeps, int history, int& sweeps) {
   const Eigen::Index n = 3 * size_;
   auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
   VecX<double>& best = scratch_.best;
@@ -184,74 +203,64 @@ bool CoulombCluster::relax(int most, int history, int& sweeps) {
     dr.resize(std::max(n, dr.rows()), std::max<Eigen::Index>(history, dr.cols()));
     dp.resizeLike(dr);
   }
-  constexpr int kMostHistory = 8;
-  using Gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostHistory, kMostHistory>;
   Gram G = Gram::Zero(history, history);
-  take(now);
-  double best_left = std::numeric_limits<double>::infinity();
+  copy_impulses(now);
+  double best_error = std::numeric_limits<double>::infinity();
   int filled = 0, slot = 0;
-  bool follows = false;  // whether last and last_r contain the pair before
-  for (int i = 0; i < most; i += 2) {
+  bool has_pair_before = false;  // whether last and last_r contain the pair before
+  for (int i = 0; i < max_sweeps; i += 2) {
     sweep(true);
     const double change = sweep(false);
     sweeps += 2;
-    take(next);
+    copy_impulses(next);
     r = weight.cwiseProduct(next - now);
-    const double left = std::max(change, r.lpNorm<Eigen::Infinity>());
-    if (left < best_left) {
+    const double error = std::max(change, r.lpNorm<Eigen::Infinity>());
+    if (error < best_error) {
       best = next;
-      best_left = left;
+      best_error = error;
     }
-    if (left <= exact_now()) return true;
+    if (error <= exact_level()) return true;
     if (history == 0) {
       now.swap(next);
       continue;
     }
-    if (!(left <= kWorse * best_left)) {
+    if (!(error <= kWorse * best_error)) {
       filled = slot = 0;
-      follows = false;
+      has_pair_before = false;
       now = best;
-      set(now);
+      set_impulses(now);
       continue;
     }
-    if (follows) {
+    if (has_pair_before) {
       dr.col(slot).head(n) = r - last_r;
       dp.col(slot).head(n) = next - last;
       filled = std::min(filled + 1, history);
       for (int j = 0; j < filled; ++j) G(slot, j) = G(j, slot) = dr.col(slot).head(n).dot(dr.col(j).head(n));
       slot = (slot + 1) % history;
     }
-    follows = true;
+    has_pair_before = true;
     last_r = r;
     last = next;
     now = next;
-    if (filled > 0) {
-      Gram A = G.topLeftCorner(filled, filled);
-      A.diagonal() *= 1 + kSameSweep;
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostHistory, 1> gamma(filled);
-      for (int j = 0; j < filled; ++j) gamma[j] = dr.col(j).head(n).dot(r);
-      gamma = A.ldlt().solve(gamma).eval();
-      if (gamma.allFinite())
-        for (int j = 0; j < filled; ++j) now -= gamma[j] * dp.col(j).head(n);
-    }
-    set(now);
+    if (filled > 0) extrapolate(G, filled, scratch_.sweeps);
+    set_impulses(now);
   }
-  set(best);
+  set_impulses(best);
   return false;
 }
 
 /// Returns whether the cluster uses warm starts: not for one contact, which is solved directly, and not for
 /// points, which are many and weakly coupled.
 bool CoulombCluster::may_warm_start() const {
-  return size_ > 1 && !points_;
+  return size_ > 1 && !has_points_;
 }
 
 /// Tries Newton's method from a warm start. Returns whether it found the solution; otherwise clears all
 /// impulses.
-bool CoulombCluster::follow(const VecX<double>& begun) {
-  set(begun);
-  if (begun.allFinite() && residual() <= kNear * scale_ && newton(true)) return true;
-  reset();
+bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
+  set_impulses(initial);
+  if (initial.allFinite() && residual() <= kNear * scale_ && newton(true)) return true;
+  clear_impulses();
   return false;
 }
 
@@ -259,23 +268,23 @@ bool CoulombCluster::follow(const VecX<double>& begun) {
 bool CoulombCluster::search(int& sweeps) {
   // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
   // between.
-  const bool many = size_ > kMany;
-  const auto* first = points_ ? kRoundsOfPoints.begin() : kRounds.begin();
-  const auto* last = points_ ? kRoundsOfPoints.end() : kRounds.end();
+  const bool many = size_ > kManyContacts;
+  const auto* first = has_points_ ? kRoundsOfPoints.begin() : kRounds.begin();
+  const auto* last = has_points_ ? kRoundsOfPoints.end() : kRounds.end();
   double before = std::numeric_limits<double>::infinity();
-  VecX<double> kept;  // the impulses of the round before
+  VecX<double> previous;  // the impulses of the round before
   for (const auto* round = first; round != last; ++round) {
-    const auto& [most, history] = *round;
+    const auto& [max_sweeps, history] = *round;
     if (many && history == 0) continue;  // too slow, like Newton's method for many points
-    if (relax(most, history, sweeps) || (points_ && residual() <= exact_)) return true;
-    if (!(many && points_) && newton(false)) return true;
-    const double left = residual();
-    if (left <= kLeft * scale_ && left > kStalledShare * before) {
-      if (left > before) set(kept);
+    if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_points_ && residual() <= exact_)) return true;
+    if (!(many && has_points_) && newton(false)) return true;
+    const double error = residual();
+    if (error <= kAcceptable * scale_ && error > kStalledShare * before) {
+      if (error > before) set_impulses(previous);
       return false;
     }
-    take(kept);
-    before = left;
+    copy_impulses(previous);
+    before = error;
   }
   return false;
 }
@@ -284,37 +293,37 @@ bool CoulombCluster::search(int& sweeps) {
 /// is repeated with compliant contacts, for which a solution exists. The better one of the two results is
 /// used.
 void CoulombCluster::solve(CoulombResult& result) {
-  yield(0);
+  soften(0);
   if (size_ == 1) {
-    reset();
+    clear_impulses();
     set_scale();
     sweep(true);
     ++result.sweeps;
     result.residual = std::max(result.residual, residual());
     return;
   }
-  VecX<double> begun, found;
-  take(begun);
-  const bool begins = may_warm_start() && !begun.isZero(0);
-  reset();
+  VecX<double> initial, found;
+  copy_impulses(initial);
+  const bool warm_start = may_warm_start() && !initial.isZero(0);
+  clear_impulses();
   set_scale();
-  const bool solved = (begins && follow(begun)) || search(result.sweeps);
-  double left = residual();
-  if (!solved && left > allowed_) {
+  const bool solved = (warm_start && try_warm_start(initial)) || search(result.sweeps);
+  double error = residual();
+  if (!solved && error > acceptable_) {
     ++result.fallbacks;
-    take(found);
-    reset();
-    yield(kYielding);
+    copy_impulses(found);
+    clear_impulses();
+    soften(kCompliance);
     search(result.sweeps);
-    yield(0);
-    const double yielding = residual();
-    if (yielding < kBounded * left)
-      left = yielding;
+    soften(0);
+    const double compliant = residual();
+    if (compliant < kBounded * error)
+      error = compliant;
     else
-      set(found);
+      set_impulses(found);
   }
-  result.residual = std::max(result.residual, left);
-  for (int i = 0; i < size_; ++i) point(i).begins = may_warm_start();
+  result.residual = std::max(result.residual, error);
+  for (int i = 0; i < size_; ++i) point(i).warm_start = may_warm_start();
 }
 
 }  // namespace pliant

@@ -12,10 +12,10 @@
 namespace pliant {
 
 /// A cluster with more contacts than this is large.
-inline constexpr int kMany = 100;
+inline constexpr int kManyContacts = 100;
 /// Relative residual of a cluster (in units of the largest initial contact velocity) that is acceptable for a
 /// search that stalls. Above it, the search is repeated with compliant contacts.
-inline constexpr double kLeft = 1e-6;
+inline constexpr double kAcceptable = 1e-6;
 
 /// The law of a contact, linearised about its impulse: F + T du + D dp = 0.
 struct LinearContactLaw {
@@ -65,22 +65,22 @@ class CoulombCluster {
   const Vec3<double>& p(int i) const { return system_.p_[at(contacts_[i])]; }
   bool is_fixed(int i) const { return point(i).first_push == point(i).last_push; }
   void set_scale();
-  void yield(double softness);
+  void soften(double softness);
   Vec3<double> velocity(int i) const;
-  Vec3<double> met(int i, const Vec3<double>& u) const;
-  void push(int i, const Vec3<double>& dp);
-  double exact_now() const;
+  Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
+  void add_impulse(int i, const Vec3<double>& dp);
+  double exact_level() const;
   double sweep(bool forward);
   double residual() const;
-  void take(VecX<double>& impulses) const;
-  void reset();
-  void set(const VecX<double>& impulses);
-  bool relax(int most, int history, int& sweeps);
+  void copy_impulses(VecX<double>& impulses) const;
+  void clear_impulses();
+  void set_impulses(const VecX<double>& impulses);
+  bool accelerated_sweeps(int max_sweeps, int history, int& sweeps);
   void linearise(double proximal);
   MoverSystem* couple_movers();
   void solve_linear(MoverSystem& movers);
   bool newton(bool near);
-  bool follow(const VecX<double>& begun);
+  bool try_warm_start(const VecX<double>& initial);
   bool may_warm_start() const;
   bool search(int& sweeps);
 
@@ -90,11 +90,11 @@ class CoulombCluster {
   int size_;
   double enough_;
   CoulombScratch& scratch_;
-  bool points_ = false;  // whether the cluster contains points
-  double scale_ = 0;     // the largest contact velocity without impulses
-  double exact_ = 0;     // residuals up to this velocity are rounding
-  double allowed_ = 0;   // residuals up to this velocity are acceptable
-  double softness_ = 0;  // compliance of all contacts, as a fraction of the diagonal of W
+  bool has_points_ = false;  // whether the cluster contains points
+  double scale_ = 0;         // the largest contact velocity without impulses
+  double exact_ = 0;         // residuals up to this velocity are rounding
+  double acceptable_ = 0;    // residuals up to this velocity are acceptable
+  double softness_ = 0;      // compliance of all contacts, as a fraction of the diagonal of W
 };
 
 }  // namespace pliant

@@ -18,24 +18,24 @@ namespace pliant {
 
 namespace {
 /// Maximum number of steps; the second value is for warm starts, which converge in fewer steps or not at all.
-constexpr int kMostNewton = 30, kMostNewtonNear = 10;
+constexpr int kMaxNewton = 30, kMaxNewtonNear = 10;
 /// Maximum size of the factor, in multiples of the diagonal blocks of the movers. Above it (many bodies
 /// packed closely on all sides), sweeps need less time and memory.
-constexpr double kMostFill = 10;
+constexpr double kMaxFill = 10;
 /// The residual is reduced to this fraction of the exact level, because one more step does that. The second
 /// value is for warm starts, so that residuals do not accumulate from time step to time step.
 constexpr double kBeyondExact = 0.1, kBeyondExactNear = 0.01;
 /// Weight of the proximal term, which keeps linearly dependent impulses near their present values. It
 /// decreases by the factor in each step, from the first value (kProximalNear for warm starts) to the least,
 /// below which rounding outweighs the gain.
-constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kLeastProximal = 3e-8, kProximalNear = 1e-5;
-constexpr double kProximalFactorOfPoints = 0.7, kLeastProximalOfPoints = 1e-5;
+constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8, kProximalNear = 1e-5;
+constexpr double kProximalFactorOfPoints = 0.7, kMinProximalOfPoints = 1e-5;
 /// After this number of steps without progress, a residual above kFarOff times the best one resets the
 /// impulses to the best ones, and the proximal weight grows by kBack.
-constexpr int kMostFutile = 4;
+constexpr int kMaxFutile = 4;
 constexpr double kFarOff = 1e3, kBack = 10;
 /// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
-constexpr int kMostOfMover = 1000;
+constexpr int kMaxOfMover = 1000;
 
 /// Adds Y T S to a block: a push of N velocities and a side of N velocities.
 template <int N>
@@ -74,11 +74,12 @@ void CoulombCluster::linearise(double proximal) {
       law.F.tail<2>().setZero();
     } else if (pull.norm() > radius) {
       const Eigen::Vector2d e = pull.normalized();
-      const Eigen::Matrix2d turn = radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
+      const Eigen::Matrix2d tangential =
+          radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
       law.T.block<2, 1>(1, 0) = r * point(i).mu * e;
-      law.T.block<2, 2>(1, 1) = r * turn;
+      law.T.block<2, 2>(1, 1) = r * tangential;
       law.D.block<2, 1>(1, 0) = -point(i).mu * e;
-      law.D.block<2, 2>(1, 1) += Eigen::Matrix2d::Identity() - turn;
+      law.D.block<2, 2>(1, 1) += Eigen::Matrix2d::Identity() - tangential;
       law.F.tail<2>() = p(i).tail<2>() - radius * e;
     }
     if (softness_ > 0) law.D += softness_ * law.T * point(i).W.diagonal().asDiagonal();
@@ -100,18 +101,18 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
     law.F = (inverse * law.F).eval();
     law.T = (inverse * law.T).eval();
     for (int r = contact_at.first_push; r < contact_at.last_push; ++r) {
-      const CoulombSystem::Term& push = system_.seen_pushes_[at(r)];
+      const CoulombSystem::Term& push = system_.used_pushes_[at(r)];
       movers.add(coupling.push_rows[at(r)], Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
     }
     const MoverSystem::Block* block =
         coupling.blocks.data() + coupling.first_block[at(contacts_[law.contact])];
     for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
       if (coupling.side_rows[at(s)] < 0) continue;
-      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       TS = law.T.lazyProduct(S);
       for (int r = contact_at.first_push; r < contact_at.last_push; ++r, ++block) {
-        const CoulombSystem::Term& push = system_.seen_pushes_[at(r)];
+        const CoulombSystem::Term& push = system_.used_pushes_[at(r)];
         if (side.size == 3 && push.size == 3)
           add_product<3>(numbers + push.numbers, TS, *block, movers);
         else if (side.size == 6 && push.size == 6)
@@ -128,7 +129,7 @@ void CoulombCluster::solve_linear(MoverSystem& movers) {
     for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
       const int row = coupling.side_rows[at(s)];
       if (row < 0) continue;
-      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
       du += S.lazyProduct(movers.change(row, side.size));
     }
@@ -143,8 +144,8 @@ MoverSystem* CoulombCluster::couple_movers() {
   if (coupling.clusters.empty()) {
     coupling.clusters.resize(system_.clusters_.size() - 1);
     coupling.numbers.resize(at(system_.movers()), -1);
-    coupling.push_rows.resize(system_.seen_pushes_.size(), -1);
-    coupling.side_rows.resize(system_.seen_sides_.size(), -1);
+    coupling.push_rows.resize(system_.used_pushes_.size(), -1);
+    coupling.side_rows.resize(system_.used_sides_.size(), -1);
     coupling.first_block.resize(system_.contacts_.size(), 0);
   }
   MoverSystem& movers = coupling.clusters[at(number_)];
@@ -152,29 +153,30 @@ MoverSystem* CoulombCluster::couple_movers() {
   bool too_large = false;
   for (int i = 0; i < size_; ++i)
     for (int r = point(i).first_push; r < point(i).last_push; ++r) {
-      const int mover = system_.seen_pushes_[at(r)].mover;
+      const int mover = system_.used_pushes_[at(r)].mover;
       int& number = coupling.numbers[at(mover)];
       if (number >= 0) continue;
-      const int seen = system_.seen_movers_[at(mover) + 1] - system_.seen_movers_[at(mover)];
-      number = movers.add_mover(seen);
-      too_large = too_large || seen > kMostOfMover;
+      const int used = system_.used_movers_[at(mover) + 1] - system_.used_movers_[at(mover)];
+      number = movers.add_mover(used);
+      too_large = too_large || used > kMaxOfMover;
     }
   if (too_large) return nullptr;
   auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
   auto for_each_pair = [&](int i, auto&& act) {
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       const int column = number_at(side);
       if (column < 0) continue;
       for (int r = point(i).first_push; r < point(i).last_push; ++r)
-        act(number_at(system_.seen_pushes_[at(r)]), column, side);
+        act(number_at(system_.used_pushes_[at(r)]), column, side);
     }
   };
   for (int i = 0; i < size_; ++i)
     for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
-  if (!movers.order(size_ > kMany ? kMostFill : std::numeric_limits<double>::infinity())) return nullptr;
+  if (!movers.order(size_ > kManyContacts ? kMaxFill : std::numeric_limits<double>::infinity()))
+    return nullptr;
   auto in_mover = [&](const CoulombSystem::Term& term) {
-    return term.first - system_.seen_movers_[at(term.mover)];
+    return term.first - system_.used_movers_[at(term.mover)];
   };
   for (int i = 0; i < size_; ++i) {
     coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
@@ -184,9 +186,9 @@ MoverSystem* CoulombCluster::couple_movers() {
       coupling.blocks.push_back(block);
     });
     for (int r = point(i).first_push; r < point(i).last_push; ++r)
-      coupling.push_rows[at(r)] = movers.row(number_at(system_.seen_pushes_[at(r)]));
+      coupling.push_rows[at(r)] = movers.row(number_at(system_.used_pushes_[at(r)]));
     for (int s = point(i).first_side; s < point(i).last_side; ++s) {
-      const CoulombSystem::Term& side = system_.seen_sides_[at(s)];
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
       if (const int number = number_at(side); number >= 0)
         coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
     }
@@ -198,48 +200,49 @@ MoverSystem* CoulombCluster::couple_movers() {
 /// start.
 bool CoulombCluster::newton(bool near) {
   const double beyond = near ? kBeyondExactNear : kBeyondExact;
-  double exact = exact_now();
-  double best_left = residual();
-  if (best_left <= beyond * exact) return true;
+  double exact = exact_level();
+  double best_error = residual();
+  if (best_error <= beyond * exact) return true;
   MoverSystem* movers = couple_movers();
   if (movers == nullptr) return false;
   auto& [open, drop] = scratch_.linear;
   VecX<double>& best = scratch_.best;
-  take(best);
+  copy_impulses(best);
   double proximal = near ? kProximalNear : kFirstProximal,
-         least = points_ ? kLeastProximalOfPoints : kLeastProximal;
-  const double factor = points_ ? kProximalFactorOfPoints : kProximalFactor;
+         min_proximal = has_points_ ? kMinProximalOfPoints : kMinProximal;
+  const double factor = has_points_ ? kProximalFactorOfPoints : kProximalFactor;
   int futile = 0;
-  for (int step = 0; step < (near ? kMostNewtonNear : kMostNewton) && best_left > beyond * exact; ++step) {
+  for (int step = 0; step < (near ? kMaxNewtonNear : kMaxNewton) && best_error > beyond * exact; ++step) {
     linearise(proximal);
-    for (const auto& [i, dp] : drop) push(i, dp);
+    for (const auto& [i, dp] : drop) add_impulse(i, dp);
     for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
     solve_linear(*movers);
     const bool finite =
         std::all_of(open.begin(), open.end(), [](const LinearContactLaw& law) { return law.dp.allFinite(); });
-    double left = std::numeric_limits<double>::infinity();
+    double error = std::numeric_limits<double>::infinity();
     if (finite) {
-      for (const LinearContactLaw& law : open) push(law.contact, law.dp);
-      left = residual();
+      for (const LinearContactLaw& law : open) add_impulse(law.contact, law.dp);
+      error = residual();
     }
-    if (left < best_left) {
-      take(best);
-      best_left = left;
-      exact = exact_now();
+    if (error < best_error) {
+      copy_impulses(best);
+      best_error = error;
+      exact = exact_level();
       futile = 0;
-    } else if (best_left <= exact) {
+    } else if (best_error <= exact) {
       break;
-    } else if (++futile; futile >= kMostFutile && best_left <= kLeft * scale_ && proximal <= least) {
+    } else if (++futile;
+               futile >= kMaxFutile && best_error <= kAcceptable * scale_ && proximal <= min_proximal) {
       break;
-    } else if (!finite || (futile >= kMostFutile && left > kFarOff * best_left)) {
+    } else if (!finite || (futile >= kMaxFutile && error > kFarOff * best_error)) {
       futile = 0;
-      set(best);
-      proximal = least = std::min(kFirstProximal, kBack * proximal);
+      set_impulses(best);
+      proximal = min_proximal = std::min(kFirstProximal, kBack * proximal);
       continue;
     }
-    proximal = std::max(factor * proximal, least);
+    proximal = std::max(factor * proximal, min_proximal);
   }
-  set(best);
+  set_impulses(best);
   return residual() <= exact;
 }
 

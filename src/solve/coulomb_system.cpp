@@ -122,43 +122,43 @@ void CoulombSystem::complete() {
     point.W = 0.5 * (W + W.transpose());
     point.W.diagonal().array() += kSoft * point.W.diagonal().maxCoeff();
   }
-  keep_seen();
+  select_used();
   find_clusters();
 }
 
 /// Selects the velocities that a side depends on, and copies the terms for them. All velocities of a mover
 /// without sides are selected.
-void CoulombSystem::keep_seen() {
-  std::vector<char> is_seen(at(n_x()), 0);
+void CoulombSystem::select_used() {
+  std::vector<char> is_used(at(n_x()), 0);
   std::vector<char> has_side(movers_.size() - 1, 0);
   for (const Term& side : sides_) {
-    std::fill_n(is_seen.begin() + side.first, side.size, 1);
+    std::fill_n(is_used.begin() + side.first, side.size, 1);
     has_side[at(side.mover)] = 1;
   }
   for (int i = 0; i < movers(); ++i)
-    if (!has_side[at(i)]) std::fill_n(is_seen.begin() + first(i), mover_size(i), 1);
-  seen_.clear();
+    if (!has_side[at(i)]) std::fill_n(is_used.begin() + first(i), mover_size(i), 1);
+  used_.clear();
   std::vector<int> before{0};  // number of selected velocities before each velocity
   for (int i = 0; i < n_x(); ++i) {
-    if (is_seen[at(i)]) seen_.push_back(i);
-    before.push_back(static_cast<int>(seen_.size()));
+    if (is_used[at(i)]) used_.push_back(i);
+    before.push_back(static_cast<int>(used_.size()));
   }
-  seen_movers_.clear();
-  for (const int first_of_mover : movers_) seen_movers_.push_back(before[at(first_of_mover)]);
-  seen_sides_ = sides_;
-  for (Term& side : seen_sides_) side.first = before[at(side.first)];
-  seen_pushes_ = pushes_;
+  used_movers_.clear();
+  for (const int first_of_mover : movers_) used_movers_.push_back(before[at(first_of_mover)]);
+  used_sides_ = sides_;
+  for (Term& side : used_sides_) side.first = before[at(side.first)];
+  used_pushes_ = pushes_;
   std::size_t more = 0;
   for (const Term& push : pushes_) more += at(3 * push.size);
-  if (seen_.size() < is_seen.size()) numbers_.reserve(numbers_.size() + more);
-  for (Term& push : seen_pushes_) {
+  if (used_.size() < is_used.size()) numbers_.reserve(numbers_.size() + more);
+  for (Term& push : used_pushes_) {
     const int first = before[at(push.first)], size = before[at(push.first + push.size)] - first;
     if (size < push.size) {
       const std::size_t numbers = numbers_.size();
       numbers_.resize(numbers + at(3 * size));
       const Push all(numbers_.data() + push.numbers, push.size, 3);
-      Push seen(numbers_.data() + numbers, size, 3);
-      for (int i = 0; i < size; ++i) seen.row(i) = all.row(seen_[at(first + i)] - push.first);
+      Push used(numbers_.data() + numbers, size, 3);
+      for (int i = 0; i < size; ++i) used.row(i) = all.row(used_[at(first + i)] - push.first);
       push.numbers = numbers;
     }
     push.first = first;
@@ -193,12 +193,12 @@ void CoulombSystem::find_clusters() {
 CoulombResult CoulombSystem::solve(VecX<double>& x, double enough) {
   if (!complete_) complete();
   CoulombResult result;
-  x0_.resize(static_cast<Eigen::Index>(seen_.size()));
-  for (Eigen::Index i = 0; i < x0_.size(); ++i) x0_[i] = x[seen_[static_cast<std::size_t>(i)]];
+  x0_.resize(static_cast<Eigen::Index>(used_.size()));
+  for (Eigen::Index i = 0; i < x0_.size(); ++i) x0_[i] = x[used_[static_cast<std::size_t>(i)]];
   x_ = x0_;
   for (int k = 0; k < size(); ++k) {
     if (pushes(k) == 0) p_[at(k)].setZero();
-    add_change_to(k, 1, seen_pushes_, x_);
+    add_change_to(k, 1, used_pushes_, x_);
     if (sides(k) == 0) result.residual = std::max(result.residual, -velocity(k, x)[0]);
   }
   for (int i = 0; i + 1 < static_cast<int>(clusters_.size()); ++i)

@@ -27,50 +27,52 @@ int MoverSystem::add_mover(int size) {
 
 void MoverSystem::couple(int i, int j) {
   if (i == j) return;
-  insert(movers_[at(i)].near, j);
-  insert(movers_[at(j)].near, i);
+  insert(movers_[at(i)].neighbours, j);
+  insert(movers_[at(j)].neighbours, i);
 }
 
-bool MoverSystem::order(double most) {
-  std::set<std::pair<std::size_t, int>> left;  // remaining movers, sorted by the number of their neighbours
-  for (int i = 0; i < static_cast<int>(movers_.size()); ++i) left.insert({movers_[at(i)].near.size(), i});
+bool MoverSystem::order(double max_fill) {
+  std::set<std::pair<std::size_t, int>>
+      remaining;  // remaining movers, sorted by the number of their neighbours
+  for (int i = 0; i < static_cast<int>(movers_.size()); ++i)
+    remaining.insert({movers_[at(i)].neighbours.size(), i});
   std::vector<int> merged;
   int row = 0;
   std::size_t numbers = 0, targets = 0;
-  double most_numbers = 0;
-  for (const Mover& mover : movers_) most_numbers += most * mover.size * mover.size;
-  while (!left.empty()) {
-    if (static_cast<double>(numbers) > most_numbers) return false;
-    const int k = left.begin()->second;
-    left.erase(left.begin());
+  double max_numbers = 0;
+  for (const Mover& mover : movers_) max_numbers += max_fill * mover.size * mover.size;
+  while (!remaining.empty()) {
+    if (static_cast<double>(numbers) > max_numbers) return false;
+    const int k = remaining.begin()->second;
+    remaining.erase(remaining.begin());
     Mover& eliminated = movers_[at(k)];
-    eliminated.turn = static_cast<int>(turns_.size());
+    eliminated.position = static_cast<int>(sequence_.size());
     eliminated.row = row;
     row += eliminated.size;
     eliminated.numbers = numbers;
     numbers += at(eliminated.size * eliminated.size);
-    for (const int i : eliminated.near) {
+    for (const int i : eliminated.neighbours) {
       const int size = movers_[at(i)].size;
-      eliminated.even = eliminated.even && size == eliminated.size;
+      eliminated.uniform = eliminated.uniform && size == eliminated.size;
       numbers += at(2 * eliminated.size * size);
-      std::vector<int>& near = movers_[at(i)].near;
-      left.erase({near.size(), i});
+      std::vector<int>& neighbours = movers_[at(i)].neighbours;
+      remaining.erase({neighbours.size(), i});
       merged.clear();
-      std::set_union(near.begin(), near.end(), eliminated.near.begin(), eliminated.near.end(),
-                     std::back_inserter(merged));
+      std::set_union(neighbours.begin(), neighbours.end(), eliminated.neighbours.begin(),
+                     eliminated.neighbours.end(), std::back_inserter(merged));
       merged.erase(std::remove_if(merged.begin(), merged.end(), [&](int j) { return j == i || j == k; }),
                    merged.end());
-      near.swap(merged);
-      left.insert({near.size(), i});
+      neighbours.swap(merged);
+      remaining.insert({neighbours.size(), i});
     }
     eliminated.targets = targets;
-    targets += eliminated.near.size() * eliminated.near.size();
-    turns_.push_back(k);
+    targets += eliminated.neighbours.size() * eliminated.neighbours.size();
+    sequence_.push_back(k);
   }
   targets_.reserve(targets);
-  for (const int k : turns_)
-    for (const int j : movers_[at(k)].near)
-      for (const int i : movers_[at(k)].near) targets_.push_back(block(i, j).first);
+  for (const int k : sequence_)
+    for (const int j : movers_[at(k)].neighbours)
+      for (const int i : movers_[at(k)].neighbours) targets_.push_back(block(i, j).first);
   numbers_.resize(static_cast<Eigen::Index>(numbers));
   b_.resize(row);
   return true;
@@ -79,10 +81,10 @@ bool MoverSystem::order(double most) {
 MoverSystem::Block MoverSystem::block(int i, int j) const {
   const Mover &one = movers_[at(i)], &other = movers_[at(j)];
   if (i == j) return {one.numbers, one.size};
-  const bool above = one.turn < other.turn;
+  const bool above = one.position < other.position;
   const Mover& first = above ? one : other;
   std::size_t numbers = first.numbers + at(first.size * first.size);
-  auto k = first.near.begin();
+  auto k = first.neighbours.begin();
   for (; *k != (above ? j : i); ++k) numbers += at(2 * first.size * movers_[at(*k)].size);
   return {numbers + (above ? 0 : at(first.size * movers_[at(*k)].size)), one.size};
 }
@@ -105,12 +107,12 @@ void MoverSystem::eliminate(const Mover& k) {
   b_.segment<N>(k.row, k.size) = b;
   const std::size_t* target = targets_.data() + k.targets;
   double *const beside = numbers + k.numbers + at(k.size * k.size), *above = beside;
-  for (const int j : k.near) {
+  for (const int j : k.neighbours) {
     const int columns = movers_[at(j)].size;
     Part U(above, k.size, columns);
     U = (inverse * U).eval();
     double* left = beside;
-    for (const int i : k.near) {
+    for (const int i : k.neighbours) {
       const int rows = movers_[at(i)].size;
       left += k.size * rows;
       Part(numbers + *target, rows, columns).noalias() -= Part(left, rows, k.size).lazyProduct(U);
@@ -120,7 +122,7 @@ void MoverSystem::eliminate(const Mover& k) {
     above += 2 * k.size * columns;
   }
   double* left = beside;
-  for (const int i : k.near) {
+  for (const int i : k.neighbours) {
     const Mover& one = movers_[at(i)];
     left += k.size * one.size;
     b_.segment<N>(one.row, one.size) -= Part(left, one.size, k.size).lazyProduct(b);
@@ -129,20 +131,20 @@ void MoverSystem::eliminate(const Mover& k) {
 }
 
 void MoverSystem::solve() {
-  for (const int number : turns_) {
+  for (const int number : sequence_) {
     const Mover& k = movers_[at(number)];
-    if (k.even && k.size == 3)
+    if (k.uniform && k.size == 3)
       eliminate<3>(k);
-    else if (k.even && k.size == 6)
+    else if (k.uniform && k.size == 6)
       eliminate<6>(k);
     else
       eliminate<Eigen::Dynamic>(k);
   }
-  for (auto number = turns_.rbegin(); number != turns_.rend(); ++number) {
+  for (auto number = sequence_.rbegin(); number != sequence_.rend(); ++number) {
     const Mover& k = movers_[at(*number)];
     auto x = b_.segment(k.row, k.size);
     const double* above = numbers_.data() + k.numbers + at(k.size * k.size);
-    for (const int j : k.near) {
+    for (const int j : k.neighbours) {
       const Mover& other = movers_[at(j)];
       x -= Eigen::Map<const MatX<double>>(above, k.size, other.size)
                .lazyProduct(b_.segment(other.row, other.size));

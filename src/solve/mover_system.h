@@ -20,7 +20,7 @@ class MoverSystem {
   void couple(int i, int j);
   /// Computes the order of elimination and the storage. Returns false, and the system cannot be solved, if
   /// the storage would exceed `most` times the diagonal blocks of the movers.
-  bool order(double most);
+  bool order(double max_fill);
 
   bool empty() const { return movers_.empty(); }
   bool is_ordered() const { return b_.size() > 0; }
@@ -58,11 +58,11 @@ class MoverSystem {
 
  private:
   struct Mover {
-    int size = 3, row = 0, turn = 0;  ///< turn: its position in the order of elimination
-    bool even = true;                 ///< whether its remaining neighbours have its size
-    std::vector<int> near;            ///< neighbours that remain when it is eliminated, in ascending order
-    std::size_t numbers = 0;  ///< start of its diagonal block, then of the blocks above and left of it
-    std::size_t targets = 0;  ///< start of the list of blocks that its elimination changes
+    int size = 3, row = 0, position = 0;  ///< position: its position in the order of elimination
+    bool uniform = true;                  ///< whether its remaining neighbours have its size
+    std::vector<int> neighbours;  ///< neighbours that remain when it is eliminated, in ascending order
+    std::size_t numbers = 0;      ///< start of its diagonal block, then of the blocks above and left of it
+    std::size_t targets = 0;      ///< start of the list of blocks that its elimination changes
   };
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
   /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
@@ -70,7 +70,7 @@ class MoverSystem {
   void eliminate(const Mover& k);
 
   std::vector<Mover> movers_;
-  std::vector<int> turns_;            // movers in the order of elimination
+  std::vector<int> sequence_;         // movers in the order of elimination
   std::vector<std::size_t> targets_;  // blocks of pairs of neighbours, column by column
   VecX<double> numbers_;              // the entries of A, in the order of elimination
   VecX<double> b_;

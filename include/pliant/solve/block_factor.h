@@ -23,10 +23,10 @@ class BlockFactor {
   /// Sets all blocks to zero. The pattern must outlive the factor. RankRule::keep has an effect only if the
   /// pattern is the previous one; otherwise RankRule::decide applies.
   void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
-    const bool another = pattern_ != &pattern;
+    const bool changed = pattern_ != &pattern;
     pattern_ = &pattern;
     values_.assign(at(pattern.values()), S(0.0));
-    pivots_.clear(pattern.rows(), another && rule == RankRule::keep ? RankRule::decide : rule);
+    pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
   /// Sets the scale of the pivot of a row (see Pivots::measure_by).
   void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
@@ -38,7 +38,7 @@ class BlockFactor {
     for (const BlockPattern::Column& c : pattern_->columns())
       for (int k = 0; k < c.size; ++k)
         pivots_.set_entry(c.row + k, values_[at(c.diagonal + k * (c.size + 1))]);
-    pivots_.take_measures();
+    pivots_.apply_measures();
     for (int place = 0; place < pattern_->first_dense(); ++place) eliminate(pattern_->columns()[at(place)]);
     if (pattern_->dense_rows().empty()) return;
     gather_dense();
@@ -173,7 +173,7 @@ class BlockFactor {
     for (int j = 0; j < n; ++j) {
       S d = A[j * n + j];
       for (int k = 0; k < j; ++k) d -= A[k * n + j] * A[k * n + j] * A[k * n + k];
-      if (!pivots_.take(c.row + j, d)) {
+      if (!pivots_.accept(c.row + j, d)) {
         A[j * n + j] = S(1.0);
         for (int i = j + 1; i < n; ++i) A[j * n + i] = S(0.0);
         continue;

@@ -16,14 +16,14 @@ class CoulombLaw {
   /// W: 3 x 3, symmetric positive definite; rows: normal, then the two tangents. mu: coefficient of friction.
   CoulombLaw(const Mat3<double>& W, double mu);
   /// Returns the impulse p for a velocity b without impulse.
-  Vec3<double> push(const Vec3<double>& b) const;
+  Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  /// Returns the impulse of a sliding contact. p_alone: the normal impulse without friction.
-  Vec3<double> slide(const Vec3<double>& b, double p_alone) const;
+  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction.
+  Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;
-  bool even_ = false;  ///< whether W is a multiple of the identity, for example between two mass points
+  bool isotropic_ = false;  ///< whether W is a multiple of the identity, for example between two mass points
   Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< entries of W between the tangents and the normal
   // Eigenvalues and eigenvectors of A = W_tt - W_tn W_nt / W_nn, the Schur complement of the normal.
   Eigen::Array2d stiffness_ = Eigen::Array2d::Ones();
@@ -33,7 +33,7 @@ class CoulombLaw {
 
 /// Returns the impulse of one contact for W, b and the coefficient of friction mu.
 inline Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
-  return CoulombLaw(W, mu).push(b);
+  return CoulombLaw(W, mu).impulse(b);
 }
 
 }  // namespace pliant

@@ -82,7 +82,7 @@ class CoulombSystem {
 
   /// Returns whether solve() can use the impulse of contact k as a warm start. Valid after solve(). False if
   /// the contact is the only one of its cluster or if the cluster contains points.
-  bool may_warm_start(int k) const { return contacts_[at(k)].begins; }
+  bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
   /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
   /// output. enough: a velocity; smaller violations of the law are accepted. No contact or mover can be added
   /// afterwards.
@@ -103,12 +103,12 @@ class CoulombSystem {
     Vec3<double> c = Vec3<double>::Zero();
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
-    bool begins = false;
+    bool warm_start = false;
   };
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);
   void complete();
-  void keep_seen();
+  void select_used();
   void find_clusters();
   Vec3<double> velocity_at(int k, const std::vector<Term>& of, const VecX<double>& x) const;
   void add_change_to(int k, double factor, const std::vector<Term>& by, VecX<double>& x) const;
@@ -120,9 +120,9 @@ class CoulombSystem {
   std::vector<Vec3<double>> p_;
   // The search uses only the velocities that a side depends on. A large mover (a deformable part, or parts
   // with many joints) has many more velocities than its contacts need.
-  std::vector<int> seen_;         // indices of these velocities in x
-  std::vector<int> seen_movers_;  // index of the first one of each mover, and the end
-  std::vector<Term> seen_sides_, seen_pushes_;
+  std::vector<int> used_;         // indices of these velocities in x
+  std::vector<int> used_movers_;  // index of the first one of each mover, and the end
+  std::vector<Term> used_sides_, used_pushes_;
   VecX<double> x0_, x_;                // their values: without impulses, and with the present impulses
   std::vector<int> order_, clusters_;  // contacts sorted by cluster; start of each cluster, and the end
   bool complete_ = false;

@@ -29,7 +29,7 @@ class DenseFactor {
         for (int k = first; k < j; ++k)
           L_.col(j).tail(n - j) -= scaled_.col(k - first).tail(n - j) * L_(j, k);
         scaled_.col(j - first).tail(below) = L_.col(j).tail(below);
-        if (!pivots.take(row[at(j)], L_(j, j))) scaled_.col(j - first).tail(below).setZero();
+        if (!pivots.accept(row[at(j)], L_(j, j))) scaled_.col(j - first).tail(below).setZero();
         L_.col(j).tail(below) = scaled_.col(j - first).tail(below) * pivots.inverse(row[at(j)]);
       }
       if (last == n) break;

@@ -52,20 +52,20 @@ class Pivots {
   /// Sets the scale of the pivot of a row: its diagonal entry before the elimination.
   void set_entry(int row, const S& entry) { entry_[at(row)] = plain(entry); }
   /// Applies the larger scales of measure_by(). Call it after set_entry() of all rows.
-  void take_measures() {
+  void apply_measures() {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
   }
 
   /// Stores the pivot of a row and returns true; or returns false and excludes the row if the pivot vanishes.
-  bool take(int row, const S& pivot) {
-    const double from = entry_[at(row)], left = plain(pivot);
+  bool accept(int row, const S& pivot) {
+    const double scale = entry_[at(row)], value = plain(pivot);
     // A scale that is not finite excludes no row; the check of the solution for finite numbers finds it.
-    if ((keep_ && held(row)) || (std::isfinite(from) && !(left > vanished_ * from))) {
+    if ((keep_ && held(row)) || (std::isfinite(scale) && !(value > vanished_ * scale))) {
       held_[at(row)] = 1;
       inverse_[at(row)] = S(0.0);
       return false;
     }
-    if (left < smallest_ * from) smallest_ = left / from;
+    if (value < smallest_ * scale) smallest_ = value / scale;
     inverse_[at(row)] = S(1.0) / pivot;
     return true;
   }

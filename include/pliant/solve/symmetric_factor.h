@@ -27,10 +27,10 @@ class SymmetricFactor {
     rows_.resize(n_ * (n_ + 1) / 2);
     S* L = rows_.data();
     for (int i = 0; i < n_; L += ++i) {
-      const S* of_j = rows_.data();
-      for (int j = 0; j < i; of_j += ++j) {
+      const S* row_j = rows_.data();
+      for (int j = 0; j < i; row_j += ++j) {
         S sum = A(i, j);
-        for (int k = 0; k < j; ++k) sum -= L[k] * of_j[k];
+        for (int k = 0; k < j; ++k) sum -= L[k] * row_j[k];
         L[j] = held(j) ? S(0.0) : sum;  // L_ij D_j
       }
       S d = A(i, i);
@@ -42,9 +42,9 @@ class SymmetricFactor {
       }
       const double entry = plain(A(i, i));
       // A NaN excludes no coordinate; the check of the solution for finite numbers finds it.
-      const bool gone = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
-      L[i] = gone ? S(1.0) : S(1.0) / d;
-      if (!gone) continue;
+      const bool vanished = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
+      L[i] = vanished ? S(1.0) : S(1.0) / d;
+      if (!vanished) continue;
       held_.set(static_cast<std::size_t>(i));
       for (int k = 0; k < i; ++k) L[k] = S(0.0);
     }
