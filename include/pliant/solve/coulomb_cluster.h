@@ -6,16 +6,19 @@
 #include <vector>
 
 #include <pliant/solve/coulomb_system.h>
-
-#include "mover_system.h"
+#include <pliant/solve/mover_system.h>
 
 namespace pliant {
+
+namespace detail {
 
 /// A cluster with more contacts than this is large.
 inline constexpr int kManyContacts = 100;
 /// Relative residual of a cluster (in units of the largest initial contact velocity) that is acceptable for a
 /// search that stalls. Above it, the search is repeated with compliant contacts.
-inline constexpr double kAcceptable = 1e-6;
+inline constexpr double kAcceptableResidual = 1e-6;
+
+}  // namespace detail
 
 /// The law of a contact, linearised about its impulse: F + T du + D dp = 0.
 struct LinearContactLaw {
