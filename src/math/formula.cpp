@@ -247,10 +247,10 @@ class Parser {
     product();
     for (;;) {
       const std::size_t place = at_;
-      if (take('+')) {
+      if (accept('+')) {
         product();
         emit({Code::kAdd, 0}, place);
-      } else if (take('-')) {
+      } else if (accept('-')) {
         product();
         emit({Code::kSubtract, 0}, place);
       } else {
@@ -266,10 +266,10 @@ class Parser {
       if (next() == '*' && at_ + 1 < text_.size() && text_[at_ + 1] == '*') {
         throw FormulaError(at_, "unexpected \"**\"; a power is written ^");
       }
-      if (take('*')) {
+      if (accept('*')) {
         unary();
         emit({Code::kMultiply, 0}, place);
-      } else if (take('/')) {
+      } else if (accept('/')) {
         unary();
         emit({Code::kDivide, 0}, place);
       } else {
@@ -282,15 +282,15 @@ class Parser {
     const Level level(this);
     skip_spaces();
     const std::size_t place = at_;
-    if (take('-')) {
+    if (accept('-')) {
       unary();
       emit({Code::kNegate, 0}, place);
-    } else if (take('+')) {
+    } else if (accept('+')) {
       unary();
     } else {
       primary();
       const std::size_t operation = at_;
-      if (take('^')) {
+      if (accept('^')) {
         unary();
         emit_power(operation);
       }
@@ -304,7 +304,7 @@ class Parser {
       number();
     } else if (is_letter(c)) {
       name();
-    } else if (take('(')) {
+    } else if (accept('(')) {
       const std::size_t opening = at_ - 1;
       sum();
       close(opening);
@@ -338,7 +338,7 @@ class Parser {
     }
     for (const Entry& entry : kFunctions) {
       if (word == entry.name) {
-        if (!call) throw FormulaError(at_, "expected \"(\" after \"" + word + "\"" + but_found());
+        if (!call) throw FormulaError(at_, "expected \"(\" after \"" + word + "\"" + found_instead());
         return arguments_of(entry, begin);
       }
     }
@@ -354,10 +354,10 @@ class Parser {
 
   void arguments_of(const Entry& entry, std::size_t place) {
     const std::size_t opening = at_;
-    take('(');
+    accept('(');
     const int wanted = arguments(entry.code);
     for (int i = 0; i < wanted; ++i) {
-      if (i > 0 && !take(',')) {
+      if (i > 0 && !accept(',')) {
         if (next() == ')') throw FormulaError(at_, expects(entry) + ", found " + std::to_string(i));
         fault_expected("\",\" before the next argument of \"" + std::string(entry.name) + "\"");
       }
@@ -375,7 +375,7 @@ class Parser {
   }
 
   void close(std::size_t opening) {
-    if (take(')')) return;
+    if (accept(')')) return;
     if (at_ >= text_.size()) {
       throw FormulaError(at_, "expected \")\" for the \"(\" at character " + std::to_string(opening + 1));
     }
@@ -419,13 +419,13 @@ class Parser {
     skip_spaces();
     return at_ < text_.size() ? text_[at_] : '\0';
   }
-  bool take(char c) {
+  bool accept(char c) {
     if (next() != c || at_ >= text_.size()) return false;
     ++at_;
     return true;
   }
 
-  std::string but_found() {
+  std::string found_instead() {
     next();
     if (at_ >= text_.size()) return ", but the formula ends here";
     std::size_t length = 1;  // bytes of one UTF-8 character
@@ -434,13 +434,13 @@ class Parser {
     return ", found \"" + std::string(text_.substr(at_, length)) + "\"";
   }
   [[noreturn]] void fault_expected(const std::string& what) {
-    const std::string found = but_found();
+    const std::string found = found_instead();
     throw FormulaError(at_, "expected " + what + found);
   }
   [[noreturn]] void fault_after_operand() {
     const char c = next();
     const bool product = is_letter(c) || is_digit(c) || c == '(';
-    const std::string found = but_found();
+    const std::string found = found_instead();
     if (c == ')' && depth_ == 0) throw FormulaError(at_, "\")\" without its \"(\"");
     throw FormulaError(at_, std::string("expected an operator ") + (depth_ > 0 ? "or \")\"" : "or the end") +
                                 found + (product ? "; a product is written with *" : ""));

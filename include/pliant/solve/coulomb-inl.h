@@ -19,7 +19,7 @@ inline constexpr int kMaxSlideIterations = 200;
 inline constexpr double kSlideRateGrowth = 16;
 /// Relative difference of two rates of sliding below which the iteration ends.
 inline constexpr double kSameSlideRate = 2 * std::numeric_limits<double>::epsilon();
-/// Relative difference of W from a multiple of the identity below which it counts as one.
+/// Relative difference below which W is treated as a multiple of the identity.
 inline constexpr double kIsotropicContact = 1e-11;
 }  // namespace detail
 

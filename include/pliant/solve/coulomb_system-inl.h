@@ -88,12 +88,12 @@ PLIANT_INLINE Vec3<double> CoulombSystem::velocity(int k, const VecX<double>& x)
   return velocity_at(k, sides_, x);
 }
 
-PLIANT_INLINE Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& of,
+PLIANT_INLINE Vec3<double> CoulombSystem::velocity_at(int k, const std::vector<Term>& terms,
                                                       const VecX<double>& x) const {
   const Point& point = contacts_[at(k)];
   Vec3<double> u = point.c;
   for (int s = point.first_side; s < point.last_side; ++s) {
-    const Term& side = of[at(s)];
+    const Term& side = terms[at(s)];
     const double* J = numbers_.data() + side.numbers;
     if (side.size == 3)
       u.noalias() += Eigen::Map<const Mat3<double>>(J) * x.segment<3>(side.first);
@@ -109,11 +109,11 @@ PLIANT_INLINE void CoulombSystem::add_change(int k, double factor, VecX<double>&
   add_change_to(k, factor, pushes_, x);
 }
 
-PLIANT_INLINE void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& by,
+PLIANT_INLINE void CoulombSystem::add_change_to(int k, double factor, const std::vector<Term>& terms,
                                                 VecX<double>& x) const {
   const Vec3<double> p = factor * p_[at(k)];
   for (int r = contacts_[at(k)].first_push; r < contacts_[at(k)].last_push; ++r) {
-    const Term& push = by[at(r)];
+    const Term& push = terms[at(r)];
     x.segment(push.first, push.size).noalias() +=
         Eigen::Map<const MatX<double>>(numbers_.data() + push.numbers, push.size, 3) * p;
   }

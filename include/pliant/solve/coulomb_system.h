@@ -110,8 +110,8 @@ class CoulombSystem {
   void complete();
   void select_used();
   void find_clusters();
-  Vec3<double> velocity_at(int k, const std::vector<Term>& of, const VecX<double>& x) const;
-  void add_change_to(int k, double factor, const std::vector<Term>& by, VecX<double>& x) const;
+  Vec3<double> velocity_at(int k, const std::vector<Term>& terms, const VecX<double>& x) const;
+  void add_change_to(int k, double factor, const std::vector<Term>& terms, VecX<double>& x) const;
 
   std::vector<int> movers_{0};  // first velocity of each mover in x, and the end
   std::vector<Point> contacts_;

@@ -17,7 +17,8 @@ struct JointSolver {
   /// Factorisation of the augmented matrix. Implicit methods of integration use it for the stiffness of nodes
   /// too.
   MakeSparseFactor make_factor = make_eigen_factor;
-  /// A fill-reducing order for the blocks; the cheaper one of it and the cardinality search is used.
+  /// A fill-reducing order for the blocks. The solver compares it with the cardinality search and uses the
+  /// cheaper one.
   NodeOrder order = minimum_degree_order;
 };
 
