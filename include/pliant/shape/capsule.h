@@ -5,6 +5,8 @@
 //   cap   (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
 #pragma once
 
+#include <cmath>
+
 #include <pliant/shape/shape.h>
 
 namespace pliant {
@@ -61,5 +63,35 @@ struct Capsule {
   static Section section(double zeta, double gap, const Vec<double, 2>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 2>& a);
 };
+
+inline Material<double> Capsule::label(const Vec3<double>& x, const Vec<double, 2>& a) {
+  const double w = gauge<double>(x, a), half = a[1] / 2;
+  const double ring = std::hypot(x[0], x[1]);
+  if (w == 0) return material_from(0, 1, 1, 0, 0);
+  const double cv = ring > 0 ? x[0] / ring : 1.0, sv = ring > 0 ? x[1] / ring : 0.0;
+  const double z = x[2] / w;
+  if (std::abs(z) <= half) {
+    const double size = std::hypot(1.0, z / half);
+    return material_from(1 / size, z / half / size, cv, sv, w);
+  }
+  const double polar = std::atan2(ring / w, std::abs(z) - half) / 2;
+  return material_from(std::sin(polar), std::copysign(std::cos(polar), z), cv, sv, w);
+}
+inline std::vector<Panel> Capsule::profile(const Vec<double, 2>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Capsule::ring(const Vec<double, 2>&, bool) {
+  return detail::round_ring();
+}
+inline Section Capsule::section(double zeta, double gap, const Vec<double, 2>& a) {
+  const double h = a[0] + a[1] / 2, from_end = gap * h;  // distance from the pole
+  const double beyond = std::abs(zeta) * h - a[1] / 2;
+  const double r2 = beyond > 0 ? from_end * (a[0] + beyond) : a[0] * a[0];
+  return {kPi * r2, r2 / 4, r2 / 4};
+}
+inline std::vector<SectionPanel> Capsule::section_panels(const Vec<double, 2>& a) {
+  const double rim = a[1] / 2 / (a[0] + a[1] / 2);
+  return {{-1, -rim, false}, {-rim, rim, false}, {rim, 1, false}};
+}
 
 }  // namespace pliant

@@ -3,6 +3,8 @@
 //   e = w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z)
 #pragma once
 
+#include <cmath>
+
 #include <pliant/shape/cylinder.h>
 
 namespace pliant {
@@ -46,5 +48,37 @@ struct Cone {
   static Section section(double zeta, double gap, const Vec<double, 4>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 4>& a);
 };
+
+inline Material<double> Cone::label(const Vec3<double>& x, const Vec<double, 4>& a) {
+  const double w = gauge<double>(x, a);
+  if (w == 0) return material_from(0, 1, 1, 0, 0);
+  const double z = x[2] / (a[2] * w), width = 1 + a[3] * z;
+  const double narrow = width > 1e-14 ? 1 / (width * w) : 0.0;
+  return material_towards({x[0] / a[0] * narrow, x[1] / a[1] * narrow, z}, w);
+}
+inline Material<double> Cone::mesh_label(const Vec3<double>& g, const Vec<double, 4>& a) {
+  const double ring = std::hypot(g[0], g[1]);
+  const double tip = a[3] == -1 ? 1.0 : -1.0;
+  if (std::abs(a[3]) != 1 || ring == 0 || tip * g[2] <= -ring) return material_towards(g);
+  // Map the latitudes from the rim (-45 degrees) to the tip (90 degrees) linearly to z.
+  const double rise = (std::atan2(tip * g[2], ring) + detail::kRimAngle) / (3 * detail::kRimAngle);
+  const double k = tip * (2 * rise - 1), size = std::hypot(1.0, k);
+  return material_from(1 / size, k / size, g[0] / ring, g[1] / ring);
+}
+inline std::vector<Panel> Cone::profile(const Vec<double, 4>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Cone::ring(const Vec<double, 4>&, bool) {
+  return detail::round_ring();
+}
+inline Section Cone::section(double zeta, double gap, const Vec<double, 4>& a) {
+  // width = 1 + t zeta, without cancellation at the tip.
+  const double end = zeta < 0 ? -1.0 : 1.0;
+  const double width = (1 + a[3] * end) - a[3] * end * gap, width2 = width * width;
+  return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
+}
+inline std::vector<SectionPanel> Cone::section_panels(const Vec<double, 4>&) {
+  return {{-1, 1, false}};
+}
 
 }  // namespace pliant

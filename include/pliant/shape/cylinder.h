@@ -49,4 +49,20 @@ struct Cylinder {
   static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
 };
 
+inline Material<double> Cylinder::label(const Vec3<double>& x, const Vec<double, 3>& a) {
+  return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
+}
+inline std::vector<Panel> Cylinder::profile(const Vec<double, 3>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Cylinder::ring(const Vec<double, 3>&, bool) {
+  return detail::round_ring();
+}
+inline Section Cylinder::section(double, double, const Vec<double, 3>& a) {
+  return {kPi * a[0] * a[1], a[0] * a[0] / 4, a[1] * a[1] / 4};
+}
+inline std::vector<SectionPanel> Cylinder::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
+
 }  // namespace pliant

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include <pliant/math/scalar/functions.h>
+
 namespace pliant {
 
 /// An interval of an angle (u or v).
@@ -32,5 +34,24 @@ struct SectionPanel {
   double from, to;
   bool singular;  ///< true: algebraic singularities at the ends (tanh-sinh); false: analytic (Gauss)
 };
+
+namespace detail {
+
+/// Latitudes (rad) of the rims of a cylinder and of the poles.
+inline constexpr double kRimAngle = kPi / 4, kPoleAngle = kPi / 2;
+
+/// Returns the profile panels of shapes with rims.
+inline std::vector<Panel> rimmed_profile() {
+  using K = Panel::Kind;
+  return {{K::smooth, -kPoleAngle, -kRimAngle},
+          {K::smooth, -kRimAngle, kRimAngle},
+          {K::smooth, kRimAngle, kPoleAngle}};
+}
+/// Returns the ring panel of shapes with elliptic sections.
+inline std::vector<Panel> round_ring() {
+  return {{Panel::Kind::periodic, 0, 2 * kPi}};
+}
+
+}  // namespace detail
 
 }  // namespace pliant

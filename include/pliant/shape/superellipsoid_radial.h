@@ -52,4 +52,15 @@ struct SuperellipsoidRadial {
   }
 };
 
+inline Material<double> SuperellipsoidRadial::label(const Vec3<double>& x, const Vec<double, 5>& a) {
+  return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
+}
+
+inline Material<double> SuperellipsoidRadial::mesh_label(const Vec3<double>& g, const Vec<double, 5>& a) {
+  Vec<double, 5> unit = a;
+  unit.head<3>().setOnes();
+  const Vec3<double> x = Superellipsoid::e<double>(Superellipsoid::mesh_label(g, unit), unit);
+  return material_towards(x);
+}
+
 }  // namespace pliant
