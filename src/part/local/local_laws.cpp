@@ -22,7 +22,7 @@ using Energy = std::unique_ptr<NodalEnergy>;
 const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
 const Number kPoissonShell{"nu", "1", "Poisson's ratio.", -1, true, 0.3, 0.5};
 const Number kPoissonSolid{"nu", "1", "Poisson's ratio, below 1/2.", -1, true, 0.3, 0.4999999};
-const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
+const Number kThickness{"thickness", "m", "Thickness of the sheet.", 0, true};
 
 ShellMesh shell(const LocalMesh& mesh) {
   return ShellMesh(mesh.X, mesh.triangles);
@@ -57,12 +57,12 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        },
        true},
       {"st_venant_kirchhoff_membrane",
-       "A thin sheet that resists stretch from rest to now, by any rotation.",
+       "A thin sheet that resists stretch from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
        lay_membrane<StVenantKirchhoffSheet>},
       {"neo_hookean_membrane",
-       "A rubber sheet that resists stretch from rest to now, by any rotation.",
+       "A rubber sheet that resists stretch from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
        lay_membrane<NeoHookeanSheet>},
@@ -71,16 +71,16 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        "area.",
        true,
        {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0},
-        {"w1", "N/m", "Resists its variation.", 0, false}},
+        {"w1", "N/m", "Resists the variation of d.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
        },
        true},
       {"loaded_membrane_uv",
-       "The same as published, over the rectangle of the parameters u and v: stiffer towards poles.",
+       "The membrane of Terzopoulos & Metaxas 1991 over the rectangle of the parameters u and v, as published: stiffer towards poles.",
        true,
        {{"w0", "N/m", "Resists the size of d.", 0, false, 0.0},
-        {"w1", "N/m", "Resists its variation.", 0, false}},
+        {"w1", "N/m", "Resists the variation of d.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(parameter_mesh(mesh), Load{values[0], values[1]});
        },
@@ -92,22 +92,22 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        lay_bending<LinearHinges>,
        true},
       {"folding",
-       "A thin sheet that resists bending from rest to now, by any rotation.",
+       "A thin sheet that resists bending from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
        lay_bending<FoldingHinges>},
       {"pressure",
-       "A constant pressure in the shell, more than outside.",
+       "A constant excess pressure in the shell.",
        true,
-       {{"p", "Pa", "Inside less outside.", -std::numeric_limits<double>::infinity(), true}},
+       {{"p", "Pa", "Pressure inside minus pressure outside.", -std::numeric_limits<double>::infinity(), true}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<ConstantPressure>(shell(mesh), values[0]);
        }},
       {"gas",
-       "A gas in the shell: p V^gamma stays.",
+       "A gas in the shell: p V^gamma is constant.",
        true,
        {{"p0", "Pa", "Pressure in the shell at rest.", 0, false},
-        {"gamma", "1", "Ratio of its specific heats; 1: at constant temperature.", 1, false, 1.4},
+        {"gamma", "1", "Ratio of the specific heats of the gas; 1 means constant temperature.", 1, false, 1.4},
         {"p_ext", "Pa", "Pressure outside.", 0, false, 0.0}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          VecX<double> X(3 * mesh.X.rows());
@@ -122,18 +122,18 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        lay_solid<SolidLaw::linear>,
        true},
       {"elastic_averaged",
-       "The same with the dilatation averaged around nodes: it does not lock where nu is near 1/2.",
+       "Linear elasticity with the dilatation averaged around nodes, which does not lock for nu near 1/2.",
        false,
        {kYoung, kPoissonSolid},
        lay_solid<SolidLaw::averaged_linear>,
        true},
       {"st_venant_kirchhoff",
-       "St. Venant-Kirchhoff elasticity from rest to now, by any rotation.",
+       "St. Venant-Kirchhoff elasticity from rest to now, for any rotation.",
        false,
        {kYoung, kPoissonSolid},
        lay_solid<SolidLaw::st_venant_kirchhoff>},
       {"neo_hookean",
-       "Rubber from rest to now, by any rotation.",
+       "Rubber from rest to now, for any rotation.",
        false,
        {kYoung, kPoissonSolid},
        lay_solid<SolidLaw::neo_hookean>},

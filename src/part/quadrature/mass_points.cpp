@@ -180,8 +180,8 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
 
 MassPoints place_mass_points(const Part& part, int doublings) {
   const RestShape shape(part);
-  refuse_folds(part, shape.rest, "rest");
-  if (part.n_s() > 0) refuse_folds(part, initial_values(part), "initial");
+  throw_if_folded(part, shape.rest, "rest");
+  if (part.n_s() > 0) throw_if_folded(part, initial_values(part), "initial");
   const MassIntegrands integrands(shape);
   const bool affine = shape.follows == Follows::affine;
   Laid laid = shape.by_sections ? lay_slices(shape, integrands, 2 * doublings)

@@ -1,4 +1,4 @@
-#include "strain_rule.h"
+#include <pliant/part/quadrature/strain_rule.h>
 
 #include <cmath>
 #include <sstream>
@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "part/strain.h"
+#include <pliant/part/strain.h>
 #include "rule_search.h"
 
 namespace pliant {
