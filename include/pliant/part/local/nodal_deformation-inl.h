@@ -1,49 +1,54 @@
-#include <pliant/part/local/nodal_deformation.h>
+// Bodies of NodalDeformation: construction, names and sizes of its coordinates.
+#pragma once
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
+#include <string>
 
-#include "part/quadrature/store_jets.h"
+#include <pliant/math/header_only.h>
+#include <pliant/part/local/nodal_deformation.h>
+#include <pliant/part/store_jets.h>
 
 namespace pliant {
 
-double NodalWorkspace::condition() const {
-  // A unit triangle times pivots none of which is small is far from singular.
-  constexpr double clear = 1e-3;
+PLIANT_INLINE double NodalWorkspace::condition() const {
+  // The smallest pivot is a cheap estimate of 1 / condition, which suffices if it is not small.
+  constexpr double clearly_regular = 1e-3;
   return std::visit(
       [](const auto& lu) {
         const double pivot = lu.matrixLU().diagonal().cwiseAbs().minCoeff();
-        return 1 / (pivot > clear ? pivot : lu.rcond());
+        return 1 / (pivot > clearly_regular ? pivot : lu.rcond());
       },
       factor);
 }
 
-NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)
+PLIANT_INLINE NodalDeformation::NodalDeformation(const Part& part, const LocalSettings& settings)
     : LocalDeformation(settings.alpha, settings.beta) {
   mesh_ = make_local_mesh(part, settings);
   packs_ = packs_of(mesh_.nodes);
-  LaidEnergies laid = lay_energies(part, settings, mesh_);
-  energies_ = std::move(laid.all);
+  MeshEnergies energies = make_mesh_energies(part, settings, mesh_);
+  energies_ = std::move(energies.all);
   for (const LocalLaw& law : settings.energies) laws_ += (laws_.empty() ? "" : ", ") + law.name;
-  const VecX<double>& own = laid.own_inertia;
+  const VecX<double>& own = energies.own_inertia;
   for (const auto& energy : energies_)
     of_positions_ = of_positions_ || energy->of() == NodalEnergy::Of::position;
   inertia_.resize(3 * n_nodes() + own.size());
   inertia_ << mesh_.mass, mesh_.mass, mesh_.mass, own;
   mobility_ = inertia_.cwiseInverse();
-  if (part.linear()) linear_ = lay_linear(part);
-  auto at_nodes = [&](const std::function<Vec3<double>(const Vec3<double>&)>& of) {
+  if (part.linear()) linear_ = make_linear(part);
+  auto coordinates = [&](const std::function<Vec3<double>(const Vec3<double>&)>& field) {
     VecX<double> values = VecX<double>::Zero(inertia_.size());
-    for (Eigen::Index k = 0; of && k < n_nodes(); ++k)
-      nodes(values, n_nodes()).row(k) = of(mesh_.X.row(k).transpose()).transpose();
+    for (Eigen::Index k = 0; field && k < n_nodes(); ++k)
+      nodes(values, n_nodes()).row(k) = field(mesh_.X.row(k).transpose()).transpose();
     return values;
   };
-  initial_ = at_nodes(settings.displacement);
-  initial_rate_ = at_nodes(settings.velocity);
+  initial_ = coordinates(settings.displacement);
+  initial_rate_ = coordinates(settings.velocity);
   check_start(part, nodes(initial_, n_nodes()), initial_rate_);
 }
 
-NodalDeformation::Linear NodalDeformation::lay_linear(const Part& part) const {
+PLIANT_INLINE NodalDeformation::Linear NodalDeformation::make_linear(const Part& part) const {
   const int n_s = part.parameters().n_dynamic();
   const Eigen::Index n = n_nodes();
   const VecMax<double> zero = VecMax<double>::Zero(n_s);
@@ -59,23 +64,23 @@ NodalDeformation::Linear NodalDeformation::lay_linear(const Part& part) const {
   return linear;
 }
 
-bool NodalDeformation::stiffness_is_constant() const {
+PLIANT_INLINE bool NodalDeformation::stiffness_is_constant() const {
   return std::all_of(energies_.begin(), energies_.end(),
                      [](const auto& energy) { return energy->of() == NodalEnergy::Of::displacement; });
 }
 
-std::string NodalDeformation::coordinate_name(Eigen::Index k) const {
+PLIANT_INLINE std::string NodalDeformation::coordinate_name(Eigen::Index k) const {
   const Eigen::Index n = n_nodes();
   if (k >= 3 * n) return "own[" + std::to_string(k - 3 * n) + "]";
   return "d[" + std::to_string(k % n) + "]." + "xyz"[k / n];
 }
 
-const char* NodalDeformation::unit(Eigen::Index k) const {
+PLIANT_INLINE const char* NodalDeformation::unit(Eigen::Index k) const {
   return k < 3 * n_nodes() ? "m" : "1";
 }
 
-double NodalDeformation::cost() const {
-  // Nodes and triangles as bench/soft_step_bench measures them; the others are estimates.
+PLIANT_INLINE double NodalDeformation::cost() const {
+  // Microseconds. bench/soft_step_bench measures those of nodes and triangles; the others are estimates.
   constexpr double node = 0.02, triangle = 0.008, tetrahedron = 0.02, curved = 0.15;
   const LocalMesh& m = mesh();
   const double elements = m.shell() ? triangle * static_cast<double>(m.triangles.cols())
@@ -84,26 +89,27 @@ double NodalDeformation::cost() const {
   return node * static_cast<double>(n_nodes()) + static_cast<double>(energies_.size()) * elements;
 }
 
-std::string NodalDeformation::description() const {
+PLIANT_INLINE std::string NodalDeformation::description() const {
   const std::string elements = mesh().shell() ? std::to_string(mesh().triangles.cols()) + " triangles"
                                               : std::to_string(mesh().tetrahedra.cols()) + " tetrahedra";
   return std::to_string(n_d()) + " local, of " + std::to_string(n_nodes()) + " nodes and " + elements +
          "; laws: " + laws_;
 }
 
-NodeWeights NodalDeformation::weights(const Part& part, const Material<double>& m) const {
+PLIANT_INLINE NodeWeights NodalDeformation::weights(const Part& part, const Material<double>& m) const {
   return mesh_weights(part, mesh_, m);
 }
 
-Eigen::Map<const Nodes> NodalDeformation::at_nodes(const double* q_d, VecX<double>&) const {
+PLIANT_INLINE Eigen::Map<const Nodes> NodalDeformation::at_nodes(const double* q_d, VecX<double>&) const {
   return {q_d, n_nodes(), 3};
 }
 
-Nodes NodalDeformation::displacements(const double* q_d) const {
+PLIANT_INLINE Nodes NodalDeformation::displacements(const double* q_d) const {
   return Eigen::Map<const Nodes>(q_d, n_nodes(), 3);
 }
 
-Eigen::Matrix3Xd NodalDeformation::displacements(const double* q_d, const std::vector<int>& nodes) const {
+PLIANT_INLINE Eigen::Matrix3Xd NodalDeformation::displacements(const double* q_d,
+                                                               const std::vector<int>& nodes) const {
   const Eigen::Map<const Nodes> d(q_d, n_nodes(), 3);
   Eigen::Matrix3Xd some(3, static_cast<Eigen::Index>(nodes.size()));
   for (Eigen::Index k = 0; k < some.cols(); ++k)
@@ -111,7 +117,7 @@ Eigen::Matrix3Xd NodalDeformation::displacements(const double* q_d, const std::v
   return some;
 }
 
-std::unique_ptr<LocalWorkspace> NodalDeformation::workspace() const {
+PLIANT_INLINE std::unique_ptr<LocalWorkspace> NodalDeformation::workspace() const {
   return std::make_unique<NodalWorkspace>();
 }
 
