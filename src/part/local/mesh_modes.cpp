@@ -169,7 +169,7 @@ MatX<double> lowest_modes(const MeshProblem& problem, const MeshElasticity& elas
                           const MatX<double>& Q) {
   const Eigen::Index n = elasticity.mass.size(), count = problem.count();
   if (n <= kDense || 4 * count > n) return lowest_of_all(elasticity, Q, count);
-  constexpr double kTolerance = 1e-13;
+  constexpr double kEigenTolerance = 1e-13;
   constexpr int kMaxIterations = 1000;
   const double sigma = shift_of(problem.mesh, elasticity, Q);
   Flexibility flexibility(elasticity, Q, sigma, problem.settings.make_factor);
@@ -178,7 +178,7 @@ MatX<double> lowest_modes(const MeshProblem& problem, const MeshElasticity& elas
         problem.part_name + "its stiffness matrix is not positive definite, so its modes cannot be found");
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, std::min(n, 2 * count + 20));
   solver.init();
-  solver.compute(Spectra::SortRule::LargestAlge, kMaxIterations, kTolerance);
+  solver.compute(Spectra::SortRule::LargestAlge, kMaxIterations, kEigenTolerance);
   if (solver.info() != Spectra::CompInfo::Successful)
     throw std::invalid_argument(problem.part_name + "the eigenvalue search found only " +
                                 std::to_string(solver.eigenvalues().size()) + " of its " +

@@ -46,8 +46,8 @@ Eigen::Matrix4Xd linear_functions(const Patch& patch, const Nodes& X, const Vec3
 }  // namespace
 
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius) {
-  constexpr int kMinNodes = 5;
-  constexpr double kFlat = 1e-10;      // rank threshold for a patch without thickness
+  constexpr int kMinPatchNodes = 5;
+  constexpr double kFlatPatch = 1e-10;      // rank threshold for a patch without thickness
   constexpr double kMaxWeightSum = 4;  // of |w|; a larger sum means that few nodes pull against each other
   const NodeWeights element = mesh_weights(part, mesh, m);
   if (element.node.empty()) return element;
@@ -57,12 +57,12 @@ NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Materia
   // The mean of a patch of a curved surface is off the surface. All nodes around correct it: they extend
   // across the surface, so that the correction is small.
   const Patch around = mesh.shell() || !on_surface ? patch : patch_around(mesh.X, centre, radius, mesh.mass);
-  if (static_cast<int>(patch.node.size()) < kMinNodes) return element;
+  if (static_cast<int>(patch.node.size()) < kMinPatchNodes) return element;
   const Eigen::Matrix4Xd f = linear_functions(patch, mesh.X, centre, radius),
                          g = linear_functions(around, mesh.X, centre, radius);
   const Eigen::Vector4d missing = Eigen::Vector4d::Unit(0) - f * patch.weight;
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
-  solver.setThreshold(kFlat);
+  solver.setThreshold(kFlatPatch);
   solver.compute(g * around.weight.asDiagonal() * g.transpose());
   VecX<double> w = VecX<double>::Zero(mesh.X.rows());
   const VecX<double> change = around.weight.asDiagonal() * (g.transpose() * solver.solve(missing));
