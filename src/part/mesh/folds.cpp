@@ -1,3 +1,4 @@
+// Folds of the deformation.
 #include <pliant/part/mesh/folds.h>
 
 #include <stdexcept>

@@ -1,20 +1,21 @@
-// Folds: a deformation that is too strong for the body turns some of the body inside out. The determinant of the gradient
-// of the chain is negative there. The determinants of the deformations are extreme on the surface, so the surface is
-// sampled.
+// Folds: a deformation that is too strong for the body turns some of the body inside out. The determinant of
+// the gradient of the chain is negative there. The determinants of the deformations are extreme on the
+// surface, so the surface is sampled.
 #pragma once
 
 #include <pliant/part/part.h>
 
 namespace pliant {
 
-/// Returns the smallest determinant of the gradient of the chain over a sample of the surface. It is 1 where the chain
-/// keeps volume, 0 at the tip of a full taper, and negative where the chain folds the body over.
+/// Returns the smallest determinant of the gradient of the chain over a sample of the surface. It is 1 where
+/// the chain keeps volume, 0 at the tip of a full taper, and negative where the chain folds the body over.
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
 /// Returns whether some of the surface is turned inside out.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
-/// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the message.
+/// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the
+/// message.
 void throw_if_folded(const Part& part, const ParameterValues<double>& values, const char* which);
 /// Throws the error of throw_if_folded().
 [[noreturn]] void throw_folded(const Part& part, const char* which);
