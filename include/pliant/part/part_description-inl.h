@@ -15,7 +15,7 @@ namespace pliant {
 
 namespace detail {
 
-/// The shortest of 6 or 17 digits that reads back as the same number.
+/// Returns a number with 6 digits if they read back exactly, else with 17.
 inline std::string part_text(double x) {
   std::ostringstream out;
   out.precision(17);

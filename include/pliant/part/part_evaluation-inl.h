@@ -121,7 +121,8 @@ PLIANT_INLINE Vec3<double> PartEvaluation::preimage(const Vec3<double>& p,
   const double* a = values.b.data();
   const double h = shape().half_height(a);
   if (parameters().all_links().empty() || std::abs(e[2]) < (1 - detail::kBelowTip) * h) return e;
-  // At the end of the body: where a whole section is drawn into p, its point on the surface stands for it.
+  // p is at an end of the body. If the chain maps the whole section there to p, return its point on the
+  // surface.
   const Vec3<double> end = shape().e(material_at(std::copysign(kPi / 2, e[2]), 0), a);
   Jet<Pack> jet;
   for (int r = 0; r < 3; ++r) jet.s[r] = Pack(end[r]);

@@ -66,7 +66,7 @@ class PartEvaluation : public PartDescription {
 
   // The kernels, for batches of material points. Primitive implements them.
 
-  /// Computes position, J and rates of material points, as far as the level of the batch asks for them.
+  /// Computes position, J and rates of material points, up to the level of the batch.
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
   /// Computes them with their derivatives along the dual parts of the values and of the material points.

@@ -47,6 +47,7 @@ Energy solid_energy(const LocalMesh& mesh, const double* values) {
 
 }  // namespace
 
+// This function is long because it is the table of all laws.
 const std::vector<LocalLawInfo>& all_local_laws() {
   static const std::vector<LocalLawInfo> all{
       {"membrane",

@@ -160,7 +160,7 @@ struct MeshProblem {
   std::string part_name = "part '" + part.name() + "': ";
 
   Eigen::Index count() const { return settings.modes; }
-  /// Throws std::invalid_argument if there are too few or too many modes or nodes.
+  /// Throws std::invalid_argument for too few or too many modes or nodes.
   void check_size() const;
 };
 

@@ -47,8 +47,8 @@ Eigen::Matrix4Xd linear_functions(const Patch& patch, const Nodes& X, const Vec3
 
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius) {
   constexpr int kMinPatchNodes = 5;
-  constexpr double kFlatPatch = 1e-10;      // rank threshold for a patch without thickness
-  constexpr double kMaxWeightSum = 4;  // of |w|; a larger sum means that few nodes pull against each other
+  constexpr double kFlatPatch = 1e-10;  // rank threshold for a patch without thickness
+  constexpr double kMaxWeightSum = 4;   // of |w|; a larger sum means that few nodes pull against each other
   const NodeWeights element = mesh_weights(part, mesh, m);
   if (element.node.empty()) return element;
   const Vec3<double> centre = part.s({m}, part.parameters().rest()).col(0);

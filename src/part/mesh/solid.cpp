@@ -93,7 +93,7 @@ Corners ball_corners(const Labels& label, const Surface& surface, int m) {
 
 /// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
 /// triangle are directed from its first node to the second and third, and from the second to the third: along
-/// rings by increasing angle, else inwards. The surface cuts the sides of prisms in the same directions.
+/// rings by increasing angle, else inwards. The surface cuts the sides of prisms in these directions as well.
 struct TubeSection {
   struct Node {
     int ring, step;  ///< n and the number in the ring; ring 0 is the middle

@@ -44,7 +44,7 @@ struct PlaneMoments {
     xy += mass * px * py;
     yy += mass * py * py;
   }
-  /// Returns three points that, with equal masses, have the same centre and second moments.
+  /// Returns three points that, with equal masses, have this centre and these second moments.
   std::array<Eigen::Vector2d, 3> points() const {
     const double cx = x / m, cy = y / m;
     Eigen::Matrix2d spread;

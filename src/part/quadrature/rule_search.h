@@ -1,5 +1,5 @@
 // The search for a quadrature rule over the rest shape of a part: along each direction the nodes are doubled
-// until no integral changes, then thinned to as few as give the same integrals. Both are judged by integrands
+// until no integral changes, then thinned to as few as give equal integrals. Both are judged by integrands
 // at states spread over the ranges of the dynamic parameters, and at places spread over the other directions.
 // A class Integrands defines them:
 //   subject         "mass matrix", for messages
@@ -185,8 +185,8 @@ inline void remove_massless(std::vector<RestPoint>& points) {
                points.end());
 }
 
-/// Maximum number of nodes to thin. The time of thinning grows with their cube; beyond, it exceeds what most
-/// runs save.
+/// Maximum number of nodes to thin. The time of thinning grows with their cube; beyond this number it exceeds
+/// the time that most runs save.
 inline constexpr std::size_t kMaxThinned = 600;
 
 /// A ring of material points.

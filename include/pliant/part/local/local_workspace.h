@@ -1,5 +1,5 @@
-// The workspace of a local deformation: what an evaluation recomputes, in the order of its stages. Each
-// choice of the basis S adds fields in a derived type.
+// The workspace of a local deformation: the quantities that an evaluation recomputes, in the order of its
+// stages. Each choice of the basis S adds fields in a derived type.
 #pragma once
 
 #include <bitset>

@@ -51,7 +51,7 @@ inline MatMax<double> inertia_at_positions(const double* at_s, const double* mas
   return H.selfadjointView<Eigen::Lower>();
 }
 
-/// Computes the positions p = s + d of nodes and, in the same pass, sum m d and sum m d s^T.
+/// Computes the positions p = s + d of nodes and, in one pass, sum m d and sum m d s^T.
 inline void place_nodes(const double* mass, Eigen::Index n, NodalWorkspace& w) {
   using namespace node_sums;
   VectorSum md;
