@@ -102,7 +102,7 @@ void masses(const PartModel& m, PartWorkspace<S>& w) {
     }
   if constexpr (std::is_same_v<S, double>)
     if (w.rigid == &m) return Part::rigid_force(omega, w.inertia, w.counters);
-  m.part->inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
+  m.part->evaluate_inertia(w.q_s, w.q_s_dot, omega, w.inertia, w.counters);
 }
 
 // elasticity and damping of the global parameters of a part

@@ -1,5 +1,4 @@
-// Makes a part of the shape number I of AllShapes. Each is defined in a file of its own
-// (primitive_instance.cpp.in).
+// The factory of parts by the number of their shape.
 #pragma once
 
 #include <memory>
@@ -11,6 +10,8 @@
 
 namespace pliant {
 
+/// Makes a part of shape number I of AllShapes. CMake generates one source file for each I from
+/// primitive_instance.cpp.in.
 template <int I>
 std::unique_ptr<Part> make_primitive(std::string name, double density, AnyChain chain);
 

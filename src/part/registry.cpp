@@ -1,3 +1,4 @@
+// The registry of shapes and deformations.
 #include <pliant/part/registry.h>
 
 #include <stdexcept>

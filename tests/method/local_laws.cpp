@@ -88,7 +88,7 @@ TEST_CASE("damping of every law: K x_dot about rest, nothing of rigid motion, ne
     Part& part = tumbling(body, law, 0);
     const Model model(body);
     const LocalMesh& mesh = part.local()->mesh();
-    const auto energy = local_law(law.name, numbers(law)).lay(mesh);
+    const auto energy = local_law(law.name, numbers(law)).make_energy(mesh);
     const bool of_position = energy->of() == NodalEnergy::Of::position;
     const Eigen::Index n = mesh.X.rows(), own = energy->own_inertia().size();
     NodalEnergy::Buffer buffer;

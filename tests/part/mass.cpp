@@ -40,7 +40,7 @@ std::unique_ptr<Part> rigid(const std::string& shape, const Part::Named& values,
 Inertia<double> at(const Part& part, const test::RandomState& state) {
   Inertia<double> I;
   Counters counters;
-  part.inertia(state.q_s, state.q_s_dot, state.omega, I, counters);
+  part.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, I, counters);
   return I;
 }
 
@@ -290,7 +290,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces do the work
           for (Eigen::Index k = 0; k < q_s.size(); ++k) q_s[k].d[0] = state.q_s_dot[k];
           Inertia<Dual<1>> moving;
           Counters counters;
-          part->inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), moving, counters);
+          part->evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), moving, counters);
           MatX<double> M_dot(n, n);
           for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) M_dot(i, j) = moving.M(i, j).d[0];

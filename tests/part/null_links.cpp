@@ -36,15 +36,15 @@ void same_as_without(Part& null, Part& bare) {
     const test::RandomState state = test::draw_state(draws, bare);
     Inertia<double> a, b;
     Counters a_counters, b_counters;
-    null.inertia(state.q_s, state.q_s_dot, state.omega, a, a_counters);
-    bare.inertia(state.q_s, state.q_s_dot, state.omega, b, b_counters);
+    null.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, a, a_counters);
+    bare.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, b, b_counters);
     CHECK(a.M == b.M);
     CHECK(a.g_q == b.g_q);
     CHECK(a_counters.jacobian_points == b_counters.jacobian_points);
     const VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>(), q_s_dot = state.q_s_dot.cast<Dual<1>>();
     Inertia<Dual<1>> da, db;
-    null.inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), da, a_counters);
-    bare.inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), db, b_counters);
+    null.evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), da, a_counters);
+    bare.evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), db, b_counters);
     for (Eigen::Index i = 0; i < da.M.size(); ++i) REQUIRE(da.M.data()[i].v == db.M.data()[i].v);
 
     const ParameterValues<double> null_values = test::values_of(null, state),

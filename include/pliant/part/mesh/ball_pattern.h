@@ -1,6 +1,6 @@
-// The pattern that covers balls: the lattice of a cube of 2m x 2m x 2m cells, its upper and lower faces bent
-// to concentric rings, so that rims, edges and coordinate planes fall on mesh lines. A lattice point (i, j,
-// k) of the shell r = max(|i|, |j|, |k|) points where it would in the pattern of r.
+// The mesh pattern of balls: the lattice of a cube of 2m x 2m x 2m cells. Its upper and lower faces map to
+// concentric rings, so that rims, edges and coordinate planes are mesh lines. A lattice point (i, j, k) of
+// the shell r = max(|i|, |j|, |k|) has the direction that it has in the pattern of m = r.
 #pragma once
 
 #include <algorithm>
@@ -15,15 +15,16 @@ namespace pliant {
 
 using LatticePoint = std::array<int, 3>;
 
+/// Returns the shell of a lattice point.
 inline int ball_shell(const LatticePoint& p) {
   return std::max({std::abs(p[0]), std::abs(p[1]), std::abs(p[2])});
 }
 
-/// Direction of a lattice point other than the centre.
+/// Returns the direction of a lattice point other than the centre.
 Vec3<double> ball_direction(const LatticePoint& p);
 
-/// The shell of m with its triangles, which turn counter-clockwise seen from outside; their diagonals run
-/// away from the middles of the faces.
+/// Shell m with its triangles, counter-clockwise seen from outside. Their diagonals point away from the
+/// middles of the faces of the cube.
 struct BallSurface {
   explicit BallSurface(int m);
   std::vector<LatticePoint> points;

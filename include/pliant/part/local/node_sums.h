@@ -1,16 +1,15 @@
-// Sums over the nodes of a part, four lanes wide, and motions of all of them.
+// Sums over the nodes of a part, four lanes wide, and the field G v of a motion of the frame at all nodes.
 #pragma once
 
 #include <Eigen/Geometry>
 
 #include <pliant/local/solid/four_nodes.h>
+#include <pliant/part/axial.h>
 #include <pliant/part/local/nodal_deformation.h>
-
-#include "part/quadrature/axial.h"
 
 namespace pliant::node_sums {
 
-/// sum a b^T over nodes, and sums of vectors, four lanes wide.
+/// The sum of a b^T over nodes.
 struct OuterSum {
   Pack lanes[3][3];
   OuterSum() {
@@ -28,6 +27,7 @@ struct OuterSum {
     return m;
   }
 };
+/// The sum of vectors over nodes.
 struct VectorSum {
   Vec3<Pack> lanes = Vec3<Pack>::Constant(Pack(0.0));
   void add(const Vec3<Pack>& a) {
@@ -45,21 +45,21 @@ inline Vec3<Pack> spread(const Vec3<double>& a) {
 inline Vec3<Pack> plus(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
-/// Of Packs, whose product by Eigen compilers do not inline.
+/// The cross product. Compilers do not inline that of Eigen for Packs.
 [[gnu::always_inline]] inline Vec3<Pack> cross(const Vec3<Pack>& a, const Vec3<Pack>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-inline bool any(const Eigen::Ref<const VecX<double>>& x) {
+inline bool any_nonzero(const Eigen::Ref<const VecX<double>>& x) {
   return (x.array() != 0).any();
 }
 
-/// The columns of J of parameter c.
+/// Returns the columns of J of parameter c.
 inline const double* column(const NodalWorkspace& w, Eigen::Index n, int c) {
   return w.J.data() + 3 * n * c;
 }
 
-/// G v at nodes: v_c + omega x p + J v_s.
+/// The field G v at nodes: v_c + omega x p + J v_s.
 struct FrameMotion {
   Vec3<Pack> c, omega;
   const VecMax<double>& v;
@@ -68,7 +68,9 @@ struct FrameMotion {
 
   FrameMotion(const VecMax<double>& all, const NodalWorkspace& work, Eigen::Index n_nodes)
       : c(spread(all.head<3>())), omega(spread(all.segment<3>(3))), v(all), w(work), n(n_nodes) {}
+  /// Returns v_c + omega x p.
   Vec3<Pack> rigid(const Vec3<Pack>& p) const { return plus(c, cross(omega, p)); }
+  /// Returns J v_s.
   template <class Four>
   Vec3<Pack> shape(const Four& four) const {
     Vec3<Pack> sum = Vec3<Pack>::Constant(Pack(0.0));
@@ -80,7 +82,7 @@ struct FrameMotion {
   }
 };
 
-/// sum J^T F of parameter k over nodes.
+/// Returns sum J^T F of parameter k over nodes.
 inline double along_column(const double* F, const NodalWorkspace& w, Eigen::Index n, int k) {
   Pack along(0.0);
   for_each_four(n, [&](const auto& four) { along += four.load(column(w, n, k), n).dot(four.load(F, n)); });

@@ -1,14 +1,18 @@
-#include "store_jets.h"
+// Body of store_jets().
+#pragma once
 
 #include <algorithm>
 #include <array>
 
 #include <pliant/local/solid/four_nodes.h>
+#include <pliant/math/header_only.h>
+#include <pliant/part/store_jets.h>
 
 namespace pliant {
 
-void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>& q_s_dot,
-                const std::vector<Material<Pack>>& packs, const JetArrays& to, Counters& counters) {
+PLIANT_INLINE void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>& q_s_dot,
+                              const std::vector<Material<Pack>>& packs, const JetArrays& to,
+                              Counters& counters) {
   const auto n_s = static_cast<std::size_t>(q_s.size());
   const bool moving = (q_s_dot.array() != 0).any();
   const ParameterValues<double> values = part.parameters().expand<double>(VecMax<double>(q_s), q_s_dot);
@@ -33,16 +37,6 @@ void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>&
   }
   counters.jacobian_points += to.n;
   counters.rate_points += moving ? to.n : 0;
-}
-
-std::vector<Material<Pack>> packs_of(const std::vector<Material<double>>& points) {
-  std::vector<Material<Pack>> packs;
-  for (std::size_t first = 0; first < points.size(); first += Pack::kLanes) {
-    std::array<Material<double>, Pack::kLanes> four;
-    for (std::size_t i = 0; i < Pack::kLanes; ++i) four[i] = points[std::min(first + i, points.size() - 1)];
-    packs.push_back(gather(four.data()));
-  }
-  return packs;
 }
 
 }  // namespace pliant
