@@ -1,9 +1,14 @@
-// q_dot of (q, v), Eq. (7): theta_dot = 1/2 theta o (0, omega), all other coordinates as their velocities.
+// The rates q_dot of the coordinates, Eq. (7): theta_dot = 1/2 theta o (0, omega) for the quaternions. All
+// other coordinates change with their velocities.
+#pragma once
+
 #include <pliant/body/dynamics.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
-void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const {
+PLIANT_INLINE void Dynamics::coordinate_rates(const VecX<double>& q, const VecX<double>& v,
+                                              VecX<double>& q_dot) const {
   q_dot.resize(q.size());
   for (const PartModel& m : model_->parts()) {
     if (m.q0 < 0) continue;

@@ -1,17 +1,22 @@
-// Directional derivatives of the accelerations, by dual numbers.
+// Directional derivatives of the accelerations: the stages of an evaluation with dual numbers.
+#pragma once
+
 #include <stdexcept>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/body/evaluation.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
-VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
-                           const StateDirection& along, const Workspace<double>& work,
-                           Workspace<Dual<1>>& dual_work) const {
+PLIANT_INLINE VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& v,
+                                         const StateDirection& along, const Workspace<double>& work,
+                                         Workspace<Dual<1>>& dual_work) const {
   for (const PartModel& m : model_->parts())
     if (m.local != nullptr)
-      throw std::logic_error("no derivative of the accelerations of part '" + m.part->name() +
-                             "', which deforms locally");
+      throw std::logic_error(
+          "jvp: part '" + m.part->name() +
+          "' deforms locally; directional derivatives need parts without local deformation");
   using D = Dual<1>;
   auto dual = [](const VecX<double>& x, const VecX<double>& dx) {
     VecX<D> r(x.size());
@@ -21,13 +26,14 @@ VecX<double> Dynamics::jvp(double t, const VecX<double>& q, const VecX<double>& 
     }
     return r;
   };
-  evaluate<D>(t, dual(q, along.q), dual(v, along.v), nullptr, &work, false, dual_work);
+  const VecX<D> dual_q = dual(q, along.q), dual_v = dual(v, along.v);
+  evaluate<D>({*this, t, dual_q, dual_v, dual_work, nullptr, &work});
   VecX<double> d(dual_work.v_dot.size());
   for (Eigen::Index i = 0; i < d.size(); ++i) d[i] = dual_work.v_dot[i].d[0];
   return d;
 }
 
-VecX<double> Dynamics::jvp(const State& state, const StateDirection& along) const {
+PLIANT_INLINE VecX<double> Dynamics::jvp(const State& state, const StateDirection& along) const {
   Workspace<double> work;
   Workspace<Dual<1>> dual_work;
   accelerations(state.time(), state.q, state.v, state, work);

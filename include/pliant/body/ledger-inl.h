@@ -1,10 +1,16 @@
-// Energies and momenta of a state.
+// Energies and momenta of a state, for the energy ledger.
+#pragma once
+
+#include <algorithm>
+
 #include <pliant/body/dynamics.h>
+#include <pliant/body/part_stages.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
-void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
-                          Ledger& ledger) const {
+PLIANT_INLINE void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
+                                        Ledger& ledger) const {
   const Vec3<double> g = model_->body().gravity_at(t);
   if (m.local != nullptr) {
     const LocalMotion motion = m.local->motion(w.v_r, *w.local);
@@ -20,18 +26,40 @@ void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<doub
   if (m.part->continuum() != nullptr) ledger.elastic += m.part->continuum()->energy(*m.part, w.q_s);
 }
 
-void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
-                          Ledger& ledger) const {
-  auto at = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
+PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
+                                        Ledger& ledger) const {
+  auto position = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
     return ref.part >= 0
                ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
                : point.world.value(t);
   };
-  const double stretch = (at(s.b, s.spring->b) - at(s.a, s.spring->a)).norm() - s.spring->rest_length;
+  const double stretch =
+      (position(s.b, s.spring->b) - position(s.a, s.spring->a)).norm() - s.spring->rest_length;
   ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
 }
 
-Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
+PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v,
+                                      const std::vector<int>& parts, Workspace<double>& work) const {
+  evaluate_masses(q, v, parts, work);
+  Ledger ledger;
+  for (const int i : parts)
+    add_energy(t, model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)],
+               ledger);
+  auto is_listed = [&](const PortRef& ref) {
+    return std::find(parts.begin(), parts.end(), ref.part) != parts.end();
+  };
+  for (const SpringModel& spring : model_->springs()) {
+    if (!is_listed(spring.a) && !is_listed(spring.b)) continue;
+    for (const PortRef& ref : {spring.a, spring.b})
+      if (ref.part >= 0 && !is_listed(ref))
+        detail::evaluate_positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], t, q, v,
+                                           work.parts[static_cast<std::size_t>(ref.part)]);
+    add_energy(t, spring, work, ledger);
+  }
+  return ledger.energy();
+}
+
+PLIANT_INLINE Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
   accelerations(t, state.q, state.v, state, work);
   Ledger ledger;
   ledger.work = state.work;
@@ -40,7 +68,7 @@ Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) c
     if (m.q0 < 0) continue;
     const PartWorkspace<double>& w = work.parts[i];
     add_energy(t, m, w, ledger);
-    VecMax<double> momentum;  // P and L about c, body frame
+    VecMax<double> momentum;  // linear and angular momentum about c, body frame
     if (m.local != nullptr) {
       const LocalMotion motion = m.local->motion(w.v_r, *w.local);
       momentum.resize(6);

@@ -1,16 +1,23 @@
-#include <pliant/body/material_frame.h>
+// The choice of the points that carry a material frame.
+#pragma once
 
+#include <array>
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <pliant/body/material_frame.h>
+#include <pliant/math/header_only.h>
+
 namespace pliant {
 
-namespace {
+namespace detail {
 
-/// Material points around one, near ones first; of a shell, which is its surface alone, on that.
-std::vector<Material<double>> neighbours(const Material<double>& m, const Part& part) {
+/// Returns material points around m, near ones first. The points of a shell are on its surface.
+inline std::vector<Material<double>> points_around(const Material<double>& m, const Part& part) {
   constexpr double step = 0.3;
   const bool ring = part.shape().mesh() == MeshPattern::torus;
   MaterialAngles at = angles(m);
@@ -22,7 +29,7 @@ std::vector<Material<double>> neighbours(const Material<double>& m, const Part& 
     if (!part.shell() && at.w + sign * step >= 0 && at.w + sign * step <= 1)
       all.push_back(material_at(at.u, at.v, at.w + sign * step));
   }
-  // At poles, at the centre and on the core of a ring the angles lead nowhere.
+  // At poles, at the centre and on the core of a ring, a change of the angles does not move the point.
   if (ring && at.w + step <= 1)
     for (const double turn : {kPi / 2, kPi}) all.push_back(material_at(at.u + turn, at.v, at.w + step));
   if (!ring)
@@ -32,16 +39,16 @@ std::vector<Material<double>> neighbours(const Material<double>& m, const Part& 
   return all;
 }
 
-}  // namespace
+}  // namespace detail
 
-FramedPoint framed(const Point& at, const Mat3<double>& axes) {
+PLIANT_INLINE FramedPoint framed(const Point& at, const Mat3<double>& axes) {
   if (at.part == nullptr)
     return {std::vector<Point>(MaterialFrame::points, at), {Mat3<double>::Zero(), axes}};
   const Part& part = *at.part;
-  std::vector<Material<double>> around = neighbours(at.material, part);
+  std::vector<Material<double>> around = detail::points_around(at.material, part);
   around.push_back(at.material);
   const Eigen::Matrix3Xd x = part.s(around, part.parameters().rest());
-  // The three whose directions are furthest from lying in a plane.
+  // The three points whose unit directions span the largest volume. A later choice has to be 5 % larger.
   const int n = static_cast<int>(x.cols()) - 1;
   auto difference = [&](int i) -> Vec3<double> { return x.col(i) - x.col(n); };
   double best = 1e-3;
@@ -58,7 +65,8 @@ FramedPoint framed(const Point& at, const Mat3<double>& axes) {
         chosen = {i, j, k};
       }
   if (chosen[0] < 0)
-    throw std::invalid_argument("part '" + part.name() + "' has no extent around the point of a joint");
+    throw std::invalid_argument("part '" + part.name() +
+                                "' has no three independent directions around the point of a joint");
   FramedPoint framed{{at}, {}};
   Mat3<double> D;
   for (int k = 0; k < 3; ++k) {
@@ -70,7 +78,7 @@ FramedPoint framed(const Point& at, const Mat3<double>& axes) {
   return framed;
 }
 
-Mat3<double> axes_along(const Vec3<double>& direction) {
+PLIANT_INLINE Mat3<double> axes_along(const Vec3<double>& direction) {
   Mat3<double> axes;
   axes.col(0) = direction.stableNormalized();
   axes.col(1) = axes.col(0).unitOrthogonal();

@@ -1,13 +1,17 @@
-#include <pliant/body/state.h>
+// The bodies of the functions of state.h.
+#pragma once
 
 #include <algorithm>
 #include <cstddef>
 
+#include <pliant/body/state.h>
+#include <pliant/math/header_only.h>
+
 namespace pliant {
 
-namespace {
+namespace detail {
 
-/// FNV-1a.
+/// The hash FNV-1a of bytes.
 class BitHash {
  public:
   void add(const void* data, std::size_t bytes) {
@@ -24,21 +28,21 @@ class BitHash {
   std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-}  // namespace
+}  // namespace detail
 
-bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other) {
+PLIANT_INLINE bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other) {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
                     [](double a, double b) { return (a < 0) == (b < 0); });
 }
 
-void wake(State& state, int part) {
+PLIANT_INLINE void wake(State& state, int part) {
   if (!sleeps(state, part)) return;
   const double number = state.at_rest[static_cast<std::size_t>(part)];
   std::replace(state.at_rest.begin(), state.at_rest.end(), number, 0.0);
 }
 
-std::uint64_t hash(const State& state) {
-  BitHash hash;
+PLIANT_INLINE std::uint64_t hash(const State& state) {
+  detail::BitHash hash;
   hash.add(&state.start, sizeof state.start);
   hash.add(&state.h, sizeof state.h);
   hash.add(&state.step, sizeof state.step);
@@ -51,10 +55,10 @@ std::uint64_t hash(const State& state) {
   hash.add_each(state.joints);
   hash.add_each(state.at_rest);
   hash.add(&state.contact_cache_age, sizeof state.contact_cache_age);
-  for (const CachedContact& support : state.contact_cache) {
-    hash.add_each(support.between);
-    hash.add_each(support.x);
-    hash.add_each(support.force);
+  for (const CachedContact& contact : state.contact_cache) {
+    hash.add_each(contact.between);
+    hash.add_each(contact.x);
+    hash.add_each(contact.force);
   }
   return hash.value();
 }

@@ -1,26 +1,28 @@
-#include <pliant/body/constraint/constraints.h>
+// The rows of the joints, Eqs. (12) and (13), Baumgarte's terms, and the blocks of W_c = C_q M^-1 C_q^T.
+#pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include <pliant/body/constraint/constraints.h>
 #include <pliant/body/dynamics.h>
+#include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
 
-namespace {
+namespace detail {
 
-/// C_q^T or M^-1 C_q^T of a side: n_v x rows.
+/// C_q^T or M^-1 C_q^T of a side: n_x x rows.
 template <class S, int Velocities, int Rows>
 using FixedSide = Eigen::Map<Eigen::Matrix<S, Velocities, Rows>>;
 template <class S, int Velocities, int Rows>
 using ConstSide = Eigen::Map<const Eigen::Matrix<S, Velocities, Rows>>;
 
-int velocities(const PartModel& part) {
-  return part.n_x();
-}
-
-/// The motion of a point of a part while no generalised velocity changes: x_ddot = R b of design 1.2.
+/// Returns the motion of a port of a part. x_ddot is the acceleration for constant generalised velocities,
+///   R b,   b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + J_dot q_s_dot,
+/// the term that makes gamma of Eq. (13); for a prescribed motion it is the whole acceleration.
 template <class S>
 PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<S>& w, int port) {
   PointMotion<S> motion{w.port_x[at(port)], w.port_x_dot[at(port)], Vec3<S>::Constant(S(0.0))};
@@ -37,11 +39,13 @@ PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<
   return motion;
 }
 
-/// Adds (C_x L)^T of a point to C_q^T of its side, L = R [I, -[p]x, J]. C_x: rows x 3, by columns.
+/// Adds (C_x L)^T of a port to C_q^T of its side, with L = R [I, -[p]x, J, S] of Eq. (9). C_x: rows x 3, by
+/// columns.
 template <class S>
-void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, int rows, const S* C_x, S* Cq) {
+void add_port_to_Cq(const PartModel& part, const PartWorkspace<S>& w, int port, int rows, const S* C_x,
+                    S* Cq) {
   const PointJet<S>& jet = w.ports[at(port)];
-  const int n = velocities(part);
+  const int n = part.n_x();
   for (int r = 0; r < rows; ++r, Cq += n) {
     const S x = C_x[r], y = C_x[rows + r], z = C_x[2 * rows + r];
     const Vec3<S> push(w.R(0, 0) * x + w.R(1, 0) * y + w.R(2, 0) * z,
@@ -59,12 +63,13 @@ void add_point(const PartModel& part, const PartWorkspace<S>& w, int port, int r
   }
 }
 
+/// Computes C, C_dot, bias and C_q^T of joint j, Eqs. (12) and (13), if it acts or is a slack string.
 template <class S>
 void evaluate_joint(const Model& model, int j, double t, const std::vector<PartWorkspace<S>>& parts,
                     ConstraintWorkspace<S>& work) {
   const JointModel& joint = model.joints()[at(j)];
   for (const JointSide& side : joint.sides) {
-    const int size = velocities(model.parts()[at(side.part)]) * joint.rows;
+    const int size = model.parts()[at(side.part)].n_x() * joint.rows;
     work.Cq.segment(side.offset, size).setConstant(S(0.0));
     if (joint.first_offset >= 0) work.Cq.segment(joint.first_offset, size).setConstant(S(0.0));
   }
@@ -96,18 +101,19 @@ void evaluate_joint(const Model& model, int j, double t, const std::vector<PartW
       if (side.part != ref.part) continue;
       const PartModel& part = model.parts()[at(side.part)];
       const S* C_x = rows.C_x.data() + 3 * k * joint.rows;
-      add_point(part, parts[at(side.part)], ref.port, joint.rows, C_x, work.Cq.data() + side.offset);
+      add_port_to_Cq(part, parts[at(side.part)], ref.port, joint.rows, C_x, work.Cq.data() + side.offset);
       if (joint.first_offset >= 0 && k < joint.joint->n_first())
-        add_point(part, parts[at(side.part)], ref.port, joint.rows, C_x, work.Cq.data() + joint.first_offset);
+        add_port_to_Cq(part, parts[at(side.part)], ref.port, joint.rows, C_x,
+                       work.Cq.data() + joint.first_offset);
     }
   }
 }
 
-/// M^-1 C_q^T of a side, which is at an offset.
+/// Computes Y = M^-1 C_q^T of the side that starts at an offset.
 template <class S>
-void respond(const PartModel& part, const PartWorkspace<S>& w, int rows, int offset,
-             ConstraintWorkspace<S>& work) {
-  const int n = velocities(part);
+void solve_side(const PartModel& part, const PartWorkspace<S>& w, int rows, int offset,
+                ConstraintWorkspace<S>& work) {
+  const int n = part.n_x();
   const S* Cq = work.Cq.data() + offset;
   S* Y = work.Y.data() + offset;
   if constexpr (std::is_same_v<S, double>) {
@@ -127,19 +133,19 @@ void respond(const PartModel& part, const PartWorkspace<S>& w, int rows, int off
     for (int r = 0; r < rows; ++r) w.solve_mass(Eigen::Map<VecX<S>>(Y + r * n, n));
 }
 
-/// The same of the sides of a joint.
+/// Computes Y = M^-1 C_q^T of the sides of joint j.
 template <class S>
-void respond(const Model& model, int j, const std::vector<PartWorkspace<S>>& parts,
-             ConstraintWorkspace<S>& work) {
+void solve_sides(const Model& model, int j, const std::vector<PartWorkspace<S>>& parts,
+                 ConstraintWorkspace<S>& work) {
   const JointModel& joint = model.joints()[at(j)];
   for (const JointSide& side : joint.sides) {
     const PartModel& part = model.parts()[at(side.part)];
-    respond(part, parts[at(side.part)], joint.rows, side.offset, work);
-    if (joint.first_offset >= 0) respond(part, parts[at(side.part)], joint.rows, joint.first_offset, work);
+    solve_side(part, parts[at(side.part)], joint.rows, side.offset, work);
+    if (joint.first_offset >= 0) solve_side(part, parts[at(side.part)], joint.rows, joint.first_offset, work);
   }
 }
 
-/// The parts of an island in their order, each placed no sooner than a joint asks for it.
+/// Calls PlacePart for the parts of an island in their order, each as late as its joints allow.
 class PartsInTurn {
  public:
   PartsInTurn(const Island& island, const PlacePart& place) : island_(island), place_(place) {
@@ -160,65 +166,65 @@ class PartsInTurn {
   std::size_t next_ = 0;
 };
 
-}  // namespace
+}  // namespace detail
 
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                      const PlacePart& place) {
-  PartsInTurn in_turn(island, place);
+  detail::PartsInTurn in_turn(island, place);
   for (const int j : island.joints) {
     in_turn.place_for(model.joints()[at(j)]);
-    evaluate_joint(model, j, t, parts, work);
+    detail::evaluate_joint(model, j, t, parts, work);
   }
   in_turn.place_rest();
-  for (const int j : island.strings) evaluate_joint(model, j, t, parts, work);
+  for (const int j : island.strings) detail::evaluate_joint(model, j, t, parts, work);
 }
 
-namespace {
+namespace detail {
 
-/// The factors of an island; first act(j) is called for each of its joints.
+/// Computes the factors of an island. Calls act(j) first for each of its joints.
 template <class S, class F>
 void factor_after(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                   ConstraintWorkspace<S>& work, F&& act) {
   const auto number = static_cast<std::size_t>(&island - model.islands().data());
   work.W_c[number].factor(model, island, parts, work, false, [&](int j) {
     act(j);
-    respond(model, j, parts, work);
+    solve_sides(model, j, parts, work);
   });
   const bool open = std::any_of(island.joints.begin(), island.joints.end(),
                                 [&](int j) { return work.modes[at(j)] == JointMode::closing; });
   if (open) work.W_closed[number].factor(model, island, parts, work, true, [](int) {});
 }
 
-}  // namespace
+}  // namespace detail
 
 template <class S>
 void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                    ConstraintWorkspace<S>& work) {
-  factor_after(model, island, parts, work, [](int) {});
+  detail::factor_after(model, island, parts, work, [](int) {});
 }
 
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                                 const PlacePart& place) {
-  PartsInTurn in_turn(island, place);
-  if (island.augmented) in_turn.place_rest();  // the matrix has the masses of all of them
-  factor_after(model, island, parts, work, [&](int j) {
+  detail::PartsInTurn in_turn(island, place);
+  if (island.augmented) in_turn.place_rest();  // the augmented matrix needs the masses of all parts
+  detail::factor_after(model, island, parts, work, [&](int j) {
     in_turn.place_for(model.joints()[at(j)]);
-    evaluate_joint(model, j, t, parts, work);
+    detail::evaluate_joint(model, j, t, parts, work);
   });
   in_turn.place_rest();
-  for (const int j : island.strings) evaluate_joint(model, j, t, parts, work);
+  for (const int j : island.strings) detail::evaluate_joint(model, j, t, parts, work);
 }
 
 template <class S>
-double entry_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row) {
+double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row) {
   const JointModel& joint = model.joints()[at(j)];
   double sum = 0;
   for (const JointSide& side : joint.sides) {
-    const int n = velocities(model.parts()[at(side.part)]), first = joint.first_offset + row * n;
+    const int n = model.parts()[at(side.part)].n_x(), first = joint.first_offset + row * n;
     for (int i = 0; i < n; ++i) {
       double Cq = plain(work.Cq[side.offset + row * n + i]), Y = plain(work.Y[side.offset + row * n + i]);
       if (joint.first_offset >= 0) {
@@ -247,16 +253,16 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     return;
   }
   blocks_.clear(island.pattern, work.rank);
-  // Joint by joint, while the caches hold it and those before it that it shares parts with.
+  // Joint by joint, while the joint and those that share parts with it are in the cache.
   auto coupling = island.couplings.begin();
   for (const int j : island.joints) {
     prepare(j);
     const JointModel& joint = model.joints()[at(j)];
     for (int r = 0; joint.first_offset >= 0 && r < joint.rows; ++r)
-      blocks_.measure_by(joint.island_row + r, entry_of_ends(model, work, j, r));
+      blocks_.measure_by(joint.island_row + r, diagonal_of_ends(model, work, j, r));
     for (; coupling != island.couplings.end() && coupling->later_joint() == j; ++coupling)
-      if (counts(work.modes[at(coupling->row_joint)], closed_only) &&
-          counts(work.modes[at(coupling->column_joint)], closed_only))
+      if (is_selected(work.modes[at(coupling->row_joint)], closed_only) &&
+          is_selected(work.modes[at(coupling->column_joint)], closed_only))
         couple(model, *coupling, work);
   }
   blocks_.factor();
@@ -264,11 +270,12 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
 
 template <class S>
 void JointFactor<S>::couple(const Model& model, const Coupling& c, const ConstraintWorkspace<S>& work) {
-  const int n = velocities(model.parts()[at(c.part)]);
+  const int n = model.parts()[at(c.part)].n_x();
   const S *Cq = work.Cq.data() + c.row_offset, *Y = work.Y.data() + c.column_offset;
   S* block = blocks_.block(c.target);
   if (n == 6 && c.rows == 3 && c.columns == 3) {
-    FixedSide<S, 3, 3>(block) += ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(ConstSide<S, 6, 3>(Y));
+    detail::FixedSide<S, 3, 3>(block) +=
+        detail::ConstSide<S, 6, 3>(Cq).transpose().lazyProduct(detail::ConstSide<S, 6, 3>(Y));
     return;
   }
   for (int k = 0; k < c.columns; ++k)
@@ -312,13 +319,13 @@ std::vector<bool> JointFactor<S>::dependent(const Model& model, const Island& is
 
 template <class S>
 bool JointFactor<S>::is_rough() const {
-  constexpr double smallest = 1e-5;  // pivot
-  return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < smallest;
+  constexpr double small_pivot = 1e-5;
+  return augmented_ || values_ != nullptr || blocks_.smallest_pivot() < small_pivot;
 }
 
-namespace {
+namespace detail {
 
-/// 2 alpha C_dot + beta^2 C of a joint that has Baumgarte's terms.
+/// Returns Baumgarte's terms 2 alpha C_dot + beta^2 C of joint j; zero for a joint without them.
 template <class S>
 VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
   const JointModel& joint = model.joints()[at(j)];
@@ -327,25 +334,26 @@ VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace
   if (!acts(mode) || (mode == JointMode::closed && !joints.stabilise_closed))
     return VecMax<S, kMaxJointRows>::Constant(joint.rows, S(0.0));
   const double alpha = joints.gains.alpha, beta2 = joints.gains.beta * joints.gains.beta;
-  // Beyond the cap a gap counts as one that closes at the most allowed speed.
+  // A gap that would close faster than the largest speed closes at that speed.
   S factor(beta2);
   if (mode == JointMode::closing) {
     const S gap = math::sqrt_from_zero(S(rows(joints.C).squaredNorm()));
-    const double most = 2 * alpha * joints.most_speed * joint.length;
-    if (plain(gap) * beta2 > most) factor = S(most) / gap;
+    const double largest = 2 * alpha * joints.most_speed * joint.length;
+    if (plain(gap) * beta2 > largest) factor = S(largest) / gap;
   }
   return S(2 * alpha) * rows(joints.C_dot) + factor * rows(joints.C);
 }
 
-}  // namespace
+}  // namespace detail
 
 template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j) {
   const JointModel& joint = model.joints()[at(j)];
-  return joints.bias.segment(joint.row, joint.rows) + baumgarte(model, joints, j);
+  // Eq. (13) with Baumgarte's terms: -gamma + 2 alpha C_dot + beta^2 C
+  return joints.bias.segment(joint.row, joint.rows) + detail::baumgarte(model, joints, j);
 }
 
-double disagreement(const Model& model, const Workspace<double>& work, int j) {
+PLIANT_INLINE double disagreement(const Model& model, const Workspace<double>& work, int j) {
   const JointModel& joint = model.joints()[at(j)];
   VecMax<double, kMaxJointRows> left = wanted(model, work.joints, j);
   for (const JointSide& side : joint.sides) {
@@ -365,15 +373,15 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!acts(joints.modes[j])) continue;
     const auto lambda = joints.lambda.segment(joint.row, joint.rows);
     const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
-    // Of a joint that is kept closed by projection this is an error of the method, not a work.
+    // For a joint that projection keeps closed, this is an error of the method and not a work.
     if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
       power[static_cast<int>(Work::baumgarte)] += closing;
     if (!joint.driven) continue;
-    S done(0.0);  // lambda C_q v, on the parts
+    S done(0.0);  // lambda C_q v: power of the joint on the parts
     for (const JointSide& side : joint.sides) {
       const PartModel& part = model.parts()[at(side.part)];
       const PartWorkspace<S>& w = work.parts[at(side.part)];
-      const int n = velocities(part);
+      const int n = part.n_x();
       auto add = [&](const VecX<S>& v, int first) {
         for (int r = 0; r < joint.rows; ++r)
           for (int i = 0; i < v.size(); ++i)
@@ -391,7 +399,7 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
   return power;
 }
 
-std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work) {
+PLIANT_INLINE std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work) {
   std::vector<int> count(model.joints().size(), 0);
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
     const Island& island = model.islands()[i];
@@ -404,21 +412,5 @@ std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<do
   }
   return count;
 }
-
-#define PLIANT_INSTANCES(S)                                                                                \
-  template void evaluate_joints(const Model&, const Island&, double, const std::vector<PartWorkspace<S>>&, \
-                                ConstraintWorkspace<S>&, const PlacePart&);                                \
-  template double entry_of_ends(const Model&, const ConstraintWorkspace<S>&, int, int);                    \
-  template void factor_joints(const Model&, const Island&, const std::vector<PartWorkspace<S>>&,           \
-                              ConstraintWorkspace<S>&);                                                    \
-  template VecMax<S, kMaxJointRows> wanted(const Model&, const ConstraintWorkspace<S>&, int);              \
-  template void evaluate_and_factor_joints(const Model&, const Island&, double,                            \
-                                           const std::vector<PartWorkspace<S>>&, ConstraintWorkspace<S>&,  \
-                                           const PlacePart&);                                              \
-  template Vec<S, kWorks> joint_power(const Model&, const Workspace<S>&);                                  \
-  template class JointFactor<S>;
-PLIANT_INSTANCES(double)
-PLIANT_INSTANCES(Dual<1>)
-#undef PLIANT_INSTANCES
 
 }  // namespace pliant

@@ -1,12 +1,15 @@
-// What a joint does to the part of its first side: C_x^T lambda at each of its points, summed up.
+// The action of a joint on the part of its first side: the sum of the forces C_x^T lambda at its points.
+#pragma once
+
 #include <array>
 
 #include <pliant/body/dynamics.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
-Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work,
-                              const VecX<double>& lambda) const {
+PLIANT_INLINE Wrench Dynamics::joint_wrench(double t, int joint, const Workspace<double>& work,
+                                            const VecX<double>& lambda) const {
   const JointModel& m = model_->joints()[static_cast<std::size_t>(joint)];
   std::array<PointMotion<double>, kMaxJointPoints> motion;
   for (std::size_t k = 0; k < m.at.size(); ++k) {

@@ -1,4 +1,5 @@
-#include <pliant/body/constraint/rigid_island.h>
+// The bodies of RigidIsland: set-up, accelerations, and closing of joints.
+#pragma once
 
 #include <algorithm>
 #include <cmath>
@@ -8,25 +9,28 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include <pliant/body/constraint/rigid_island.h>
 #include <pliant/body/dynamics.h>
 #include <pliant/body/joints/ball.h>
+#include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant {
 
-namespace {
+namespace detail {
 
-/// Most joints of a part: all pairs of them are taken for four parts at once.
-constexpr int kMostArms = 16;
+/// Largest number of joints of a part: the mobilities of all pairs are computed for four parts at once.
+inline constexpr int kMaxArms = 16;
 
-bool is_fixed_ball(const JointModel& m) {
+/// Whether a joint is a ball joint of two different ends without prescribed motion.
+inline bool is_undriven_ball(const JointModel& m) {
   if (dynamic_cast<const JointOf<Ball>*>(m.joint) == nullptr || m.driven) return false;
   return m.at[0].part != m.at[1].part;
 }
 
-/// What the end of a joint that does not move adds to C = x_0 - x_1.
-Vec3<double> fixed_end(const Model& model, const JointModel& joint) {
+/// Returns the contribution of the fixed end of a joint to C = x_0 - x_1, m.
+inline Vec3<double> fixed_end(const Model& model, const JointModel& joint) {
   Vec3<double> C = Vec3<double>::Zero();
   for (std::size_t end = 0; end < 2; ++end) {
     const PortRef& ref = joint.at[end];
@@ -41,30 +45,31 @@ Vec3<double> fixed_end(const Model& model, const JointModel& joint) {
   return C;
 }
 
-/// Number k from `first` on of each of four parts.
-Pack gather(const VecX<double>& of, const std::array<int, Pack::kLanes>& first, int k) {
-  return {of[first[0] + k], of[first[1] + k], of[first[2] + k], of[first[3] + k]};
+/// Returns entry k of each of four parts, whose entries in x start at `first`.
+inline Pack gather_lanes(const VecX<double>& x, const std::array<int, Pack::kLanes>& first, int k) {
+  return {x[first[0] + k], x[first[1] + k], x[first[2] + k], x[first[3] + k]};
 }
-Vec3<Pack> gather3(const VecX<double>& of, const std::array<int, Pack::kLanes>& first, int k) {
-  return {gather(of, first, k), gather(of, first, k + 1), gather(of, first, k + 2)};
+/// Returns entries k to k + 2 of each of four parts.
+inline Vec3<Pack> gather_lanes3(const VecX<double>& x, const std::array<int, Pack::kLanes>& first, int k) {
+  return {gather_lanes(x, first, k), gather_lanes(x, first, k + 1), gather_lanes(x, first, k + 2)};
 }
 
 template <class M>
 using Lane = Eigen::Matrix<double, M::RowsAtCompileTime, M::ColsAtCompileTime>;
 template <class M>
-Lane<M> lane_of(const M& of, int lane) {
+Lane<M> lane_of(const M& packs, int lane) {
   Lane<M> one;
-  for (Eigen::Index i = 0; i < of.size(); ++i) one.data()[i] = of.data()[i][lane];
+  for (Eigen::Index i = 0; i < packs.size(); ++i) one.data()[i] = packs.data()[i][lane];
   return one;
 }
 template <class M>
-void set_lane(M& of, int lane, const Lane<M>& value) {
-  for (Eigen::Index i = 0; i < of.size(); ++i) of.data()[i].set(lane, value.data()[i]);
+void set_lane(M& packs, int lane, const Lane<M>& value) {
+  for (Eigen::Index i = 0; i < packs.size(); ++i) packs.data()[i].set(lane, value.data()[i]);
 }
 
-}  // namespace
+}  // namespace detail
 
-bool RigidIsland::takes(const Model& model, const Island& island) {
+PLIANT_INLINE bool RigidIsland::applies_to(const Model& model, const Island& island) {
   auto rigid = [&](int i) {
     const PartModel& m = model.parts()[at(i)];
     return m.n_s == 0 && m.local == nullptr && m.drag == 0 && !m.rigid_factor.any_held();
@@ -72,16 +77,16 @@ bool RigidIsland::takes(const Model& model, const Island& island) {
   std::vector<int> arms(island.parts.size(), 0);
   for (const int j : island.joints)
     for (const JointSide& side : model.joints()[at(j)].sides) ++arms[at(side.place)];
-  auto ball = [&](int j) { return is_fixed_ball(model.joints()[at(j)]); };
+  auto ball = [&](int j) { return detail::is_undriven_ball(model.joints()[at(j)]); };
   return !island.augmented && island.strings.empty() &&
-         *std::max_element(arms.begin(), arms.end()) <= kMostArms &&
+         *std::max_element(arms.begin(), arms.end()) <= detail::kMaxArms &&
          std::all_of(island.parts.begin(), island.parts.end(), rigid) &&
          std::all_of(island.joints.begin(), island.joints.end(), ball);
 }
 
-RigidIsland::RigidIsland(const Model& model, const Island& island)
+PLIANT_INLINE RigidIsland::RigidIsland(const Model& model, const Island& island)
     : island_(static_cast<int>(&island - model.islands().data())) {
-  // The joints of each part, and its parts, those of as many joints together.
+  // Parts are sorted by their number of joints, so that the four parts of a pack have about as many arms.
   std::vector<std::vector<int>> joints_of(island.parts.size());
   for (const int j : island.joints)
     for (const JointSide& side : model.joints()[at(j)].sides) joints_of[at(side.place)].push_back(j);
@@ -95,9 +100,10 @@ RigidIsland::RigidIsland(const Model& model, const Island& island)
   add_joints(model, island, ends);
 }
 
-void RigidIsland::add_four(const Model& model, const Island& island, const std::vector<int>& order,
-                           std::size_t first, const std::vector<std::vector<int>>& joints_of,
-                           std::vector<std::array<End, 2>>& ends) {
+PLIANT_INLINE void RigidIsland::add_four(const Model& model, const Island& island,
+                                         const std::vector<int>& order, std::size_t first,
+                                         const std::vector<std::vector<int>>& joints_of,
+                                         std::vector<std::array<End, 2>>& ends) {
   Four four;
   four.count = static_cast<int>(std::min<std::size_t>(Pack::kLanes, order.size() - first));
   four.first_arm = static_cast<int>(arms_.size());
@@ -116,9 +122,9 @@ void RigidIsland::add_four(const Model& model, const Island& island, const std::
     const Mat3<double> inertia = rest.M.bottomRightCorner<3, 3>() + rest.mass * skew(centre) * skew(centre);
     const Mat3<double> L = Mat3<double>(inertia.llt().matrixU()).inverse();
     four.inverse_mass.set(lane, 1 / rest.mass);
-    set_lane(four.inertia, lane, inertia);
-    set_lane(four.L, lane, L);
-    set_lane(four.centre, lane, centre);
+    detail::set_lane(four.inertia, lane, inertia);
+    detail::set_lane(four.L, lane, L);
+    detail::set_lane(four.centre, lane, centre);
     if (lane >= four.count) continue;
     if (m.loaded) loads_.push_back({i, static_cast<int>(fours_.size()), lane});
     for (std::size_t k = 0; k < joints_of[at(place)].size(); ++k) {
@@ -127,21 +133,21 @@ void RigidIsland::add_four(const Model& model, const Island& island, const std::
       const int arm = four.first_arm + static_cast<int>(k);
       ends[at(joint.node)][end] = {arm, lane, m.q0, m.v0};
       const Vec3<double> r = m.rigid_ports[at(joint.at[end].port)].p - centre;
-      set_lane(arms_[at(arm)].r, lane, r);
-      set_lane(arms_[at(arm)].lever, lane, skew(r) * L);
+      detail::set_lane(arms_[at(arm)].r, lane, r);
+      detail::set_lane(arms_[at(arm)].lever, lane, skew(r) * L);
     }
   }
   fours_.push_back(four);
 }
 
-void RigidIsland::add_joints(const Model& model, const Island& island,
-                             const std::vector<std::array<End, 2>>& ends) {
+PLIANT_INLINE void RigidIsland::add_joints(const Model& model, const Island& island,
+                                           const std::vector<std::array<End, 2>>& ends) {
   rows_ = island.rows;
   parts_ = static_cast<int>(island.parts.size());
   const auto& joints = model.joints();
   for (const int j : island.joints)
-    ties_.push_back({ends[at(joints[at(j)].node)], fixed_end(model, joints[at(j)]), joints[at(j)].island_row,
-                     joints[at(j)].length});
+    joints_.push_back({ends[at(joints[at(j)].node)], detail::fixed_end(model, joints[at(j)]),
+                       joints[at(j)].island_row, joints[at(j)].length});
   for (const pliant::Coupling& c : island.couplings) {
     auto end_of = [&](int j) { return joints[at(j)].at[0].part == c.part ? 0u : 1u; };
     const End &row = ends[at(joints[at(c.row_joint)].node)][end_of(c.row_joint)],
@@ -157,9 +163,9 @@ void RigidIsland::add_joints(const Model& model, const Island& island,
   }
 }
 
-void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
-                             const Vec3<double>& gravity, RankRule rank, Workspace<double>& work,
-                             RigidWorkspace& now) const {
+PLIANT_INLINE void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
+                                           const Vec3<double>& gravity, Workspace<double>& work,
+                                           RigidWorkspace& now) const {
   now.fours.resize(fours_.size());
   now.arms.resize(arms_.size());
   now.mobility.resize(at(pairs_));
@@ -168,64 +174,71 @@ void RigidIsland::accelerate(const Model& model, const VecX<double>& q, const Ve
   now.counters.inertial_forces += parts_;
   add_loads(work, now);
   JointFactor<double>& W_c = work.joints.W_c[at(island_)];
-  factor(model.islands()[at(island_)], rank, now, W_c.blocks());
+  factor(model.islands()[at(island_)], work.joints.rank, now, W_c.blocks());
   const int refinements = W_c.is_rough() || model.islands()[at(island_)].uneven ? 2 : 0;
-  for (int pass = 0; pass <= refinements; ++pass) hold(W_c.blocks(), now);
+  for (int pass = 0; pass <= refinements; ++pass) apply_joints(W_c.blocks(), now);
   for (std::size_t i = 0; i < fours_.size(); ++i) {
-    const Four& of = fours_[i];
+    const Four& constants = fours_[i];
     const RigidWorkspace::Four& four = now.fours[i];
-    const Vec3<Pack> omega_dot = of.L.lazyProduct(four.beta);
-    const Vec3<Pack> swing = four.omega.cross(four.omega.cross(of.centre));
-    const Vec3<Pack> c_ddot = four.a - four.R.lazyProduct(omega_dot.cross(of.centre) + swing);
-    for (int lane = 0; lane < of.count; ++lane)
+    const Vec3<Pack> omega_dot = constants.L.lazyProduct(four.beta);
+    const Vec3<Pack> centripetal = four.omega.cross(four.omega.cross(constants.centre));
+    const Vec3<Pack> c_ddot = four.a - four.R.lazyProduct(omega_dot.cross(constants.centre) + centripetal);
+    for (int lane = 0; lane < constants.count; ++lane)
       for (int k = 0; k < 3; ++k) {
-        work.v_dot[of.v0[at(lane)] + k] = c_ddot[k][lane];
-        work.v_dot[of.v0[at(lane)] + 3 + k] = omega_dot[k][lane];
+        work.v_dot[constants.v0[at(lane)] + k] = c_ddot[k][lane];
+        work.v_dot[constants.v0[at(lane)] + 3 + k] = omega_dot[k][lane];
       }
   }
 }
 
-[[gnu::flatten]] void RigidIsland::place(const Four& of, const VecX<double>& q, const VecX<double>& v,
-                                         const Vec3<Pack>& gravity, RigidWorkspace& now,
-                                         RigidWorkspace::Four& four) const {
-  four.R = rotation(gather(q, of.q0, 3), gather(q, of.q0, 4), gather(q, of.q0, 5), gather(q, of.q0, 6));
-  four.omega = gather3(v, of.v0, 3);
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::place(const Four& constants, const VecX<double>& q,
+                                                       const VecX<double>& v, const Vec3<Pack>& gravity,
+                                                       RigidWorkspace& now,
+                                                       RigidWorkspace::Four& four) const {
+  four.R = rotation(detail::gather_lanes(q, constants.q0, 3), detail::gather_lanes(q, constants.q0, 4),
+                    detail::gather_lanes(q, constants.q0, 5), detail::gather_lanes(q, constants.q0, 6));
+  four.omega = detail::gather_lanes3(v, constants.v0, 3);
   four.a = gravity;
-  four.beta = -of.L.transpose().lazyProduct(four.omega.cross(of.inertia.lazyProduct(four.omega)));
-  for (int i = 0; i < of.arms; ++i) {
-    const Arm& arm = arms_[at(of.first_arm + i)];
-    RigidWorkspace::Arm& moved = now.arms[at(of.first_arm + i)];
+  // g_q of Eq. (11) for a rigid part: the torque -omega x (I omega)
+  four.beta =
+      -constants.L.transpose().lazyProduct(four.omega.cross(constants.inertia.lazyProduct(four.omega)));
+  for (int i = 0; i < constants.arms; ++i) {
+    const Arm& arm = arms_[at(constants.first_arm + i)];
+    RigidWorkspace::Arm& moved = now.arms[at(constants.first_arm + i)];
     moved.B = four.R.lazyProduct(arm.lever);
-    moved.swing = four.R.lazyProduct(four.omega.cross(four.omega.cross(arm.r)));
+    moved.centripetal = four.R.lazyProduct(four.omega.cross(four.omega.cross(arm.r)));
   }
-  couple(of, now);
+  couple(constants, now);
 }
 
-[[gnu::flatten]] void RigidIsland::couple(const Four& of, RigidWorkspace& now) {
-  auto pair = now.mobility.begin() + of.first_pair;
-  for (int i = 0; i < of.arms; ++i)
-    for (int j = i; j < of.arms; ++j, ++pair) {
-      *pair = now.arms[at(of.first_arm + i)].B.lazyProduct(now.arms[at(of.first_arm + j)].B.transpose());
-      for (int k = 0; k < 3; ++k) (*pair)(k, k) += of.inverse_mass;
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::couple(const Four& constants, RigidWorkspace& now) {
+  auto pair = now.mobility.begin() + constants.first_pair;
+  for (int i = 0; i < constants.arms; ++i)
+    for (int j = i; j < constants.arms; ++j, ++pair) {
+      *pair = now.arms[at(constants.first_arm + i)].B.lazyProduct(
+          now.arms[at(constants.first_arm + j)].B.transpose());
+      for (int k = 0; k < 3; ++k) (*pair)(k, k) += constants.inverse_mass;
     }
 }
 
-void RigidIsland::add_loads(const Workspace<double>& work, RigidWorkspace& now) const {
+PLIANT_INLINE void RigidIsland::add_loads(const Workspace<double>& work, RigidWorkspace& now) const {
   for (const Load& load : loads_) {
     const VecX<double>& f = work.parts[at(load.part)].f;
-    const Four& of = fours_[at(load.four)];
+    const Four& constants = fours_[at(load.four)];
     RigidWorkspace::Four& four = now.fours[at(load.four)];
     const Vec3<double> force = f.head<3>();
-    const Vec3<double> torque = f.segment<3>(3) - lane_of(of.centre, load.lane).cross(force);
-    set_lane(four.a, load.lane,
-             lane_of(four.a, load.lane) + lane_of(four.R, load.lane) * force * of.inverse_mass[load.lane]);
-    set_lane(four.beta, load.lane,
-             lane_of(four.beta, load.lane) + lane_of(of.L, load.lane).transpose() * torque);
+    const Vec3<double> torque = f.segment<3>(3) - detail::lane_of(constants.centre, load.lane).cross(force);
+    detail::set_lane(four.a, load.lane,
+                     detail::lane_of(four.a, load.lane) +
+                         detail::lane_of(four.R, load.lane) * force * constants.inverse_mass[load.lane]);
+    detail::set_lane(
+        four.beta, load.lane,
+        detail::lane_of(four.beta, load.lane) + detail::lane_of(constants.L, load.lane).transpose() * torque);
   }
 }
 
-void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspace& now,
-                         BlockFactor<double>& W_c) const {
+PLIANT_INLINE void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspace& now,
+                                       BlockFactor<double>& W_c) const {
   W_c.clear(island.pattern, rank);
   for (const Coupling& c : couplings_) {
     const Mat3<Pack>& mobility = now.mobility[at(c.pair)];
@@ -237,17 +250,18 @@ void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspa
   W_c.factor();
 }
 
-[[gnu::flatten]] void RigidIsland::hold(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::apply_joints(const BlockFactor<double>& W_c,
+                                                              RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i)
     for (int k = 0; k < fours_[i].arms; ++k) {
       RigidWorkspace::Arm& arm = now.arms[at(fours_[i].first_arm + k)];
-      arm.x = now.fours[i].a - arm.B.lazyProduct(now.fours[i].beta) + arm.swing;
+      arm.x = now.fours[i].a - arm.B.lazyProduct(now.fours[i].beta) + arm.centripetal;
     }
   now.lambda.setZero(rows_);
   for_each_end([&](const End& end, int row, double sign) {
     for (int r = 0; r < 3; ++r) now.lambda[row + r] += sign * now.arms[at(end.arm)].x[r][end.lane];
   });
-  take_forces(W_c, now);
+  solve_forces(W_c, now);
   for (std::size_t i = 0; i < fours_.size(); ++i) {
     const auto [a, beta] = response(fours_[i], now);
     now.fours[i].a += a;
@@ -255,7 +269,8 @@ void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspa
   }
 }
 
-[[gnu::flatten]] void RigidIsland::take_forces(const BlockFactor<double>& W_c, RigidWorkspace& now) const {
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::solve_forces(const BlockFactor<double>& W_c,
+                                                              RigidWorkspace& now) const {
   W_c.solve(now.lambda);
   for (RigidWorkspace::Arm& arm : now.arms) arm.push.setConstant(Pack(0.0));
   for_each_end([&](const End& end, int row, double sign) {
@@ -263,25 +278,25 @@ void RigidIsland::factor(const Island& island, RankRule rank, const RigidWorkspa
   });
 }
 
-[[gnu::flatten]] std::pair<Vec3<Pack>, Vec3<Pack>> RigidIsland::response(const Four& of,
-                                                                         const RigidWorkspace& now) const {
+[[gnu::flatten]] PLIANT_INLINE std::pair<Vec3<Pack>, Vec3<Pack>> RigidIsland::response(
+    const Four& constants, const RigidWorkspace& now) const {
   Vec3<Pack> a = Vec3<Pack>::Constant(Pack(0.0)), beta = a;
-  for (int k = 0; k < of.arms; ++k) {
-    const RigidWorkspace::Arm& arm = now.arms[at(of.first_arm + k)];
-    a += arm.push * of.inverse_mass;
+  for (int k = 0; k < constants.arms; ++k) {
+    const RigidWorkspace::Arm& arm = now.arms[at(constants.first_arm + k)];
+    a += arm.push * constants.inverse_mass;
     beta -= arm.B.transpose().lazyProduct(arm.push);
   }
   return {a, beta};
 }
 
-double RigidIsland::widest(const Rounding& most, bool positions, const VecX<double>& x,
-                           RigidWorkspace& now) const {
+PLIANT_INLINE double RigidIsland::largest_gap(const Rounding& allowed, bool positions, const VecX<double>& x,
+                                              RigidWorkspace& now) const {
   now.lambda.resize(rows_);
-  double widest = 0;
-  for (const Tie& tie : ties_) {
-    Vec3<double> C = positions ? tie.fixed : Vec3<double>(Vec3<double>::Zero());
+  double largest = 0;
+  for (const BallJoint& joint : joints_) {
+    Vec3<double> C = positions ? joint.fixed : Vec3<double>(Vec3<double>::Zero());
     double size = 0, sign = 1;
-    for (const End& end : tie.ends) {
+    for (const End& end : joint.ends) {
       if (end.arm >= 0) {
         for (int r = 0; r < 3; ++r) C[r] += sign * now.arms[at(end.arm)].x[r][end.lane];
         size = std::max(size, positions ? x.segment<3>(end.q0).lpNorm<Eigen::Infinity>()
@@ -289,69 +304,75 @@ double RigidIsland::widest(const Rounding& most, bool positions, const VecX<doub
       }
       sign = -1;
     }
-    now.lambda.segment<3>(tie.row) = C;
-    const double rounding = most.of_length * (positions ? 1 : most.rate) * tie.length + most.of_size * size;
-    const double share = C.norm() / rounding;
-    if (!(share <= widest)) widest = share;
+    now.lambda.segment<3>(joint.row) = C;
+    const double rounding =
+        allowed.per_length * (positions ? 1 : allowed.rate) * joint.length + allowed.per_size * size;
+    const double ratio = C.norm() / rounding;
+    if (!(ratio <= largest)) largest = ratio;  // NaN becomes the largest
   }
-  return widest;
+  return largest;
 }
 
-template <bool turned>
+template <bool with_rotation>
 [[gnu::flatten]] void RigidIsland::place_arms(const VecX<double>& q, RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
-    const Four& of = fours_[i];
+    const Four& constants = fours_[i];
     const Mat3<Pack> R =
-        rotation(gather(q, of.q0, 3), gather(q, of.q0, 4), gather(q, of.q0, 5), gather(q, of.q0, 6));
-    if constexpr (turned) now.fours[i].R = R;
-    const Vec3<Pack> c = gather3(q, of.q0, 0);
-    for (int k = 0; k < of.arms; ++k) {
-      const Arm& arm = arms_[at(of.first_arm + k)];
-      RigidWorkspace::Arm& placed = now.arms[at(of.first_arm + k)];
-      if constexpr (turned) placed.B = R.lazyProduct(arm.lever);
-      placed.x = c + R.lazyProduct(arm.r + of.centre);
+        rotation(detail::gather_lanes(q, constants.q0, 3), detail::gather_lanes(q, constants.q0, 4),
+                 detail::gather_lanes(q, constants.q0, 5), detail::gather_lanes(q, constants.q0, 6));
+    if constexpr (with_rotation) now.fours[i].R = R;
+    const Vec3<Pack> c = detail::gather_lanes3(q, constants.q0, 0);
+    for (int k = 0; k < constants.arms; ++k) {
+      const Arm& arm = arms_[at(constants.first_arm + k)];
+      RigidWorkspace::Arm& placed = now.arms[at(constants.first_arm + k)];
+      if constexpr (with_rotation) placed.B = R.lazyProduct(arm.lever);
+      placed.x = c + R.lazyProduct(arm.r + constants.centre);
     }
   }
 }
 
-[[gnu::flatten]] void RigidIsland::move_arms(const VecX<double>& v, RigidWorkspace& now) const {
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::set_arm_velocities(const VecX<double>& v,
+                                                                    RigidWorkspace& now) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
-    const Four& of = fours_[i];
-    const Vec3<Pack> c_dot = gather3(v, of.v0, 0), omega = gather3(v, of.v0, 3);
-    for (int k = 0; k < of.arms; ++k) {
-      const Vec3<Pack> p = arms_[at(of.first_arm + k)].r + of.centre;
-      now.arms[at(of.first_arm + k)].x = c_dot + now.fours[i].R.lazyProduct(omega.cross(p));
+    const Four& constants = fours_[i];
+    const Vec3<Pack> c_dot = detail::gather_lanes3(v, constants.v0, 0),
+                     omega = detail::gather_lanes3(v, constants.v0, 3);
+    for (int k = 0; k < constants.arms; ++k) {
+      const Vec3<Pack> p = arms_[at(constants.first_arm + k)].r + constants.centre;
+      now.arms[at(constants.first_arm + k)].x = c_dot + now.fours[i].R.lazyProduct(omega.cross(p));
     }
   }
 }
 
-[[gnu::flatten]] void RigidIsland::shift(const RigidWorkspace& now, VecX<double>& q) const {
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::displace(const RigidWorkspace& now, VecX<double>& q) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
-    const Four& of = fours_[i];
-    const auto [shift, beta] = response(of, now);
-    const Vec3<Pack> turn = of.L.lazyProduct(beta);
-    const Vec3<Pack> c = gather3(q, of.q0, 0) + shift - now.fours[i].R.lazyProduct(turn.cross(of.centre));
-    for (int lane = 0; lane < of.count; ++lane) {
-      auto theta = q.segment<4>(of.q0[at(lane)] + 3);
+    const Four& constants = fours_[i];
+    const auto [shift, beta] = response(constants, now);
+    const Vec3<Pack> turn = constants.L.lazyProduct(beta);
+    const Vec3<Pack> c = detail::gather_lanes3(q, constants.q0, 0) + shift -
+                         now.fours[i].R.lazyProduct(turn.cross(constants.centre));
+    for (int lane = 0; lane < constants.count; ++lane) {
+      auto theta = q.segment<4>(constants.q0[at(lane)] + 3);
       const Eigen::Quaterniond half(1, 0.5 * turn[0][lane], 0.5 * turn[1][lane], 0.5 * turn[2][lane]);
       const Eigen::Quaterniond turned =
           (Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]) * half).normalized();
       theta << turned.w(), turned.x(), turned.y(), turned.z();
-      for (int r = 0; r < 3; ++r) q[of.q0[at(lane)] + r] = c[r][lane];
+      for (int r = 0; r < 3; ++r) q[constants.q0[at(lane)] + r] = c[r][lane];
     }
   }
 }
 
-[[gnu::flatten]] void RigidIsland::push(const RigidWorkspace& now, double time, VecX<double>& v) const {
+[[gnu::flatten]] PLIANT_INLINE void RigidIsland::change_velocities(const RigidWorkspace& now, double time,
+                                                                   VecX<double>& v) const {
   for (std::size_t i = 0; i < fours_.size(); ++i) {
-    const Four& of = fours_[i];
-    const auto [push, beta] = response(of, now);
-    const Vec3<Pack> spin = of.L.lazyProduct(beta);
-    const Vec3<Pack> shift = push - now.fours[i].R.lazyProduct(spin.cross(of.centre));
-    for (int lane = 0; lane < of.count; ++lane)
+    const Four& constants = fours_[i];
+    const auto [push, beta] = response(constants, now);
+    const Vec3<Pack> spin = constants.L.lazyProduct(beta);
+    const Vec3<Pack> shift = push - now.fours[i].R.lazyProduct(spin.cross(constants.centre));
+    for (int lane = 0; lane < constants.count; ++lane)
       for (int r = 0; r < 3; ++r) {
-        v[of.v0[at(lane)] + r] += time * shift[r][lane];
-        v[of.v0[at(lane)] + 3 + r] += time * spin[r][lane];
+        v[constants.v0[at(lane)] + r] += time * shift[r][lane];
+        v[constants.v0[at(lane)] + 3 + r] += time * spin[r][lane];
       }
   }
 }
@@ -359,24 +380,27 @@ template <bool turned>
 template <class F>
 void RigidIsland::for_each_part(F&& act) const {
   Eigen::Index part = 0;
-  for (const Four& of : fours_)
-    for (std::size_t lane = 0; lane < at(of.count); ++lane, ++part) act(part, of.q0[lane], of.v0[lane]);
+  for (const Four& constants : fours_)
+    for (std::size_t lane = 0; lane < at(constants.count); ++lane, ++part)
+      act(part, constants.q0[lane], constants.v0[lane]);
 }
 
-namespace {
+namespace detail {
 
-/// Most iterations that close joints, and what each is to leave of the gaps at most.
-constexpr int kMostIterations = 8;
-constexpr double kSlow = 0.5;
-/// Iterations that cost as much as a new factor.
-constexpr int kFactor = 2;
+/// Largest number of iterations that close joints, and the ratio of two gaps above which an iteration is
+/// slow.
+inline constexpr int kMaxClosingIterations = 8;
+inline constexpr double kSlowClosing = 0.5;
+/// Number of iterations that cost as much as a new factor.
+inline constexpr int kIterationsPerFactor = 2;
 
-/// measure(): the widest gap, in what it may be; correct(gap, share): one iteration, where the one before has
-/// left that share of the gap (0: the first). correct is false where it gives up.
+/// Iterates until the joints are closed. measure() returns the largest gap relative to the allowed one.
+/// correct(gap, ratio) does one iteration; ratio: this gap over the gap before (0 at first). Returns false if
+/// correct() returns false, or after kMaxClosingIterations.
 template <class Measure, class Correct>
-bool iterate(Measure&& measure, Correct&& correct) {
+bool iterate_closing(Measure&& measure, Correct&& correct) {
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kMostIterations; ++i) {
+  for (int i = 0; i <= kMaxClosingIterations; ++i) {
     const double now = measure();
     if (now <= 1) return true;
     if (!std::isfinite(now) || !correct(now, now / before)) return false;
@@ -385,10 +409,10 @@ bool iterate(Measure&& measure, Correct&& correct) {
   return false;
 }
 
-}  // namespace
+}  // namespace detail
 
-bool RigidIsland::close(const Island& island, const Rounding& most, BlockFactor<double>& W_c,
-                        RigidWorkspace& now, VecX<double>& q, VecX<double>& v) const {
+PLIANT_INLINE bool RigidIsland::close(const Island& island, const Rounding& allowed, BlockFactor<double>& W_c,
+                                      RigidWorkspace& now, VecX<double>& q, VecX<double>& v) const {
   now.q_before.resize(7, parts_);
   now.v_before.resize(6, parts_);
   for_each_part([&](Eigen::Index k, int q0, int v0) {
@@ -396,35 +420,35 @@ bool RigidIsland::close(const Island& island, const Rounding& most, BlockFactor<
     now.v_before.col(k) = v.segment<6>(v0);
   });
   bool fresh = false;
-  auto find_forces = [&](double gap, double share) {
-    if (share > kSlow && fresh) return false;
-    if (!fresh && gap * std::pow(share, kFactor) > 1) {
-      for (const Four& of : fours_) couple(of, now);
+  auto find_forces = [&](double gap, double ratio) {
+    if (ratio > detail::kSlowClosing && fresh) return false;
+    if (!fresh && gap * std::pow(ratio, detail::kIterationsPerFactor) > 1) {
+      for (const Four& constants : fours_) couple(constants, now);
       factor(island, RankRule::keep, now, W_c);
       fresh = true;
     }
-    take_forces(W_c, now);
+    solve_forces(W_c, now);
     return true;
   };
   auto gap = [&] {
     place_arms<true>(q, now);
-    return widest(most, true, q, now);
+    return largest_gap(allowed, true, q, now);
   };
-  auto correct = [&](double left, double share) {
-    if (!find_forces(left, share)) return false;
-    shift(now, q);
+  auto correct = [&](double left, double ratio) {
+    if (!find_forces(left, ratio)) return false;
+    displace(now, q);
     return true;
   };
   auto rate = [&] {
-    move_arms(v, now);
-    return widest(most, false, v, now);
+    set_arm_velocities(v, now);
+    return largest_gap(allowed, false, v, now);
   };
-  auto correct_rates = [&](double left, double share) {
-    if (!find_forces(left, share)) return false;
-    push(now, 1, v);
+  auto correct_rates = [&](double left, double ratio) {
+    if (!find_forces(left, ratio)) return false;
+    change_velocities(now, 1, v);
     return true;
   };
-  if (iterate(gap, correct) && iterate(rate, correct_rates)) return true;
+  if (detail::iterate_closing(gap, correct) && detail::iterate_closing(rate, correct_rates)) return true;
   for_each_part([&](Eigen::Index k, int q0, int v0) {
     q.segment<7>(q0) = now.q_before.col(k);
     v.segment<6>(v0) = now.v_before.col(k);
@@ -432,23 +456,23 @@ bool RigidIsland::close(const Island& island, const Rounding& most, BlockFactor<
   return false;
 }
 
-bool RigidIsland::close_ahead(const Rounding& most, double h, const BlockFactor<double>& W_c,
-                              RigidWorkspace& now, VecX<double>& v,
-                              const std::function<const VecX<double>&()>& q_end) const {
+PLIANT_INLINE bool RigidIsland::close_ahead(const Rounding& allowed, double h, const BlockFactor<double>& W_c,
+                                            RigidWorkspace& now, VecX<double>& v,
+                                            const std::function<const VecX<double>&()>& q_end) const {
   now.v_before.resize(6, parts_);
   for_each_part([&](Eigen::Index k, int, int v0) { now.v_before.col(k) = v.segment<6>(v0); });
   auto gap = [&] {
     const VecX<double>& q = q_end();
     place_arms<false>(q, now);
-    return widest(most, true, q, now);
+    return largest_gap(allowed, true, q, now);
   };
-  auto correct = [&](double, double share) {
-    if (share > kSlow) return false;
-    take_forces(W_c, now);
-    push(now, 1 / h, v);
+  auto correct = [&](double, double ratio) {
+    if (ratio > detail::kSlowClosing) return false;
+    solve_forces(W_c, now);
+    change_velocities(now, 1 / h, v);
     return true;
   };
-  if (iterate(gap, correct)) return true;
+  if (detail::iterate_closing(gap, correct)) return true;
   for_each_part([&](Eigen::Index k, int, int v0) { v.segment<6>(v0) = now.v_before.col(k); });
   return false;
 }

@@ -1,28 +1,35 @@
-// The forces of joints and one-sided rows at an evaluation, Eq. (14): closed joints first, then those that
-// close, then what strings and limits push.
+// The forces of joints and one-sided rows at an evaluation, Eq. (14): closed joints first, then closing
+// joints, then strings and limits.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/dynamics.h>
+#include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
 
-namespace {
+namespace detail {
 
-/// Closing joints whose rows all but contradict each other would throw their parts away, as rods that pull
-/// apart would: nothing is accelerated by more than this times what the gaps ask.
-constexpr double kMostLever = 30;
-/// Strings that would are as soft as this, and share what there is.
-constexpr double kSoftClosing = 1e-3;
+/// Closing joints whose rows nearly contradict each other, for instance rods that pull apart, would
+/// accelerate their parts without bound. The accelerations are limited to this multiple of those that the
+/// gaps ask for.
+inline constexpr double kMaxClosingRatio = 30;
+/// Softness of closing strings beyond that limit; they share the load.
+inline constexpr double kClosingSoftness = 1e-3;
 
-/// The joints of an island, and the accelerations x of its parts that they shape.
+/// The joints of an island and the accelerations x of its parts. At first x are the accelerations without
+/// joints.
 template <class S>
-class Holding {
+class IslandForces {
  public:
-  Holding(const Model& model, const Island& island, Workspace<S>& work)
+  IslandForces(const Model& model, const Island& island, Workspace<S>& work)
       : model_(model),
         island_(island),
         work_(work),
@@ -36,36 +43,37 @@ class Holding {
   const Group<S, Eigen::Dynamic>& group() const { return group_; }
   const VecX<S>& x() const { return kept_.x; }
 
-  /// x = before + what the joints add. Closed joints come first; those that close get what these leave them.
-  void hold() {
+  /// Computes lambda and x for the joints: the closed ones first, then the closing ones within the freedom
+  /// that remains.
+  void solve() {
     auto closing = [&](int j) { return joints_.modes[at(j)] == JointMode::closing; };
+    auto not_closing = [&](int j) { return !closing(j); };
     const bool open = std::any_of(island_.joints.begin(), island_.joints.end(), closing);
     kept_.x = kept_.before;
     kept_.lambda.setConstant(island_.rows, S(0.0));
-    correct(
-        closed_, [&](int j) { return !closing(j); }, kept_.x, kept_.lambda);
+    correct(closed_, not_closing, kept_.x, kept_.lambda);
     if (!open) return;
     add_closing(closing);
-    correct(
-        closed_, [&](int j) { return !closing(j); }, kept_.x, kept_.lambda);
+    correct(closed_, not_closing, kept_.x, kept_.lambda);
   }
-  /// The same with pushes on one-sided rows.
+  /// Computes lambda and x for the joints and given pushes on one-sided rows.
   template <class Lambda>
-  void hold(const std::vector<OneSidedRow>& pushed, const Lambda& lambda) {
+  void solve(const std::vector<OneSidedRow>& pushed, const Lambda& lambda) {
     for (std::size_t i = 0; i < pushed.size(); ++i)
       kept_.before += group_.push(pushed[i]) * lambda[static_cast<Eigen::Index>(i)];
-    hold();
+    solve();
     for (std::size_t i = 0; i < pushed.size(); ++i) {
       const OneSidedRow& row = pushed[i];
       if (row.part < 0)
         joints_.lambda[model_.joints()[at(island_.strings[at(row.k)])].row] =
             lambda[static_cast<Eigen::Index>(i)];
       else
-        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // to the last bit
+        kept_.x[group_.first(row.part) + 6 + row.k] = S(0.0);  // exact
     }
   }
 
-  void finish() {
+  /// Stores the accelerations of the parts and lambda in the workspace.
+  void store() {
     for (int i = 0; i < group_.parts(); ++i) work_.parts[at(group_.part(i))].a_r = group_.share(x(), i);
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
@@ -76,8 +84,8 @@ class Holding {
  private:
   using Vectors = GroupVectors<S, Eigen::Dynamic>;
 
-  /// Takes x to where C_q x = -wanted for the rows of some joints that act, and adds the forces to lambda;
-  /// Eq. (14), with what M gives taken out.
+  /// Changes x so that C_q x = -wanted for the acting joints with which(j), and adds the forces to lambda:
+  /// Eq. (14) after elimination of M.
   template <class Which>
   void correct(const Group<S, Eigen::Dynamic>& group, Which&& which, VecX<S>& x, VecX<S>& lambda) const {
     const int refinements = group.is_rough() ? 2 : 0;
@@ -95,12 +103,24 @@ class Holding {
     }
   }
 
-  /// What brings joints together that close, no part faster than kMostLever allows.
+  /// Adds the forces of the closing joints, scaled down if they accelerate a part beyond kMaxClosingRatio.
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;
-    group_.joint_rows(before, kept_.rows);
-    double asked = 0, most = 0;
+    const double asked = largest_request(closing, before);
+    correct(group_, closing, kept_.x, kept_.lambda);
+    const VecX<S> change = kept_.x - before;
+    const double largest = largest_acceleration(change);
+    if (!(largest > kMaxClosingRatio * asked)) return;
+    const S share(kMaxClosingRatio * asked / largest);
+    kept_.x = before + share * change;
+    kept_.lambda = lambda + share * (kept_.lambda - lambda);
+  }
+  /// Returns the largest |C_q x + wanted| of the closing joints, m/s^2.
+  template <class Closing>
+  double largest_request(Closing&& closing, const VecX<S>& x) const {
+    group_.joint_rows(x, kept_.rows);
+    double asked = 0;
     for (const int j : island_.joints) {
       if (!closing(j)) continue;
       const JointModel& joint = model_.joints()[at(j)];
@@ -110,114 +130,119 @@ class Holding {
         square += std::pow(plain(kept_.rows[joint.island_row + r]) + plain(more[r]), 2);
       asked = std::max(asked, std::sqrt(square));
     }
-    correct(group_, closing, kept_.x, kept_.lambda);
-    const VecX<S> change = kept_.x - before;
+    return asked;
+  }
+  /// Returns the largest linear acceleration of a part, or of its surface by rotation, m/s^2.
+  double largest_acceleration(const VecX<S>& change) const {
+    double largest = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       double straight = 0, turning = 0;
       for (int k = 0; k < 3; ++k) {
         straight += std::pow(plain(change[group_.first(i) + k]), 2);
         turning += std::pow(plain(change[group_.first(i) + 3 + k]), 2);
       }
-      most = std::max({most, std::sqrt(straight), group_.model(i).part->size() * std::sqrt(turning)});
+      largest = std::max({largest, std::sqrt(straight), group_.model(i).part->size() * std::sqrt(turning)});
     }
-    if (!(most > kMostLever * asked)) return;
-    const S share(kMostLever * asked / most);
-    kept_.x = before + share * change;
-    kept_.lambda = lambda + share * (kept_.lambda - lambda);
+    return largest;
   }
 
   const Model& model_;
   const Island& island_;
   Workspace<S>& work_;
   ConstraintWorkspace<S>& joints_;
-  Group<S, Eigen::Dynamic> group_, closed_;  ///< all joints that act; the closed ones, while others close
+  Group<S, Eigen::Dynamic> group_, closed_;  ///< with all joints that act; with the closed joints only
   Vectors& kept_;
 };
 
-}  // namespace
-
-namespace {
-
-/// Softens the strings that close, where one of them pushes out of all proportion to what they lack without
-/// pushes, at x; whether one does.
-bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
-                    const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
-                    OneSidedRows<Eigen::Dynamic>& rows) {
+/// Softens the closing strings if one of them pushes more than kMaxClosingRatio times its violation at x,
+/// without pushes. Returns whether it does.
+inline bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
+                           const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
+                           OneSidedRows<Eigen::Dynamic>& rows) {
   auto closes = [&](const OneSidedRow& row) {
     return row.part < 0 && joints.modes[at(island.strings[at(row.k)])] == JointMode::closing;
   };
-  double asked = 0, most = 0;
+  double asked = 0, largest = 0;
   rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
     if (!closes(row)) return;
     asked = std::max(asked, std::abs(row.bound - group.value(row, x)));
-    most = std::max(most, lambda * group.value(row, group.response(row)));
+    largest = std::max(largest, lambda * group.value(row, group.response(row)));
   });
-  if (!(most > kMostLever * asked)) return false;
-  rows.soften(kSoftClosing, closes);
+  if (!(largest > kMaxClosingRatio * asked)) return false;
+  rows.soften(kClosingSoftness, closes);
   return true;
 }
 
-}  // namespace
-
-void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
-                  Workspace<double>& work) {
-  Holding<double> holding(model, island, work);
-  holding.hold();
+/// Adds the rows of the strings that act to the candidates for pushes.
+inline void add_strings(const Model& model, const Island& island, const ConstraintWorkspace<double>& joints,
+                        std::vector<OneSidedRow>& candidates) {
   for (std::size_t k = 0; k < island.strings.size(); ++k) {
     const int j = island.strings[k];
-    if (acts(work.joints.modes[at(j)]))
-      limits.push_back({-1, static_cast<int>(k), 1, -wanted(model, work.joints, j)[0]});
+    if (acts(joints.modes[at(j)]))
+      candidates.push_back({-1, static_cast<int>(k), 1, -wanted(model, joints, j)[0]});
   }
-  std::vector<OneSidedRow>& pushed =
-      work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
+}
+
+/// Solves the small dense system of the pushes on the rows `pushed`, as blocks of one row.
+inline VecX<Dual<1>> solve_pushes(const Model& model, const Island& island,
+                                  const IslandForces<Dual<1>>& forces,
+                                  const ConstraintWorkspace<Dual<1>>& joints,
+                                  const std::vector<OneSidedRow>& pushed) {
+  using S = Dual<1>;
+  const int n = static_cast<int>(pushed.size());
+  std::vector<std::pair<int, int>> all;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < i; ++k) all.emplace_back(i, k);
+  const BlockPattern pattern(std::vector<int>(pushed.size(), 1), all, cardinality_order);
+  BlockFactor<S> W;
+  W.clear(pattern);
+  VecX<S> lambda(n);
+  for (int k = 0; k < n; ++k) {
+    const OneSidedRow& row = pushed[at(k)];
+    const VecX<S> response = forces.group().response(row);
+    for (int i = k; i < n; ++i)
+      *W.block(pattern.place(i, k).offset) = forces.group().value(pushed[at(i)], response);
+    *W.block(pattern.place(k, k).offset) *= S(1 + row.softness);
+    const S bound = row.part >= 0 ? S(0.0) : S(-wanted(model, joints, island.strings[at(row.k)])[0]);
+    lambda[k] = bound - forces.group().value(row, forces.x());
+  }
+  W.factor();
+  W.solve(lambda);
+  return lambda;
+}
+
+}  // namespace detail
+
+PLIANT_INLINE void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
+                                Workspace<double>& work) {
+  detail::IslandForces<double> forces(model, island, work);
+  forces.solve();
+  detail::add_strings(model, island, work.joints, limits);
+  std::vector<OneSidedRow>& pushed = work.joints.pushed[forces.group().number()];
   pushed.clear();
   if (!limits.empty()) {
-    OneSidedRows<Eigen::Dynamic> rows(holding.group());
+    OneSidedRows<Eigen::Dynamic> rows(forces.group());
     for (const OneSidedRow& row : limits) rows.add(row);
-    rows.meet(holding.x());
-    if (soften_closing(island, work.joints, holding.group(), holding.x(), rows)) rows.meet(holding.x());
+    rows.meet(forces.x());
+    if (detail::soften_closing(island, work.joints, forces.group(), forces.x(), rows)) rows.meet(forces.x());
     std::vector<double> pushes;
     rows.for_each_pushed([&](const OneSidedRow& row, double lambda) {
       pushed.push_back(row);
       pushes.push_back(lambda);
     });
     if (!pushed.empty())
-      holding.hold(pushed,
+      forces.solve(pushed,
                    Eigen::Map<const VecX<double>>(pushes.data(), static_cast<Eigen::Index>(pushes.size())));
   }
-  holding.finish();
+  forces.store();
 }
 
-void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work) {
-  using S = Dual<1>;
-  Holding<S> holding(model, island, work);
-  holding.hold();
-  const std::vector<OneSidedRow>& pushed =
-      work.joints.pushed[static_cast<std::size_t>(&island - model.islands().data())];
-  if (!pushed.empty()) {
-    // The small dense system of the pushes, as blocks of one row.
-    const int n = static_cast<int>(pushed.size());
-    std::vector<std::pair<int, int>> all;
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k < i; ++k) all.emplace_back(i, k);
-    const BlockPattern pattern(std::vector<int>(pushed.size(), 1), all, cardinality_order);
-    BlockFactor<S> W;
-    W.clear(pattern);
-    VecX<S> lambda(n);
-    for (int k = 0; k < n; ++k) {
-      const OneSidedRow& row = pushed[at(k)];
-      const VecX<S> response = holding.group().response(row);
-      for (int i = k; i < n; ++i)
-        *W.block(pattern.place(i, k).offset) = holding.group().value(pushed[at(i)], response);
-      *W.block(pattern.place(k, k).offset) *= S(1 + row.softness);
-      const S bound = row.part >= 0 ? S(0.0) : S(-wanted(model, work.joints, island.strings[at(row.k)])[0]);
-      lambda[k] = bound - holding.group().value(row, holding.x());
-    }
-    W.factor();
-    W.solve(lambda);
-    holding.hold(pushed, lambda);
-  }
-  holding.finish();
+PLIANT_INLINE void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work) {
+  detail::IslandForces<Dual<1>> forces(model, island, work);
+  forces.solve();
+  const std::vector<OneSidedRow>& pushed = work.joints.pushed[forces.group().number()];
+  if (!pushed.empty()) forces.solve(pushed, detail::solve_pushes(model, island, forces, work.joints, pushed));
+  forces.store();
 }
 
 }  // namespace pliant

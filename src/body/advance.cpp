@@ -1,0 +1,2 @@
+// The compiled bodies of advance-inl.h.
+#include <pliant/body/advance-inl.h>

@@ -1,0 +1,2 @@
+// The compiled bodies of augmented-inl.h.
+#include <pliant/body/constraint/augmented-inl.h>

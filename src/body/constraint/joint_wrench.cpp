@@ -1,0 +1,2 @@
+// The compiled bodies of joint_wrench-inl.h.
+#include <pliant/body/constraint/joint_wrench-inl.h>

@@ -1,0 +1,9 @@
+// The compiled bodies of dynamics-inl.h, and the instance of the evaluation for directional derivatives.
+#include <pliant/body/dynamics-inl.h>
+
+namespace pliant {
+
+template void Dynamics::evaluate(const Evaluation<double>&) const;
+template void Dynamics::evaluate(const Evaluation<Dual<1>>&) const;
+
+}  // namespace pliant

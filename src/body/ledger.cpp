@@ -1,0 +1,2 @@
+// The compiled bodies of ledger-inl.h.
+#include <pliant/body/ledger-inl.h>

@@ -1,0 +1,2 @@
+// The compiled bodies of placed_point-inl.h.
+#include <pliant/body/placed_point-inl.h>

@@ -1,0 +1,2 @@
+// The compiled bodies of state-inl.h.
+#include <pliant/body/state-inl.h>
