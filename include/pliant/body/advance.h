@@ -24,7 +24,8 @@ inline auto share_of(const PartModel& m, const VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
 
-/// Returns v_r = (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot); w must hold its frame.
+/// Returns v_r = (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot); w must contain its
+/// frame.
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v);
 /// Returns (c_dot, omega, q_s_dot) of a part from v_r = (R^T c_dot, omega, q_s_dot).
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);

@@ -40,7 +40,7 @@ void choose_rigid_islands(const Evaluation<S>& e) {
 template <class S>
 void list_parts_before_joints(const Evaluation<S>& e) {
   const Model& model = e.model();
-  std::vector<int>& list = e.work.one_by_one;
+  std::vector<int>& list = e.work.before_joints;
   const bool may_sleep = e.rates_only && e.modes != nullptr && !e.modes->at_rest.empty();
   if (may_sleep) {
     list.clear();
@@ -112,7 +112,7 @@ void evaluate_part(const Evaluation<S>& e, int i) {
 /// Stages 1 to 3 of the parts that are evaluated before any joint.
 template <class S>
 void evaluate_parts(const Evaluation<S>& e) {
-  const std::vector<int>& list = e.work.one_by_one;
+  const std::vector<int>& list = e.work.before_joints;
   e.for_each(list.size(), [&](int k) { evaluate_part<S>(e, list[static_cast<std::size_t>(k)]); });
   for (RigidWorkspace& rigid : e.work.rigid) rigid.prepared = rigid.prepared || rigid.used;
 }
@@ -162,7 +162,7 @@ void set_joint_modes(const Evaluation<S>& e) {
       for (const int j : *list) joints.modes[static_cast<std::size_t>(j)] = JointMode::off;
   }
   joints.gains = rule.gains(e.modes->h, e.dynamics.joint_policy().step_consistent);
-  joints.most_speed = rule.speed * rule.rate;
+  joints.max_speed = rule.speed * rule.rate;
 }
 
 /// Copies modes, gains and active one-sided rows of the evaluation whose derivative is wanted.
@@ -172,7 +172,7 @@ void copy_joint_modes(const Evaluation<S>& e) {
   const ConstraintWorkspace<double>& fixed = e.fixed_modes->joints;
   joints.modes = fixed.modes;
   joints.gains = fixed.gains;
-  joints.most_speed = fixed.most_speed;
+  joints.max_speed = fixed.max_speed;
   joints.pushed = fixed.pushed;
   if constexpr (!std::is_same_v<S, double>)
     for (std::size_t i = 0; i < e.model().islands().size(); ++i) {

@@ -35,9 +35,9 @@ struct ContactPlane {
   /// kMoments.
   double highest(double t, double h) const {
     if (point.is_constant()) return normal.dot(point.value(t));
-    double most = -std::numeric_limits<double>::infinity();
-    for (const double share : kMoments) most = std::max(most, normal.dot(point.value(t + share * h)));
-    return most;
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const double share : kMoments) largest = std::max(largest, normal.dot(point.value(t + share * h)));
+    return largest;
   }
 };
 

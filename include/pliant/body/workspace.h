@@ -76,7 +76,7 @@ inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
 template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
-  std::vector<int> one_by_one;            ///< numbers of the parts that are evaluated before any joint
+  std::vector<int> before_joints;         ///< numbers of the parts that are evaluated before any joint
   std::vector<std::uint8_t> held;         ///< of each part: 1 if a velocity of it has no inertia
   ConstraintWorkspace<S> joints;          ///< stage 4
   GroupVectors<S, kMaxVelocities> alone;  ///< vectors of the part whose limits are being projected

@@ -131,17 +131,17 @@ PLIANT_INLINE std::vector<bool> dependent_rows(const Model& model, const Island&
     const JointModel& joint = model.joints()[at(j)];
     if (!acts(work.modes[at(j)])) continue;
     for (int r = 0; r < joint.rows; ++r) {
-      double square = 0, least = 0;
+      double square = 0, threshold = 0;
       for (const JointSide& side : joint.sides) {
         const int n = model.parts()[at(side.part)].n_x();
         const auto Cq = work.Cq.segment(side.offset + r * n, n);
         square += Cq.squaredNorm();
         if (joint.first_offset < 0) continue;
         const auto first = work.Cq.segment(joint.first_offset + r * n, n);
-        least = detail::kDependentRow * detail::kDependentRow *
-                (first.squaredNorm() + (Cq - first).squaredNorm());
+        threshold = detail::kDependentRow * detail::kDependentRow *
+                    (first.squaredNorm() + (Cq - first).squaredNorm());
       }
-      if (!(square > least)) continue;
+      if (!(square > threshold)) continue;
       for (const JointSide& side : joint.sides) {
         const int n = model.parts()[at(side.part)].n_x(), first = island.first[at(side.place)];
         for (int i = 0; i < n; ++i)

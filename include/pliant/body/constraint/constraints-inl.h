@@ -338,7 +338,7 @@ VecMax<S, kMaxJointRows> baumgarte(const Model& model, const ConstraintWorkspace
   S factor(beta2);
   if (mode == JointMode::closing) {
     const S gap = math::sqrt_from_zero(S(rows(joints.C).squaredNorm()));
-    const double largest = 2 * alpha * joints.most_speed * joint.length;
+    const double largest = 2 * alpha * joints.max_speed * joint.length;
     if (plain(gap) * beta2 > largest) factor = S(largest) / gap;
   }
   return S(2 * alpha) * rows(joints.C_dot) + factor * rows(joints.C);

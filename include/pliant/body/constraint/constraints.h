@@ -88,7 +88,7 @@ struct ConstraintWorkspace {
   Gains gains;                   ///< alpha and beta of Baumgarte's terms
   bool stabilise_closed = true;  ///< whether closed joints have Baumgarte's terms; closing joints always do
   RankRule rank = RankRule::decide;  ///< rule of the factors of W_c for dependent rows
-  double most_speed = 0;             ///< largest speed at which a gap closes, sizes of the smaller part / s
+  double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
   VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2; bias = -gamma, n_rows each
   VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
   std::vector<JointFactor<S>> W_c;   ///< of each island: the joints that act
