@@ -57,7 +57,7 @@ long operations() {
     const long before = Counted::operations;
     if (Law::of == NodalEnergy::Of::position) G = inverse;  // near rest, as in most runs
     Counted::operations = before;
-    Element::push(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse), f);
+    Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse), f);
   }
   return Counted::operations;
 }

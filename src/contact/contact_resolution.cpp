@@ -10,7 +10,7 @@
 #include <pliant/math/index.h>
 #include <pliant/project/project.h>
 
-#include "contact_pairs.h"
+#include <pliant/contact/contact_pairs.h>
 #include "load_work.h"
 #include "touched_parts.h"
 
@@ -69,10 +69,9 @@ ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFind
                                      MeshFinder& meshes, RestingContacts& resting, ContactRecord& record)
     : dynamics_(dynamics), finder_(finder), meshes_(meshes), resting_(resting), record_(record) {}
 
-void ContactResolution::reconcile(const std::vector<int>& parts, State& state, double t,
-                                  Workspace<double>& work, StepCounters& counters) const {
-  project_frames(dynamics_, t, parts, state, work);
-  project_joints(dynamics_, t, state, work, counters);
+void ContactResolution::reconcile(StepContext& step, const std::vector<int>& parts) const {
+  project_frames(step, parts);
+  project_joints(step);
 }
 
 /// How far a point of a part that spins leaves its tangent in h seconds, m: it may come round and strike
@@ -172,17 +171,19 @@ void ContactResolution::end_step(double h, State& state) const {
   state.contact_cache_age = cold_start_ || state.contact_cache.empty() ? 0 : state.contact_cache_age + 1;
 }
 
-void ContactResolution::resolve(const State& before, double since_of_limits, double h, State& state, double t,
-                                std::vector<Contact> contacts, Workspace<double>& work,
-                                StepCounters& counters) {
+void ContactResolution::resolve(StepContext& step, const ResolvedMotion& motion,
+                                std::vector<Contact> contacts) {
   fully_separated_.clear();
-  resolve_once(before, since_of_limits, h, state, t, std::move(contacts), h > 0, work, counters);
+  resolve_once(step, motion, std::move(contacts), motion.h > 0);
 }
 
-/// begins: whether the search begins at what took something of the step before.
-void ContactResolution::resolve_once(const State& before, double since_of_limits, double h, State& state,
-                                     double t, std::vector<Contact> contacts, bool begins,
-                                     Workspace<double>& work, StepCounters& counters) {
+/// warm: whether the impulses start from the contact cache.
+void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
+                                     std::vector<Contact> contacts, bool warm) {
+  const State& before = motion.before;
+  const double h = motion.h, t = step.t;
+  State& state = step.state;
+  Workspace<double>& work = step.work;
   if (contacts.empty()) return;
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double booked = state.work.sum();
@@ -195,12 +196,12 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
-  if (begins) warm_start(state, t, h, contacts, problem);
-  const ContactSolution solution = problem.solve(since_of_limits);
+  if (warm) warm_start(state, t, h, contacts, problem);
+  const ContactSolution solution = problem.solve(motion.held);
   if (h > 0) note_pushed(state, t, contacts, problem, solution.impulse);
-  counters.contact_sweeps += solution.sweeps;
-  counters.contact_fallbacks += solution.fallbacks;
-  counters.contact_residual = std::max(counters.contact_residual, solution.residual);
+  step.counters.contact_sweeps += solution.sweeps;
+  step.counters.contact_fallbacks += solution.fallbacks;
+  step.counters.contact_residual = std::max(step.counters.contact_residual, solution.residual);
   state.contact_residual = std::max(state.contact_residual, solution.residual);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
@@ -210,7 +211,7 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
   }
   problem.add_joint_impulses(record_.joint_impulses);
-  problem.bound_shifts(since_of_limits, h);
+  problem.bound_shifts(motion.held, h);
   // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
   // string has stopped something within it too, it is what the energy changes by. So is that of hands that
   // move joints, on which impulses push back, and of impulses at one moment.
@@ -220,13 +221,13 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
   LoadWork loads(dynamics_, state);
   ejected_from_ = state.q;
   move_by(problem, dynamics_.model(), work, state);
-  if (h > 0) reconcile(parts, state, t, work, counters);
+  if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
   // Methods that go by the velocities at a step's end book what forces do by those at its start: to what
   // rests they do nothing.
-  if (since_of_limits < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
-  if (h > 0) separate_overlaps(h, state, t, work, counters);
-  project_limits(dynamics_, t, state, work, counters);
+  if (motion.held < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
+  if (h > 0) separate_overlaps(step);
+  project_limits(step);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
@@ -238,8 +239,9 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
   }
 }
 
-void ContactResolution::resolve_chain(std::vector<Contact> resolved, double h, double slow, State& state,
-                                      double t, Workspace<double>& work, StepCounters& counters) {
+void ContactResolution::resolve_chain(StepContext& step, std::vector<Contact> resolved, double slow) {
+  State& state = step.state;
+  const double t = step.t;
   for (int link = 0; link < kMaxChainLinks && !resolved.empty(); ++link) {
     const Pairs known(resolved);
     std::vector<Contact> contacts = resting_.near(state, t);
@@ -249,7 +251,7 @@ void ContactResolution::resolve_chain(std::vector<Contact> resolved, double h, d
       if (!(contact.gap < -resting_.gap(contact) && u < -slow) ||
           known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
         continue;
-      contact.since = std::min(h, contact.gap / u);
+      contact.since = std::min(step.h, contact.gap / u);
       if (-contact.restitution * u > slow) contact.rebound = -contact.restitution * u;
       earliest = std::max(earliest, contact.since);
     }
@@ -260,10 +262,10 @@ void ContactResolution::resolve_chain(std::vector<Contact> resolved, double h, d
     meshes_.find(state, t, contacts);
     for (Contact& contact : contacts)
       if (contact.since == 0) contact.since = earliest;
-    resolve_once(state, 0, h, state, t, contacts, false, work, counters);
+    resolve_once(step, {state, 0, step.h}, contacts, false);
     resolved.insert(resolved.end(), contacts.begin(), contacts.end());
   }
-  if (!resolved.empty()) ++counters.contact_cutoffs;
+  if (!resolved.empty()) ++step.counters.contact_cutoffs;
 }
 
 /// Sides of a contact go this much farther, m.
@@ -336,8 +338,10 @@ void ContactResolution::keep_concerned(std::vector<Contact>& contacts, const Wor
 
 /// Moves bodies that overlap apart, by what a step of h seconds lets them be; those that this pushes into
 /// others wholly.
-void ContactResolution::separate_overlaps(double h, State& state, double t, Workspace<double>& work,
-                                          StepCounters& counters) {
+void ContactResolution::separate_overlaps(StepContext& step) {
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  const double h = step.h, t = step.t;
   for (int i = 0; i < kMaxSeparationRounds; ++i) {
     std::vector<Contact> found = resting_.near(state, t);
     double deepest = 0, most = 0;
@@ -371,12 +375,12 @@ void ContactResolution::separate_overlaps(double h, State& state, double t, Work
     parting.separate_bodies(limits, enough);
     LoadWork loads(dynamics_, state);
     move_by(parting, dynamics_.model(), work, state);
-    reconcile(parts, state, t, work, counters);
+    reconcile(step, parts);
     state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
   }
-  ++counters.contact_cutoffs;
+  ++step.counters.contact_cutoffs;
 }
 
 }  // namespace pliant

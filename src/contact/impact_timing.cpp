@@ -70,10 +70,12 @@ std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
 
 }  // namespace
 
-std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinder& finder, Integrator& method,
-                                    const State& before, double t, double h,
-                                    const std::vector<Contact>& impacts, State& state,
-                                    Workspace<double>& work, StepCounters& counters) {
+std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
+                                    const FreeMotion& motion, const std::vector<Contact>& impacts) {
+  const Dynamics& dynamics = step.dynamics;
+  const State& before = motion.before;
+  State& state = step.state;
+  const double t = motion.begin, h = motion.h;
   double size = std::numeric_limits<double>::infinity(), largest = 0;
   for (const Contact& contact : impacts) {
     size = std::min(size, smaller_size(dynamics.model(), contact));
@@ -86,13 +88,14 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
       least = std::min(least, finder.least_gap(of, at_time, contact, 4 * largest));
     return least;
   };
-  const StepPath path = method.path(dynamics, before, h, state, counters);
+  const StepPath path = method.path(dynamics, before, h, state, step.counters);
   double reached = h;  // how far into the step the state is
   auto go_to = [&](double tau) {
     if (tau == reached) return;
     state = before;
     set_step(state, t, tau);
-    method.step(dynamics, state, work, counters);
+    StepContext part(dynamics, state, step.work, step.counters);
+    method.step(part);
     reached = tau;
   };
   auto gap_at = [&](double tau) {

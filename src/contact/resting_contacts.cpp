@@ -7,7 +7,7 @@
 
 #include <pliant/math/index.h>
 
-#include "contact_pairs.h"
+#include <pliant/contact/contact_pairs.h>
 
 namespace pliant {
 

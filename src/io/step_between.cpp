@@ -29,7 +29,8 @@ std::optional<State> step_between(const Model& model, const State& low, const St
     state.start = start;
     state.step = 0;
     state.h = part * (high.time() - start);
-    method.step(dynamics, state, work, counters);
+    StepContext step(dynamics, state, work, counters);
+    method.step(step);
     state.start = start + state.h;
     state.h = low.h;
     return state;

@@ -96,7 +96,7 @@ TEST_CASE("what is no sound mesh is refused with its reason") {
   CHECK_THAT(said_of("a.obj", obj("")), test::has_text("it is no mesh: "));
   CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 1 1 2\n")), test::has_text("triangle 2 has no area"));
   CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nl 1 2\n")), test::has_text("a point or a line"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 2 3 4\n")), test::has_text("are turned against each other"));
+  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 2 3 4\n")), test::has_text("have opposite orientations"));
   CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 2 3 1\n")),
              test::has_text("has three triangles: 0, 1 and 2"));
   CHECK_THAT(said_of("a.fbx", "anything"), test::has_text("expected a file .obj, .ply, .stl, .gltf or .glb"));

@@ -23,6 +23,14 @@ struct ContactRecord {
   void clear();
 };
 
+/// The motion that ends where contacts are resolved. `before` is the state itself for an impulse at one
+/// moment.
+struct ResolvedMotion {
+  const State& before;
+  double held;  ///< impulses on limits stand for forces over this time, s (FreeMotion::held)
+  double h;     ///< length of the motion, s; 0 for an impulse at one moment
+};
+
 class ContactResolution {
  public:
   /// All must outlive it. record: what is added to.
@@ -34,24 +42,20 @@ class ContactResolution {
   /// What took something of this step, of so many seconds, becomes the supports of a state.
   void end_step(double h, State& state) const;
 
-  /// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
-  /// then what still overlaps is parted.
-  void resolve(const State& before, double since_of_limits, double h, State& state, double t,
-               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
-  /// Impulses of a step of h seconds at some contacts throw bodies against others that were out of their way:
-  /// these impacts are of the same step, and so are those that follow from them.
-  void resolve_chain(std::vector<Contact> resolved, double h, double slow, State& state, double t,
-                     Workspace<double>& work, StepCounters& counters);
+  /// Applies impulses at contacts at step.t, the end of a motion, each for the time that it says, and then
+  /// separates what still overlaps.
+  void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
+  /// Resolves the impacts of bodies that the impulses at these contacts ejected against others, in the motion
+  /// of step.h seconds, and the impacts that follow from them. slow: speeds below it do not rebound, m/s.
+  void resolve_chain(StepContext& step, std::vector<Contact> resolved, double slow);
 
-  /// After velocities and places of some parts have changed: frames follow the nodes, joints hold.
-  void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
-                 StepCounters& counters) const;
+  /// Projects frames and joints after velocities and places of some parts have changed.
+  void reconcile(StepContext& step, const std::vector<int>& parts) const;
 
  private:
   double sweep(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
-  void resolve_once(const State& before, double since_of_limits, double h, State& state, double t,
-                    std::vector<Contact> contacts, bool begins, Workspace<double>& work,
-                    StepCounters& counters);
+  void resolve_once(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts,
+                    bool warm);
   double largest_separation(const Contact& contact, double h) const;
   void travel(const Contact& contact, double far);
   void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
@@ -63,7 +67,7 @@ class ContactResolution {
   void add_ejections(const State& state);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
-  void separate_overlaps(double h, State& state, double t, Workspace<double>& work, StepCounters& counters);
+  void separate_overlaps(StepContext& step);
 
   const Dynamics& dynamics_;
   const ContactFinder& finder_;

@@ -27,15 +27,14 @@ class ContactStepping {
   /// Advances q, v and work by state.h and returns by how much; the caller counts the step. to_event: it ends
   /// at the first impact that is told in time, and where bodies that lie on each other have gone as far as
   /// one motion may take them.
-  double step(Integrator& method, State& state, Workspace<double>& work, StepCounters& counters,
-              bool to_event = false);
+  double step(Integrator& method, StepContext& step, bool to_event = false);
   /// Takes a step to an event in which bodies lay on each other again, in two halves that are steps of their
   /// own, and extrapolates from both (Richardson): impulses that stand for forces over a step are wrong by
   /// O(h^2), which it tells, what is left by O(h^3). begun: where the step began, with its length; length:
   /// what was taken of it; impacts: how many had been counted before. Where it ended at one, the halves find
   /// their own end and are not extrapolated. state: where the step led, and then where the halves do.
-  StepError step_by_doubling(Integrator& method, const ErrorScale& scale, const State& begun, double length,
-                             long impacts, State& state, Workspace<double>& work, StepCounters& counters);
+  StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
+                             const State& begun, double length, long impacts);
 
   /// What the steps so far took, by stages, s of the clock.
   struct StageTimes {
@@ -59,16 +58,41 @@ class ContactStepping {
 
  private:
   class StageClock;
-  ContactFinder::Neighbourhood look_ahead(const State& state, double now, double whole, double fall,
+  struct Progress;
+  struct Motion;
+  Progress begin(Integrator& method, StepContext& step);
+  Motion advance(Progress& progress);
+  Motion predict(Progress& progress);
+  [[noreturn]] void fail_too_fast(const Progress& progress) const;
+  bool detect(Motion& motion, Progress& progress);
+  ContactFinder::Neighbourhood look_ahead(const State& state, double now, double length, double fall,
                                           bool touch);
   bool wake_met(const std::vector<Contact>& contacts, const FreeMotion& motion, State& state);
-  std::vector<Contact> few_impacts(const std::vector<Contact>& contacts,
-                                   const std::vector<Contact>& resting) const;
-  void extrapolate(const State& once, std::size_t second, double t, double h, State& state,
-                   Workspace<double>& work, StepCounters& counters);
-  void strike(const FreeMotion& motion, const std::vector<Contact>& resting,
-              const std::vector<Contact>& impacts, State& state, Workspace<double>& work,
-              StepCounters& counters, StageClock& clock);
+  void record_resting(const Motion& motion, bool to_event);
+  std::vector<Contact> few_impacts(const Motion& motion) const;
+  bool locate_and_strike(Motion& motion, Progress& progress);
+  void strike(const Motion& motion, const std::vector<Contact>& impacts, Progress& progress);
+  void resolve(Motion& motion, Progress& progress);
+
+  /// A step that is to be compared with its halves.
+  struct Whole {
+    const State state;                  ///< to which it led
+    const double length;                ///< s
+    const std::vector<Contact> rested;  ///< contacts at rest in it
+    const std::size_t contacts;         ///< number of contacts that it resolved
+    const bool struck;                  ///< whether it ended at an impact
+  };
+  struct Halves {
+    double first = 0, taken = 0;     ///< lengths of the first half and of both, s
+    std::size_t first_contacts = 0;  ///< number of contacts that the first half resolved
+    VecX<double> falls;              ///< velocities that gravity gives parts which lost their contacts
+    bool finite = false;
+  };
+  Halves take_halves(Integrator& method, StepContext& step, const Whole& whole, const State& begun);
+  bool agree(const Whole& whole, const Halves& halves, bool struck, const State& state) const;
+  double difference(const Whole& whole, const Halves& halves, bool alike, const ErrorScale& scale,
+                    double start, const State& state) const;
+  void extrapolate(StepContext& step, const State& once, std::size_t second);
 
   const Dynamics& dynamics_;
   ContactFinder finder_;

@@ -21,13 +21,13 @@ class Esdirk final : public Integrator {
   int order() const override { return 4; }
   int error_order() const override { return 3; }
   /// Throws NumericalFailure where the equations of a stage are not solved.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> exactly_;  ///< where errors are not measured
-  MatX<double> q_rates_, v_rates_;       ///< a column a stage
+  std::unique_ptr<ErrorScale> fine_scale_;  ///< where errors are not measured
+  MatX<double> q_rates_, v_rates_;          ///< a column a stage
   VecX<double> q_, v_, r_q_, r_v_, q_dot_;
 };
 

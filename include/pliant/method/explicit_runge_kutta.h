@@ -18,16 +18,15 @@ class ExplicitRungeKutta : public Integrator {
   const char* name() const override { return of_->name; }
   int order() const override { return of_->order; }
   int error_order() const override { return of_->error_order; }
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
   /// By its continuous extension; where something oscillates freely as other methods do.
   StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                 StepCounters& counters) override;
 
  private:
-  /// The rates at (t, q_, v_), in the columns of a stage.
-  void take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank, const State& modes,
-                  Workspace<double>& work, StepCounters& counters);
+  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, into the columns of a stage.
+  void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   StepPath extended(const Dynamics& dynamics, const State& low, double h, const State& high,
                     StepCounters& counters);
   bool ended_at(const Dynamics& dynamics, double t, const State& state) const;

@@ -24,7 +24,7 @@ class FreeStages {
   void take(int stage, const VecX<double>& q, const VecX<double>& v, VecX<double>& v_dot);
   void still(VecX<double>& q_dot) const;
   /// What was kept at the end of a step is that of the start of this one.
-  void begin_at_end();
+  void reuse_end_rates();
   /// The coordinates and velocities of a stage, or at the end of the step for the number of stages. start:
   /// those at the start of the step; may be q and v themselves.
   void move(int stage, const VecX<double>& q_start, const VecX<double>& v_start, VecX<double>& q,

@@ -19,12 +19,12 @@ class ImplicitMidpoint final : public Integrator {
   const char* name() const override { return "implicit_midpoint"; }
   int order() const override { return 2; }
   /// Throws NumericalFailure where the equations of the step are not solved.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> exactly_;
+  std::unique_ptr<ErrorScale> fine_scale_;
   VecX<double> q_, v_, q_dot_;
 };
 

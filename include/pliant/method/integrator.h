@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/body/dynamics.h>
-#include <pliant/body/step_counters.h>
+#include <pliant/body/step_context.h>
 #include <pliant/method/error_scale.h>
 #include <pliant/method/step_path.h>
 
@@ -18,9 +17,9 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual const char* name() const = 0;
   virtual int order() const = 0;
-  /// Advances q, v and work by state.h (> 0, s); the caller counts the step.
-  virtual void step(const Dynamics& dynamics, State& state, Workspace<double>& work,
-                    StepCounters& counters) = 0;
+  /// Advances q, v and work of the state by step.h (> 0, s) from step.t on; step.t becomes the end of the
+  /// step. The caller counts the step.
+  virtual void step(StepContext& step) = 0;
   /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
   /// step is stable while it is at most 1.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
@@ -58,8 +57,7 @@ class Integrator {
   /// What every method does with a state that it has brought to the end of a step, at time t (s): it keeps to
   /// limits, strings and joints. What that moves is an error of the step too; of joints that close the time
   /// is.
-  void project(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-               StepCounters& counters);
+  void project(StepContext& step);
 
  private:
   VecX<double> unprojected_;

@@ -3,7 +3,7 @@
 // of second order whatever A is, and L-stable where A is the Jacobian, with gamma = 1 - 1/sqrt(2). A holds
 // q_dot = v for all coordinates, which costs nothing and makes what swings freely neither grow nor die for h
 // omega < 2.26, and of parts that deform locally the elasticity and damping of their nodes or modes
-// and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit. Its error is
+// and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. Its error is
 // estimated by u + h k1, of first order; of such parts in place, for velocities as what they move in a step.
 //
 // What strikes something stiff needs velocities that are those by which it moved, and the stiff ones of ROS2
@@ -30,7 +30,7 @@ class LinearlyImplicit final : public Integrator {
   int error_order() const override { return 1; }
   /// Throws NumericalFailure and OutOfMemory, naming the part, where the stiffness of its nodes cannot be
   /// factored.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
   bool local_is_implicit() const override { return true; }
   double reach() const override { return touching_ ? 1 : 0.5; }
@@ -43,15 +43,14 @@ class LinearlyImplicit final : public Integrator {
   /// Those of the step that is taken.
   Soft& soft() { return first_order_ ? of_first_ : of_second_; }
   const Soft& soft() const { return first_order_ ? of_first_ : of_second_; }
-  void take_soft(const Dynamics& dynamics, double t, double c, const Workspace<double>& work,
-                 StepCounters& counters);
+  /// Prepares the implicit parts for a stage with this c = gamma h, s.
+  void prepare_implicit_parts(StepContext& step, double c);
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
-  void second_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
-  void first_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
-  void end_step(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-                StepCounters& counters);
-  void look_at_strings(const Model& model, const State& state, const Workspace<double>& work);
+  void second_order(StepContext& step);
+  void first_order(StepContext& step);
+  void end_step(StepContext& step);
+  void record_slack_strings(const Model& model, const State& state, const Workspace<double>& work);
   bool was_stopped(const Model& model, const State& now) const;
 
   bool touching_ = false, first_order_ = false, loose_ = false;

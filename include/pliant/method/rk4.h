@@ -12,7 +12,7 @@ class Rk4 final : public Integrator {
  public:
   const char* name() const override { return "rk4"; }
   int order() const override { return 4; }
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:

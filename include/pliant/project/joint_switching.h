@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <pliant/body/dynamics.h>
-#include <pliant/body/step_counters.h>
+#include <pliant/body/step_context.h>
 
 namespace pliant {
 
@@ -29,16 +28,13 @@ class JointSwitching {
 
   /// A time; where a path has a kink there, or nearer to it than `near`, that just after the kink. s.
   double after_kink(double t, double near) const;
-  /// Joints act or do not, as they are to at a time t; times nearer than `near` are the same. s.
-  void switch_at(double t, double near, State& state, Workspace<double>& work, StepCounters& counters);
-  /// Joints begin to act in some islands.
-  void engage(const std::vector<bool>& islands, double t, State& state, Workspace<double>& work,
-              StepCounters& counters);
-  /// Joints follow the paths of their ends, which have a kink at a time or nearer to it than `near`, from a
-  /// time t after it on. Throws UnsatisfiableModel where a closed joint's path jumps in place.
-  void follow_paths(double kink, double near, double t, State& state, Workspace<double>& work,
-                    StepCounters& counters);
-
+  /// Engages and releases joints as their times say at step.t; times nearer than `near` (s) count as equal.
+  void switch_at(StepContext& step, double near);
+  /// Engages the joints of the islands that are marked.
+  void engage(StepContext& step, const std::vector<bool>& islands);
+  /// Applies the impulses at a kink (s) of prescribed paths, or at kinks within `near` (s) of it; step.t: a
+  /// time just after the kink. Throws UnsatisfiableModel if the path of a closed joint jumps in place.
+  void follow_paths(StepContext& step, double kink, double near);
   /// In the order of time; those that are mere rounding are left out.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
   /// undo_step() takes back those since begin_step(); forget_after(): those after a time, s.
@@ -47,8 +43,8 @@ class JointSwitching {
   void forget_after(double t);
 
  private:
-  void note(const Island& island, double t, bool of_path, const VecX<double>& v_before, const State& state,
-            const VecX<double>& impulses, Workspace<double>& work);
+  void record(StepContext& step, const Island& island, bool of_path, const VecX<double>& v_before,
+              const VecX<double>& impulses);
 
   const Dynamics& dynamics_;
   std::vector<ImpulseOnEngage> impulses_;

@@ -1,7 +1,6 @@
 // Simulation: a model, its state, and a method that steps it.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -71,7 +70,8 @@ class Simulation {
   std::set<std::string> held() const;
 
  private:
-  void guarded(double h, const std::function<void()>& step);
+  template <class Advance>
+  void guarded(double h, Advance&& step);
   void advance(double h);
   double take_step();
   void set_method(std::unique_ptr<Integrator> method);
@@ -81,7 +81,11 @@ class Simulation {
   bool shorter_steps_pass(double h);
   void begin_step();
   void reject_step();
-  void check(const State& before);
+  void end_step();
+  [[noreturn]] void fail_not_finite(const std::string& where);
+  StepContext context();
+  void switch_joints(double t, double near);
+  void follow_paths(double kink, double near);
   void record_held();
 
   Model model_;

@@ -24,9 +24,9 @@ StepGrowth growth_of(const Integrator& method, const Model& model);
 /// times h that it is at most.
 double next_step(double h, double error, double last_error, int order, bool rejected, double most);
 
-/// A first step at a state. work: any.
-double first_step(const Dynamics& dynamics, const ErrorScale& scale, int order, const State& state,
-                  Workspace<double>& work, StepCounters& counters);
+/// Returns the length of a first step at the state, s. order: of the error estimate of the method. step.work
+/// is storage; its contents are ignored.
+double first_step(StepContext& step, const ErrorScale& scale, int order);
 
 /// Takes a step from a state, whose h is the first it tries, which ends at a time at the latest and then
 /// exactly there. attempt(): takes the step in the state, returns its StepError. False when the step would

@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-#include "implicit_part.h"
+#include <pliant/method/implicit/implicit_part.h>
 
 namespace pliant {
 

@@ -22,11 +22,11 @@ inline constexpr double kLeft = 1e-13, kRounding = 4e-15;
 /// An iteration that leaves more than this part of the error takes a new factor; one that leaves more than
 /// the other part with a new factor has come to the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
-inline constexpr int kMostIterations = 30;
+inline constexpr int kMaxIterations = 30;
 /// A closed joint that its projection leaves this many times what it may be cannot be closed.
 inline constexpr double kOpen = 1e3;
 /// Most joints that a message names.
-inline constexpr int kMostNamed = 8;
+inline constexpr int kMaxNamed = 8;
 /// Rows that make up a dependent one have at least this share of it.
 inline constexpr double kDepends = 1e-6;
 /// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
@@ -124,16 +124,14 @@ class Projection {
  public:
   using Vector = VecMax<double, Max>;
 
-  /// vectors: any.
-  Projection(const Dynamics& dynamics, double t, const Group<double, Max>& group, State& state,
-             Workspace<double>& work, GroupVectors<double, Max>& vectors)
-      : dynamics_(dynamics),
-        model_(dynamics.model()),
-        t_(t),
+  /// vectors: storage; its contents are ignored.
+  Projection(StepContext& step, const Group<double, Max>& group, GroupVectors<double, Max>& vectors)
+      : step_(step),
+        model_(step.model()),
         group_(group),
         island_(group.island()),
-        state_(state),
-        work_(work),
+        state_(step.state),
+        work_(step.work),
         kept_(vectors) {}
 
   /// Coordinates onto C = 0 and within the limits, from those that the vectors keep. Returns whether a limit
@@ -145,7 +143,7 @@ class Projection {
     for (const RankRule rank : {RankRule::keep, RankRule::decide, RankRule::rounding}) {
       rank_ = rank;
       const bool pushed = approach();
-      if (island_ == nullptr || !dynamics_.joint_policy().projected) return pushed;
+      if (island_ == nullptr || !step_.joint_policy().projected) return pushed;
       std::optional<UnsatisfiableModel> open = open_joint();
       if (!open && (rank == RankRule::keep || !moved_far())) return pushed;
       if (open && rank != RankRule::rounding) failure = std::move(open);
@@ -158,7 +156,7 @@ class Projection {
             << model_.joints()[at(widest_)].joint->type() << " '"
             << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
     if (model_.joints()[at(widest_)].driven) message << ", unless its anchor, which is moved in time, jumps";
-    throw NumericalFailure(message.str(), t_);
+    throw NumericalFailure(message.str(), step_.t);
   }
 
   /// What was evaluated is of another state.
@@ -183,7 +181,7 @@ class Projection {
         evaluated_ = false;
       }
     }
-    for (int i = 0; i < kMostIterations; ++i) {
+    for (int i = 0; i < kMaxIterations; ++i) {
       Vector &before = kept_.before, &joined = kept_.joined, &x = kept_.x;
       gather_velocities(group_, state_.v, before);
       x = before;
@@ -217,7 +215,7 @@ class Projection {
   UnsatisfiableModel contradiction(int open, double gap, int held) const {
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
-    message << "joints contradict each other at t = " << t_ << " s: " << joint.joint->type() << " '"
+    message << "joints contradict each other at t = " << step_.t << " s: " << joint.joint->type() << " '"
             << joint.joint->name() << "' stays open by " << gap << " m";
     int named = 0;
     auto name = [&](int j) {
@@ -227,13 +225,13 @@ class Projection {
     if (held != open && model_.joints()[at(held)].joint->one_sided()) name(held);
     for (const int j : island_->joints) {
       if (j == open || (j != held && !depends(model_.joints()[at(held)], model_.joints()[at(j)]))) continue;
-      if (named == kMostNamed) {
+      if (named == kMaxNamed) {
         message << " and others";
         break;
       }
       name(j);
     }
-    return UnsatisfiableModel(message.str(), t_);
+    return UnsatisfiableModel(message.str(), step_.t);
   }
 
  private:
@@ -244,7 +242,7 @@ class Projection {
     fresh_ = false;
     tightened_.clear();
     bool pushed = false;
-    for (int i = 0; i < kMostIterations; ++i) {
+    for (int i = 0; i < kMaxIterations; ++i) {
       Vector& x = kept_.x;
       x.setZero(group_.size());
       const bool open = correct_joints(Rows::coordinates, i, x);
@@ -326,7 +324,7 @@ class Projection {
   bool correct_joints(Rows what, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
     evaluate(what, iteration, x);
-    if (!dynamics_.joint_policy().projected) return false;
+    if (!step_.joint_policy().projected) return false;
     const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
     double now = 0;
     VecX<double>& error = kept_.rows;
@@ -348,7 +346,7 @@ class Projection {
     if (slow && fresh_ && now > kStalled * before_) return false;
     fresh_ = slow || (iteration == 0 && what == Rows::coordinates && rank_ != RankRule::keep);
     if (fresh_) {
-      dynamics_.factor_joints(t_, state_.q, state_.v, state_.joints, *island_, work_, rank_);
+      step_.dynamics.factor_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_, rank_);
       kept_.start = x;
     }
     before_ = now;
@@ -365,7 +363,8 @@ class Projection {
       group_.joint_rows(kept_.gain, kept_.gained);
       return;
     }
-    if (!evaluated_) dynamics_.evaluate_joints(t_, state_.q, state_.v, state_.joints, *island_, work_);
+    if (!evaluated_)
+      step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
     evaluated_ = true;
     if (what == Rows::velocities) kept_.start = x;
   }
@@ -464,9 +463,8 @@ class Projection {
     return mode != 0 && (mode * row.sign < 0 || stays(row)) ? 0 : kNever;
   }
 
-  const Dynamics& dynamics_;
+  StepContext& step_;
   const Model& model_;
-  double t_;
   const Group<double, Max>& group_;
   const Island* island_;
   State& state_;

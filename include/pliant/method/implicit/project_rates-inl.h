@@ -1,20 +1,24 @@
-#include "hold_rates.h"
+#pragma once
+
+#include <pliant/math/header_only.h>
+#include <pliant/method/implicit/project_rates.h>
 
 #include <Eigen/QR>
 
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/group.h>
 
-#include "project/projection.h"
+#include <pliant/project/projection.h>
 
 namespace pliant {
 
-namespace {
+namespace rate_projection {
 
 using AllSoft = std::vector<std::unique_ptr<ImplicitPart>>;
 
 /// What pushes do to the rates of a part, in the place of its mass.
-void take_metric(const ImplicitPart* soft, const PartWorkspace<double>& w, PartWorkspace<double>& filtered) {
+inline void copy_metric(const ImplicitPart* soft, const PartWorkspace<double>& w,
+                        PartWorkspace<double>& filtered) {
   if (soft != nullptr) {
     if (!filtered.local) filtered.local = std::make_unique<LocalWorkspace>();
     filtered.local->take_compliance(soft->compliance());
@@ -28,7 +32,8 @@ void take_metric(const ImplicitPart* soft, const PartWorkspace<double>& w, PartW
 
 /// Takes x to where the joints and the pushed rows have no rate.
 template <int Max>
-void hold(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed, VecMax<double, Max>& x) {
+void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
+             VecMax<double, Max>& x) {
   if (group.island() != nullptr) {
     const int passes = group.is_rough() ? 3 : 1;
     VecX<double> rows;
@@ -52,15 +57,15 @@ void hold(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushe
 
 /// Holds a group, and gives the rates what that changed.
 template <int Max>
-void hold_group(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed, const AllSoft& soft,
-                const Workspace<double>& work, VecX<double>& v_dot) {
+void project_group_rates(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
+                         const AllSoft& soft, const Workspace<double>& work, VecX<double>& v_dot) {
   VecMax<double, Max> before, x;
   group.gather(before, [&](int i) -> VecX<double> {
     const ImplicitPart* of_part = soft[at(group.part(i))].get();
     return of_part != nullptr ? of_part->change() : VecX<double>::Zero(group.model(i).n_x());
   });
   x = before;
-  hold(group, pushed, x);
+  project(group, pushed, x);
   before = x - before;
   for (int i = 0; i < group.parts(); ++i) {
     const VecX<double> change = group.share(before, i);
@@ -74,22 +79,24 @@ void hold_group(const Group<double, Max>& group, const std::vector<OneSidedRow>&
   }
 }
 
-}  // namespace
+}  // namespace rate_projection
 
-bool has_implicit(const Island& island, const AllSoft& soft) {
+PLIANT_INLINE bool has_implicit(const Island& island, const rate_projection::AllSoft& soft) {
   return std::any_of(island.parts.begin(), island.parts.end(), [&](int i) { return soft[at(i)] != nullptr; });
 }
 
-void hold_rates(const Model& model, const AllSoft& soft, const Workspace<double>& work,
-                Workspace<double>& filtered, VecX<double>& v_dot) {
+PLIANT_INLINE void project_rates(const Model& model, const rate_projection::AllSoft& soft,
+                                 const Workspace<double>& work, Workspace<double>& filtered,
+                                 VecX<double>& v_dot) {
   filtered.parts.resize(model.parts().size());
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const std::vector<int>& pressed = work.parts[i].pressed;
     if (soft[i] == nullptr || model.parts()[i].island >= 0 || pressed.empty()) continue;
-    take_metric(soft[i].get(), work.parts[i], filtered.parts[i]);
+    rate_projection::copy_metric(soft[i].get(), work.parts[i], filtered.parts[i]);
     std::vector<OneSidedRow> rows;
     for (const int k : pressed) rows.push_back({0, k, 1, 0});
-    hold_group(Group<double, kMaxVelocities>(model, filtered, static_cast<int>(i)), rows, soft, work, v_dot);
+    rate_projection::project_group_rates(Group<double, kMaxVelocities>(model, filtered, static_cast<int>(i)),
+                                         rows, soft, work, v_dot);
   }
   const ConstraintWorkspace<double>& joints = work.joints;
   for (std::size_t k = 0; k < model.islands().size(); ++k) {
@@ -102,10 +109,11 @@ void hold_rates(const Model& model, const AllSoft& soft, const Workspace<double>
     filtered.joints.W_c.resize(model.islands().size());
     filtered.joints.W_closed.resize(model.islands().size());
     filtered.joints.vectors.resize(model.islands().size());
-    for (const int i : island.parts) take_metric(soft[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
+    for (const int i : island.parts)
+      rate_projection::copy_metric(soft[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
     factor_joints<double>(model, island, filtered.parts, filtered.joints);
-    hold_group(Group<double, Eigen::Dynamic>(model, filtered, island, false), joints.pushed[k], soft, work,
-               v_dot);
+    rate_projection::project_group_rates(Group<double, Eigen::Dynamic>(model, filtered, island, false),
+                                         joints.pushed[k], soft, work, v_dot);
   }
 }
 

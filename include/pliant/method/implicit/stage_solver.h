@@ -20,13 +20,13 @@ class StageSolver {
  public:
   explicit StageSolver(const Model& model);
 
-  /// A step begins at (t, q, v), q and v of the state. c: of all its stages. scale: of what is left of the
-  /// equations.
-  void begin(const Dynamics& dynamics, const State& state, double c, const ErrorScale& scale);
-  /// Solves for q, v, which begin as a guess; work: of the last evaluation. Throws NumericalFailure where
-  /// the iteration does not converge, naming what is worst.
-  void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v,
-             Workspace<double>& work, StepCounters& counters);
+  /// Begins a step at the state of the context. The context and the scale must outlive the stages of the
+  /// step. c: gamma h of all stages, s. scale: measures the residual of the equations.
+  void begin(StepContext& step, double c, const ErrorScale& scale);
+  /// Solves the stage at time t (s) for q and v, from the guess that they hold. On return the workspace of
+  /// the step holds the last evaluation. Throws NumericalFailure, naming the worst unknown, if the iteration
+  /// diverges.
+  void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// What the matrix leaves of an error: of one that dies out in the step nothing.
   void damp(VecX<double>& of_q, VecX<double>& of_v) const;
 
@@ -38,26 +38,29 @@ class StageSolver {
     MatX<double> A_q, A_v;
     Eigen::PartialPivLU<MatX<double>> factor;
   };
-  bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v,
-               Workspace<double>& work, StepCounters& counters);
-  /// Takes the matrices at (t, q, v).
-  void linearise(double t, const VecX<double>& q, const VecX<double>& v, Workspace<double>& work,
-                 StepCounters& counters);
+  /// Iterates at most as often as pays; returns whether the iteration converged.
+  bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
+  /// Evaluates the matrices A_q and A_v at (t, q, v) by differences and factors the clusters.
+  void linearise(double t, const VecX<double>& q, const VecX<double>& v);
+  /// Sets one column of A_q or A_v of each cluster to the difference of the accelerations in the workspace.
+  void set_column(Eigen::Index column, const VecX<double>& by, MatX<double> Cluster::*A);
+  /// Returns the changes of the coordinates whose accelerations give the column of each cluster.
+  VecX<double> differences(Eigen::Index column) const;
+  void allocate_matrices(double t);
   /// (rho_q, rho_v) <- the change of (q, v) that takes these off the equations.
   void correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const;
 
   const Model& model_;
   std::vector<Cluster> clusters_;
   VecX<double> difference_;  ///< of each velocity's coordinate, m or rad or 1
-  int most_free_;            ///< iterations without the matrix that a stage may take
+  int max_free_iterations_;  ///< iterations without the matrix that a stage may take
   // Of the step.
-  const Dynamics* dynamics_ = nullptr;
-  const State* state_ = nullptr;
+  StepContext* step_ = nullptr;
   const ErrorScale* scale_ = nullptr;
   double c_ = 0;
   bool linear_ = false;  ///< whether the matrices are there
   mutable VecX<double> tangent_, right_;
-  VecX<double> rho_q_, rho_v_, q_guess_, v_guess_;
+  VecX<double> rho_q_, rho_v_, q_guess_, v_guess_, v_dot_;
 };
 
 }  // namespace pliant

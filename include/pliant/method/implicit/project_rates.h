@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "implicit_part.h"
+#include <pliant/method/implicit/implicit_part.h>
 
 namespace pliant {
 
@@ -15,7 +15,7 @@ bool has_implicit(const Island& island, const std::vector<std::unique_ptr<Implic
 
 /// soft: of each part, none where rates are not changed; each as its filter left it. work: of the evaluation
 /// that gave the rates. filtered: any, kept from call to call.
-void hold_rates(const Model& model, const std::vector<std::unique_ptr<ImplicitPart>>& soft,
-                const Workspace<double>& work, Workspace<double>& filtered, VecX<double>& v_dot);
+void project_rates(const Model& model, const std::vector<std::unique_ptr<ImplicitPart>>& soft,
+                   const Workspace<double>& work, Workspace<double>& filtered, VecX<double>& v_dot);
 
 }  // namespace pliant

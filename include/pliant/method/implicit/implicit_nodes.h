@@ -20,7 +20,7 @@
 #include <pliant/math/sparse_factor.h>
 #include <pliant/part/local/nodal_deformation.h>
 
-#include "implicit_part.h"
+#include <pliant/method/implicit/implicit_part.h>
 
 namespace pliant {
 
@@ -41,11 +41,11 @@ class ImplicitNodes final : public ImplicitPart {
   const NodalDeformation& local() const { return *part_->local->nodal(); }
   /// Where x_r stands in the border; only global parameters have stiffness there.
   bool frame_in_border() const { return part_->n_s > 0; }
-  void lay_pattern();
+  void make_pattern();
   int factor(double c, const VecX<double>& x, double t);
   int factor_definite(double factor, double t);
-  void lay_border(const NodalWorkspace& at, double c);
-  void lay_core(const LocalWorkspace& now);
+  void make_border(const NodalWorkspace& at, double c);
+  void make_core(const LocalWorkspace& now);
   /// Values of a vector, or of each column, over the local coordinates at the points of joints.
   MatX<double> at_joints(const MatX<double>& of_nodes) const;
 
