@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <pliant/body/joints/string.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 #include <pliant/pliant.h>
 

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/pliant.h>
 
 #include "exponent.h"

@@ -9,6 +9,7 @@
 #include <exception>
 #include <string>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/pliant.h>
 #include <pliant/scene/read_scene.h>

@@ -19,13 +19,13 @@ constexpr double kBarHeight = 0.5;  // of the image's height
 constexpr float kPaper = 0.8f;      // opacity of the panels
 const Eigen::Vector3f kWhite(1, 1, 1), kInk(0.16f, 0.17f, 0.2f);
 
-struct Box {
+struct PixelRectangle {
   int left, top, right, bottom;  // pixels; right and bottom are excluded
 };
 
 // Fills a box. share: opacity; color_of_row(y): the colour of a row.
 template <class ColorOfRow>
-void fill(Image& image, const Box& box, float share, ColorOfRow&& color_of_row) {
+void fill(Image& image, const PixelRectangle& box, float share, ColorOfRow&& color_of_row) {
   for (int y = std::max(0, box.top); y < std::min(image.height, box.bottom); ++y) {
     const Eigen::Vector3f color = color_of_row(y);
     for (int x = std::max(0, box.left); x < std::min(image.width, box.right); ++x) {
@@ -36,7 +36,7 @@ void fill(Image& image, const Box& box, float share, ColorOfRow&& color_of_row) 
     }
   }
 }
-void fill(Image& image, const Box& box, const Eigen::Vector3f& color, float share = 1) {
+void fill(Image& image, const PixelRectangle& box, const Eigen::Vector3f& color, float share = 1) {
   fill(image, box, share, [&](int) { return color; });
 }
 
@@ -60,16 +60,16 @@ void draw_color_bar(Image& image, const Picture::Scale& scale) {
 
   // The panel of the title is above the panel of the bar; both end at the right side of the image.
   const int panel_height = bar_height + 2 * padding, top = (image.height - panel_height - title_height) / 2;
-  const Box title_panel{image.width - title - 2 * padding, top, image.width, top + title_height};
-  const Box panel{image.width - bar_width - 2 * tick - labels - 2 * padding, title_panel.bottom, image.width,
-                  title_panel.bottom + panel_height};
+  const PixelRectangle title_panel{image.width - title - 2 * padding, top, image.width, top + title_height};
+  const PixelRectangle panel{image.width - bar_width - 2 * tick - labels - 2 * padding, title_panel.bottom,
+                             image.width, title_panel.bottom + panel_height};
   fill(image, title_panel, kWhite, kPaper);
   fill(image, panel, kWhite, kPaper);
   draw_text(image, scale.title, title_panel.left + padding, title_panel.bottom - kPadding * digit, digit,
             kInk);
 
-  const Box bar{panel.left + padding, panel.top + padding, panel.left + padding + bar_width,
-                panel.bottom - padding};
+  const PixelRectangle bar{panel.left + padding, panel.top + padding, panel.left + padding + bar_width,
+                           panel.bottom - padding};
   fill(image, {bar.left - line, bar.top - line, bar.right + line, bar.bottom + line}, kInk);
   fill(image, bar, 1, [&](int y) { return mapped_color((bar.bottom - y - 0.5) / bar_height); });
   for (const Tick& mark : marks) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/contact/contact_stepping.h>
 
 #include "draws.h"
 #include "motion.h"

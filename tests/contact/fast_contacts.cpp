@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "draws.h"
+#include <pliant/contact/contact_stepping.h>
+
 #include "motion.h"
 
 namespace fast_contacts_test {

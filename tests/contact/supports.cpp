@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "motion.h"

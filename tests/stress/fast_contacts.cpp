@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/collision/mesh/contact_mesh.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "draws.h"

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <vector>
 
+#include <pliant/contact/contact_resolution.h>
 #include <pliant/io/format/column.h>
 #include <pliant/io/format/npy.h>
 #include <pliant/simulate/simulation.h>

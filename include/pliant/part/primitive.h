@@ -18,8 +18,8 @@
 #include <utility>
 
 #include <pliant/deform/any_chain.h>
+#include <pliant/part/kernel_instances.h>
 #include <pliant/part/part.h>
-#include <pliant/part/shape_jets.h>
 
 namespace pliant {
 

@@ -17,6 +17,7 @@
 #include <sstream>
 
 #include <pliant/body/advance.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/contact/longest_contact_step.h>
 #include <pliant/local/solid/inverted_element.h>
 #include <pliant/math/finite.h>
@@ -116,6 +117,8 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   });
   for (PartWorkspace<double>& w : output_work_.parts) w.counters = {};
 }
+
+PLIANT_INLINE Simulation::~Simulation() = default;
 
 /// Steps are taken by a method. Throws std::invalid_argument where there is a tolerance and it cannot be held
 /// to it.

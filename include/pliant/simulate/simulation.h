@@ -8,15 +8,17 @@
 #include <vector>
 
 #include <pliant/body/step_failure.h>
-#include <pliant/contact/contact_stepping.h>
 #include <pliant/method/error_scale.h>
 #include <pliant/method/integrator.h>
+#include <pliant/method/step_error.h>
 #include <pliant/project/assemble.h>
 #include <pliant/project/joint_switching.h>
 #include <pliant/simulate/choose_integrator.h>
 #include <pliant/simulate/step_length.h>
 
 namespace pliant {
+
+class ContactStepping;  // contact/contact_stepping.h
 
 class Simulation {
  public:
@@ -27,6 +29,7 @@ class Simulation {
   /// Throws std::invalid_argument, UnsatisfiableModel.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
+  ~Simulation();
   Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
   Simulation& operator=(const Simulation&) = delete;
 

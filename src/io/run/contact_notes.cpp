@@ -1,3 +1,4 @@
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/run/contact_notes.h>
 
 #include <algorithm>
