@@ -27,7 +27,7 @@ class ShapeFace {
 
   /// Returns e(u; a), m, Eq. (3).
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns half the height along z, m, by which links scale z.
+  /// Returns h, half the extent along z, m. Links measure zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
   /// Returns w of the material point at x: 1 on the surface, below 1 inside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
