@@ -183,7 +183,8 @@ int run_scene(const RunCommand& command) {
               << pliant::count_text(run.record().steps_done, "step") << ", "
               << pliant::count_text(run.record().states, "state")
               << " recorded; largest error of the energy balance "
-              << pliant::rounded_text(run.record().max_balance_error) << " J\n";
+              << pliant::rounded_text(run.record().max_balance_error) << " J (largest kinetic energy "
+              << pliant::rounded_text(run.record().max_kinetic) << " J)\n";
   return kDone;
 }
 

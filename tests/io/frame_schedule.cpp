@@ -81,7 +81,7 @@ TEST_CASE("ranges of frames") {
     CHECK_THROWS_AS(FrameRange::parse(bad), std::invalid_argument);
   for (const char* beyond : {"10", "0:11", "12:"}) CHECK_THROWS_AS(frames(beyond), std::invalid_argument);
   // Far more frames than files can be named for are refused before their numbers take memory.
-  constexpr std::int64_t most = FrameRange::kMostFrames, many = 1000000000000;
+  constexpr std::int64_t most = FrameRange::kMaxFrames, many = 1000000000000;
   CHECK(FrameRange().size(most) == most);
   CHECK_THROWS_AS(FrameRange().frames(most + 1), std::invalid_argument);
   CHECK_THROWS_AS(FrameRange().frames(many), std::invalid_argument);

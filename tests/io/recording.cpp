@@ -136,8 +136,8 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
   // Which of them are a state's: a bit that flips there spoils no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
-  for (std::size_t byte = 128 + 2 * row + 8 * kFirstSupport; byte < 128 + 2 * row + 8 * (kEndOfSupports + 2);
-       ++byte) {
+  for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;
+       byte < 128 + 2 * row + 8 * (kEndOfCachedContacts + 2); ++byte) {
     std::string bytes = modes;
     bytes[byte] = static_cast<char>(bytes[byte] ^ 0x10);
     set_bytes(folder / kModesFile, bytes);

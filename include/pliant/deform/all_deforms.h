@@ -1,5 +1,5 @@
-// The list of global deformations. A new one is its file and an entry here; registry, schema, `pliant list`
-// and the law tests follow.
+// The list of global deformations. A new deformation needs its own file and an entry here. The registry, the
+// schema, `pliant list` and the law tests follow from this list.
 #pragma once
 
 #include <tuple>

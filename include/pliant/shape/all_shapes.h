@@ -1,5 +1,5 @@
-// The list of shapes. A new one is its file and an entry here; registry, explicit instances, schema, `pliant
-// list` and the law tests follow.
+// The list of shapes. A new shape needs its own file and an entry here. The registry, the explicit instances,
+// the schema, `pliant list` and the law tests follow from this list.
 #pragma once
 
 #include <tuple>
