@@ -64,7 +64,7 @@ class ShapeFace {
   /// Returns the exponent eps of (X, Y) = (C_v^eps, S_v^eps) for which the rings of the rest map are
   /// superellipses; 1 for round rings.
   virtual double ring_exponent(ShapeParameters a) const = 0;
-  /// Whether the shape knows its plane sections in closed form.
+  /// Whether the shape has its plane sections in closed form.
   virtual bool has_sections() const = 0;
   /// Returns area and moments of the plane section at zeta = z / h; gap: 1 - |zeta|.
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
