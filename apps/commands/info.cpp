@@ -174,7 +174,7 @@ void print_joints(const pliant::Simulation& simulation) {
   }
   std::int64_t numbers = 0, augmented = 0;
   for (const pliant::Island& island : model.islands()) {
-    numbers += island.numbers;
+    numbers += island.factor_values;
     augmented += island.augmented ? 1 : 0;
   }
   const auto islands = static_cast<std::int64_t>(model.islands().size());
