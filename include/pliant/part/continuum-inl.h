@@ -268,7 +268,8 @@ PLIANT_INLINE Dual<1> ContinuumEnergy::add_force(const Part& part, const VecMax<
             const Pack& weight = points_.weight[static_cast<std::size_t>(first + i)];
             detail::throw_if_inverted(law, block.F[at]);
             strain_at.set(
-                block.F[at], block.dF[at], [&](std::size_t k) { return d2F[k][at]; }, motion, unit_);
+                block.F[at], block.dF[at], [&](std::size_t k) -> const Mat3<Pack>& { return d2F[k][at]; },
+                motion, unit_);
             const Mat3<DualPack> P = detail::damped_stress(law, strain_at, beta, weight, power);
             for (std::size_t k = 0; k < static_cast<std::size_t>(n); ++k)
               force[k] += contraction(P, strain_at.dF[k]) * weight;

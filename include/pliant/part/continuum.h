@@ -27,7 +27,7 @@ struct Counters;
 struct ContinuumSettings {
   std::string law = "neo_hookean";
   double E = 0;          ///< Young's modulus, Pa
-  double nu_P = 0.3;     ///< Poisson's number
+  double nu_P = 0.3;     ///< Poisson's ratio
   double thickness = 0;  ///< thickness of a shell, m
 };
 

@@ -27,7 +27,7 @@ class ShapeFace {
 
   /// Returns e(u; a), m, Eq. (3).
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
-  /// Returns half the height along z, m, by which links scale z.
+  /// Returns h, half the extent along z, m. Links measure zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
   /// Returns w of the material point at x: 1 on the surface, below 1 inside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
@@ -64,7 +64,7 @@ class ShapeFace {
   /// Returns the exponent eps of (X, Y) = (C_v^eps, S_v^eps) for which the rings of the rest map are
   /// superellipses; 1 for round rings.
   virtual double ring_exponent(ShapeParameters a) const = 0;
-  /// Whether the shape knows its plane sections in closed form.
+  /// Whether the shape has its plane sections in closed form.
   virtual bool has_sections() const = 0;
   /// Returns area and moments of the plane section at zeta = z / h; gap: 1 - |zeta|.
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;

@@ -24,8 +24,8 @@ namespace {
 
 /// Minimum volume of an element, relative to the cube of its longest edge.
 constexpr double kFlat = 1e-9;
-/// Maximum number of straight elements, and four times that of curved ones. More would need more than a few
-/// gigabytes.
+/// Maximum number of straight elements; a quarter of it for curved ones. More elements would need more than a
+/// few gigabytes.
 constexpr double kMaxElements = 2e6;
 
 /// Corner nodes and elements. The first nodes are the vertices of the surface.
