@@ -28,7 +28,7 @@ struct LinearContactLaw {
 };
 
 /// The linear systems of Newton's method, and the position of the pushes and sides of the contacts in them.
-struct Coupling {
+struct MoverCoupling {
   std::vector<MoverSystem> clusters;       ///< the system of each cluster
   std::vector<int> numbers;                ///< number of each mover in its system; -1 if no contact pushes it
   std::vector<int> push_rows, side_rows;   ///< first row of each push and side; -1 for a mover without number
@@ -46,7 +46,7 @@ struct CoulombScratch {
     std::vector<LinearContactLaw> open;              ///< contacts with a normal impulse
     std::vector<std::pair<int, Vec3<double>>> drop;  ///< other contacts, with the change that makes p zero
   } linear;
-  Coupling coupling;
+  MoverCoupling coupling;
   VecX<double> best;    ///< the best impulses found so far
   Eigen::Matrix3Xd TS;  ///< T times a side
 };

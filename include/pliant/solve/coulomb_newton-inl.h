@@ -94,7 +94,7 @@ PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
 /// Computes the changes dp of the impulses of the linearised contacts: assembles and solves the system for
 /// dx.
 PLIANT_INLINE void CoulombCluster::solve_linear(MoverSystem& movers) {
-  const Coupling& coupling = scratch_.coupling;
+  const MoverCoupling& coupling = scratch_.coupling;
   Eigen::Matrix3Xd& TS = scratch_.TS;
   const double* numbers = system_.numbers_.data();
   using Y = Eigen::Map<const MatX<double>>;
@@ -144,7 +144,7 @@ PLIANT_INLINE void CoulombCluster::solve_linear(MoverSystem& movers) {
 /// Returns the linear system of the cluster, or nullptr if it would be too large. Its pattern is computed
 /// once: a contact couples each mover that it pushes with each mover at its sides.
 PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
-  Coupling& coupling = scratch_.coupling;
+  MoverCoupling& coupling = scratch_.coupling;
   if (coupling.clusters.empty()) {
     coupling.clusters.resize(system_.clusters_.size() - 1);
     coupling.numbers.resize(at(system_.movers()), -1);
