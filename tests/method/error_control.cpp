@@ -145,7 +145,7 @@ TEST_CASE("N25: what no step can follow is told, with the last good state kept",
   Simulation simulation(body, "dop853", 1, 1e-9);
   try {
     while (simulation.time() < 1) simulation.step_up_to(1);
-    FAIL("the motion cannot be followed");
+    FAIL("the motion could not be reproduced");
   } catch (const NumericalFailure& failure) {
     CHECK_THAT(failure.what(), test::has_text("tolerance"));
   }
@@ -163,7 +163,7 @@ TEST_CASE("tolerances that mean nothing, and methods that have none, are refused
   swing(body);
   try {
     Simulation simulation(body, "rk4", 1, 1e-6);
-    FAIL("rk4 does not tell its error");
+    FAIL("rk4 has no error estimate");
   } catch (const std::invalid_argument& failure) {
     CHECK_THAT(failure.what(), test::has_text("'dop853'"));
   }
