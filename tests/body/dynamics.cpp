@@ -325,7 +325,7 @@ TEST_CASE("points outside the solid are refused", "[dynamics]") {
   CHECK_THROWS_AS(Model(body), std::invalid_argument);
 }
 
-TEST_CASE("states of the same bits have the same hash", "[dynamics]") {
+TEST_CASE("states of identical bits have the same hash", "[dynamics]") {
   MultiBody body;
   busy_scene(body);
   Simulation simulation(body, "rk4");

@@ -339,7 +339,7 @@ TEST_CASE("what shares nothing has no supports, and what has left none", "[conta
   CHECK(simulation.state().contact_cache.empty());
 }
 
-TEST_CASE("a state goes on to the same bits, with its supports", "[contact]") {
+TEST_CASE("a state goes on to identical bits, with its supports", "[contact]") {
   MultiBody body;
   pyramid(body, 4);
   Simulation one(body, "rk4"), other(body, "rk4");

@@ -208,7 +208,7 @@ TEMPLATE_TEST_CASE("rigid motion strains nothing", "[solid]", PLIANT_ALL_KINDS) 
   CHECK(torque.norm() <= 1e-12 * f.norm());
 }
 
-TEMPLATE_TEST_CASE("the same bits for any number of threads", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("identical bits for any number of threads", "[solid]", PLIANT_ALL_KINDS) {
   const SolidMesh mesh =
       test::solid_mesh("sphere", {}, TestType::N == 4 ? 5 : 3, test::order_of(TestType::N));
   const auto energy = TestType::make(mesh);

@@ -380,7 +380,7 @@ TEST_CASE("N48: joints switch on and off at their times, also between steps", "[
     CHECK(s.work[static_cast<int>(Work::projection)] == Approx(J.dot(C_dot) / 2).epsilon(1e-12));
     CHECK(std::abs(simulation.ledger().balance) <= 1e-14);
   }
-  SECTION("a run resumed from a state before the switch gives the same bits") {
+  SECTION("a run resumed from a state before the switch gives identical bits") {
     auto make = [](MultiBody& body) {
       Part& bob = ellipsoid(body, "bob", {0.1, 0, 0});
       body.ball("joint", point(bob, 0, kPi), world(0, 0, 0)).during(0.1, 0.3);

@@ -850,7 +850,7 @@ TEST_CASE("a parameter that closing joints stretch stops at its limit", "[joints
   }
 }
 
-TEST_CASE("islands are independent: alone and beside others they give the same bits", "[joints]") {
+TEST_CASE("islands are independent: alone and beside others they give identical bits", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     VecX<double> q;
     for (const bool others : {false, true}) {

@@ -26,7 +26,8 @@ Part& driven_ellipsoid(MultiBody& body, const TimeVector& path) {
   return part;
 }
 
-/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if that is positive.
+/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if that is
+/// positive.
 TimeVector lift(double start, double speed, double duration = 0) {
   if (duration > 0) return {0, 0, TimeFunction::key_frames({start, start + duration}, {0, duration * speed})};
   std::ostringstream text;
@@ -173,7 +174,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a run resumed from a state at a kink gives the same bits", "[joints]") {
+TEST_CASE("a run resumed from a state at a kink gives identical bits", "[joints]") {
   MultiBody one, two;
   driven_ellipsoid(one, lift(0.2, 0.8, 0.3));
   driven_ellipsoid(two, lift(0.2, 0.8, 0.3));

@@ -131,9 +131,8 @@ TEST_CASE("loads and other parts beside rigid islands do not change how the isla
   }
 }
 
-TEST_CASE(
-    "joints of rigid parts are projected from small gaps, and large gaps are left to the general method",
-    "[rigid_islands]") {
+TEST_CASE("joints of rigid parts are projected from small gaps, and the general method projects large gaps",
+          "[rigid_islands]") {
   MultiBody body;
   add_hanging_boxes(body, 6, 0, 3);
   Simulation simulation(body, "rk4");

@@ -233,7 +233,7 @@ TEST_CASE("N65: what is there but null changes nothing", "[invariance]") {
   }
 }
 
-TEST_CASE("N66: any number of threads gives the same bits", "[invariance][long]") {
+TEST_CASE("N66: any number of threads gives identical bits", "[invariance][long]") {
   for (const char* method : kMethods) {
     std::uint64_t alone = 0;
     for (const int threads : {1, 2, 3, 7, 16, 64}) {
@@ -277,7 +277,7 @@ TEST_CASE("N30: looking at a simulation does not steer it", "[invariance][long]"
   }
 }
 
-TEST_CASE("N67: going on from a copied state gives the same bits", "[invariance]") {
+TEST_CASE("N67: going on from a copied state gives identical bits", "[invariance]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::tumbling_solid(body);
