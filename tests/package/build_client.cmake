@@ -1,10 +1,10 @@
-# Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is
-#   find        find_package(pliant COMPONENTS core) on the installation PREFIX, every package but core's own hidden
-#   components  find_package with all of COMPONENTS
-#   absent      find_package with a component that does not exist: must fail, naming it
-#   pkg-config  pliant.pc of PREFIX
-#   subdirectory  add_subdirectory(SOURCE); it links CORE, which is built: once more would take minutes
-# and GENERATOR, CXX, LAUNCHER are those of the build that runs this.
+# Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
+#   find          find_package(pliant COMPONENTS core) in the installation PREFIX, other packages hidden
+#   components    find_package with all of COMPONENTS
+#   absent        find_package with a component that does not exist: must fail and name it
+#   pkg-config    pliant.pc of PREFIX
+#   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
+# GENERATOR, CXX and LAUNCHER are those of the calling build.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
 file(REMOVE_RECURSE ${work})
@@ -26,7 +26,7 @@ elseif(WAY STREQUAL absent)
   list(APPEND configure -DCLIENT_COMPONENTS=nosuch)
   execute_process(COMMAND ${configure} RESULT_VARIABLE status ERROR_VARIABLE errors OUTPUT_QUIET)
   if(status EQUAL 0 OR NOT errors MATCHES "has no component nosuch")
-    message(FATAL_ERROR "a component that does not exist: status ${status}, message: ${errors}")
+    message(FATAL_ERROR "a component that does not exist was not refused: status ${status}, message: ${errors}")
   endif()
   return()
 elseif(WAY STREQUAL pkg-config)
