@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds everything and runs all tests, from a bare Debian machine: installs what is missing first. Arguments go to ctest
-# (for example: -R dual, -LE long). Ends with status 4 when packages are missing and there is no way to install them.
+# Builds everything and runs all tests on a bare Debian machine; missing packages are installed first. Arguments are
+# passed to ctest (for example: -R dual, -LE long). The exit status is 4 if packages are missing and cannot be installed.
 set -eu
 cd "$(dirname "$0")/.."
 . apps/setup.sh

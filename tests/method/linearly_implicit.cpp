@@ -20,9 +20,9 @@ using Basis = LocalSettings::Basis;
 using test::deepest;
 using test::widest_gap;
 
-using test::bump;
 using test::observed_order;
-using test::rush;
+using test::sample_displacement;
+using test::sample_velocity;
 
 namespace {
 
@@ -74,9 +74,11 @@ Part& add(MultiBody& body, const std::string& name, const Soft& soft) {
   settings.beta = soft.beta;
   const double displacement_factor = soft.displacement_factor, velocity_factor = soft.velocity_factor;
   settings.displacement = [=](const Vec3<double>& X) -> Vec3<double> {
-    return displacement_factor * bump(X);
+    return displacement_factor * sample_displacement(X);
   };
-  settings.velocity = [=](const Vec3<double>& X) -> Vec3<double> { return velocity_factor * rush(X); };
+  settings.velocity = [=](const Vec3<double>& X) -> Vec3<double> {
+    return velocity_factor * sample_velocity(X);
+  };
   for (const Law& law : soft.laws) settings.energies.push_back(local_law(law.name, law.numbers));
   part.deform_locally(settings);
   return part;
@@ -179,7 +181,7 @@ TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[i
           auto& part = body.add<Primitive<Sphere>>("ball", 1);
           part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
           LocalSettings settings = test::net(2, 5);
-          settings.velocity = rush;
+          settings.velocity = sample_velocity;
           part.deform_locally(settings);
         },
         0.4, {100, 200, 400});

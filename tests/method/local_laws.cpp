@@ -37,8 +37,10 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
   LocalSettings settings;
   settings.resolution = 2;
   settings.beta = beta;
-  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * test::bump(X); };
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.5 * test::rush(X); };
+  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> {
+    return 0.3 * test::sample_displacement(X);
+  };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.5 * test::sample_velocity(X); };
   settings.energies.push_back(local_law(law.name, numbers(law)));
   // Pressure or bending alone does not resist in-plane motion of the nodes; a membrane is added.
   const std::string name = law.name;

@@ -15,9 +15,9 @@ namespace local_motion_test {
 
 using namespace pliant;
 
-using test::bump;
 using test::net;
-using test::rush;
+using test::sample_displacement;
+using test::sample_velocity;
 
 namespace {
 
@@ -59,8 +59,8 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
   if (order > 0) settings.energies = {local_law("elastic", {200, 0.3})};
   if (!laws.empty()) settings.energies = laws;
   settings.order = std::max(order, 1);
-  settings.displacement = bump;
-  settings.velocity = rush;
+  settings.displacement = sample_displacement;
+  settings.velocity = sample_velocity;
   part.deform_locally(settings);
   return part;
 }
@@ -255,8 +255,8 @@ TEST_CASE("reference conditions do not disturb a long motion under gravity: P an
       LocalSettings settings;
       settings.resolution = 1;
       settings.order = std::max(kind.order, 1);
-      settings.displacement = bump;
-      settings.velocity = rush;
+      settings.displacement = sample_displacement;
+      settings.velocity = sample_velocity;
       settings.energies = kind.laws;
       part.deform_locally(settings);
       Simulation simulation(body, method);
@@ -327,7 +327,7 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
   part.make_dynamic({"a1", "a2", "a3"});
   LocalSettings settings;
   settings.resolution = 3;
-  settings.velocity = rush;
+  settings.velocity = sample_velocity;
   part.deform_locally(settings);
   std::vector<double> errors;
   for (const int steps : {50, 100, 200}) {
@@ -391,7 +391,7 @@ TEST_CASE("a shell twists by 2.5 rad per half length, and the conditions still s
       .stiffness({{"twist.angle", 2}})
       .initial({{"twist.angle", 2.5}});
   LocalSettings settings = net(3, 20);
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * rush(X); };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * sample_velocity(X); };
   part.deform_locally(settings);
   const Twisted all = twist(body, 1e-3, 1500);
   CAPTURE(all.lowest, all.highest, all.condition, all.balance);
@@ -496,7 +496,7 @@ TEST_CASE("N66: a soft shell gives identical bits with any number of threads", "
     part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
     LocalSettings settings;
     settings.resolution = 12;
-    settings.velocity = rush;
+    settings.velocity = sample_velocity;
     settings.energies = {local_law("membrane", {1e3, 0.3, 0.01}), local_law("pressure", {2})};
     part.deform_locally(settings);
     Simulation simulation(body, "rk4", threads);
@@ -514,7 +514,7 @@ TEST_CASE("N20: the largest stable step of a soft shell is safe, and not far bel
   auto& part = body.add<Primitive<Sphere>>("ball", 1);
   part.make_shell().rest({{"r", 0.5}});
   LocalSettings settings = net(2, 20);
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * rush(X); };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * sample_velocity(X); };
   part.deform_locally(settings);
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     const double step = largest_stable_step(Simulation(body, method));

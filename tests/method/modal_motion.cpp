@@ -21,10 +21,10 @@ namespace {
 
 using Basis = LocalSettings::Basis;
 
-Vec3<double> rush(const Vec3<double>& X) {
+Vec3<double> sample_velocity(const Vec3<double>& X) {
   return 0.2 * Vec3<double>(X[1] * X[2] / 0.25, 2 * X[0] * X[2], std::cos(3 * X[1]) * X[2]);
 }
-Vec3<double> bump(const Vec3<double>& X) {
+Vec3<double> sample_displacement(const Vec3<double>& X) {
   return 0.02 * Vec3<double>(4 * X[0] * X[1], X[2], 4 * X[1] * X[1] - X[2]);
 }
 
@@ -35,8 +35,8 @@ LocalSettings soft(Basis basis, double E = 2e3) {
   settings.modes = 12;
   settings.resolution = 3;
   settings.energies = {local_law("elastic", {E, 0.3})};
-  settings.displacement = bump;
-  settings.velocity = rush;
+  settings.displacement = sample_displacement;
+  settings.velocity = sample_velocity;
   return settings;
 }
 

@@ -21,7 +21,7 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
   part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).place(at);
   if (soft) part.stiffness({{"a1", 500}, {"a2", 500}, {"a3", 400}});
   LocalSettings settings = test::net(3, 60);
-  settings.velocity = test::rush;
+  settings.velocity = test::sample_velocity;
   part.deform_locally(settings);
   return part;
 }
@@ -121,7 +121,7 @@ TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a movi
         .damping(0.3, 1e-3, 0.2);
     part.stiffness({{"a1", 500}, {"a2", 500}, {"a3", 400}});
     LocalSettings settings = test::net(3, 60);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     settings.alpha = 0.4;
     settings.beta = 2e-3;
     part.deform_locally(settings);

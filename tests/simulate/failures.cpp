@@ -183,7 +183,7 @@ TEST_CASE("parameters without inertia of a part with local deformation are fixed
     part.make_shell().stiffness({{"a1", 1e5}, {"bend_offset.b2", 1}});
     part.initial_rate({{"a1", 0.1}, {"bend_offset.b2", 0.3}}).velocity({0, 0, 0}, {0.2, 0.1, 0});
     LocalSettings settings = test::net(2, 1e5);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     part.deform_locally(settings);
     Simulation simulation(body, method);
     simulation.step(1e-4);

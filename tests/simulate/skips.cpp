@@ -199,7 +199,7 @@ TEST_CASE("a step of a part with local deformation allocates no heap memory", "[
     LocalSettings settings;
     settings.resolution = 2;
     settings.energies = {local_law("elastic", {1e4, 0.3})};
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     settings.alpha = 0.1;
     part.velocity({0, 0, 0}, {1, 2, 3}).deform_locally(settings);
     body.spring("tie", point(part, 0.3, 1), world(0, 0, 2), 1, 0.1, 0.3);
@@ -216,7 +216,7 @@ TEST_CASE("without local deformation there are no nodes; with it, J of frozen pa
     Part& part = test::add(body, "body", "ellipsoid", {}, 1000);
     part.make_shell().velocity({0, 0, 0}, {1, 2, 3});
     LocalSettings settings = test::net(2, 1e3);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     if (soft) part.deform_locally(settings);
     Simulation simulation(body, "rk4");
     const Counters counters = after_steps(simulation, 10);
@@ -239,7 +239,7 @@ TEST_CASE("reference conditions that are satisfied need no further evaluation af
       LocalSettings settings;
       settings.resolution = 2;
       settings.energies = {local_law("elastic", {1e4, 0.3})};
-      settings.velocity = test::rush;
+      settings.velocity = test::sample_velocity;
       part.velocity({0, 0, 0}, {1, 2, 3}).deform_locally(settings);
       Simulation simulation(body, method);
       const double steps = 1000, masses = static_cast<double>(after_steps(simulation, 1000).mass_matrices),
