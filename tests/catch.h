@@ -1,4 +1,4 @@
-// Catch2 version 3 where it is installed, else version 2.
+// Includes Catch2, version 3 if it is installed, otherwise version 2.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 #include <catch2/catch_all.hpp>
 using Catch::Approx;
 namespace pliant::test {
-/// Matches an error text that contains part.
+/// Returns a matcher for texts that contain `part`.
 inline auto has_text(const std::string& part) {
   return Catch::Matchers::ContainsSubstring(part);
 }
@@ -16,7 +16,7 @@ inline auto has_text(const std::string& part) {
 #include <catch2/catch.hpp>
 using Catch::Detail::Approx;
 namespace pliant::test {
-/// Matches an error text that contains part.
+/// Returns a matcher for texts that contain `part`.
 inline auto has_text(const std::string& part) {
   return Catch::Matchers::Contains(part);
 }

@@ -1,4 +1,4 @@
-// How deep parts are in what they touch.
+// The deepest overlap of parts with each other, with planes and with obstacles.
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace pliant::test {
 
-/// By what contact tells of overlaps, m.
+/// Returns the deepest overlap that the contact search reports, m.
 inline double deepest_overlap(const Simulation& simulation) {
   double deep = 0;
   for (const Contact& contact : simulation.contact()->overlaps(simulation.state(), simulation.time()))
     deep = std::max(deep, -contact.gap);
   return deep;
 }
-/// The meshes of those that deform locally, m.
+/// Returns the deepest overlap of the surface meshes of parts with local deformation, m.
 inline double deepest(const Simulation& simulation) {
   std::vector<Contact> found;
   MeshFinder(simulation.model()).find(simulation.state(), simulation.time(), found);

@@ -1,10 +1,10 @@
-// Derivatives by central differences of tenth order, for functions evaluated in long double: with a step of
-// 1e-3 of the scale on which a function varies they carry some 15 digits.
+// Derivatives by central differences of tenth order, for functions in long double. With a step of 1e-3 of the
+// scale on which a function varies, about 15 digits are correct.
 #pragma once
 
 namespace pliant::test {
 
-/// df/dt at t = 0; F: long double -> anything with + and * by a number.
+/// Returns df/dt at t = 0. F maps long double to a type with addition and multiplication by a number.
 template <class F>
 auto first_derivative(F&& f, long double h) {
   using V = decltype(f(h));
@@ -13,7 +13,7 @@ auto first_derivative(F&& f, long double h) {
   return V((one * 2100.0L - two * 600.0L + three * 150.0L - four * 25.0L + five * 2.0L) * (1 / (2520 * h)));
 }
 
-/// d2f/dt2 at t = 0.
+/// Returns d2f/dt2 at t = 0.
 template <class F>
 auto second_derivative(F&& f, long double h) {
   using V = decltype(f(h));

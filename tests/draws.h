@@ -1,5 +1,5 @@
-// Random numbers for the law tests, the same on every machine: parameters within their ranges, material
-// points with the poles and seams among them.
+// Random numbers for the law tests, identical on every machine: parameters within their ranges, and material
+// points.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ class Draws {
     state_ ^= state_ << 17;
     return from + (to - from) * (static_cast<double>(state_ >> 11) * 0x1.0p-53);
   }
-  /// One of from, ..., to.
+  /// Returns one of from, ..., to.
   int integer(int from, int to) {
     return std::min(to, static_cast<int>(uniform(from, static_cast<double>(to) + 1)));
   }
@@ -30,8 +30,8 @@ class Draws {
     return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
   }
 
-  /// A value where the parameter may move: lengths about their default, everything else in its range, at most
-  /// a few.
+  /// Returns a value in the dynamic range of the parameter: lengths around their default, other parameters at
+  /// most 3 from it.
   double parameter(const ParameterSpec& spec) {
     if (spec.relative) return spec.standard * uniform(0.6, 1.7);
     return uniform(std::max(spec.dynamic.min, spec.standard - 3),
@@ -47,8 +47,8 @@ class Draws {
   std::uint64_t state_;
 };
 
-/// Every combination of the angles where cosines, sines or panels vanish, at the centre, half way and on the
-/// surface.
+/// Returns material points at all combinations of multiples of pi / 4 of u and v (poles, seams and ends of
+/// quadrature panels), for w = 0, 0.5 and 1.
 inline std::vector<Material<double>> special_points(MeshPattern pattern) {
   std::vector<Material<double>> all;
   const int tall = pattern == MeshPattern::torus ? 4 : 2;

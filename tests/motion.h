@@ -1,4 +1,4 @@
-// Running simulations, and functions of time with exact derivatives, for the tests of motion.
+// Runs of simulations, functions of time with exact derivatives, and models, for the tests of motion.
 #pragma once
 
 #include <cmath>
@@ -16,24 +16,25 @@ inline void run(Simulation& simulation, double end, int steps) {
   for (int i = 0; i < steps; ++i) simulation.step(end / steps);
 }
 
-/// mean + swing sin(rate t + phase).
-inline TimeFunction wave(double mean, double swing, double rate, double phase = 0) {
+/// Returns mean + amplitude sin(rate t + phase).
+inline TimeFunction wave(double mean, double amplitude, double rate, double phase = 0) {
   struct Wave : TimeFunction::Impl {
-    double mean, swing, rate, phase;
+    double mean, amplitude, rate, phase;
     Taylor2<double> at(double t) const override {
-      const double s = swing * std::sin(rate * t + phase), c = swing * std::cos(rate * t + phase);
+      const double s = amplitude * std::sin(rate * t + phase), c = amplitude * std::cos(rate * t + phase);
       return {mean + s, rate * c, -rate * rate * s};
     }
   };
   auto impl = std::make_shared<Wave>();
   impl->mean = mean;
-  impl->swing = swing;
+  impl->amplitude = amplitude;
   impl->rate = rate;
   impl->phase = phase;
   return TimeFunction(impl);
 }
 
-/// Slope of log(error) over log(step) through errors at steps that halve, by least squares.
+/// Returns the slope of log(error) over log(step), by least squares. Each error belongs to half the step of
+/// the previous one.
 inline double observed_order(const std::vector<double>& errors) {
   const double n = static_cast<double>(errors.size());
   double x = 0, y = 0, xx = 0, xy = 0;
@@ -47,7 +48,8 @@ inline double observed_order(const std::vector<double>& errors) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-/// K(sin^2(theta / 2)), by the arithmetic-geometric mean: of the period of a pendulum.
+/// Returns the elliptic integral K(sin^2(theta / 2)) of a pendulum's period, by the arithmetic-geometric
+/// mean.
 inline double elliptic_K(double theta) {
   double a = 1, b = std::cos(theta / 2);
   while (std::abs(a - b) > 1e-15 * a) {
@@ -58,13 +60,14 @@ inline double elliptic_K(double theta) {
   return kPi / (2 * a);
 }
 
-/// Adds a part made at run time.
+/// Adds a part whose shape and chain are chosen at run time.
 inline Part& add(MultiBody& body, const std::string& name, const std::string& shape,
                  const std::vector<std::string>& chain, double density) {
   return body.add(make_part(name, shape, chain, density));
 }
 
-/// A solid whose every parameter moves: scales, taper, twist, shear and bend, with stiffness, in free flight.
+/// Adds a solid in free flight with all parameters dynamic: scales, taper, twist, shear and bend, with
+/// stiffness.
 inline Part& tumbling_solid(MultiBody& body, const std::string& name = "solid") {
   body.gravity.setZero();
   Part& part = add(body, name, "ellipsoid", {"taper", "twist", "shear", "bend"}, 1000);

@@ -1,4 +1,4 @@
-// An energy of local deformation for tests of what carries it: a net of springs.
+// A simple energy of local deformation for tests: a net of springs.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace pliant::test {
 
-/// Springs of no length between the displacements of neighbours: 1/2 k sum |d_i - d_j|^2.
+/// Springs between the displacements of neighbouring nodes: 1/2 k sum |d_i - d_j|^2.
 class Net final : public NodalEnergy {
  public:
   Net(const LocalMesh& mesh, double k) : triangles_(mesh.triangles), n_(mesh.X.rows()), k_(k) {}
@@ -54,11 +54,11 @@ inline LocalSettings net(int resolution, double k) {
   return settings;
 }
 
-/// Displacements and velocities of nodes, from where they are at rest.
-inline Vec3<double> bump(const Vec3<double>& X) {
+/// Smooth displacements and velocities of nodes, as functions of their rest positions.
+inline Vec3<double> sample_displacement(const Vec3<double>& X) {
   return 0.03 * Vec3<double>(std::sin(3 * X[0] + X[1]), std::cos(2 * X[2]) * X[0], X[1] * X[2] + 0.2);
 }
-inline Vec3<double> rush(const Vec3<double>& X) {
+inline Vec3<double> sample_velocity(const Vec3<double>& X) {
   return 0.2 * Vec3<double>(X[1] * X[2], std::sin(4 * X[0]), std::cos(3 * X[1]));
 }
 

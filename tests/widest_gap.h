@@ -1,4 +1,4 @@
-// How far the joints of a simulation are open.
+// The widest gap of the joints of a simulation.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace pliant::test {
 
-/// The widest gap of all joints, m.
+/// Returns the widest gap of all joints, m.
 inline double widest_gap(const Simulation& simulation) {
   double widest = 0;
   for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)

@@ -1,4 +1,4 @@
-// The largest of many errors; one that is not a number counts as infinite, so that it fails.
+// The largest of many errors. An error that is not a number becomes infinite, so that a check fails.
 #pragma once
 
 #include <limits>
@@ -12,7 +12,7 @@ class Worst {
     if (!(error <= largest_))
       largest_ = error == error ? static_cast<double>(error) : std::numeric_limits<double>::infinity();
   }
-  operator double() const { return largest_; }  // NOLINT(google-explicit-constructor): it is the number
+  operator double() const { return largest_; }  // NOLINT(google-explicit-constructor): used as a number
 
  private:
   double largest_ = 0;

@@ -1,5 +1,4 @@
-// The program from outside: exit codes, messages, what it leaves in folders, how it takes signals (stress
-// cases I47-I59).
+// The program as a user runs it: exit codes, messages, files in folders, and signals.
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -36,12 +35,12 @@ struct Result {
   std::string out, err;
 };
 
-// A folder with a scene in it, in which the program runs.
-struct Place {
+// A folder with a scene, in which the program runs.
+struct TestFolder {
   NewFolder folder;
-  Place() { set_bytes(folder / "top.json", kTop); }
+  TestFolder() { set_bytes(folder / "top.json", kTop); }
 
-  // `arguments` as typed in a shell; before: put in front of the program.
+  // `arguments` as typed in a shell; `before` is placed in front of the program.
   Result pliant(const std::string& arguments, const std::string& before = "") const {
     const std::string line = "cd '" + folder.path.string() + "' && " + before + " '" + PLIANT_PROGRAM + "' " +
                              arguments + " > .out 2> .err";
@@ -65,8 +64,8 @@ bool has(const std::string& text, const std::string& words) {
   return text.find(words) != std::string::npos;
 }
 
-// Starts a run and returns its process once it is recording.
-pid_t start_long_run(const Place& place, const std::string& run) {
+// Starts a run, and returns its process when it is recording.
+pid_t start_long_run(const TestFolder& place, const std::string& run) {
   const pid_t child = ::fork();
   if (child == 0) {
     if (::chdir(place.folder.path.c_str()) != 0) ::_exit(99);
@@ -90,8 +89,8 @@ int exit_code_of(pid_t child) {
 
 }  // namespace
 
-TEST_CASE("help, version and a run") {
-  const Place place;
+TEST_CASE("help and version are printed, and a run writes its files") {
+  const TestFolder place;
   for (const char* command :
        {"", "run ", "check ", "info ", "list ", "render ", "export ", "schema ", "doctor "}) {
     const Result help = place.pliant(std::string(command) + "--help");
@@ -114,8 +113,8 @@ TEST_CASE("help, version and a run") {
   CHECK_FALSE(fs::exists(place.folder / "out/top/frames"));
 }
 
-TEST_CASE("the error of a run is estimated, unless no run is better; the method that is chosen is told") {
-  const Place place;
+TEST_CASE("the error of a run is estimated unless no run is more accurate; the chosen method is reported") {
+  const TestFolder place;
   const Result run = place.pliant(
       "run top.json --end 0.05 --integrator auto --tolerance 1e-6 --estimate-error --quiet -o out/e");
   CHECK(run.code == 0);
@@ -128,15 +127,15 @@ TEST_CASE("the error of a run is estimated, unless no run is better; the method 
   CHECK(!fs::exists(place.folder / "out/best"));
 }
 
-TEST_CASE("commands that tell") {
-  const Place place;
+TEST_CASE("the commands that print information") {
+  const TestFolder place;
   const Result info = place.pliant("info top.json");
   CHECK(info.code == 0);
   for (const char* words :
        {"7 degrees of freedom", "mass ", "inertia", "rule \"", "skipped", "largest stable step: about"})
     CHECK(has(info.out, words));
   CHECK(has(info.out, "1 part, "));
-  CHECK_FALSE(has(info.out, "e-1"));  // what is rounding is shown as zero
+  CHECK_FALSE(has(info.out, "e-1"));  // rounding errors are shown as zero
   CHECK(has(place.pliant("info top.json --set /time/step=10").out, "warning"));
   const Result check = place.pliant("check top.json");
   CHECK(check.code == 0);
@@ -152,8 +151,8 @@ TEST_CASE("commands that tell") {
   CHECK(std::distance(fs::directory_iterator(place.folder.path), fs::directory_iterator()) == 3);
 }
 
-TEST_CASE("info tells of joints: rows, rank, islands, and the numbers of the factor") {
-  const Place place;
+TEST_CASE("info reports joints: rows, rank, islands, and the size of the factor") {
+  const TestFolder place;
   const auto info = [&](const std::string& arguments) {
     const Result result = place.pliant("info " + arguments);
     CHECK(result.code == 0);
@@ -161,7 +160,7 @@ TEST_CASE("info tells of joints: rows, rank, islands, and the numbers of the fac
     CHECK(result.err.empty());
     return result.out;
   };
-  // Four hinges in a loop: blocks of 5 rows, four on the diagonal and three below, for no fill-in is needed.
+  // Four hinges in a loop: blocks of 5 rows, four on the diagonal and three below it, without fill-in.
   const std::string scenes = PLIANT_SCENES;
   const std::string linkage = info("'" + scenes + "/four_bar.json'");
   CHECK(has(linkage,
@@ -171,7 +170,7 @@ TEST_CASE("info tells of joints: rows, rank, islands, and the numbers of the fac
   const std::string augmented = info("'" + scenes + "/four_bar.json' --set /time/solver=augmented");
   CHECK(has(augmented, "constraints: 20 rows of rank 17, 1 island, 1 solved with the augmented matrix, "));
   CHECK(has(info("'" + scenes + "/n_four_bar.json'"), "constraints: 35 rows of rank 29, 1 island, "));
-  // A pendulum, and beside it one that hangs from another.
+  // A pendulum, and beside it a double pendulum.
   set_bytes(place.folder / "two.json", R"({
     "parts": [{"name": "a", "shape": "sphere", "position": [0, 0, -1]},
               {"name": "b", "shape": "sphere", "position": [5, 0, -1]},
@@ -190,8 +189,8 @@ TEST_CASE("info tells of joints: rows, rank, islands, and the numbers of the fac
   CHECK_FALSE(has(two, "redundant"));
 }
 
-TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
-  const Place place;
+TEST_CASE("I47: command line errors end with code 2 and a hint") {
+  const TestFolder place;
   const auto mistake = [&](const std::string& arguments, const std::string& words) {
     const Result result = place.pliant(arguments);
     CHECK(result.code == 2);
@@ -227,15 +226,15 @@ TEST_CASE("I47: mistakes on the command line end with code 2 and a hint") {
   mistake("doctor -o nowhere", "nowhere");
 }
 
-TEST_CASE("I47: numbers do not follow the locale") {
-  const Place place;
+TEST_CASE("I47: numbers do not depend on the locale") {
+  const TestFolder place;
   CHECK(place.pliant("run top.json --end 0.1 --quiet -o a", "LC_ALL=de_DE.UTF-8").code == 0);
   CHECK(place.pliant("run top.json --end 0.1 --quiet -o b").code == 0);
   CHECK(place.motion("a") == place.motion("b"));
 }
 
 TEST_CASE("I48: standard input, names that begin with a dash, names with blanks and accents") {
-  const Place place;
+  const TestFolder place;
   CHECK(place.pliant("run - --end 0.1 --quiet < top.json").code == 0);
   CHECK(place.record("out/scene").at("status") == "complete");
   CHECK(place.pliant("export out/scene --to obj --quiet --frames 0").code == 0);
@@ -246,8 +245,8 @@ TEST_CASE("I48: standard input, names that begin with a dash, names with blanks 
   CHECK(fs::exists(place.folder / "out/größer als/run.json"));
 }
 
-TEST_CASE("faults of the input end with code 3 before a folder is made") {
-  const Place place;
+TEST_CASE("input errors end with code 3 before a folder is created") {
+  const TestFolder place;
   const Result missing = place.pliant("run tip.json");
   CHECK(missing.code == 3);
   CHECK(has(missing.err, "did you mean \"top.json\""));
@@ -264,8 +263,8 @@ TEST_CASE("faults of the input end with code 3 before a folder is made") {
   CHECK(place.pliant("render nowhere").code == 3);
 }
 
-TEST_CASE("bad scenes: code 3, the golden text on standard error, and nothing else") {
-  const Place place;
+TEST_CASE("bad scenes: code 3, the expected message on standard error, and no other output") {
+  const TestFolder place;
   for (const std::string name :
        {"empty", "not_utf8", "gzip", "faults_of_all_kinds", "folded_bend", "frame_rate_absurd"}) {
     fs::copy_file(fs::path(PLIANT_BAD_SCENES) / (name + ".json"), place.folder / (name + ".json"));
@@ -280,8 +279,8 @@ TEST_CASE("bad scenes: code 3, the golden text on standard error, and nothing el
   CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
-TEST_CASE("a step that is too large: warned before, code 5, the good part kept") {
-  const Place place;
+TEST_CASE("a step that is too large: warning before, code 5, the good part of the recording is kept") {
+  const TestFolder place;
   const Result result = place.pliant("run top.json --step 2 --end 4000 -o r");
   CHECK(result.code == 5);
   CHECK(has(result.err, "warning"));
@@ -290,8 +289,8 @@ TEST_CASE("a step that is too large: warned before, code 5, the good part kept")
   CHECK(fs::exists(place.folder / "r/trajectory.csv"));
 }
 
-TEST_CASE("I49, I50: what is there is not written over") {
-  const Place place;
+TEST_CASE("I49, I50: existing files are not overwritten") {
+  const TestFolder place;
   REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
   const std::string motion = place.motion("r");
   CHECK(place.pliant("run top.json -o r --quiet").code == 9);
@@ -314,8 +313,8 @@ TEST_CASE("I49, I50: what is there is not written over") {
   CHECK(has(bytes_of(place.folder / "p/frame_000001.ply"), "property double strain"));
 }
 
-TEST_CASE("colours by values are asked for in full") {
-  const Place place;
+TEST_CASE("options for colouring by values must be complete") {
+  const TestFolder place;
   CHECK(place.pliant("run top.json --color-by stain").code == 2);
   CHECK(place.pliant("run top.json --color-range 0 1").code == 2);
   const Result falls = place.pliant("run top.json --color-by strain --color-range 1 1");
@@ -324,9 +323,9 @@ TEST_CASE("colours by values are asked for in full") {
   CHECK_FALSE(fs::exists(place.folder / "out"));
 }
 
-TEST_CASE("I51: a file system that takes no more ends with code 7, and what is there is whole") {
-  const Place place;
-  // 512-byte blocks: run.json and scene.json fit, the growing tables do not for long.
+TEST_CASE("I51: a full file system ends a run with code 7, and its files are complete") {
+  const TestFolder place;
+  // 512-byte blocks: run.json and scene.json fit, the growing tables soon do not.
   const Result result = place.pliant("run top.json --fps 1000 --end 2 -o r --quiet", "ulimit -f 40;");
   CHECK(result.code == 7);
   CHECK(has(result.err, "cannot write"));
@@ -345,9 +344,9 @@ TEST_CASE("I51: a file system that takes no more ends with code 7, and what is t
   }
 }
 
-TEST_CASE("I52: a signal ends the run in good order, and it can be resumed to the same bytes") {
+TEST_CASE("I52: after a signal the run ends in an orderly way, and can be resumed to identical files") {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const Place place;
+    const TestFolder place;
     const pid_t child = start_long_run(place, "r");
     ::kill(child, signal);
     CHECK(exit_code_of(child) == 128 + signal);
@@ -362,8 +361,8 @@ TEST_CASE("I52: a signal ends the run in good order, and it can be resumed to th
   }
 }
 
-TEST_CASE("I53: after a kill the run can be resumed to the same bytes") {
-  const Place place;
+TEST_CASE("I53: after a kill the run can be resumed to identical files") {
+  const TestFolder place;
   const pid_t child = start_long_run(place, "r");
   ::kill(child, SIGKILL);
   CHECK(exit_code_of(child) == -SIGKILL);
@@ -378,8 +377,8 @@ TEST_CASE("I53: after a kill the run can be resumed to the same bytes") {
   CHECK(place.motion("r") == place.motion("unbroken"));
 }
 
-TEST_CASE("I55: a run that does not fit is not resumed: code 10") {
-  const Place place;
+TEST_CASE("I55: a run that does not match is not resumed: code 10") {
+  const TestFolder place;
   REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
   CHECK(place.pliant("run top.json -o r --resume --set /parts/0/density=5").code == 10);
   CHECK(place.pliant("run top.json -o r --resume --step 0.002").code == 10);
@@ -397,8 +396,8 @@ TEST_CASE("I55: a run that does not fit is not resumed: code 10") {
   CHECK(has(flipped.err, "check number"));
 }
 
-TEST_CASE("a recording that lost states after its run ended is told, and can be completed") {
-  const Place place;
+TEST_CASE("a recording that lost states after its run ended is reported, and can be completed") {
+  const TestFolder place;
   REQUIRE(place.pliant("run top.json -o r --quiet").code == 0);
   const std::string motion = place.motion("r"), q = bytes_of(place.folder / "r/q.npy");
   set_bytes(place.folder / "r/q.npy", q.substr(0, q.size() / 2));
@@ -414,31 +413,30 @@ TEST_CASE("a recording that lost states after its run ended is told, and can be 
   CHECK_FALSE(has(damaged.err, "json.exception"));
 }
 
-TEST_CASE(
-    "more frames than can be files are refused before the simulation, and take no memory without files") {
-  const Place place;
+TEST_CASE("too many frames for files are refused before the simulation, and need no memory without files") {
+  const TestFolder place;
   const Result files = place.pliant("run top.json --fps 1e9 --obj");
   CHECK(files.code == 3);
   CHECK(has(files.err, "at most 1000000"));
   CHECK_FALSE(fs::exists(place.folder / "out"));
 #ifdef PLIANT_SANITIZED
-  const std::string little_memory;  // the sanitizer itself takes terabytes of addresses
+  const std::string memory_limit;  // the sanitizer itself reserves terabytes of addresses
 #else
-  const std::string little_memory = "ulimit -d 500000;";  // kB
+  const std::string memory_limit = "ulimit -d 500000;";  // kB
 #endif
-  CHECK(place.pliant("run top.json --fps 1e9 --end 0.1 --quiet", little_memory).code == 0);
+  CHECK(place.pliant("run top.json --fps 1e9 --end 0.1 --quiet", memory_limit).code == 0);
 }
 
 TEST_CASE("I57: a closed standard output is no crash") {
-  const Place place;
+  const TestFolder place;
   const Result piped = place.pliant("run top.json -o r 2>&1 | true; echo done");
   CHECK(piped.code == 0);
   const Result list = place.pliant("list shapes | head -1; true");
   CHECK(list.code == 0);
 }
 
-TEST_CASE("I58: a second run in the same folder is refused while the first goes on") {
-  const Place place;
+TEST_CASE("I58: a second run in the same folder is refused while the first is running") {
+  const TestFolder place;
   const pid_t child = start_long_run(place, "r");
   for (const char* how : {"", "--force", "--resume"}) {
     const Result second = place.pliant(std::string("run top.json -o r ") + how);
@@ -449,8 +447,8 @@ TEST_CASE("I58: a second run in the same folder is refused while the first goes 
   CHECK(exit_code_of(child) == 128 + SIGINT);
 }
 
-TEST_CASE("I59: a scene without parts") {
-  const Place place;
+TEST_CASE("I59: a scene without parts, and a run without duration") {
+  const TestFolder place;
   set_bytes(place.folder / "empty.json", R"({"parts": []})");
   CHECK(place.pliant("run empty.json --obj --quiet").code == 0);
   CHECK(place.record("out/empty").at("status") == "complete");
@@ -459,8 +457,8 @@ TEST_CASE("I59: a scene without parts") {
   CHECK(place.pliant("run top.json --end 0 --quiet").code == 0);
 }
 
-TEST_CASE("scripts print chains and nets of any size, and say how they are used") {
-  const Place place;
+TEST_CASE("scripts print chains and nets of any size, and print their usage on errors") {
+  const TestFolder place;
   const std::string scenes = PLIANT_SCENES;
   for (const char* script : {"chain.sh' 1", "chain.sh' 20", "net.sh' 3 3", "net.sh' 4 7"}) {
     INFO(script);
@@ -482,24 +480,24 @@ TEST_CASE("scripts print chains and nets of any size, and say how they are used"
   }
 }
 
-TEST_CASE("no graphics library is opened unless a picture is asked for") {
-  const Place place;
+TEST_CASE("no graphics library is opened unless a picture is requested") {
+  const TestFolder place;
   const Result run = place.pliant("run top.json -o r --obj", "LD_DEBUG=files");
   CHECK(run.code == 0);
   CHECK(has(run.err, "libpng"));  // LD_DEBUG works
   for (const char* library : {"OSMesa", "libEGL", "libGL", "libLLVM"}) CHECK_FALSE(has(run.err, library));
 }
 
-TEST_CASE("a scene set on the command line is the one that is rendered and exported") {
-  const Place place;
+TEST_CASE("a scene changed on the command line is also used for rendering and export") {
+  const TestFolder place;
   REQUIRE(place.pliant("run top.json -o r --quiet --set /parts/0/name=fish --end 0.1 --fps 20").code == 0);
   CHECK(place.pliant("export r --to obj --quiet").code == 0);
   CHECK(has(bytes_of(place.folder / "r/meshes/frame_000002.obj"), "g fish\n"));
   CHECK_FALSE(fs::exists(place.folder / "r/meshes/frame_000003.obj"));
 }
 
-TEST_CASE("pictures: drawn with the run, and again from the recording the same") {
-  const Place place;
+TEST_CASE("pictures from a run and from its recording are identical") {
+  const TestFolder place;
   const Result run = place.pliant("run top.json -o r --quiet --png --fps 6");
   if (run.code == 8) return;  // no graphics library here
   REQUIRE(run.code == 0);
@@ -515,7 +513,7 @@ TEST_CASE("pictures: drawn with the run, and again from the recording the same")
   CHECK(bytes_of(place.folder / "other/frame_000002.png") != picture);
   CHECK(place.record("r").at("files").dump().find("frames/frame_*.png") != std::string::npos);
   CHECK(has(place.record("r").at("options").at("graphics"), "OpenGL"));
-  // From straight above, and without what can be left out.
+  // Seen from straight above, without the optional parts of the picture.
   CHECK(place
             .pliant(
                 "render r --quiet -o above --frames 2 --camera-eye 0 0 3 --camera-target 0 0 0 --no-springs "
@@ -524,9 +522,8 @@ TEST_CASE("pictures: drawn with the run, and again from the recording the same")
   CHECK(fs::exists(place.folder / "above/frame_000002.png"));
 }
 
-TEST_CASE(
-    "N42: joints that contradict each other end a run with code 4, by every method, and name themselves") {
-  const Place place;
+TEST_CASE("N42: joints that contradict each other end a run with code 4 and their names, for every method") {
+  const TestFolder place;
   set_bytes(place.folder / "apart.json", R"({
     "gravity": [0, 0, 0],
     "time": {"end": 3, "step": 0.001, "integrator": "rk4"},
@@ -546,7 +543,7 @@ TEST_CASE(
     CHECK(has(run.err, "'here'"));
     CHECK(place.record("out")["status"] == "failed");
   }
-  // Where it ends before that can be told, what is open is.
+  // If the run ends before the contradiction is detected, the open joint is reported.
   const Result early = place.pliant("run apart.json -o out --force --end 0.5");
   CHECK(early.code == 0);
   CHECK(has(early.err, "ball 'there', by 1 m"));

@@ -15,7 +15,7 @@ using test::Draws;
 
 namespace {
 
-/// Two deforming parts with everything that can act on them.
+/// Adds two deforming parts with all kinds of loads.
 void busy_scene(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
@@ -44,11 +44,11 @@ void busy_scene(MultiBody& body) {
 
 }  // namespace
 
-TEST_CASE("directional derivatives of the accelerations agree with differences, and are linear",
+TEST_CASE("directional derivatives of the accelerations agree with finite differences, and are linear",
           "[dynamics]") {
   MultiBody body;
   busy_scene(body);
-  // jvp takes custom forces as constant.
+  // jvp treats user-defined forces as constant.
   MultiBody without;
   busy_scene(without);
   for (const auto& force : without.forces())
@@ -88,7 +88,7 @@ TEST_CASE("directional derivatives of the accelerations agree with differences, 
   }
 }
 
-TEST_CASE("coordinate rates turn quaternions by the body's angular velocity", "[dynamics]") {
+TEST_CASE("coordinate rates rotate quaternions with the angular velocity in the body frame", "[dynamics]") {
   MultiBody body;
   busy_scene(body);
   const Simulation simulation(body, "rk4");
@@ -102,7 +102,7 @@ TEST_CASE("coordinate rates turn quaternions by the body's angular velocity", "[
   CHECK(q_dot.segment<3>(0) == simulation.state().v.segment<3>(0));
 }
 
-TEST_CASE("free fall: everything falls alike, however it is deformed, and nothing else moves", "[dynamics]") {
+TEST_CASE("free fall: all parts accelerate equally in any shape, and nothing else moves", "[dynamics]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"taper", "bend"}, 1000);
   part.rest({{"a1", 0.3}, {"a2", 0.3}, {"bend.angle", 0.8}, {"taper.tx", 0.4}});
@@ -116,7 +116,7 @@ TEST_CASE("free fall: everything falls alike, however it is deformed, and nothin
   CHECK(work.v_dot.tail(work.v_dot.size() - 3).norm() <= 1e-11);
 }
 
-TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it turns the body",
+TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it changes the angular momentum",
           "[dynamics]") {
   MultiBody body;
   body.gravity.setZero();
@@ -143,7 +143,7 @@ TEST_CASE("point forces: F = m a of the centre of mass, and the torque about it 
   CHECK((about_centre * alpha - torque).norm() <= 1e-12 * torque.norm());
 }
 
-TEST_CASE("a torque of one part against another leaves their momenta, and its work is that of both ends",
+TEST_CASE("a torque between two parts conserves their momenta, and its work is that of both ends",
           "[dynamics]") {
   const TimeVector torque(20, test::wave(10, 20, 3), 30);
   for (const bool rigid : {false, true})
@@ -156,7 +156,8 @@ TEST_CASE("a torque of one part against another leaves their momenta, and its wo
       Part& b = test::add(body, "b", "ellipsoid", {}, 1000);
       b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.4}}).place({0.5, 0, 0}).velocity({0.2, 0.3, 0.1}, {0, 0, 0});
       if (rigid) {
-        body.ball("hold", point(a, 0, 0), point(b, 0, kPi));  // an island of its own evaluation
+        // the joint gives an island with the specialised evaluation of rigid parts
+        body.ball("hold", point(a, 0, 0), point(b, 0, kPi));
       } else {
         a.stiffness({{"a1", 1e5}});
         body.hinge("hold", point(a, 0, 0), point(b, 0, kPi), {0, 0.6, 0.8});
@@ -191,7 +192,7 @@ TEST_CASE("a torque of one part against another leaves their momenta, and its wo
     }
 }
 
-TEST_CASE("a torque against a part that does not move is one from outside, and one against itself is none",
+TEST_CASE("a torque with its reaction on a fixed part is an external torque; one on a single part is refused",
           "[dynamics]") {
   for (const Frame frame : {Frame::world, Frame::body}) {
     MultiBody body;
@@ -206,26 +207,26 @@ TEST_CASE("a torque against a part that does not move is one from outside, and o
       CHECK(std::abs(simulation.ledger().balance) < 1e-6);
       return hash(simulation.state());
     };
-    const auto alone = end();
+    const auto external = end();
     torque.against = &post;
-    CHECK(end() == alone);
-    // The other way round, and by components along the axes of what stands still.
+    CHECK(end() == external);
+    // The torque is also applied the other way round, with components along the axes of the fixed part.
     torque.part = &post;
     torque.against = &part;
     torque.torque = TimeVector(Vec3<double>(-1, -2, -3));
-    if (frame == Frame::world) CHECK(end() == alone);
+    if (frame == Frame::world) CHECK(end() == external);
     torque.against = &post;
     CHECK_THROWS_WITH(Model(body), "torque 'turn' acts on part 'post' against itself");
   }
 }
 
-TEST_CASE("the ledger of a state: energies and momenta from their definitions", "[dynamics]") {
+TEST_CASE("the ledger of a state: energies and momenta agree with their definitions", "[dynamics]") {
   MultiBody body;
   busy_scene(body);
   Simulation simulation(body);
   const Ledger ledger = simulation.ledger();
   const State& state = simulation.state();
-  // Sums over the mass points, in the world.
+  // Sums over the mass points, in the world frame.
   double kinetic = 0, gravity = 0;
   Vec3<double> P = Vec3<double>::Zero(), L = Vec3<double>::Zero();
   for (int i = 0; i < 2; ++i) {
@@ -259,7 +260,7 @@ TEST_CASE("the ledger of a state: energies and momenta from their definitions", 
   CHECK(ledger.balance == 0);
 }
 
-TEST_CASE("N61: a spring of no length", "[dynamics]") {
+TEST_CASE("N61: a spring of zero length exerts a finite force", "[dynamics]") {
   for (double rest_length : {0.0, 0.5}) {
     MultiBody body;
     body.gravity.setZero();
@@ -284,7 +285,7 @@ TEST_CASE("names of coordinates and velocities", "[dynamics]") {
   CHECK_THROWS_AS(model.coordinate_name(model.n_q()), std::out_of_range);
 }
 
-TEST_CASE("what cannot be a model is refused by name", "[dynamics]") {
+TEST_CASE("invalid models are refused by name", "[dynamics]") {
   using test::has_text;
   MultiBody body;
   Part& part = test::add(body, "p", "box", {}, 1000);
@@ -299,7 +300,7 @@ TEST_CASE("what cannot be a model is refused by name", "[dynamics]") {
   CHECK_THROWS_WITH(Model(loose), has_text("spring 's' ties the world to itself"));
 }
 
-TEST_CASE("a part in a simulation cannot be changed, afterwards it can", "[dynamics]") {
+TEST_CASE("a part cannot be changed during a simulation, but afterwards", "[dynamics]") {
   MultiBody body;
   Part& part = body.add(make_part("ball", "sphere", {}, 1000));
   {
@@ -325,7 +326,7 @@ TEST_CASE("points outside the solid are refused", "[dynamics]") {
   CHECK_THROWS_AS(Model(body), std::invalid_argument);
 }
 
-TEST_CASE("states of the same bits have the same hash", "[dynamics]") {
+TEST_CASE("states of identical bits have the same hash", "[dynamics]") {
   MultiBody body;
   busy_scene(body);
   Simulation simulation(body, "rk4");

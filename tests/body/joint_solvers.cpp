@@ -1,5 +1,5 @@
-// The two solvers of joints, by blocks of W_c and as the augmented matrix of Eq. (14), with Eigen's and with
-// SuiteSparse's factorisation: the same motion, and the choice between them.
+// The two solvers of joints, the blocks of W_c and the augmented matrix of Eq. (14), with the factorisations
+// of Eigen and SuiteSparse: equal motion, and the choice between them.
 #include "catch.h"
 
 #include <algorithm>
@@ -22,9 +22,9 @@ using Choice = JointSolver::Choice;
 
 namespace {
 
-/// Deforming and rigid parts in loops, with doubled joints, a hinge, a parameter at its limit, and a part
-/// that a string alone ties to them.
-void tangle(MultiBody& body) {
+/// Adds deforming and rigid parts in loops, with doubled joints, a hinge, a parameter at its limit, and a
+/// part on a string.
+void tangled_parts(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
   a.damping(0.4, 0.02, 0.1);
@@ -52,7 +52,7 @@ void tangle(MultiBody& body) {
   body.hinge("hinge", point(*parts[2], 0, 0, 0), point(*parts[4], 0, 1, 0.5), {1, 0, 0});
 }
 
-/// One hub with many arms on ball joints.
+/// Adds one hub with many arms on ball joints.
 void star(MultiBody& body, int arms) {
   Part& hub = test::add(body, "hub", "sphere", {}, 1000);
   for (int i = 0; i < arms; ++i) {
@@ -73,11 +73,11 @@ const Backend backends[] = {{"Eigen", [](JointSolver&) {}}, {"SuiteSparse", use_
 
 }  // namespace
 
-TEST_CASE("both solvers give the same accelerations and forces, and derivatives", "[joints]") {
+TEST_CASE("both solvers give equal accelerations, forces and derivatives", "[joints]") {
   for (const Backend& backend : backends) {
     MultiBody one, two;
-    tangle(one);
-    tangle(two);
+    tangled_parts(one);
+    tangled_parts(two);
     one.joint_solver.choice = Choice::blocks;
     two.joint_solver.choice = Choice::augmented;
     backend.use(two.joint_solver);
@@ -90,7 +90,7 @@ TEST_CASE("both solvers give the same accelerations and forces, and derivatives"
     augmented.dynamics().accelerations(0.1, state.q, state.v, state, other);
     INFO(backend.name);
     CHECK((work.v_dot - other.v_dot).norm() <= 1e-10 * work.v_dot.norm());
-    // Forces agree where they are determined: the doubled joint may share its own out in any way.
+    // Forces agree where they are unique: two equal joints may share their force in any way.
     for (int j = 0; j < static_cast<int>(one.joints().size()); ++j) {
       const std::string& name = blocks.model().joints()[static_cast<std::size_t>(j)].joint->name();
       if (name == "loop" || name == "again") continue;
@@ -118,12 +118,13 @@ TEST_CASE("both solvers give the same accelerations and forces, and derivatives"
   }
 }
 
-TEST_CASE("both solvers move alike, by both methods, through closing, strings and limits", "[joints][long]") {
+TEST_CASE("both solvers give equal motion, with both methods, through closing joints, strings and limits",
+          "[joints][long]") {
   for (const Backend& backend : backends)
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody one, two;
-      tangle(one);
-      tangle(two);
+      tangled_parts(one);
+      tangled_parts(two);
       one.joint_solver.choice = Choice::blocks;
       two.joint_solver.choice = Choice::augmented;
       backend.use(two.joint_solver);
@@ -138,7 +139,7 @@ TEST_CASE("both solvers move alike, by both methods, through closing, strings an
     }
 }
 
-TEST_CASE("extreme mass ratios: the solvers agree after refinement", "[joints]") {
+TEST_CASE("extreme mass ratios: the solvers agree after iterative refinement", "[joints]") {
   for (const Backend& backend : backends) {
     VecX<double> v_dot[2];
     double largest = 0, lightest = 0;
@@ -162,12 +163,12 @@ TEST_CASE("extreme mass ratios: the solvers agree after refinement", "[joints]")
       lightest = body.parts()[0]->total_mass();
     }
     INFO(backend.name);
-    // design 6: scaled by eps lambda / m_min
+    // The bound is eps lambda / m_min.
     CHECK((v_dot[0] - v_dot[1]).lpNorm<Eigen::Infinity>() <= 1e-10 + 100 * 2.2e-16 * largest / lightest);
   }
 }
 
-TEST_CASE("the choice: blocks for chains and nets, the augmented matrix where very many joints share a part",
+TEST_CASE("the choice: blocks for chains and nets, the augmented matrix where many joints share a part",
           "[joints]") {
   MultiBody few, many;
   star(few, 8);

@@ -1,4 +1,4 @@
-// The laws that every joint obeys, whatever its formula, and what joints do to accelerations.
+// Laws that every joint formula obeys, and the accelerations of parts with joints.
 #include "catch.h"
 
 #include <Eigen/LU>
@@ -17,7 +17,7 @@ using test::Draws;
 
 namespace {
 
-/// Points that move as x + v t + a t^2 / 2, and a joint between them.
+/// Checks a joint between points that move as x + v t + a t^2 / 2.
 template <class F>
 void check_laws(const F& formula, std::uint64_t seed) {
   constexpr int kPoints = F::first + F::second;
@@ -67,7 +67,7 @@ void check_laws(const F& formula, std::uint64_t seed) {
   }
 }
 
-/// Three deforming parts in a closed loop, tied to the world too.
+/// Adds three deforming parts in a closed loop that is also joined to the world.
 void loop(MultiBody& body) {
   Part& a = test::tumbling_solid(body, "a");
   body.gravity = {0.3, -1, -9.81};
@@ -89,7 +89,7 @@ void loop(MultiBody& body) {
 
 }  // namespace
 
-TEST_CASE("every joint: C_dot, C_ddot and C_x are those of C", "[joints]") {
+TEST_CASE("every joint: C_dot, C_ddot and C_x are the derivatives of C", "[joints]") {
   std::apply([](const auto&... formula) { (check_laws(formula, 1), ...); }, AllJoints{});
 }
 
@@ -114,7 +114,7 @@ TEST_CASE("accelerations: C_ddot + 2 alpha C_dot + beta^2 C = 0 for every row, i
     Workspace<double> work;
     const double t = 0.3;
     dynamics.accelerations(t, state.q, state.v, state, work);
-    // The rows along the motion with these accelerations: q(t + e) by its second-order Taylor polynomial.
+    // Reference: rows along the second-order Taylor polynomial of q(t + e) with these accelerations.
     VecX<double> q_dot;
     auto C_dot = [&](double e) {
       Workspace<double> scratch;
@@ -131,12 +131,13 @@ TEST_CASE("accelerations: C_ddot + 2 alpha C_dot + beta^2 C = 0 for every row, i
       INFO(joint.joint->name());
       CHECK(sum.segment(joint.row, joint.rows).norm() <= 1e-6 * (1 + C_ddot.norm()));
     }
-    CHECK(work.joints.lambda[simulation.model().joints().back().row] >
-          0);  // the string is too long, and pulls
+    // The string is too long, so that it exerts a force.
+    CHECK(work.joints.lambda[simulation.model().joints().back().row] > 0);
   }
 }
 
-TEST_CASE("directional derivatives of the accelerations with joints agree with differences", "[joints]") {
+TEST_CASE("directional derivatives of the accelerations with joints agree with finite differences",
+          "[joints]") {
   MultiBody body;
   loop(body);
   body.find("b")->limits("a1", {0.1, 0.2});  // at its limit from the start
@@ -157,7 +158,7 @@ TEST_CASE("directional derivatives of the accelerations with joints agree with d
   for (int trial = 0; trial < 5; ++trial) {
     const VecX<double> dq = random(state.q.size(), 0.1);
     VecX<double> dv = random(state.v.size(), 1);
-    dv[b.v0 + 6] = 0;  // it rests
+    dv[b.v0 + 6] = 0;  // the parameter is at its limit
     const VecX<double> derivative = dynamics.jvp(t, state.q, state.v, {dq, dv}, work, dual);
     const VecX<double> expected =
         test::first_derivative(
@@ -172,7 +173,7 @@ TEST_CASE("directional derivatives of the accelerations with joints agree with d
   }
 }
 
-TEST_CASE("bad joints are refused by name", "[joints]") {
+TEST_CASE("invalid joints are refused by name", "[joints]") {
   MultiBody body;
   Part& a = test::add(body, "a", "sphere", {}, 500);
   Part& b = test::add(body, "b", "sphere", {}, 500);
@@ -192,7 +193,7 @@ TEST_CASE("bad joints are refused by name", "[joints]") {
   CHECK_THROWS_WITH(Model(body), "ball 'dead' ties no part that moves");
 }
 
-TEST_CASE("joints within a part that does not deform are refused by name, of every type", "[joints]") {
+TEST_CASE("joints within a rigid part are refused by name, for every type", "[joints]") {
   for (const JointInfo& info : all_joints()) {
     MultiBody body;
     Part& a = test::add(body, "a", "ellipsoid", {}, 500);

@@ -1,4 +1,4 @@
-// Points that are asked for at many states are where they would be found anew.
+// A PlacedPoint, which is evaluated at many states, agrees with a direct evaluation.
 #include <pliant/body/placed_point.h>
 
 #include <pliant/part/local/local_laws.h>
@@ -11,7 +11,7 @@ namespace placed_point_test {
 
 using namespace pliant;
 
-TEST_CASE("a placed point is the point of its part, soft or not, and of the world") {
+TEST_CASE("a placed point is the point of its part, soft or rigid, and of the world") {
   MultiBody body;
   Part& soft = body.add(make_part("soft", "ellipsoid", {"twist"}, 1000));
   soft.stiffness({{"twist.angle", 100}}).place({0, 1, 0}).velocity({1, 0, 0}, {1, 2, 3});
@@ -34,7 +34,7 @@ TEST_CASE("a placed point is the point of its part, soft or not, and of the worl
     CHECK(on_plain.at(state) == model.world_point(state, 1, on_plain.point().material));
     CHECK(in_world.at(state) == Vec3<double>(3 * state.time(), 0, 1));
   }
-  // The nodes have moved: the point is not that of the shape alone.
+  // The nodes have moved, so that the point is not on the shape alone.
   const NodeWeights weights = Model::node_weights(in_soft.point());
   CHECK_FALSE(weights.node.empty());
   CHECK((model.world_point(simulation.state(), 0, in_soft.point().material, {}) -

@@ -1,4 +1,4 @@
-// Where boxes touch: closed forms, and that no plane parts two boxes by more than is told.
+// Contacts of boxes: closed forms, and separation in no direction larger than the reported gap.
 #include "catch.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using test::Draws;
 
 namespace {
 
-Mat3<double> turn(double angle, const Vec3<double>& axis) {
+Mat3<double> rotation(double angle, const Vec3<double>& axis) {
   return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
 }
 std::vector<BoxTouch> touches(const PlacedBox& a, const PlacedBox& b, double most) {
@@ -27,7 +27,7 @@ std::vector<BoxTouch> touches(const PlacedBox& a, const PlacedBox& b, double mos
   touch_boxes(a, b, most, found);
   return found;
 }
-double least(const std::vector<BoxTouch>& found) {
+double min_gap(const std::vector<BoxTouch>& found) {
   double gap = 1e9;
   for (const BoxTouch& touch : found) gap = std::min(gap, touch.gap);
   return gap;
@@ -39,7 +39,7 @@ const Mat3<double> kUpright = Mat3<double>::Identity();
 
 }  // namespace
 
-TEST_CASE("a box on a box touches at the corners of what they share", "[contact]") {
+TEST_CASE("a box on a box touches at the corners of the common area", "[contact]") {
   const PlacedBox below{{0, 0, 0}, kUpright, {1, 2, 0.5}},
       above{{0.7, 0.3, 0.9 + 1e-4}, kUpright, {1, 1, 0.4}};
   CHECK(touches(above, below, 0.9e-4).empty());
@@ -52,7 +52,7 @@ TEST_CASE("a box on a box touches at the corners of what they share", "[contact]
     CHECK(std::min(std::abs(touch.x[0] + 0.3), std::abs(touch.x[0] - 1)) < 1e-15);
     CHECK(std::min(std::abs(touch.x[1] + 0.7), std::abs(touch.x[1] - 1.3)) < 1e-15);
   }
-  const PlacedBox across{{0, 0, 0.9}, turn(kPi / 4, {0, 0, 1}), {1, 1, 0.4}};
+  const PlacedBox across{{0, 0, 0.9}, rotation(kPi / 4, {0, 0, 1}), {1, 1, 0.4}};
   const PlacedBox square{{0, 0, 0}, kUpright, {1, 1, 0.5}};
   const std::vector<BoxTouch> eight = touches(across, square, 1e-6);
   REQUIRE(eight.size() == 8);
@@ -60,10 +60,10 @@ TEST_CASE("a box on a box touches at the corners of what they share", "[contact]
     CHECK(touch.x.head<2>().norm() == Approx(std::hypot(1, std::sqrt(2.0) - 1)));
 }
 
-TEST_CASE("edges that cross touch at one point, corners above a face at theirs", "[contact]") {
+TEST_CASE("crossed edges touch at one point, corners above a face at the corners", "[contact]") {
   const double r = std::sqrt(0.5);
-  const PlacedBox below{{0, 0, 0}, turn(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}},
-      above{{0.3, 0.1, 2 * r - 1e-3}, turn(0.4, {0, 0, 1}) * turn(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}};
+  const PlacedBox below{{0, 0, 0}, rotation(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}},
+      above{{0.3, 0.1, 2 * r - 1e-3}, rotation(0.4, {0, 0, 1}) * rotation(kPi / 4, {1, 0, 0}), {2, 0.5, 0.5}};
   const std::vector<BoxTouch> crossed = touches(above, below, 0);
   REQUIRE(crossed.size() == 1);
   CHECK(crossed[0].gap == Approx(-1e-3).epsilon(1e-9));
@@ -82,39 +82,40 @@ TEST_CASE("edges that cross touch at one point, corners above a face at theirs",
   CHECK((corner[0].x - Vec3<double>(0.2, 0.1, 1 - depth + 2e-3) - R * half).norm() < 1e-12);
 }
 
-TEST_CASE("no direction parts boxes by more than their gap, and swapping them turns it about", "[contact]") {
+TEST_CASE("no direction separates boxes by more than their gap, and a swap of the boxes reverses the normal",
+          "[contact]") {
   Draws draws(23);
   int overlapping = 0;
   for (int trial = 0; trial < 400; ++trial) {
     auto box = [&] {
       return PlacedBox{draws.vector(0.5),
-                       turn(draws.uniform(0, 6), draws.vector(1)),
+                       rotation(draws.uniform(0, 6), draws.vector(1)),
                        {draws.uniform(0.1, 0.6), draws.uniform(0.1, 0.6), draws.uniform(0.1, 0.6)}};
     };
     const PlacedBox a = box(), b = box();
     const std::vector<BoxTouch> found = touches(a, b, 10), swapped = touches(b, a, 10);
     REQUIRE(!found.empty());
     REQUIRE(found.size() == swapped.size());
-    CHECK(least(found) == Approx(least(swapped)).margin(2e-6));
+    CHECK(min_gap(found) == Approx(min_gap(swapped)).margin(2e-6));
     CHECK((found[0].normal + swapped[0].normal).norm() < 1e-12);
     for (const BoxTouch& touch : found) {
       CHECK(touch.normal.norm() == Approx(1));
       const Vec3<double> in_a = a.R.transpose() * (touch.x - a.c);
       CHECK((in_a.cwiseAbs() - a.half).maxCoeff() < 1e-12);
     }
-    if (least(found) > 0) continue;  // of boxes that are apart it is no more than their distance
+    if (min_gap(found) > 0) continue;  // for separated boxes the extent is at most their distance
     ++overlapping;
     for (int k = 0; k < 200; ++k) {
       const Vec3<double> n = draws.vector(1).normalized();
-      CHECK(std::abs(n.dot(b.c - a.c)) - extent(a, n) - extent(b, n) < least(found) + 2e-6);
+      CHECK(std::abs(n.dot(b.c - a.c)) - extent(a, n) - extent(b, n) < min_gap(found) + 2e-6);
     }
   }
   CHECK(overlapping > 50);
 }
 
-TEST_CASE("a ball touches a box at its nearest point: of a face, an edge, a corner, or out of its inside",
+TEST_CASE("a ball touches a box at its nearest point: of a face, an edge or a corner, also from inside",
           "[contact]") {
-  const PlacedBox box{{1, 2, 3}, turn(0.7, {1, 2, -1}), {0.5, 0.4, 0.3}};
+  const PlacedBox box{{1, 2, 3}, rotation(0.7, {1, 2, -1}), {0.5, 0.4, 0.3}};
   auto touch = [&](const Vec3<double>& in_box) { return touch_ball(box.c + box.R * in_box, 0.2, box); };
   auto check = [&](const Vec3<double>& in_box, const Vec3<double>& normal, double gap) {
     const BoxTouch found = touch(in_box);
@@ -129,7 +130,7 @@ TEST_CASE("a ball touches a box at its nearest point: of a face, an edge, a corn
   check({0.51, 0.42, -0.32}, {1, 2, -2}, 0.03 - 0.2);
   check({0.1, 0.1, -0.25}, {0, 0, -1}, -0.05 - 0.2);
   check({0.5, 0.1, 0.1}, {1, 0, 0}, -0.2);
-  // The point of the box that is found is the nearest; from inside, the way out is the shortest.
+  // The contact point on the box is the nearest one; from inside, the normal is the shortest way out.
   Draws draws(9);
   for (int i = 0; i < 200; ++i) {
     const Vec3<double> at(draws.uniform(-0.8, 0.8), draws.uniform(-0.7, 0.7), draws.uniform(-0.6, 0.6));

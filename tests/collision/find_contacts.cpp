@@ -1,5 +1,5 @@
-// What is found to touch, against closed forms; the closed forms of ellipsoids against the search that other
-// shapes take; which pairs are looked at, against all of them.
+// Contacts against closed forms; the closed forms of ellipsoids against the search for other shapes; the
+// broad phase against all pairs.
 #include "catch.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using test::Draws;
 
 namespace {
 
-Eigen::Quaterniond turn(Draws& draws) {
+Eigen::Quaterniond random_rotation(Draws& draws) {
   return Eigen::Quaterniond(draws.uniform(-1, 1), draws.uniform(-1, 1), draws.uniform(-1, 1),
                             draws.uniform(-1, 1))
       .normalized();
@@ -43,7 +43,7 @@ TEST_CASE("the lowest point of an ellipsoid over a plane", "[contact]") {
   Draws draws(11);
   for (int trial = 0; trial < 60; ++trial) {
     const Vec3<double> axes(draws.uniform(0.01, 1), draws.uniform(0.1, 1), draws.uniform(0.1, 1));
-    const Eigen::Quaterniond R = turn(draws);
+    const Eigen::Quaterniond R = random_rotation(draws);
     const Vec3<double> n = draws.vector(1).normalized(), c = draws.vector(2);
     const double depth = axes.cwiseProduct(R.inverse() * n).norm();
     MultiBody body;
@@ -63,11 +63,13 @@ TEST_CASE("the lowest point of an ellipsoid over a plane", "[contact]") {
 }
 
 TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane", "[contact]") {
-  // A rim is met at a point of the mesh or between two: up to 3e-4 of the part above its lowest point.
+  // A contact on a rim is at a vertex of the mesh or between two: up to 3e-4 of the part above the lowest
+  // point.
   struct Kind {
     const char* shape;
     Part::Named rest;
-    std::function<double(double, double)> depth;  // below the centre; along the axis and across it
+    // depth below the centre, from components along and across the axis
+    std::function<double(double, double)> depth;
     double above;
   };
   const std::vector<Kind> kinds{
@@ -93,7 +95,7 @@ TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane
   for (const Kind& kind : kinds)
     for (int trial = 0; trial < 60; ++trial) {
       CAPTURE(kind.shape, trial);
-      const Eigen::Quaterniond R = turn(draws);
+      const Eigen::Quaterniond R = random_rotation(draws);
       const Vec3<double> n = R.conjugate() * Vec3<double>::UnitZ();
       MultiBody body;
       body.add(make_part("part", kind.shape, {}, 1000))
@@ -109,11 +111,12 @@ TEST_CASE("the lowest points of tori, capsules, cylinders and cones over a plane
     }
 }
 
-TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, whoever is first", "[contact]") {
+TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, in either order of the parts",
+          "[contact]") {
   Draws draws(12);
   for (int trial = 0; trial < 60; ++trial) {
     const Vec3<double> axes(draws.uniform(0.1, 1), draws.uniform(0.1, 1), draws.uniform(0.1, 1));
-    const Eigen::Quaterniond R = turn(draws);
+    const Eigen::Quaterniond R = random_rotation(draws);
     const Vec3<double> c = draws.vector(2), y = draws.vector(1).normalized();
     const Vec3<double> n = (R * y.cwiseQuotient(axes)).normalized(), x = c + R * axes.cwiseProduct(y);
     const double r = draws.uniform(0.05, 1);
@@ -133,13 +136,13 @@ TEST_CASE("an ellipsoid and a ball: the gap is exact to second order, whoever is
       CHECK((found[0].normal - (ball_first ? n : -n)).norm() < 2 * (sharp + 1 / r) * std::abs(gap) + 1e-13);
       CHECK((found[0].x - x).norm() < 20 * std::abs(gap) + 1e-13);
     }
-    // From 1e-3 to 1e-4 the error falls by 100, unless one side of the pair has it exact.
+    // From 1e-3 to 1e-4 the error falls by a factor of 100, unless one side of the pair is exact.
     CHECK(errors[1] < 0.03 * errors[0] + 1e-13);
     CHECK(errors[3] < 0.03 * errors[2] + 1e-13);
   }
 }
 
-TEST_CASE("the nearest point of a stretched ball is the best of all", "[contact]") {
+TEST_CASE("the nearest point of a stretched ball is the global minimum", "[contact]") {
   Draws draws(13);
   for (int trial = 0; trial < 300; ++trial) {
     Mat3<double> M;
@@ -147,23 +150,23 @@ TEST_CASE("the nearest point of a stretched ball is the best of all", "[contact]
     if (trial % 3 == 1) M = Vec3<double>(1, draws.uniform(0, 2) < 1 ? 1 : 2, 3).asDiagonal();
     if (trial % 3 == 2) M.setIdentity();
     Vec3<double> r = draws.vector(2);
-    if (trial % 4 == 1) r.setZero();                   // one centre
+    if (trial % 4 == 1) r.setZero();                   // concentric
     if (trial % 4 == 2) r = Vec3<double>(0, 0, r[0]);  // on an axis
     const Vec3<double> y = nearest_direction(M, r);
     REQUIRE(y.norm() == Approx(1).epsilon(1e-14));
     const double distance = (M * y + r).norm();
     for (int k = 0; k < 300; ++k) REQUIRE(distance <= (M * draws.vector(1).normalized() + r).norm() + 1e-13);
-    // A stationary point: the gradient has nothing along the sphere.
+    // At a stationary point the gradient has no component tangential to the sphere.
     const Vec3<double> gradient = M.transpose() * (M * y + r);
     CHECK((gradient - gradient.dot(y) * y).norm() < 1e-12 * (1 + M.squaredNorm()));
   }
 }
 
-TEST_CASE("the closed forms of ellipsoids agree with the search of other shapes", "[contact][long]") {
+TEST_CASE("the closed forms of ellipsoids agree with the search for other shapes", "[contact][long]") {
   Draws draws(14);
   for (int trial = 0; trial < 12; ++trial) {
     const Vec3<double> axes(draws.uniform(0.2, 1), draws.uniform(0.2, 1), draws.uniform(0.2, 1));
-    const Eigen::Quaterniond R = turn(draws), R_b = turn(draws);
+    const Eigen::Quaterniond R = random_rotation(draws), R_b = random_rotation(draws);
     const Vec3<double> n = draws.vector(1).normalized(), away = draws.vector(1).normalized();
     double apart = 2;
     auto contacts = [&](const char* shape, double most) {
@@ -176,29 +179,29 @@ TEST_CASE("the closed forms of ellipsoids agree with the search of other shapes"
       body.contact.pairs.push_back({"b", "plane", false});
       return contacts_of(body, most);
     };
-    while (contacts("ellipsoid", -1e-3).size() < 2) apart -= 1e-3;  // the plane is one
+    while (contacts("ellipsoid", -1e-3).size() < 2) apart -= 1e-3;  // one contact is with the plane
     const std::vector<Contact> found = contacts("ellipsoid", 0), searched = contacts("superellipsoid", 0);
     REQUIRE(found.size() == 2);
     REQUIRE(searched.size() == 2);
     for (std::size_t k = 0; k < 2; ++k) {
       CHECK(found[k].plane == searched[k].plane);
       const double between = (found[k].x - searched[k].x).norm();
-      CHECK(between < 1e-4);  // square roots of what heights are known to
-      // Levels are flat where they are lowest; the scale that makes them heights is not.
-      const double left = 1e-9 + 10 * std::abs(found[k].gap) * between;
-      CHECK(std::abs(found[k].gap - searched[k].gap) <= left);
+      CHECK(between < 1e-4);  // square root of the accuracy of the heights
+      // Levels are stationary at the contact; the scale that converts them to heights is not.
+      const double tolerance = 1e-9 + 10 * std::abs(found[k].gap) * between;
+      CHECK(std::abs(found[k].gap - searched[k].gap) <= tolerance);
       CHECK((found[k].normal - searched[k].normal).norm() < 1e-3);
     }
   }
 }
 
-TEST_CASE("faces whose edges lie on each other but for rounding touch at all corners", "[contact]") {
+TEST_CASE("faces whose edges coincide to rounding touch at all corners", "[contact]") {
   Draws draws(29);
   auto rounding = [&] { return Vec3<double>(1e-12 * draws.vector(1)); };
   for (int trial = 0; trial < 500; ++trial) {
-    // Upright, for there edges order corners by rounding; and turned.
-    const Eigen::Quaterniond R = trial % 3 < 2 ? Eigen::Quaterniond::Identity() : turn(draws);
-    // Edges lie on each other along one direction; along the other they do, or the upper box is moved.
+    // Some boxes are upright, as rounding decides the order of corners there; others are rotated.
+    const Eigen::Quaterniond R = trial % 3 < 2 ? Eigen::Quaterniond::Identity() : random_rotation(draws);
+    // Edges coincide along one direction; along the other they coincide or the upper box is displaced.
     const double aside = trial % 2 == 0 ? 0 : 0.005;
     MultiBody body;
     body.contact.between_parts = true;
@@ -222,14 +225,15 @@ TEST_CASE("faces whose edges lie on each other but for rounding touch at all cor
   }
 }
 
-TEST_CASE("pairs that are named keep their own rules, joined ones touch only then", "[contact]") {
+TEST_CASE("named pairs use their own rules, and joined parts touch only if their pair is named",
+          "[contact]") {
   for (const bool between : {true, false})
     for (const bool named : {true, false}) {
       MultiBody body;
       body.contact.active = true;
       body.contact.between_parts = between;
       std::vector<Part*> balls;
-      for (int i = 0; i < 3; ++i)  // each overlaps the next
+      for (int i = 0; i < 3; ++i)  // each overlaps the next one
         balls.push_back(&body.add(make_part("ball" + std::to_string(i), "sphere", {}, 1000))
                              .rest({{"r", 0.501}})
                              .place({static_cast<double>(i), 0, 0}));
@@ -244,7 +248,7 @@ TEST_CASE("pairs that are named keep their own rules, joined ones touch only the
     }
 }
 
-TEST_CASE("N55: near boxes of all sizes are found, each pair once and in order", "[contact]") {
+TEST_CASE("N55: the broad phase finds near boxes of all sizes, each pair once and in order", "[contact]") {
   Draws draws(15);
   for (const int n : {0, 1, 2, 5, 300, 6000}) {
     std::vector<Eigen::AlignedBox3d> boxes;

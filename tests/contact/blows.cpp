@@ -1,5 +1,5 @@
-// Blows of parts whose global parameters move: velocities and energy after them are those of the inelastic
-// law (physics 6.2), part of the energy goes into the parameters, and pairs keep their momenta.
+// Impacts of parts with dynamic global parameters: velocities and energy after an impact obey the inelastic
+// law, the parameters receive a part of the energy, and pairs conserve their momenta.
 #include "catch.h"
 
 #include <cmath>
@@ -25,16 +25,17 @@ namespace {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// The first impact of a body: the state and the ledger just before it, as without contact, and just after.
-struct Blow {
+/// The first impact of a model: the state and the ledger just before it, as without contact, and just after
+/// it.
+struct Impact {
   State before, after;
   Ledger ledger_before, ledger_after;
   ContactRecord record;
-  MatX<double> M;   ///< 1/2 v^T M v is the kinetic energy where it happens
-  MatX<double> Jc;  ///< of the velocities against each other along the normal and two tangents
+  MatX<double> M;   ///< 1/2 v^T M v is the kinetic energy at the impact
+  MatX<double> Jc;  ///< of the relative velocity along the normal and two tangents
 };
 
-/// M of a state by the kinetic energies of its unit velocities and of sums of two of them.
+/// Computes M of a state from the kinetic energies of unit velocities and of sums of two of them.
 MatX<double> mass_matrix(const Simulation& simulation) {
   const Dynamics& dynamics = simulation.dynamics();
   State state = simulation.state();
@@ -52,7 +53,7 @@ MatX<double> mass_matrix(const Simulation& simulation) {
   return M;
 }
 
-/// dx/dv of a material point of a part, world: (I, -R [p]x, R J).
+/// Adds the derivative dx/dv of a material point of a part, world frame: (I, -R [p]x, R J).
 void add_point(const Model& model, const State& state, const ContactSide& side, double sign,
                MatX<double>& L) {
   if (side.part < 0) return;
@@ -71,7 +72,7 @@ void add_point(const Model& model, const State& state, const ContactSide& side, 
   L.middleCols(m.v0 + 6, m.n_s) += sign * R * jets[0].J;
 }
 
-Blow first_blow(const Build& build) {
+Impact first_impact(const Build& build) {
   MultiBody body, other;
   for (MultiBody* each : {&body, &other}) {
     each->gravity.setZero();
@@ -89,27 +90,27 @@ Blow first_blow(const Build& build) {
   REQUIRE(simulation.step_counters().impacts == 1);
   free.set_state(from);
   while (free.time() < simulation.time()) free.step_up_to(simulation.time());
-  Blow blow{free.state(),
-            simulation.state(),
-            free.ledger(),
-            simulation.ledger(),
-            simulation.contact()->record(),
-            mass_matrix(simulation),
-            {}};
-  REQUIRE((blow.after.q - blow.before.q).norm() < 1e-11);
-  REQUIRE(blow.record.contacts.size() == 1);
-  const Contact& contact = blow.record.contacts[0];
-  MatX<double> L = MatX<double>::Zero(3, blow.after.v.size());
-  add_point(simulation.model(), blow.after, contact.a, 1, L);
-  add_point(simulation.model(), blow.after, contact.b, -1, L);
+  Impact impact{free.state(),
+                simulation.state(),
+                free.ledger(),
+                simulation.ledger(),
+                simulation.contact()->record(),
+                mass_matrix(simulation),
+                {}};
+  REQUIRE((impact.after.q - impact.before.q).norm() < 1e-11);
+  REQUIRE(impact.record.contacts.size() == 1);
+  const Contact& contact = impact.record.contacts[0];
+  MatX<double> L = MatX<double>::Zero(3, impact.after.v.size());
+  add_point(simulation.model(), impact.after, contact.a, 1, L);
+  add_point(simulation.model(), impact.after, contact.b, -1, L);
   const Vec3<double> n = contact.normal, t = n.unitOrthogonal();
   Mat3<double> axes;
   axes << n, t, n.cross(t);
-  blow.Jc = axes.transpose() * L;
-  return blow;
+  impact.Jc = axes.transpose() * L;
+  return impact;
 }
 
-/// Tumbling parts with dynamic parameters, that come down on z = 0.
+/// Tumbling parts with dynamic parameters.
 const std::vector<std::string> kKinds{"sizes", "bent", "squarish", "twisted"};
 Part& soft(MultiBody& body, const std::string& name, const std::string& kind, double density = 1000) {
   if (kind == "sizes") {
@@ -132,20 +133,20 @@ Part& soft(MultiBody& body, const std::string& name, const std::string& kind, do
   return part.rest({{"r", 0.15}, {"shear.sx", 0.2}, {"twist.angle", 0.4}})
       .stiffness({{"r", 3000}, {"shear.sx", 50}, {"twist.angle", 20}});
 }
-Eigen::Quaterniond turned(Draws& draws) {
+Eigen::Quaterniond random_rotation(Draws& draws) {
   const Vec3<double> axis = draws.vector(1);
   return Eigen::Quaterniond(1, axis[0], axis[1], axis[2]).normalized();
 }
 
 }  // namespace
 
-TEST_CASE("a blow changes parts whose parameters move by the inelastic law", "[contact][long]") {
-  Worst of_velocity, of_loss, of_coulomb;
+TEST_CASE("an impact changes parts with dynamic parameters by the inelastic law", "[contact][long]") {
+  Worst velocity_error, loss_error, coulomb_error;
   for (const std::string& kind : kKinds)
     for (const bool pair : {false, true})
-      for (const double mu : {0.0, 0.03, 1e3}) {  // nothing slides at the last
+      for (const double mu : {0.0, 0.03, 1e3}) {  // no contact slides with the largest coefficient
         CAPTURE(kind, pair, mu);
-        const Blow blow = first_blow([&](MultiBody& body) {
+        const Impact impact = first_impact([&](MultiBody& body) {
           body.contact.friction = mu;
           soft(body, "a", kind)
               .place({0, 0, 0.5}, Eigen::Quaterniond(0.8, 0.3, -0.5, 0.2).normalized())
@@ -155,40 +156,42 @@ TEST_CASE("a blow changes parts whose parameters move by the inelastic law", "[c
           else
             body.plane("wall", Vec3<double>(0, 0, 0), {0.1, -0.2, 1});
         });
-        const MatX<double> Jc = mu == 0 ? blow.Jc.topRows(1) : blow.Jc,
-                           Y = blow.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
-        const VecX<double> u = Jc * blow.before.v, u_after = Jc * blow.after.v;
+        const MatX<double> Jc = mu == 0 ? impact.Jc.topRows(1) : impact.Jc,
+                           Y = impact.M.ldlt().solve(Jc.transpose()), Nc = Jc * Y;
+        const VecX<double> u = Jc * impact.before.v, u_after = Jc * impact.after.v;
         REQUIRE(u[0] < -1);
-        // Which impulse stops the sides against each other; where they slide, the one that acted.
+        // The impulse that stops the relative motion; with sliding, the impulse that acted.
         VecX<double> p = -Nc.ldlt().solve(u);
         if (mu == 0.03) {
-          const Contact& contact = blow.record.contacts[0];
-          const Vec3<double> n = contact.normal, t = n.unitOrthogonal(), impulse = blow.record.impulses[0];
+          const Contact& contact = impact.record.contacts[0];
+          const Vec3<double> n = contact.normal, t = n.unitOrthogonal(), impulse = impact.record.impulses[0];
           p = Vec3<double>(n.dot(impulse), t.dot(impulse), n.cross(t).dot(impulse));
           REQUIRE(u_after.tail(2).norm() > 0.1);
-          of_coulomb.note(std::abs(u_after[0] / u[0]));
-          of_coulomb.note((p.tail(2) / p[0] + mu * u_after.tail(2).normalized()).norm());
+          coulomb_error.note(std::abs(u_after[0] / u[0]));
+          coulomb_error.note((p.tail(2) / p[0] + mu * u_after.tail(2).normalized()).norm());
         }
         const VecX<double> change = Y * p;
         const double loss = mu == 0.03 ? -0.5 * p.dot(u + u_after) : 0.5 * u.dot(Nc.ldlt().solve(u)),
-                     lost = blow.ledger_before.energy() - blow.ledger_after.energy();
-        of_velocity.note((blow.after.v - blow.before.v - change).norm() / change.norm());
-        of_loss.note(std::abs(lost / loss - 1));
-        of_loss.note(std::abs(blow.ledger_after.work.sum() - blow.ledger_before.work.sum() + lost) / loss);
-        // The rates of the parameters take a share.
-        VecX<double> rates = VecX<double>::Zero(blow.after.v.size());
+                     measured_loss = impact.ledger_before.energy() - impact.ledger_after.energy();
+        velocity_error.note((impact.after.v - impact.before.v - change).norm() / change.norm());
+        loss_error.note(std::abs(measured_loss / loss - 1));
+        loss_error.note(
+            std::abs(impact.ledger_after.work.sum() - impact.ledger_before.work.sum() + measured_loss) /
+            loss);
+        // The parameter rates receive a part of the energy.
+        VecX<double> rates = VecX<double>::Zero(impact.after.v.size());
         rates.segment<3>(6) = change.segment<3>(6);
-        CHECK(0.5 * rates.dot(blow.M * rates) > 0.1 * loss);
+        CHECK(0.5 * rates.dot(impact.M * rates) > 0.1 * loss);
       }
-  CHECK(of_velocity < 1e-11);
-  CHECK(of_loss < 1e-13);
-  CHECK(of_coulomb < 1e-11);
+  CHECK(velocity_error < 1e-11);
+  CHECK(loss_error < 1e-13);
+  CHECK(coulomb_error < 1e-11);
 }
 
-TEST_CASE("a ball whose height moves rebounds from an inelastic blow by the closed form", "[contact]") {
-  // Its pole stops, u = c_dot - a3_dot with N = 1 / m + 1 / (m / 5): a sixth of the energy is lost. Then c =
-  // a3 swings with m + m / 5 on the stiffness for half a period, and leaves with 5/6 of the speed.
-  const double speed = 1, radius = 0.1, stiffness = 2000, above = 0.0203;
+TEST_CASE("a ball with a dynamic height rebounds from an inelastic impact by the closed form", "[contact]") {
+  // The pole stops, u = c_dot - a3_dot with N = 1 / m + 1 / (m / 5): a sixth of the energy is lost. Then c =
+  // a3 oscillates with the mass m + m / 5 for half a period, and the ball leaves with 5/6 of the speed.
+  const double speed = 1, radius = 0.1, stiffness = 2000, height = 0.0203;
   for (const std::string method : {"semi_implicit_euler", "rk4", "implicit_midpoint", "esdirk",
                                    "linearly_implicit", "dormand_prince", "dop853"}) {
     CAPTURE(method);
@@ -196,22 +199,22 @@ TEST_CASE("a ball whose height moves rebounds from an inelastic blow by the clos
     body.gravity.setZero();
     Part& ball = test::add(body, "ball", "ellipsoid", {}, 1000);
     ball.rest({{"a1", radius}, {"a2", radius}, {"a3", radius}}).stiffness({{"a3", stiffness}});
-    ball.place({0, 0, radius + above}).velocity({0, 0, -speed}, {0, 0, 0});
+    ball.place({0, 0, radius + height}).velocity({0, 0, -speed}, {0, 0, 0});
     body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
     const double h = 1e-3;
     Simulation simulation(body, method);
     const double mass = ball.total_mass(), start = simulation.ledger().energy(),
-                 rebound = above / speed + kPi * std::sqrt(1.2 * mass / stiffness);
-    double struck = 0, last = 0;
+                 rebound = height / speed + kPi * std::sqrt(1.2 * mass / stiffness);
+    double energy_after = 0, last = 0;
     while (simulation.time() < rebound + 0.02) {
       simulation.step(h);
       if (simulation.contact()->contacts().empty()) continue;
-      if (struck == 0) struck = simulation.ledger().energy();
+      if (energy_after == 0) energy_after = simulation.ledger().energy();
       last = simulation.time();
     }
     const Ledger end = simulation.ledger();
     const bool first_order = method == "semi_implicit_euler";
-    CHECK(struck / start == Approx(5.0 / 6).margin(first_order ? 5e-4 : 1e-7));
+    CHECK(energy_after / start == Approx(5.0 / 6).margin(first_order ? 5e-4 : 1e-7));
     CHECK(std::abs(last - rebound) < h);
     CHECK(end.momentum[2] / (mass * speed) == Approx(5.0 / 6).margin(3e-5));
     CHECK(end.energy() / start == Approx(5.0 / 6).margin(first_order ? 1e-2 : 3e-5));
@@ -220,8 +223,8 @@ TEST_CASE("a ball whose height moves rebounds from an inelastic blow by the clos
 
 namespace {
 
-/// A smooth convex part of random size and density, rigid or with parameters that move.
-Part& any_part(MultiBody& body, const std::string& name, int kind, Draws& draws) {
+/// Adds a smooth convex part of random size and density, rigid or with dynamic parameters.
+Part& random_part(MultiBody& body, const std::string& name, int kind, Draws& draws) {
   const std::vector<std::string> shapes{"sphere",    "ellipsoid",      "superellipsoid", "capsule",
                                         "ellipsoid", "superellipsoid", "ellipsoid"};
   const std::string& shape = shapes[static_cast<std::size_t>(kind)];
@@ -241,42 +244,42 @@ Part& any_part(MultiBody& body, const std::string& name, int kind, Draws& draws)
   return part;
 }
 
-/// Two of them meet, off centre and spinning.
+/// Adds two such parts that collide off centre with spin.
 void random_pair(MultiBody& body, int kind, int other, double mu, Draws& draws) {
   body.contact.friction = mu;
   const Vec3<double> aside = draws.vector(0.05);
-  any_part(body, "a", kind, draws)
-      .place({0, 0, 0}, turned(draws))
+  random_part(body, "a", kind, draws)
+      .place({0, 0, 0}, random_rotation(draws))
       .velocity(Vec3<double>(2, 0, 0) + draws.vector(0.3), draws.vector(3));
-  any_part(body, "b", other, draws)
-      .place(Vec3<double>(0.8, 0, 0) + aside, turned(draws))
+  random_part(body, "b", other, draws)
+      .place(Vec3<double>(0.8, 0, 0) + aside, random_rotation(draws))
       .velocity(Vec3<double>(-1, 0, 0) + draws.vector(0.3), draws.vector(3));
 }
 
 }  // namespace
 
-TEST_CASE("pairs of any smooth parts keep their momenta in a blow", "[contact]") {
+TEST_CASE("pairs of smooth parts conserve their momenta in an impact", "[contact]") {
   Worst linear, angular;
   int seed = 0;
   for (int kind = 0; kind < 7; ++kind)
     for (int other = 0; other <= kind; ++other) {
       CAPTURE(kind, other);
       ++seed;
-      const Blow blow = first_blow([&](MultiBody& body) {
+      const Impact impact = first_impact([&](MultiBody& body) {
         Draws draws(static_cast<std::uint64_t>(seed));
         random_pair(body, kind, other, seed % 2 == 0 ? 0 : 0.4, draws);
       });
-      const double impulse = blow.record.impulses[0].norm();
+      const double impulse = impact.record.impulses[0].norm();
       CHECK(impulse > 1);
-      linear.note((blow.ledger_after.momentum - blow.ledger_before.momentum).norm() / impulse);
-      angular.note((blow.ledger_after.angular_momentum - blow.ledger_before.angular_momentum).norm() /
+      linear.note((impact.ledger_after.momentum - impact.ledger_before.momentum).norm() / impulse);
+      angular.note((impact.ledger_after.angular_momentum - impact.ledger_before.angular_momentum).norm() /
                    (0.2 * impulse));
     }
   CHECK(linear < 1e-13);
   CHECK(angular < 1e-13);
 }
 
-TEST_CASE("pairs that stay in touch keep their momenta to first order, and P to rounding where it is m c_dot",
+TEST_CASE("pairs in lasting contact conserve their momenta to first order, and P to rounding if P = m c_dot",
           "[contact][long]") {
   for (const bool tapered : {false, true}) {
     std::vector<double> linear, angular;
@@ -318,7 +321,8 @@ TEST_CASE("pairs that stay in touch keep their momenta to first order, and P to 
   }
 }
 
-TEST_CASE("balloons that rub against each other and against what is rigid keep P to rounding", "[contact]") {
+TEST_CASE("balloons in frictional contact with each other and with a rigid part conserve P to rounding",
+          "[contact]") {
   for (const bool rigid : {false, true}) {
     std::vector<double> angular;
     for (const double h : {4e-4, 2e-4}) {

@@ -1,5 +1,5 @@
-// Contact of parts with planes and with each other: closed forms of friction, impacts and rolling
-// (physics 8.6), rest, and what an impact conserves.
+// Contact of parts with planes and with each other: closed forms of friction, impacts and rolling, rest, and
+// conservation laws of impacts.
 #include "catch.h"
 
 #include <cmath>
@@ -34,7 +34,7 @@ Eigen::Quaterniond tilted(double angle) {
 }
 constexpr double kG = 9.81;
 
-/// A method, and the tolerance of its steps; 0: they are all as long as asked.
+/// A method and the tolerance of its error control; 0: fixed steps.
 struct Method {
   const char* name;
   double tolerance;
@@ -45,10 +45,10 @@ const std::vector<Method> kMethods{{"rk4", 0},      {"implicit_midpoint", 0}, {"
 
 }  // namespace
 
-TEST_CASE("N49: a ball bounces at the times of the geometric series, and past its end it lies still",
+TEST_CASE("N49: a ball bounces at the times of the geometric series, and is at rest after its end",
           "[contact]") {
   const double first = std::sqrt(2 / kG);
-  // The most that the ball is wrong in height, m.
+  // Returns the largest error of the height of the ball, m.
   auto error = [&](const Method& method, double e, double h, double until) {
     MultiBody body;
     body.contact.restitution = e;
@@ -75,10 +75,10 @@ TEST_CASE("N49: a ball bounces at the times of the geometric series, and past it
   for (const double e : {1.0, 0.9, 0.5, 0.0}) {
     for (const Method& method : kMethods) {
       CAPTURE(e, method.name, method.tolerance);
-      // Past the last of infinitely many bounces.
+      // The run continues after the last of infinitely many bounces.
       CHECK(error(method, e, 2e-3, e < 1 ? first * (1 + e) / (1 - e) + 0.5 : 2.5) < 3e-10);
     }
-    // Of first order, which the arc between bounces is to.
+    // The flight between bounces is of first order with this method.
     const Method euler{"semi_implicit_euler", 0};
     const double coarse = error(euler, e, 2e-3, 2.5), fine = error(euler, e, 1e-3, 2.5);
     CAPTURE(e, coarse, fine);
@@ -87,7 +87,7 @@ TEST_CASE("N49: a ball bounces at the times of the geometric series, and past it
   }
 }
 
-TEST_CASE("N50: a block on a slope stays below the angle of friction, and slides by Coulomb's law above",
+TEST_CASE("N50: a block on a slope stays at rest below the friction angle, and slides by Coulomb's law above",
           "[contact]") {
   const double angle = kPi / 6, limit = std::tan(angle), h = 4e-3;
   std::vector<Method> methods = kMethods;
@@ -104,15 +104,15 @@ TEST_CASE("N50: a block on a slope stays below the angle of friction, and slides
       Simulation simulation(body, method.name, 1, method.tolerance);
       test::run(simulation, 1, static_cast<int>(std::lround(1 / h)));
       const double a = kG * std::max(0.0, std::sin(angle) - mu * std::cos(angle)),
-                   late = method.name == std::string("semi_implicit_euler") ? h : 0;  // its places are
-      const Vec3<double> moved = simulation.state().q.head<3>() - 0.1 * n;
-      CHECK(moved.norm() == Approx(0.5 * a * (1 + late)).epsilon(1e-7).margin(3e-14));
+                   delay = method.name == std::string("semi_implicit_euler") ? h : 0;  // positions lag by h
+      const Vec3<double> displacement = simulation.state().q.head<3>() - 0.1 * n;
+      CHECK(displacement.norm() == Approx(0.5 * a * (1 + delay)).epsilon(1e-7).margin(3e-14));
       CHECK(simulation.state().v.head<3>().norm() == Approx(a).epsilon(1e-7).margin(3e-14));
-      CHECK(std::abs(moved.dot(n)) < 3e-14);
+      CHECK(std::abs(displacement.dot(n)) < 3e-14);
     }
 }
 
-TEST_CASE("what rests stays where it is while something else bounces", "[contact]") {
+TEST_CASE("a resting part stays at rest while another part bounces", "[contact]") {
   MultiBody body;
   body.contact.friction = 1;
   body.contact.restitution = 0.8;
@@ -127,7 +127,7 @@ TEST_CASE("what rests stays where it is while something else bounces", "[contact
   CHECK((simulation.state().q.head<3>() - 0.1 * n).norm() < 1e-12);
 }
 
-TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
+TEST_CASE("works of limits and of contact are each recorded once", "[contact]") {
   std::vector<double> balance;
   for (const double h : {4e-3, 2e-3, 1e-3}) {
     MultiBody body;
@@ -142,10 +142,10 @@ TEST_CASE("works of limits and of contact are booked once each", "[contact]") {
   }
   CAPTURE(balance[0], balance[1], balance[2]);
   CHECK(test::observed_order(balance) > 1.8);
-  CHECK(balance.back() < 2e-4);  // of 8 J that the floor takes up
+  CHECK(balance.back() < 2e-4);  // the floor dissipates 8 J
 }
 
-TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") {
+TEST_CASE("thin crossed parts do not pass through each other", "[contact]") {
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -159,10 +159,10 @@ TEST_CASE("thin bodies that cross do not pass through each other", "[contact]") 
   }
   Simulation simulation(body, "rk4");
   test::run(simulation, 0.3, 150);
-  CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // a turns a little
+  CHECK(simulation.state().q[7 + 2] > simulation.state().q[2] + 0.018);  // a rotates slightly
 }
 
-TEST_CASE("a small ball bounces on a huge body as it does on a plane", "[contact]") {
+TEST_CASE("a small ball bounces on a huge part as it does on a plane", "[contact]") {
   std::vector<double> heights;
   for (const bool huge : {false, true}) {
     MultiBody body;
@@ -181,7 +181,7 @@ TEST_CASE("a small ball bounces on a huge body as it does on a plane", "[contact
   CHECK(heights[1] == Approx(0.005).margin(1e-8));
 }
 
-TEST_CASE("what blows up fails with contact as it does without", "[contact]") {
+TEST_CASE("an unstable motion fails with contact as it does without", "[contact]") {
   MultiBody body;
   body.contact.active = true;
   Part& a = ball(body, "a", 0.1, {0, 0, 0});
@@ -202,11 +202,11 @@ TEST_CASE("a sliding block stops after v^2 / (2 mu g)", "[contact]") {
     test::run(simulation, 0.8, static_cast<int>(std::lround(0.8 / h)));
     CHECK(simulation.state().v.norm() < 1e-12);
     errors.push_back(std::abs(simulation.state().q.head<2>().norm() - 4.25 / (2 * 0.4 * kG)));
-    CHECK(errors.back() < 0.4 * kG * h * h);  // it stops within a step, which acts as one
+    CHECK(errors.back() < 0.4 * kG * h * h);  // the step in which the block stops has first-order friction
   }
 }
 
-TEST_CASE("a ball slides, then rolls at 5/7 of its speed, a hollow one at 3/5", "[contact]") {
+TEST_CASE("a ball slides, then rolls with 5/7 of its speed, a hollow one with 3/5", "[contact]") {
   for (const bool hollow : {false, true}) {
     MultiBody body;
     body.contact.friction = 0.3;
@@ -225,7 +225,7 @@ TEST_CASE("a ball slides, then rolls at 5/7 of its speed, a hollow one at 3/5", 
   }
 }
 
-TEST_CASE("N51: boxes on boxes stand without creep", "[contact]") {
+TEST_CASE("N51: a stack of five boxes stands without creep", "[contact]") {
   MultiBody body;
   for (int i = 0; i < 5; ++i)
     box(body, "box" + std::to_string(i), {0.1, 0.1, 0.1}, {0.005 * (i % 3), 0, 0.1 + 0.2 * i});
@@ -240,7 +240,8 @@ TEST_CASE("N51: boxes on boxes stand without creep", "[contact]") {
   CHECK(std::abs(simulation.ledger().balance) < 1e-9);
 }
 
-TEST_CASE("parts that collide keep their momenta, and lose the energy that e says", "[contact][long]") {
+TEST_CASE("parts that collide conserve their momenta, and the energy loss follows from the restitution",
+          "[contact][long]") {
   Draws draws(5);
   for (const double e : {0.0, 0.6, 1.0}) {
     MultiBody body;
@@ -261,7 +262,7 @@ TEST_CASE("parts that collide keep their momenta, and lose the energy that e say
     CHECK(before.energy() - after.energy() == Approx(loss).epsilon(1e-9).margin(1e-9));
     CHECK(std::abs(after.balance) < 1e-9);
   }
-  // Any shapes, with friction: what one gains the other loses.
+  // Random shapes with friction: P and L of the pair are conserved.
   for (int trial = 0; trial < 3; ++trial) {
     const Vec3<double> spin_a = draws.vector(3), spin_b = draws.vector(3);
     std::vector<double> balance;
@@ -294,7 +295,7 @@ TEST_CASE("parts that collide keep their momenta, and lose the energy that e say
   }
 }
 
-TEST_CASE("N53: fast bodies do not pass through thin ones", "[contact]") {
+TEST_CASE("N53: fast parts do not pass through thin ones", "[contact]") {
   for (const double speed : {1.0, 10.0, 100.0, 1000.0}) {
     MultiBody body;
     body.gravity.setZero();
@@ -308,13 +309,14 @@ TEST_CASE("N53: fast bodies do not pass through thin ones", "[contact]") {
   }
 }
 
-TEST_CASE("N54: bodies that overlap are parted at a bounded speed, those with one centre too", "[contact]") {
-  for (const double apart : {0.15, 0.09, 0.02, 0.0}) {
+TEST_CASE("N54: overlapping parts, concentric ones included, are separated with a bounded speed",
+          "[contact]") {
+  for (const double distance : {0.15, 0.09, 0.02, 0.0}) {
     MultiBody body;
     body.gravity.setZero();
     body.contact.active = true;
     ball(body, "a", 0.1, {0, 0, 0});
-    ball(body, "b", 0.1, {apart, 0, 0});
+    ball(body, "b", 0.1, {distance, 0, 0});
     Simulation simulation(body, "rk4");
     for (int i = 0; i < 200; ++i) {
       const VecX<double> before = simulation.state().q;
@@ -324,11 +326,11 @@ TEST_CASE("N54: bodies that overlap are parted at a bounded speed, those with on
     }
     const Vec3<double> between = simulation.state().q.segment<3>(7) - simulation.state().q.head<3>();
     CHECK(between.norm() >= 0.2 - 1e-9);
-    CHECK(simulation.ledger().kinetic == 0);  // parting gives no speed
+    CHECK(simulation.ledger().kinetic == 0);  // the separation adds no velocity
   }
 }
 
-TEST_CASE("a jointed body lands, and its joint holds through the blow", "[contact]") {
+TEST_CASE("a jointed part lands, and its joint stays closed during the impact", "[contact]") {
   MultiBody body;
   Part& a = body.add(make_part("a", "ellipsoid", {}, 1000));
   a.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.3}}).place({0, 0, 0.8}, tilted(0.4));
@@ -353,7 +355,7 @@ TEST_CASE("a jointed body lands, and its joint holds through the blow", "[contac
   CHECK(simulation.ledger().work[static_cast<int>(Work::contact)] < 0);
 }
 
-TEST_CASE("N58: a plane that appears and one that is moved push what is in their way", "[contact]") {
+TEST_CASE("N58: a plane that appears or moves pushes the parts in its way", "[contact]") {
   MultiBody body;
   body.gravity.setZero();
   ball(body, "ball", 0.1, {0, 0, 0.05});
@@ -369,11 +371,11 @@ TEST_CASE("N58: a plane that appears and one that is moved push what is in their
     REQUIRE(simulation.state().v.head<3>().norm() < 1);
   }
   CHECK(fastest > 0.5);
-  CHECK(fastest < 0.6 * std::cos(0.3));  // of the plane when it appears
+  CHECK(fastest < 0.6 * std::cos(0.3));  // the speed of the plane when it appears
   CHECK(std::abs(simulation.ledger().balance) < 1e-6);
 }
 
-TEST_CASE("N58: a plane that swats jointed bodies, and one that appears in them: their joint holds",
+TEST_CASE("N58: a plane that hits jointed parts, or appears inside them: their joint stays closed",
           "[contact][joints]") {
   const bool moved = GENERATE(true, false);
   INFO((moved ? "swat" : "appears"));
@@ -384,7 +386,7 @@ TEST_CASE("N58: a plane that swats jointed bodies, and one that appears in them:
   Part& b = test::add(body, "b", "box", {}, 500);
   b.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.05}}).place({0.6, 0, 0});
   body.ball("joint", point(a, 0, 0), point(b, 0, kPi));
-  // Through the bodies' lower half at 0.05 s; where it is moved, at 2 m/s from below them.
+  // The plane becomes active in the lower half of the parts at 0.05 s. If it moves, it rises at 2 m/s.
   ContactPlane& plane =
       moved ? body.plane("hand", TimeVector(0, 0, TimeFunction::formula("2 * t - 0.3")), {0.1, 0, 1})
             : body.plane("hand", TimeVector(0, 0, -0.02), {0.1, 0, 1});
@@ -403,10 +405,10 @@ TEST_CASE("N58: a plane that swats jointed bodies, and one that appears in them:
   if (moved)
     CHECK(ledger.momentum[2] > 0.5 * 2 * (a.total_mass() + b.total_mass()));
   else
-    CHECK(simulation.state().q[2] > 0.01);  // lifted, at a bounded speed
+    CHECK(simulation.state().q[2] > 0.01);  // lifted with a bounded speed
 }
 
-TEST_CASE("what does not touch is asked nothing, and bits do not depend on the past", "[contact]") {
+TEST_CASE("without contact nothing is evaluated, and bits do not depend on earlier steps", "[contact]") {
   MultiBody body;
   body.contact.restitution = 0.5;
   ball(body, "ball", 0.1, {0, 0, 2});
@@ -416,7 +418,7 @@ TEST_CASE("what does not touch is asked nothing, and bits do not depend on the p
   Simulation one(body, "rk4"), other(free, "rk4");
   test::run(one, 0.2, 50);
   test::run(other, 0.2, 50);
-  CHECK(one.state().q == other.state().q);  // in flight a step is the method's own
+  CHECK(one.state().q == other.state().q);  // in flight a step is the step of the method alone
   CHECK(one.step_counters().evaluations == other.step_counters().evaluations);
   test::run(one, 0.6, 60);
   const State copy = one.state();
@@ -432,7 +434,7 @@ TEST_CASE("what does not touch is asked nothing, and bits do not depend on the p
   CHECK(hash(resumed.state()) == end);
 }
 
-TEST_CASE("contact that cannot be is refused by name", "[contact]") {
+TEST_CASE("invalid contact settings are refused by name", "[contact]") {
   MultiBody body;
   ball(body, "ball", 0.1, {0, 0, 1});
   CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 0}), test::has_text("no direction"));
@@ -453,7 +455,7 @@ TEST_CASE("contact that cannot be is refused by name", "[contact]") {
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("members are parts, planes and obstacles"));
 }
 
-TEST_CASE("of pairs and groups the most particular counts, and of those the last", "[contact]") {
+TEST_CASE("the most specific rule of pairs and groups applies, and of equal ones the last", "[contact]") {
   MultiBody body;
   body.contact.friction = 0.1;
   body.contact.restitution = 0.2;
@@ -473,17 +475,17 @@ TEST_CASE("of pairs and groups the most particular counts, and of those the last
     CHECK(rule.friction == friction);
     CHECK(rule.restitution == restitution);
   };
-  is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts over pairs of groups
-  is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group over two groups
-  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint ties them, and no pair names both
+  is(rules.of_parts(0, 1), true, 0.9, 0.2);   // a pair of parts takes precedence over pairs of groups
+  is(rules.of_parts(2, 0), true, 0.1, 0.7);   // a part and a group take precedence over two groups
+  is(rules.of_parts(1, 2), false, 0.1, 0.7);  // a joint connects them, and no pair names both
   is(rules.of_parts(2, 3), false, 0.1, 0.2);
   is(rules.of_parts(0, 3), true, 0.1, 0.2);
   is(rules.on_plane(0, 0), true, 0, 1);
-  is(rules.on_plane(1, 0), false, 0.1, 0.2);  // the last of two
+  is(rules.on_plane(1, 0), false, 0.1, 0.2);  // the last of two rules
   is(rules.on_plane(3, 0), true, 0.1, 0.2);
 }
 
-TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
+TEST_CASE("a pair rule without friction uses the general friction", "[contact]") {
   MultiBody body;
   body.contact.friction = 0.4;
   ball(body, "ball", 0.1, {0, 0, 0.1}).velocity({1, 0, 0}, {0, 0, 0});
@@ -494,7 +496,7 @@ TEST_CASE("friction of a pair that gives none is that of all", "[contact]") {
   CHECK(simulation.state().v[0] == Approx(5.0 / 7));
 }
 
-TEST_CASE("contacts are those of a whole step, however many parts it has", "[contact]") {
+TEST_CASE("reported contacts are those of a whole step, even if the step is divided", "[contact]") {
   MultiBody body;
   Part& lies = box(body, "box", {0.1, 0.1, 0.1}, {0, 0, 0.1});
   ball(body, "falls", 0.05, {1, 0, 0.05 + 0.5 * kG * 0.0101 * 0.0101});
@@ -502,7 +504,7 @@ TEST_CASE("contacts are those of a whole step, however many parts it has", "[con
   body.ball("hook", point(hangs, kPi / 2, 0), world(2, 0, 1.05)).during(0.0137, 1);
   floor(body);
   Simulation simulation(body, "rk4");
-  simulation.step(0.02);  // the ball lands in it, and the joint switches
+  simulation.step(0.02);  // the ball lands in this step, and the joint switches
   CHECK(simulation.step_counters().impacts == 1);
   Vec3<double> sum = Vec3<double>::Zero();
   for (std::size_t k = 0; k < simulation.contact()->contacts().size(); ++k)
@@ -514,7 +516,7 @@ TEST_CASE("contacts are those of a whole step, however many parts it has", "[con
   CHECK(simulation.contact()->contacts().empty());
 }
 
-TEST_CASE("what a joint takes up of an impact is the momentum that its part gains", "[contact]") {
+TEST_CASE("the impulse on a joint in an impact equals the change of momentum of its part", "[contact]") {
   MultiBody body;
   body.gravity.setZero();
   Part& left = ball(body, "left", 0.1, {0, 0, 0.2}).velocity({0, 0, -2}, {0, 0, 0});
@@ -534,15 +536,15 @@ TEST_CASE("what a joint takes up of an impact is the momentum that its part gain
   dynamics.evaluate_joints(state.time(), state.q, state.v, state.joints, simulation.model().islands()[0],
                            work);
   const Vec3<double> impulse = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
-  const Vec3<double> gained = right.total_mass() * (state.v.segment<3>(6) - Vec3<double>(0, 0, -2));
-  // For the rest of the step the joint turns what flies on.
-  CHECK((impulse - gained).norm() < 0.02 * gained.norm());
+  const Vec3<double> gain = right.total_mass() * (state.v.segment<3>(6) - Vec3<double>(0, 0, -2));
+  // In the rest of the step the joint changes the direction of the motion.
+  CHECK((impulse - gain).norm() < 0.02 * gain.norm());
   CHECK(impulse[2] > right.total_mass());
   CHECK(record.impulses[0][2] ==
         Approx(simulation.ledger().momentum[2] + 2 * (left.total_mass() + right.total_mass())));
 }
 
-TEST_CASE("a ball that rolls on a box does not sink into it", "[contact]") {
+TEST_CASE("a ball that rolls on a box does not penetrate it", "[contact]") {
   for (const bool ball_first : {false, true}) {
     MultiBody body;
     body.contact.active = true;

@@ -1,5 +1,5 @@
-// What contact does to energy and momentum: inelastic, frictional motion never gains, a blow on a springboard
-// is that of the closed form, and a joint that pulls through a floor says so.
+// Energy and momentum in contact: inelastic, frictional motion never gains energy, an impact on a springboard
+// follows the closed form, and a joint that pulls a part through a floor is reported.
 #include "catch.h"
 
 #include <cmath>
@@ -51,7 +51,7 @@ void chain(MultiBody& body) {
   floor(body);
 }
 
-/// One that gives way in two of its sizes and in its taper.
+/// A part with two dynamic sizes and a dynamic taper.
 void tumbling_solid(MultiBody& body) {
   Part& part = test::add(body, "solid", "superellipsoid", {"taper"}, 1000);
   part.rest({{"a1", 0.1}, {"a2", 0.15}, {"a3", 0.2}, {"taper.tx", 0.3}});
@@ -60,7 +60,7 @@ void tumbling_solid(MultiBody& body) {
   part.velocity({1, 0.3, 0}, {3, -2, 5});
   floor(body);
 }
-/// Three that give way in all their sizes.
+/// Three parts with dynamic sizes.
 void soft_pile(MultiBody& body) {
   for (int i = 0; i < 3; ++i)
     test::add(body, "part" + std::to_string(i), "ellipsoid", {}, 1000)
@@ -104,44 +104,45 @@ void balloon_on_an_arm(MultiBody& body) {
   floor(body);
 }
 
-/// What a motion gains in its steps, as shares of its energy at the start: the most by which the energy, and
-/// the energy less the work in the ledger, rises in a step beyond the step's error, what the first adds up to
-/// over all steps, and what is left at the end.
+/// Energy gains of a run, relative to the energy at the start. `energy` and `balance` are the largest rises
+/// in a step, beyond the error of the step, of the energy and of the energy minus the work in the ledger.
+/// `sum` adds the energy rises of all steps; `left` is the energy that remains at the end.
 struct Gain {
   test::Worst energy, balance;
-  double sum = 0, left = 0;
+  double sum = 0, remaining = 0;
 };
 Gain gain(const Build& build, const std::string& method, double h, int steps,
-          const std::vector<int>& shares = {2, 4}) {
+          const std::vector<int>& substep_counts = {2, 4}) {
   MultiBody one, other;
   build(one);
   build(other);
-  Simulation whole(one, method), parts(other, method);
-  const double start = whole.ledger().energy();
+  Simulation full_step(one, method), substeps(other, method);
+  const double start = full_step.ledger().energy();
   auto balance = [](const Ledger& ledger) { return ledger.energy() - ledger.work.sum(); };
   Gain gain;
   for (int i = 0; i < steps; ++i) {
-    const State at = whole.state();
-    const Ledger before = whole.ledger();
-    whole.step(h);
-    const Ledger after = whole.ledger();
-    // Errors of second order in a step: in n parts it errs by a share of 1 / n, to leading order. Quarters
-    // too, as an impact near the middle cuts the step into those halves; and finer, where several fall in it.
+    const State at = full_step.state();
+    const Ledger before = full_step.ledger();
+    full_step.step(h);
+    const Ledger after = full_step.ledger();
+    // Errors are of second order in a step: with n substeps they are 1 / n of it, to leading order. Quarters
+    // are also tried, as an impact near the middle divides the step into those halves; and finer substeps, if
+    // a step contains several impacts.
     double energy = 0, balanced = 0;
-    for (const int n : shares) {
-      parts.set_state(at);
-      for (int k = 0; k < n; ++k) parts.step(h / n);
-      const Ledger finer = parts.ledger();
-      const double whole_over_rest = n / (n - 1.0);
-      energy = std::max(energy, whole_over_rest * std::abs(after.energy() - finer.energy()));
-      balanced = std::max(balanced, whole_over_rest * std::abs(balance(after) - balance(finer)));
+    for (const int n : substep_counts) {
+      substeps.set_state(at);
+      for (int k = 0; k < n; ++k) substeps.step(h / n);
+      const Ledger finer = substeps.ledger();
+      const double error_ratio = n / (n - 1.0);
+      energy = std::max(energy, error_ratio * std::abs(after.energy() - finer.energy()));
+      balanced = std::max(balanced, error_ratio * std::abs(balance(after) - balance(finer)));
     }
-    const double risen = (after.energy() - before.energy() - energy) / start;
-    gain.energy.note(risen);
-    gain.sum += std::max(0.0, risen);
+    const double rise = (after.energy() - before.energy() - energy) / start;
+    gain.energy.note(rise);
+    gain.sum += std::max(0.0, rise);
     gain.balance.note((balance(after) - balance(before) - balanced) / start);
   }
-  gain.left = whole.ledger().energy() / start;
+  gain.remaining = full_step.ledger().energy() / start;
   return gain;
 }
 
@@ -151,15 +152,16 @@ TEST_CASE("inelastic contact with friction gains no energy beyond the error of a
   for (const Build& build : std::vector<Build>{tumbling_box, pile, chain})
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       CAPTURE(method);
-      const Gain gained = gain(build, method, 1e-3, 700, {2, 4, 16});
-      CHECK(gained.energy <= 1e-9);  // what has met within a step is lifted apart: that work is booked
-      CHECK(gained.balance <= (std::string(method) == "semi_implicit_euler" ? 1e-6 : 1e-7));
-      CHECK(gained.sum <= 1e-7);
-      CHECK(gained.left < 0.95);
+      const Gain result = gain(build, method, 1e-3, 700, {2, 4, 16});
+      // parts that collide within a step are lifted apart: that work is in the ledger
+      CHECK(result.energy <= 1e-9);
+      CHECK(result.balance <= (std::string(method) == "semi_implicit_euler" ? 1e-6 : 1e-7));
+      CHECK(result.sum <= 1e-7);
+      CHECK(result.remaining < 0.95);
     }
 }
 
-TEST_CASE("what gives way gains no energy in inelastic contact beyond the error of a step",
+TEST_CASE("deformable parts gain no energy in inelastic contact beyond the error of a step",
           "[contact][long]") {
   struct Scene {
     const char* name;
@@ -179,21 +181,21 @@ TEST_CASE("what gives way gains no energy in inelastic contact beyond the error 
   for (const Scene& scene : scenes)
     for (const std::string& method : scene.methods) {
       CAPTURE(scene.name, method);
-      const Gain gained = gain(scene.build, method, scene.h, scene.steps);
+      const Gain result = gain(scene.build, method, scene.h, scene.steps);
       const bool first_order = method == "semi_implicit_euler";
-      // The error is known to leading order: of vibrations in steps of first order to some per cent.
-      CHECK(gained.energy <= (first_order ? 1e-4 : 2e-7));
-      CHECK(gained.balance <= (first_order ? 1e-4 : 1e-6));
-      CHECK(gained.sum <= (first_order ? 1e-3 : 1e-5));
-      CHECK(gained.left < 0.6);
+      // The error is known to leading order: to some per cent for vibrations in steps of first order.
+      CHECK(result.energy <= (first_order ? 1e-4 : 2e-7));
+      CHECK(result.balance <= (first_order ? 1e-4 : 1e-6));
+      CHECK(result.sum <= (first_order ? 1e-3 : 1e-5));
+      CHECK(result.remaining < 0.6);
     }
 }
 
 TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no energy", "[contact]") {
-  // Pushed ahead of its centre at an angle, a thin rod has no motion with finite forces that obeys Coulomb's
-  // law where 3 mu sin cos > 1 + 3 cos^2, or more than one where it spins away from the floor. An impulse
-  // without a collision is the way out: the tip, sliding at a speed v, stops at once by m v (1 + 3 cos^2, 3
-  // sin cos) / 4.
+  // A thin rod is pushed along the floor, leaning so that the tip precedes the centre. If 3 mu sin cos > 1 +
+  // 3 cos^2, no motion with finite forces obeys Coulomb's law, or more than one does if the rod rotates away
+  // from the floor. The solution is an impulse without a collision: the tip, sliding with the speed v, stops
+  // at once by m v (1 + 3 cos^2, 3 sin cos) / 4.
   const double half = 0.5, radius = 0.005, speed = 2, h = 1e-3;
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double angle : {kPi / 4, std::atan(2.0), 1.3})
@@ -235,7 +237,7 @@ TEST_CASE("a rod that slides on its tip in Painleve's paradox jams, and gains no
       }
 }
 
-TEST_CASE("N59: the blow of a ball on a springboard is that of the closed form", "[contact][joints]") {
+TEST_CASE("N59: the impact of a ball on a springboard follows the closed form", "[contact][joints]") {
   const double radius = 0.05, x = 0.6, speed = 3;
   for (const double e : {0.0, 0.5, 1.0}) {
     MultiBody body;
@@ -251,14 +253,14 @@ TEST_CASE("N59: the blow of a ball on a springboard is that of the closed form",
     Simulation simulation(body, "rk4");
     const double m = ball.total_mass(), M = board.total_mass();
     const double inertia = M / 3 * (0.8 * 0.8 + 0.02 * 0.02);
-    // The impulse at the arm x that parts them at e times the speed they met at.
+    // The impulse at the arm x that separates them with e times the approach speed.
     const double p = (1 + e) * speed / (1 / m + x * x / inertia);
     const ContactRecord& record = simulation.contact()->record();
     while (record.contacts.empty() && simulation.time() < 0.02) simulation.step(1e-3);
     REQUIRE_FALSE(record.contacts.empty());
     const State& state = simulation.state();
     CAPTURE(e, record.contacts.size());
-    // The blow itself; after it the two may push on each other for the rest of the step.
+    // The first record is the impact itself; during the rest of the step the two may stay in contact.
     CHECK(record.impulses[0].norm() == Approx(p).epsilon(1e-9));
     Vec3<double> sum = Vec3<double>::Zero();
     for (std::size_t k = 0; k < record.contacts.size(); ++k)
@@ -270,15 +272,16 @@ TEST_CASE("N59: the blow of a ball on a springboard is that of the closed form",
     const Dynamics& dynamics = simulation.dynamics();
     dynamics.evaluate_joints(state.time(), state.q, state.v, state.joints, simulation.model().islands()[0],
                              work);
-    // The board's centre stays: the pivot takes up all of the impulse.
-    const Vec3<double> taken = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
-    CHECK((taken - sum).norm() < 1e-10 * p);
+    // The centre of the board is at rest: the pivot receives the whole impulse.
+    const Vec3<double> received = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses).force;
+    CHECK((received - sum).norm() < 1e-10 * p);
     CHECK(simulation.model().gap(state, 0) < 1e-12);
   }
 }
 
-TEST_CASE("N57: a joint that pulls a body through the floor holds, and what contact misses is said",
-          "[contact][joints]") {
+TEST_CASE(
+    "N57: a joint that pulls a part through the floor stays closed, and the contact residual is reported",
+    "[contact][joints]") {
   for (const std::string method : {"rk4", "semi_implicit_euler", "implicit_midpoint", "dop853"}) {
     CAPTURE(method);
     MultiBody body;
@@ -287,23 +290,24 @@ TEST_CASE("N57: a joint that pulls a body through the floor holds, and what cont
     floor(body);
     body.ball("pull", point(ball, 0, 0, 0), world(TimeVector(0, 0, test::wave(0.3, -0.4, 1))));
     Simulation simulation(body, method, 1, method == "dop853" ? 1e-8 : 0);
-    const double most = simulation.ledger().energy() + 0.5 * ball.total_mass() * 0.4 * 0.4;
+    const double energy_limit = simulation.ledger().energy() + 0.5 * ball.total_mass() * 0.4 * 0.4;
     double lowest = 1;
     for (int i = 0; i < 1500; ++i) {
       simulation.step(2e-3);
       REQUIRE(simulation.model().gap(simulation.state(), 0) < 1e-12);
-      REQUIRE(simulation.ledger().energy() <= most);
+      REQUIRE(simulation.ledger().energy() <= energy_limit);
       lowest = std::min(lowest, simulation.state().q[2]);
     }
-    CHECK(lowest == Approx(-0.1).epsilon(1e-4));  // as deep as it is pulled
-    // As fast as the path goes on where the ball touches.
+    CHECK(lowest == Approx(-0.1).epsilon(1e-4));  // as deep as the joint pulls it
+    // The residual is the speed of the path when the ball touches.
     CHECK(simulation.step_counters().contact_residual ==
           Approx(0.4 * std::cos(std::asin(0.5))).epsilon(1e-2));
   }
 }
 
-TEST_CASE("N57: a joint that would close through the floor stays open, and one that holds a body there holds",
-          "[contact][joints]") {
+TEST_CASE(
+    "N57: a joint that would close through the floor stays open, and a joint inside the floor stays closed",
+    "[contact][joints]") {
   for (const std::string method : {"rk4", "semi_implicit_euler", "implicit_midpoint", "dop853"})
     for (const bool in_floor : {false, true}) {
       CAPTURE(method, in_floor);
@@ -316,14 +320,14 @@ TEST_CASE("N57: a joint that would close through the floor stays open, and one t
       const double start = simulation.ledger().energy();
       for (int i = 0; i < 500; ++i) {
         simulation.step(2e-3);
-        // What closes the joint may hasten the fall.
+        // The force that closes the joint may accelerate the fall.
         REQUIRE(simulation.ledger().energy() < (in_floor ? 1 + 1e-12 : 1.1) * start);
         REQUIRE(simulation.state().q[2] > (in_floor ? 0.05 : 0.1) - 1e-9);
       }
       CHECK(simulation.state().q[2] == Approx(in_floor ? 0.05 : 0.1).epsilon(1e-9));
       CHECK(simulation.model().gap(simulation.state(), 0) == Approx(in_floor ? 0 : 0.08).margin(1e-9));
       CHECK(simulation.state().v.norm() < 1e-12);
-      CHECK(simulation.step_counters().contact_residual < 1e-11);  // nothing moves into the floor
+      CHECK(simulation.step_counters().contact_residual < 1e-11);  // no velocity points into the floor
     }
 }
 

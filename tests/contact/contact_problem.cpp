@@ -1,4 +1,5 @@
-// Impulses of many contacts at once: Coulomb's law at each of them, by the velocities that come out.
+// Impulses of many simultaneous contacts: Coulomb's law at each contact, checked with the resulting
+// velocities.
 #include "catch.h"
 
 #include <cmath>
@@ -16,7 +17,7 @@ using test::Draws;
 
 namespace {
 
-/// Balls that touch their neighbours in a cubic lattice.
+/// Adds balls in a cubic lattice; each ball touches its neighbours.
 void lattice(MultiBody& body, int across, int high, const Vec3<double>& corner = Vec3<double>::Zero()) {
   const std::size_t others = body.parts().size();
   for (int k = 0; k < high; ++k)
@@ -34,7 +35,7 @@ struct Solved {
   ContactSolution solution;
 };
 
-/// The impulses that stop velocities drawn at random.
+/// Returns the impulses that stop random velocities.
 Solved solve(MultiBody& body, double speed) {
   const Model model(body);
   const Dynamics dynamics(model);
@@ -57,8 +58,8 @@ Solved solve(MultiBody& body, double speed) {
   return solved;
 }
 
-/// What is missed at the worst contact: of the conditions on velocities, in m/s.
-double worst_velocity(const Solved& solved) {
+/// Returns the largest violation of the velocity conditions of all contacts, m/s.
+double max_violation(const Solved& solved) {
   double worst = 0;
   for (std::size_t k = 0; k < solved.contacts.size(); ++k) {
     const Contact& contact = solved.contacts[k];
@@ -76,7 +77,7 @@ double worst_velocity(const Solved& solved) {
 
 }  // namespace
 
-TEST_CASE("impulses of heaps meet Coulomb's law at every contact", "[contact]") {
+TEST_CASE("impulses of heaps obey Coulomb's law at every contact", "[contact]") {
   for (const double friction : {0.0, 0.3, 1.0})
     for (const int across : {1, 2, 3}) {
       MultiBody body;
@@ -88,11 +89,11 @@ TEST_CASE("impulses of heaps meet Coulomb's law at every contact", "[contact]") 
               static_cast<std::size_t>(3 * across * across + 6 * across * (across - 1)));
       CHECK(solved.solution.residual < 1e-11);
       CHECK(solved.solution.fallbacks == 0);
-      CHECK(worst_velocity(solved) < 1e-9);
+      CHECK(max_violation(solved) < 1e-9);
     }
 }
 
-TEST_CASE("N55: five thousand contacts in eighty heaps", "[contact]") {
+TEST_CASE("N55: five thousand contacts in eighty heaps: residual of the impulses", "[contact]") {
   MultiBody body;
   for (int heap = 0; heap < 80; ++heap) lattice(body, 3, 3, {10.0 * (heap % 9), 10.0 * (heap / 9), 0});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
@@ -100,21 +101,21 @@ TEST_CASE("N55: five thousand contacts in eighty heaps", "[contact]") {
   CHECK(solved.contacts.size() == 80 * 63);
   CHECK(solved.solution.residual < 1e-10);
   CHECK(solved.solution.fallbacks == 0);
-  CHECK(worst_velocity(solved) < 1e-8);
+  CHECK(max_violation(solved) < 1e-8);
 }
 
-TEST_CASE("what is left of a large heap is small, and not hidden", "[contact]") {
+TEST_CASE("the residual of a large heap is small, and is reported", "[contact]") {
   MultiBody body;
   lattice(body, 8, 5);
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   const Solved solved = solve(body, 1);
   CHECK(solved.contacts.size() > 800);
   CHECK(solved.solution.residual < 1e-2);
-  CHECK(worst_velocity(solved) < 3 * solved.solution.residual + 1e-9);
+  CHECK(max_violation(solved) < 3 * solved.solution.residual + 1e-9);
 }
 
-TEST_CASE("what cannot be stopped is said, and stays bounded", "[contact]") {
-  // Two planes that close on a ball from either side.
+TEST_CASE("a motion that no impulse can stop is reported, and stays bounded", "[contact]") {
+  // Two planes approach a ball from opposite sides.
   MultiBody body;
   body.contact.friction = 0.5;
   body.add(make_part("ball", "sphere", {}, 1000)).rest({{"r", 0.5}}).place({0, 0, 0});
@@ -131,7 +132,7 @@ TEST_CASE("what cannot be stopped is said, and stays bounded", "[contact]") {
   ContactProblem problem(model, state, work, contacts);
   const ContactSolution solution = problem.solve(0);
   CHECK(solution.fallbacks == 1);
-  CHECK(solution.residual >= 0.0999);  // the best there is: half way
+  CHECK(solution.residual >= 0.0999);  // the best possible value: half the speed
   CHECK(solution.residual < 0.21);
   for (const Vec3<double>& p : solution.impulse) CHECK(p.norm() < 1e9);
   CHECK(problem.after(problem.movers()[0]).norm() < 0.2);

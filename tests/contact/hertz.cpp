@@ -1,5 +1,5 @@
-// Balls that deform locally on a plane: how far their weight presses them together, and how they bounce, by
-// Hertz's contact of a whole ball.
+// Elastic balls with local deformation on a plane: the static approach under their weight, and the bounce, by
+// Hertz's theory with the compliance of the whole ball.
 #include "catch.h"
 
 #include <cmath>
@@ -19,26 +19,25 @@ namespace {
 
 constexpr double kNu = 0.3, kRadius = 0.1, kDensity = 1000, kG = 9.81;
 
-/// E* against what is rigid, in units of E.
+/// E* against a rigid body, in units of E.
 constexpr double kStiff = 1 / (1 - kNu * kNu);
 
-/// A ball of E = 1 and R = 1 on a smooth rigid plane under a force on all of its mass: how far its centre of
-/// mass comes nearer, in linear elasticity. Hertz's F = 4/3 E* sqrt(R) sag^(3/2), a^2 = R sag is that of a
-/// half space, to which it tends for small forces. Pressures on rings about the pole are in balance with the
-/// plane; what they do is summed over Legendre polynomials (Lur'e, Three-dimensional Problems of the Theory
-/// of Elasticity, 1964: u_r = [A (n+1)(n-2+4 nu) + B n] P_n, u_theta = [A (n+5-4 nu) + B] dP_n/dtheta at r =
-/// 1).
+/// A ball of E = 1 and R = 1 on a smooth rigid plane under a body force: the approach of its centre of mass
+/// in linear elasticity. For small forces it tends to Hertz's half space, F = 4/3 E* sqrt(R) sag^(3/2), a^2 =
+/// R sag. Pressures on rings about the pole balance the force; their displacements are sums over Legendre
+/// polynomials (Lur'e, Three-dimensional Problems of the Theory of Elasticity, 1964: u_r = [A (n+1)(n-2+4 nu)
+/// + B n] P_n, u_theta = [A (n+5-4 nu) + B] dP_n/dtheta at r = 1).
 struct PressedBall {
   double sag = 0, contact = 0;  ///< and the radius of the contact
 
-  /// The force is that which Hertz would give a contact of this radius.
+  /// The force is that of Hertz for a contact of this radius.
   explicit PressedBall(double a, int terms = 1500, int rings = 60) {
     const double G = 0.5 / (1 + kNu), K = 1 / (3 * (1 - 2 * kNu)), lambda = K - 2 * G / 3;
     using Array = Eigen::ArrayXd;
     const Array edge = Array::LinSpaced(rings + 1, 0, 2 * a).cos(),
                 theta = (Array::LinSpaced(rings, 0, rings - 1) + 0.5) * 2 * a / rings, x = theta.cos(),
                 y = theta.sin();
-    // P_(n-1) and P_n at the edges of the rings and in their middles; the share of a ring in the pressure.
+    // P_(n-1) and P_n at the edges and midpoints of the rings; the fraction of the pressure on a ring.
     Array before = Array::Ones(rings + 1), at = edge, before_x = Array::Ones(rings), at_x = x;
     auto next = [](int n, const Array& z, Array& P_before, Array& P) {
       const Array P_next = ((2 * n + 1) * z * P - n * P_before) / (n + 1);
@@ -49,7 +48,7 @@ struct PressedBall {
         -1 / (3 * K) * x.matrix() * (0.5 * (edge.head(rings) - edge.tail(rings))).matrix().transpose();
     for (int n = 1; n <= terms; ++n) {
       const Array slope = n * (x * at_x - before_x) / y;  // dP_n/dtheta
-      Array along;                                        // u_z by a pressure P_n, less that of the mass
+      Array along;  // u_z under a pressure P_n, minus the displacement of the centre of mass
       if (n == 1) {
         const double s = -1 / (6 * lambda + 4 * G);
         along = s * (x * x - y * y) + s / 5;
@@ -69,7 +68,7 @@ struct PressedBall {
     }
     const Array weight = 2 * kPi * (edge.head(rings) - edge.tail(rings)) * x;
     const double force = 4.0 / 3 * kStiff * a * a * a;
-    // The rings that touch are those within the contact: x + u p = 1 - sag, and none of them pulls.
+    // The rings in contact satisfy x + u p = 1 - sag, and no pressure is negative.
     for (int k = rings;; --k) {
       MatX<double> A = MatX<double>::Zero(k + 1, k + 1);
       VecX<double> b(k + 1);
@@ -86,8 +85,8 @@ struct PressedBall {
   }
 };
 
-/// A ball of jelly of E (Pa) above the plane z = 0.
-Part& ball_above(MultiBody& body, double E, int resolution, double above) {
+/// An elastic ball of Young's modulus E (Pa), `above` (m) above the plane z = 0.
+Part& elastic_ball_above(MultiBody& body, double E, int resolution, double above) {
   body.contact.friction = 0;
   auto& part = body.add<Primitive<Sphere>>("ball", kDensity);
   part.rest({{"r", kRadius}}).place({0, 0, kRadius + above});
@@ -101,34 +100,34 @@ Part& ball_above(MultiBody& body, double E, int resolution, double above) {
 
 }  // namespace
 
-TEST_CASE("a pressed ball is Hertz's half space where the contact is small", "[contact]") {
-  const PressedBall half(0.1), whole(0.2);
-  const double nearer = half.sag / (0.1 * 0.1), farther = whole.sag / (0.2 * 0.2);
-  // Less by a share of the order of the radius.
-  CHECK(nearer < 0.96);
-  CHECK(2 * nearer - farther == Approx(1).margin(0.01));
-  CHECK(half.contact == Approx(0.1).epsilon(0.04));  // to a ring
-  CHECK(whole.contact == Approx(0.2).epsilon(0.04));
+TEST_CASE("a pressed ball agrees with Hertz's half space for small contacts", "[contact]") {
+  const PressedBall small(0.1), large(0.2);
+  const double small_ratio = small.sag / (0.1 * 0.1), large_ratio = large.sag / (0.2 * 0.2);
+  // The correction is of the order of the contact radius.
+  CHECK(small_ratio < 0.96);
+  CHECK(2 * small_ratio - large_ratio == Approx(1).margin(0.01));
+  CHECK(small.contact == Approx(0.1).epsilon(0.04));  // to the width of a ring
+  CHECK(large.contact == Approx(0.2).epsilon(0.04));
 }
 
-TEST_CASE("a ball of jelly on a plane sags by Hertz's law", "[contact][long]") {
+TEST_CASE("an elastic ball on a plane sags by Hertz's law", "[contact][long]") {
   std::vector<double> errors;
   for (const int resolution : {2, 4, 8}) {
     double squares = 0;
-    for (const double a : {0.25, 0.3, 0.35, 0.4, 0.45}) {  // radii of the contact, in radii of the ball
+    for (const double a : {0.25, 0.3, 0.35, 0.4, 0.45}) {  // contact radii in radii of the ball
       const double weight = kDensity * 4 / 3 * kPi * std::pow(kRadius, 3) * kG,
                    E = 0.75 * weight / (kStiff * kRadius * kRadius * a * a * a);
       MultiBody body;
-      Part& ball = ball_above(body, E, resolution, 0);
+      Part& ball = elastic_ball_above(body, E, resolution, 0);
       const double omega = std::sqrt(2 * E * kStiff * a * kRadius * kG / weight);
       ball.damping(0, 0, 1.4 * omega);
       Simulation simulation(body, "semi_implicit_euler");
       const double h = 0.7 * largest_stable_step(simulation), end = 12 / omega;
       test::run(simulation, end, static_cast<int>(end / h));
-      double carried = 0;
-      for (const Vec3<double>& p : simulation.contact()->impulses()) carried += p[2];
+      double contact_force = 0;
+      for (const Vec3<double>& p : simulation.contact()->impulses()) contact_force += p[2];
       CAPTURE(resolution, a);
-      CHECK(carried / simulation.state().h == Approx(weight).epsilon(2e-3));
+      CHECK(contact_force / simulation.state().h == Approx(weight).epsilon(2e-3));
       const double sag = (kRadius - simulation.state().q[2]) / kRadius, expected = PressedBall(a).sag;
       squares += std::pow(sag / expected - 1, 2) / 5;
     }
@@ -139,18 +138,19 @@ TEST_CASE("a ball of jelly on a plane sags by Hertz's law", "[contact][long]") {
   CHECK(errors.back() < 0.03);
 }
 
-TEST_CASE("a ball of jelly bounces off a plane in Hertz's time and keeps its energy", "[contact][long]") {
-  // F = k (sag + C F / (E R))^(3/2), C of the whole ball, brings it to rest after sag_most; t = int dsag / v.
+TEST_CASE("an elastic ball bounces off a plane in Hertz's time and keeps its energy", "[contact][long]") {
+  // F = k (sag + C F / (E R))^(3/2), with the compliance C of the whole ball, stops it at the largest sag; t
+  // = int dsag / v.
   const double a = 0.25, E = 1e5, mass = kDensity * 4 / 3 * kPi * std::pow(kRadius, 3),
-               k = 4.0 / 3 * E * kStiff * std::sqrt(kRadius), most = k * std::pow(a * a * kRadius, 1.5),
-               C = (a * a - PressedBall(a).sag) * E * kRadius * kRadius / most;
+               k = 4.0 / 3 * E * kStiff * std::sqrt(kRadius), max_force = k * std::pow(a * a * kRadius, 1.5),
+               C = (a * a - PressedBall(a).sag) * E * kRadius * kRadius / max_force;
   auto sag = [&](double F) { return std::pow(F / k, 2.0 / 3) - C * F / (E * kRadius); };
   auto work = [&](double F) { return 0.4 * F * std::pow(F / k, 2.0 / 3) - 0.5 * C * F * F / (E * kRadius); };
-  const double speed = std::sqrt(2 * work(most) / mass);
+  const double speed = std::sqrt(2 * work(max_force) / mass);
   double time = 0;
   const int n = 2000;
   for (int i = 0; i < n; ++i) {
-    auto force = [&](double share) { return most * std::pow(std::sin(0.5 * kPi * share / n), 3); };
+    auto force = [&](double share) { return max_force * std::pow(std::sin(0.5 * kPi * share / n), 3); };
     const double v = std::sqrt(speed * speed - 2 * work(force(i + 0.5)) / mass);
     time += 2 * (sag(force(i + 1)) - sag(force(i))) / v;
   }
@@ -161,7 +161,7 @@ TEST_CASE("a ball of jelly bounces off a plane in Hertz's time and keeps its ene
   for (const int resolution : {4, 8}) {
     MultiBody body;
     body.gravity.setZero();
-    ball_above(body, E, resolution, 1e-5 * kRadius).velocity({0, 0, -speed}, {0, 0, 0});
+    elastic_ball_above(body, E, resolution, 1e-5 * kRadius).velocity({0, 0, -speed}, {0, 0, 0});
     Simulation simulation(body, "semi_implicit_euler");
     const double h = 0.5 * largest_stable_step(simulation), start = simulation.ledger().energy();
     double first = 0, last = 0, deepest = 0;
@@ -178,7 +178,7 @@ TEST_CASE("a ball of jelly bounces off a plane in Hertz's time and keeps its ene
     const double error = resolution == 4 ? 0.1 : 0.05;
     CAPTURE(resolution, losses.back());
     CHECK(last - first == Approx(time).epsilon(error));
-    CHECK(deepest == Approx(sag(most)).epsilon(error));
+    CHECK(deepest == Approx(sag(max_force)).epsilon(error));
     CHECK(simulation.ledger().momentum[2] > 0.98 * mass * speed);
   }
   CHECK(losses[0] > 0);

@@ -1,4 +1,4 @@
-// Steps to a tolerance in which bodies lie on each other.
+// Steps with error control during lasting contact.
 #include "catch.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-void go_to(Simulation& simulation, double end) {
+void advance_to(Simulation& simulation, double end) {
   while (simulation.time() < end) simulation.step_up_to(end);
 }
 
@@ -32,7 +32,7 @@ Part& ball_on_floor(MultiBody& body, double friction) {
       .velocity({1, 0, 0}, {0, 0, 0});
 }
 
-/// A ball that starts at rest on top of another, this far from its top, rad.
+/// A ball starts at rest near the top of another ball, at this angle from it, rad.
 constexpr double kStart = 0.2;
 void hill(MultiBody& body) {
   body.contact.active = true;
@@ -43,7 +43,7 @@ void hill(MultiBody& body) {
       .place({1.1 * std::sin(kStart), 0, 1.1 * std::cos(kStart)});
 }
 
-/// How far it has rolled then, rad: (R + r) angle'' = 5/7 g sin(angle).
+/// Returns the angle (rad) of the rolling ball at time t: (R + r) angle'' = 5/7 g sin(angle).
 double angle_on_hill(double t) {
   constexpr int steps = 4000;
   const double h = t / steps;
@@ -62,10 +62,11 @@ double angle_on_hill(double t) {
 
 }  // namespace
 
-TEST_CASE("what slides to a stop, or comes to roll, does so within the tolerance", "[error][contact]") {
+TEST_CASE("the transitions from sliding to rest and to rolling are resolved within the tolerance",
+          "[error][contact]") {
   for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8}) {
     CAPTURE(tolerance);
-    {  // v^2 / (2 mu g)
+    {  // The stopping distance is v^2 / (2 mu g).
       MultiBody body;
       body.add<Primitive<Box>>("box")
           .rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}})
@@ -75,33 +76,34 @@ TEST_CASE("what slides to a stop, or comes to roll, does so within the tolerance
       body.contact.friction = 0.5;
       body.contact.planes.emplace_back().name = "floor";
       Simulation simulation(body, "dop853", 1, tolerance);
-      go_to(simulation, 0.5);
+      advance_to(simulation, 0.5);
       CHECK(std::abs(simulation.state().q[0] - 1 / (2 * 0.5 * kGravity)) < std::max(0.5 * tolerance, 1e-8));
       CHECK(simulation.state().v.norm() < 1e-9);
       CHECK(simulation.step_counters().uncontrolled == 0);
       CHECK(simulation.step_counters().steps < 40);
     }
-    {  // It rolls from 2 v / (7 mu g) on, at 5/7 of its speed.
+    {  // The ball rolls from 2 v / (7 mu g) on, with 5/7 of its speed.
       MultiBody body;
       ball_on_floor(body, 0.2);
       Simulation simulation(body, "dop853", 1, tolerance);
-      go_to(simulation, 1);
-      const double rolls = 2 / (7 * 0.2 * kGravity),
-                   x = rolls - 0.5 * 0.2 * kGravity * rolls * rolls + 5.0 / 7 * (1 - rolls);
+      advance_to(simulation, 1);
+      const double t_roll = 2 / (7 * 0.2 * kGravity),
+                   x = t_roll - 0.5 * 0.2 * kGravity * t_roll * t_roll + 5.0 / 7 * (1 - t_roll);
       CHECK(std::abs(simulation.state().q[0] - x) < 0.5 * tolerance);
       CHECK(simulation.step_counters().steps < 40);
     }
   }
 }
 
-TEST_CASE("a ball that rolls down another one keeps to the tolerance, in steps of its square root",
-          "[error][contact]") {
+TEST_CASE(
+    "a ball that rolls down another ball follows the tolerance, with steps proportional to its square root",
+    "[error][contact]") {
   const double angle = angle_on_hill(0.5);
-  auto rolled = [&](double tolerance) {
+  auto rolling_steps = [&](double tolerance) {
     MultiBody body;
     hill(body);
     Simulation simulation(body, "dop853", 1, tolerance);
-    go_to(simulation, 0.5);
+    advance_to(simulation, 0.5);
     const auto& q = simulation.state().q;
     CAPTURE(tolerance);
     CHECK(std::hypot(q[0] - 1.1 * std::sin(angle), q[2] - 1.1 * std::cos(angle)) < 0.3 * tolerance);
@@ -111,13 +113,13 @@ TEST_CASE("a ball that rolls down another one keeps to the tolerance, in steps o
     CHECK(simulation.step_counters().rejected < 10);
     return simulation.step_counters().steps;
   };
-  rolled(1e-3);
-  const auto rough = rolled(1e-4), fine = rolled(1e-6);
+  rolling_steps(1e-3);
+  const auto rough = rolling_steps(1e-4), fine = rolling_steps(1e-6);
   CHECK(fine < 12 * rough);
   CHECK(fine < 900);
 }
 
-TEST_CASE("what rests does so exactly, in steps as long as it sinks little without what is below",
+TEST_CASE("a resting stack stays exactly at rest, in steps limited by the free fall within them",
           "[error][contact]") {
   for (const double tolerance : {1e-2, 1e-7}) {
     MultiBody body;
@@ -128,17 +130,18 @@ TEST_CASE("what rests does so exactly, in steps as long as it sinks little witho
           .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}})
           .place({0.01 * (i % 2), 0, 0.1 + 0.2 * i});
     Simulation simulation(body, "dop853", 1, tolerance);
-    go_to(simulation, 10);
+    advance_to(simulation, 10);
     for (int i = 0; i < 5; ++i) {
       CHECK(std::abs(simulation.state().q[7 * i + 2] - 0.1 - 0.2 * i) < 1e-12);
       CHECK(std::abs(simulation.state().q[7 * i] - 0.01 * (i % 2)) < 1e-12);
     }
-    CHECK(simulation.step_counters().steps < 120);  // 2.5 g h^2 of a box's 0.2 m is 0.4 of them
-    CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);  // no halves
+    CHECK(simulation.step_counters().steps < 120);  // 2.5 g h^2 is limited to 0.4 times the box's 0.2 m
+    // no step doubling
+    CHECK(simulation.step_counters().evaluations < 13 * simulation.step_counters().steps + 100);
   }
 }
 
-TEST_CASE("a ball that rolls off a table falls from where it left it", "[error][contact]") {
+TEST_CASE("a ball that rolls off a table falls from the point where it leaves", "[error][contact]") {
   auto place = [](double tolerance) {
     MultiBody body;
     body.contact.active = true;
@@ -149,7 +152,7 @@ TEST_CASE("a ball that rolls off a table falls from where it left it", "[error][
         .place({0.3, 0, 0.1})
         .velocity({1, 0, 0}, {0, 10, 0});
     Simulation simulation(body, "dop853", 1, tolerance);
-    go_to(simulation, 0.6);
+    advance_to(simulation, 0.6);
     return Vec3<double>(simulation.state().q.head<3>());
   };
   const Vec3<double> exact = place(1e-8);
@@ -161,8 +164,9 @@ TEST_CASE("a ball that rolls off a table falls from where it left it", "[error][
   }
 }
 
-TEST_CASE("a board that carries a ball round, and is struck, keeps to the tolerance", "[error][contact]") {
-  auto end = [](double tolerance, long most) {
+TEST_CASE("a pivoted board with a ball on it, hit by another ball, follows the tolerance",
+          "[error][contact]") {
+  auto end = [](double tolerance, long max_steps) {
     MultiBody body;
     Part& board = body.add<Primitive<Box>>("board").rest({{"a1", 1}, {"a2", 0.2}, {"a3", 0.03}});
     body.hinge("pivot", world(0, 0, 0), point(board, 0, 0, 0), Vec3<double>::UnitY());
@@ -170,23 +174,23 @@ TEST_CASE("a board that carries a ball round, and is struck, keeps to the tolera
     body.add<Primitive<Sphere>>("flyer").rest({{"r", 0.1}}).place({-0.7, 0, 0.2});
     body.contact.active = true;
     Simulation simulation(body, "dop853", 1, tolerance);
-    go_to(simulation, 0.8);
+    advance_to(simulation, 0.8);
     CAPTURE(tolerance);
     CHECK(simulation.step_counters().uncontrolled == 0);
-    CHECK(simulation.step_counters().steps < most);
+    CHECK(simulation.step_counters().steps < max_steps);
     CHECK(simulation.model().gap(simulation.state(), 0) < 1e-12);
     return simulation.state();
   };
   const State exact = end(1e-7, 5000);
-  for (const auto& [tolerance, most] :
+  for (const auto& [tolerance, max_steps] :
        std::vector<std::pair<double, long>>{{1e-2, 60}, {1e-3, 80}, {1e-5, 600}}) {
-    const State state = end(tolerance, most);
+    const State state = end(tolerance, max_steps);
     for (int part = 0; part < 3; ++part)
       CHECK((state.q - exact.q).segment<3>(7 * part).norm() < std::max(0.5 * tolerance, 1e-6));
   }
 }
 
-TEST_CASE("stiff parameters of what lies on a floor are followed", "[error][contact]") {
+TEST_CASE("stiff parameters of a part on a floor are resolved", "[error][contact]") {
   auto end = [](double tolerance) {
     MultiBody body;
     body.contact.active = true;
@@ -197,7 +201,7 @@ TEST_CASE("stiff parameters of what lies on a floor are followed", "[error][cont
         .velocity({0.5, 0, 0}, {0.3, 0.1, 0.2});
     egg.stiffness({{"a1", 1e5}, {"a2", 1e5}, {"a3", 1e5}}).damping(0, 1e-3);
     Simulation simulation(body, "esdirk", 1, tolerance);
-    go_to(simulation, 0.5);
+    advance_to(simulation, 0.5);
     CHECK(simulation.step_counters().uncontrolled == 0);
     return simulation.state();
   };
@@ -206,7 +210,7 @@ TEST_CASE("stiff parameters of what lies on a floor are followed", "[error][cont
   CHECK((exact.q - rough.q).tail<3>().norm() < 1e-4);
 }
 
-TEST_CASE("of many bodies that lie on each other steps are short, and counted", "[error][contact]") {
+TEST_CASE("with many parts in contact the steps are short and counted as uncontrolled", "[error][contact]") {
   MultiBody body;
   body.contact.active = true;
   body.contact.friction = 0.5;
@@ -217,7 +221,7 @@ TEST_CASE("of many bodies that lie on each other steps are short, and counted", 
         .place({0, static_cast<double>(i), 0.1})
         .velocity({1, 0, 0}, {0, 0, 0});
   Simulation simulation(body, "dop853", 1, 1e-6);
-  go_to(simulation, 0.25);
+  advance_to(simulation, 0.25);
   CHECK(simulation.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(1e-3));
   CHECK(simulation.state().v.norm() < 1e-9);
   CHECK(simulation.step_counters().uncontrolled == simulation.step_counters().steps);
@@ -225,21 +229,21 @@ TEST_CASE("of many bodies that lie on each other steps are short, and counted", 
   const auto steps = [&](double longest) {
     body.contact.longest_step = longest;
     Simulation other(body, "dop853", 1, 1e-6);
-    go_to(other, 0.1);
+    advance_to(other, 0.1);
     return other.step_counters().uncontrolled;
   };
-  const auto usual = steps(2e-3);
-  CHECK(usual >= 50);
-  CHECK(usual < 60);
-  CHECK(steps(5e-4) >= 4 * usual - 20);
+  const auto default_steps = steps(2e-3);
+  CHECK(default_steps >= 50);
+  CHECK(default_steps < 60);
+  CHECK(steps(5e-4) >= 4 * default_steps - 20);
   body.contact.longest_step = 2e-3;
   Simulation rough(body, "dop853", 1, 1e-2);
-  go_to(rough, 0.5);
+  advance_to(rough, 0.5);
   CHECK(rough.step_counters().uncontrolled <= 27);
   CHECK(rough.state().q[0] == Approx(1 / (2 * 0.5 * kGravity)).margin(0.2e-2));
 }
 
-TEST_CASE("what a force drives at a thin plate does not pass it, from far or near",
+TEST_CASE("a part driven by a force does not pass through a thin plate, from any distance",
           "[error][contact][long]") {
   for (const double tolerance : {0.0, 1e-3, 1e-6})
     for (const double from : {0.1, 0.37, 0.83, 1.9})
@@ -257,9 +261,9 @@ TEST_CASE("what a force drives at a thin plate does not pass it, from far or nea
       }
 }
 
-TEST_CASE("a plane that is back where it was at the end of a step is seen to have moved",
+TEST_CASE("the motion of a plane that returns to its position within a step is detected",
           "[error][contact]") {
-  // It goes up and down with three times the acceleration of gravity: a box on it is thrown.
+  // The plane oscillates with three times the acceleration of gravity, so that a box on it is thrown up.
   MultiBody body;
   body.contact.active = true;
   body.add<Primitive<Box>>("box").rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.2}}).place({0, 0, 0.2});
@@ -268,24 +272,24 @@ TEST_CASE("a plane that is back where it was at the end of a step is seen to hav
   plane.point = TimeVector(0, 0, TimeFunction::formula("0.00745 * (1 - cos(20 * pi * t))"));
   Simulation simulation(body, "dop853", 1, 1e-4);
 
-  for (int i = 0; i < 20; ++i) simulation.step(0.1);  // a period
+  for (int i = 0; i < 20; ++i) simulation.step(0.1);  // the step is a period of the plane
   CHECK(simulation.step_counters().impacts >= 10);
   CHECK(simulation.step_counters().steps > 40);
 }
 
-TEST_CASE("the longest step of what is not controlled changes nothing of what is", "[error][contact]") {
+TEST_CASE("the longest uncontrolled step does not affect controlled steps", "[error][contact]") {
   auto end = [](double longest) {
     MultiBody body;
     hill(body);
     body.contact.longest_step = longest;
     Simulation simulation(body, "dop853", 1, 1e-4);
-    go_to(simulation, 0.5);
+    advance_to(simulation, 0.5);
     return simulation.state().q;
   };
   CHECK(end(2e-3) == end(100));
 }
 
-TEST_CASE("a support that goes ends a step, whatever the time and the tolerance", "[error][contact]") {
+TEST_CASE("a plane that is removed ends a step, at any time and with any tolerance", "[error][contact]") {
   for (const double off : {0.5, 100.0}) {
     MultiBody body;
     body.contact.active = true;
@@ -294,13 +298,13 @@ TEST_CASE("a support that goes ends a step, whatever the time and the tolerance"
     plane.name = "table";
     plane.off = off;
     Simulation simulation(body, "dop853", 1, 1e-10);
-    go_to(simulation, off + 0.1);
+    advance_to(simulation, off + 0.1);
     CAPTURE(off);
     CHECK(simulation.state().q[2] == Approx(2e-3 - 0.5 * kGravity * 0.01).epsilon(1e-9));
   }
 }
 
-TEST_CASE("what slides fast along a floor takes whole steps, however thin it is", "[contact]") {
+TEST_CASE("a thin part that slides fast on a floor needs no divided steps", "[contact]") {
   MultiBody body;
   body.contact.active = true;
   body.contact.friction = 0;

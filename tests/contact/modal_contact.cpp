@@ -1,5 +1,5 @@
-// Contact of parts whose local deformation is a sum of modes: the surface of their mesh touches, and a push
-// moves the whole part.
+// Contact of parts whose local deformation is a sum of modes: the surface of their mesh is in contact, and an
+// impulse changes the motion of the whole part.
 #include "catch.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using Basis = LocalSettings::Basis;
 
 constexpr double kRadius = 0.1;
 
-/// A ball of jelly: polynomials of degree 4.
+/// An elastic ball with polynomials of degree 4.
 Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, double E = 2e5) {
   auto& part = body.add<Primitive<Sphere>>(name, 1000.0);
   part.rest({{"r", kRadius}}).place(at);
@@ -41,7 +41,8 @@ Part& jelly(MultiBody& body, const std::string& name, const Vec3<double>& at, do
   return part;
 }
 
-/// A shell that rings as it falls, with two parameters that move, by the nodes of its mesh or all its modes.
+/// Adds a shell that oscillates while it falls, with two dynamic parameters; deformed by the nodes of its
+/// mesh or by all of its modes.
 void falling(MultiBody& body, Basis basis, bool parameters) {
   body.contact.friction = 0.4;
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
@@ -59,19 +60,19 @@ void falling(MultiBody& body, Basis basis, bool parameters) {
   body.plane("floor", Vec3<double>(0, 0, 0.002), {0, 0, 1});
 }
 
-struct Struck {
+struct PlaneImpact {
   std::vector<Contact> contacts;
   ContactSolution solution;
 };
 
-/// The impulses of all that is behind a plane at the start.
-Struck strike(Basis basis, bool parameters) {
+/// Returns the impulses on all points that are behind a plane at the start.
+PlaneImpact strike(Basis basis, bool parameters) {
   MultiBody body;
   falling(body, basis, parameters);
   const Model model(body);
   const Dynamics dynamics(model);
   const State state = model.initial_state();
-  Struck struck;
+  PlaneImpact struck;
   MeshFinder(model).find(state, 0, struck.contacts);
   Workspace<double> work;
   dynamics.evaluate_masses(state.q, state.v, {0}, work);
@@ -82,14 +83,14 @@ Struck strike(Basis basis, bool parameters) {
 
 }  // namespace
 
-TEST_CASE("all modes of a shell are struck as its nodes are", "[contact][modal]") {
+TEST_CASE("impulses on all modes of a shell agree with those on its nodes", "[contact][modal]") {
   for (const bool parameters : {false, true}) {
     CAPTURE(parameters);
-    const Struck nodes = strike(Basis::nodes, parameters), modes = strike(Basis::modes, parameters);
+    const PlaneImpact nodes = strike(Basis::nodes, parameters), modes = strike(Basis::modes, parameters);
     REQUIRE(nodes.contacts.size() == modes.contacts.size());
     REQUIRE(nodes.contacts.size() >= 3);
     CHECK(modes.solution.residual < 1e-12);
-    // Many contacts of meshes are solved to a part in a million of what they stop.
+    // Systems of many mesh contacts are solved to a relative accuracy of one in a million.
     double largest = 0;
     for (const Vec3<double>& p : nodes.solution.impulse) largest = std::max(largest, p.norm());
     REQUIRE(largest > 0);
@@ -100,7 +101,7 @@ TEST_CASE("all modes of a shell are struck as its nodes are", "[contact][modal]"
   }
 }
 
-TEST_CASE("a ball of jelly dropped on a plane comes to rest, and the plane carries its weight",
+TEST_CASE("an elastic ball dropped on a plane comes to rest, and the plane carries its weight",
           "[contact][modal]") {
   for (const std::string method : {"semi_implicit_euler", "rk4"}) {
     CAPTURE(method);
@@ -128,7 +129,7 @@ TEST_CASE("a ball of jelly dropped on a plane comes to rest, and the plane carri
   }
 }
 
-TEST_CASE("balls of jelly that collide, and hit a rigid box, keep their momentum and lose energy",
+TEST_CASE("elastic balls that collide, or hit a rigid box, conserve momentum and lose energy",
           "[contact][modal]") {
   for (const bool box : {false, true}) {
     CAPTURE(box);
@@ -163,7 +164,8 @@ TEST_CASE("balls of jelly that collide, and hit a rigid box, keep their momentum
   }
 }
 
-TEST_CASE("a jointed ball of jelly strikes a wall, and its joint holds", "[contact][modal][joints][long]") {
+TEST_CASE("a jointed elastic ball hits a wall, and its joint stays closed",
+          "[contact][modal][joints][long]") {
   MultiBody body;
   Part& ball = jelly(body, "ball", {0.3, 0, 0});
   Part& arm = body.add(make_part("arm", "ellipsoid", {}, 1000));
@@ -185,7 +187,7 @@ TEST_CASE("a jointed ball of jelly strikes a wall, and its joint holds", "[conta
   CHECK(simulation.ledger().energy() < start);
 }
 
-TEST_CASE("what may touch bounds the step by its modes", "[contact][modal][long]") {
+TEST_CASE("possible contacts limit the step by the modes of the part", "[contact][modal][long]") {
   for (const std::string method : {"semi_implicit_euler", "rk4"}) {
     MultiBody free, touching;
     jelly(free, "ball", {0, 0, 0.2});

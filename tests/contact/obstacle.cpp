@@ -1,5 +1,5 @@
-// Contact of parts with immobile meshes: flat ones are planes, ridges are rolled over, thin ones are not
-// passed, and meshes that are none are refused.
+// Contact of parts with fixed meshes: a flat mesh acts as a plane, parts roll over ridges, thin meshes stop
+// fast parts, and invalid meshes are refused.
 #include "catch.h"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ struct Mesh {
   Eigen::Matrix3Xi triangles;
 };
 
-/// The map of a grid of n x n squares over [-1, 1]^2, its inner points moved by `random` of their spacing.
+/// Maps a grid of n x n squares over [-1, 1]^2; its inner points are displaced by `random` times their
+/// spacing.
 Mesh sheet(int n, double random, const std::function<Vec3<double>(double, double)>& map) {
   Draws draws(7);
   Mesh mesh;
@@ -55,7 +56,7 @@ Part& box(MultiBody& body, const Vec3<double>& half, const Vec3<double>& at,
   return part.rest({{"a1", half[0]}, {"a2", half[1]}, {"a3", half[2]}}).place(at, R);
 }
 
-/// A floor of many triangles, or a plane, tilted by an angle.
+/// Adds a floor of many triangles, or a plane, inclined by `angle` (rad).
 void floor(MultiBody& body, bool tessellated, double angle) {
   const Eigen::Quaterniond R(Eigen::AngleAxisd(angle, Vec3<double>::UnitY()));
   if (!tessellated) {
@@ -69,7 +70,7 @@ void floor(MultiBody& body, bool tessellated, double angle) {
 
 }  // namespace
 
-TEST_CASE("a flat floor of triangles is a plane to what rolls, slides and bounces on it", "[contact]") {
+TEST_CASE("a flat floor of triangles acts as a plane for rolling, sliding and bouncing", "[contact]") {
   const double angle = 0.3;
   const Eigen::Quaterniond R(Eigen::AngleAxisd(angle, Vec3<double>::UnitY()));
   for (const std::string what : {"rolling", "sliding", "bouncing", "tumbling"}) {
@@ -88,7 +89,7 @@ TEST_CASE("a flat floor of triangles is a plane to what rolls, slides and bounce
                       what == "sliding" ? Vec3<double>(0, 0, 0) : Vec3<double>(1, 2, 0));
       floor(body, tessellated, angle);
       Simulation simulation(body, "rk4");
-      // A tumbling box is chaotic: rounding grows.
+      // A tumbling box is chaotic: rounding errors grow.
       test::run(simulation, what == "tumbling" ? 0.3 : 0.8, what == "tumbling" ? 150 : 400);
       end.push_back(simulation.state());
       CHECK(simulation.ledger().kinetic > 0.1);
@@ -98,13 +99,13 @@ TEST_CASE("a flat floor of triangles is a plane to what rolls, slides and bounce
   }
 }
 
-TEST_CASE("a ball rolls over a ridge and through a groove without leaving the surface or sinking in",
+TEST_CASE("a ball rolls over a ridge and through a groove without leaving the surface or penetrating it",
           "[contact]") {
-  for (const double slope : {0.2, -0.2}) {  // up and down again, or down and up
+  for (const double slope : {0.2, -0.2}) {  // the first mesh is a ridge, the second a groove
     const Mesh roof = sheet(12, 0.2, [&](double x, double y) -> Vec3<double> {
       return {3 * x, y, -slope * std::abs(3 * x)};
     });
-    // An odd row of the grid lies on the ridge.
+    // An odd row of the grid coincides with the ridge.
     Mesh mesh = roof;
     for (Eigen::Index i = 0; i < mesh.x.cols(); ++i)
       if (std::abs(mesh.x(0, i)) < 0.16) mesh.x.col(i) = Vec3<double>(0, mesh.x(1, i), 0);
@@ -112,7 +113,7 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
     for (const int steps : {600, 1200, 2400}) {
       MultiBody body;
       const double r = 0.1;
-      const Vec3<double> n = Vec3<double>(-slope, 0, 1).normalized();  // of the side x < 0
+      const Vec3<double> n = Vec3<double>(-slope, 0, 1).normalized();  // normal of the side x < 0
       ball(body, r, Vec3<double>(-0.5, 0.05, -0.5 * slope) + r * n)
           .velocity({1.8, 0, 1.8 * slope}, {0, 1.8 / r * std::hypot(1, slope), 0});
       body.obstacle("roof", mesh.x, mesh.triangles);
@@ -134,13 +135,14 @@ TEST_CASE("a ball rolls over a ridge and through a groove without leaving the su
       balance.push_back(std::abs(simulation.ledger().balance));
     }
     CAPTURE(slope, balance[0], balance[1], balance[2]);
-    // The other side of the groove takes up 1 J, told to first order in the step.
+    // The impact on the other side of the groove dissipates 1 J, which the ledger records to first order in
+    // the step.
     for (const double error : balance) CHECK(error < (slope > 0 ? 1e-9 : 1e-2));
     CHECK(balance[2] < 0.6 * balance[1] + 1e-9);
   }
 }
 
-TEST_CASE("what tumbles over rough ground neither sinks in nor lets a peak in, and gains no energy",
+TEST_CASE("parts that tumble over rough ground neither penetrate it nor are penetrated, and gain no energy",
           "[contact][long]") {
   constexpr int n = 12;
   for (const std::string shape : {"sphere", "ellipsoid", "box", "capsule"}) {
@@ -192,7 +194,7 @@ TEST_CASE("what tumbles over rough ground neither sinks in nor lets a peak in, a
   }
 }
 
-TEST_CASE("a box lies on a plate beyond its edge while its middle is above, and tips over when it is not",
+TEST_CASE("a box that overhangs a plate stays while its centre is above the plate, and tips over otherwise",
           "[contact]") {
   for (const double over : {-0.02, 0.02}) {
     MultiBody body;
@@ -209,7 +211,7 @@ TEST_CASE("a box lies on a plate beyond its edge while its middle is above, and 
   }
 }
 
-TEST_CASE("a plate stands in the way from both sides, an open mesh from one, and each while it is there",
+TEST_CASE("a plate blocks motion from both sides, an open mesh from one, only while it is active",
           "[contact]") {
   for (const bool two_sided : {true, false})
     for (const double from : {1.0, -1.0}) {
@@ -225,10 +227,10 @@ TEST_CASE("a plate stands in the way from both sides, an open mesh from one, and
       }
       Simulation simulation(body, "rk4");
       test::run(simulation, 0.9, 90);
-      // It meets the plate after 0.45 s.
+      // The ball reaches the plate after 0.45 s.
       if (two_sided || from > 0)
         CHECK(simulation.state().q[2] == Approx(from).margin(1e-9));
-      else  // what has more than half come through is helped out
+      else  // parts that are more than half through are pushed out
         CHECK(simulation.state().q[2] == Approx(-0.8 * from).margin(0.01));
     }
   MultiBody body;
@@ -241,7 +243,7 @@ TEST_CASE("a plate stands in the way from both sides, an open mesh from one, and
   CHECK(simulation.state().q[2] == Approx(0.1 - 0.5 * 9.81 * 0.5 * 0.5).epsilon(1e-9));
 }
 
-TEST_CASE("N53: nothing fast passes a mesh without thickness", "[contact]") {
+TEST_CASE("N53: fast parts do not pass through a mesh without thickness", "[contact]") {
   Draws draws(3);
   int through = 0;
   for (int i = 0; i < 200; ++i) {
@@ -252,19 +254,19 @@ TEST_CASE("N53: nothing fast passes a mesh without thickness", "[contact]") {
     const Vec3<double> start(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), 0.5);
     const Vec3<double> omega(draws.uniform(-9, 9), draws.uniform(-9, 9), draws.uniform(-9, 9));
     Part& part = is_box ? box(body, {0.05, 0.02, 0.01}, start) : ball(body, 0.02, start);
-    // Up to 10 half extents a step.
+    // Up to 10 half extents in a step.
     const double speed = draws.uniform(2, 10) * part.rest({}).parameters()[0].rest_value() / 1e-2;
     part.velocity(speed * Vec3<double>(draws.uniform(-0.3, 0.3), draws.uniform(-0.3, 0.3), -1), omega);
     body.plate("plate", {0, 0, 0}, Eigen::Quaterniond::Identity(), 5, 5);
     Simulation simulation(body, "rk4");
-    // A box would leave with a spin that steps as long as these cannot follow.
+    // A box would leave with a spin that is too fast for these steps.
     for (int k = 0; k < 30 && simulation.step_counters().impacts == 0; ++k) simulation.step(1e-2);
     if (!(simulation.step_counters().impacts > 0 && simulation.state().q[2] > 0)) ++through;
   }
   CHECK(through == 0);
 }
 
-TEST_CASE("a mesh says what is wrong with it", "[contact]") {
+TEST_CASE("an invalid mesh is refused with its fault", "[contact]") {
   const auto refusal = [](const Eigen::Matrix3Xd& x, const Eigen::Matrix3Xi& triangles) -> std::string {
     try {
       const ObstacleMesh mesh(x, triangles);
@@ -306,12 +308,12 @@ TEST_CASE("a mesh says what is wrong with it", "[contact]") {
   CHECK_THAT(refusal(x, triangles), test::has_text("has three triangles: 0, 1 and 2"));
 }
 
-TEST_CASE("a mesh is welded, knows its border, its flat faces and what is near", "[contact]") {
+TEST_CASE("a mesh is welded, and finds its border, its flat faces and the nearest features", "[contact]") {
   Draws draws(5);
   const Mesh mesh = sheet(9, 0.3, [](double x, double y) -> Vec3<double> {
     return {x, y, std::max(0.0, x)};
   });
-  Mesh soup;  // every triangle with vertices of its own
+  Mesh soup;  // every triangle has its own vertices
   soup.x.resize(3, 3 * mesh.triangles.cols());
   soup.triangles.resize(3, mesh.triangles.cols());
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t)
@@ -326,10 +328,10 @@ TEST_CASE("a mesh is welded, knows its border, its flat faces and what is near",
   for (int i = 0; i < 200; ++i) {
     const Vec3<double> at(draws.uniform(-1.2, 1.2), draws.uniform(-1.2, 1.2), draws.uniform(-0.5, 1.5));
     const double reach = draws.uniform(0.01, 0.5);
-    double least = 1e9;
+    double min_distance = 1e9;
     for (int t = 0; t < obstacle.triangles().cols(); ++t) {
       const Vec3<double> nearest = obstacle.nearest(t, at);
-      least = std::min(least, (nearest - at).norm());
+      min_distance = std::min(min_distance, (nearest - at).norm());
       for (int k = 0; k < 20; ++k) {  // no point of the triangle is nearer
         Vec3<double> b(draws.uniform(0, 1), draws.uniform(0, 1), draws.uniform(0, 1));
         b /= b.sum();
@@ -338,7 +340,7 @@ TEST_CASE("a mesh is welded, knows its border, its flat faces and what is near",
         CHECK((inner - at).norm() > (nearest - at).norm() - 1e-12);
       }
     }
-    CHECK(obstacle.comes_near(at, reach) == (least <= reach));
+    CHECK(obstacle.comes_near(at, reach) == (min_distance <= reach));
     const Eigen::AlignedBox3d box((at.array() - reach).matrix(), (at.array() + reach).matrix());
     obstacle.query(box, found);
     std::vector<int> all;

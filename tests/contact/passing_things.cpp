@@ -1,5 +1,5 @@
-// What is there for a time only, or is moved by hand, is met nevertheless; and it does not matter which of
-// two parts comes first.
+// Contact with planes that are active for a short time, or move within a step; and independence of the order
+// of two parts.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>
@@ -16,7 +16,7 @@ Part& ball(MultiBody& body, double r, const Vec3<double>& at) {
   return body.add<Primitive<Sphere>>("ball").rest({{"r", r}}).place(at);
 }
 
-void soften(Part& part) {
+void make_soft(Part& part) {
   part.make_shell();
   LocalSettings settings;
   settings.resolution = 2;
@@ -25,8 +25,9 @@ void soften(Part& part) {
   part.deform_locally(settings);
 }
 
-/// A ball that would reach a plane 0.5 s from now, which is there for a time only (s), and rebound as fast.
-void meet_plane(MultiBody& body, double on, double off) {
+/// A ball that would reach a plane after 0.5 s and rebound elastically. The plane is active from `on` to
+/// `off` (s).
+void ball_before_plane(MultiBody& body, double on, double off) {
   body.gravity.setZero();
   ball(body, 0.1, {0, 0, 0.6}).velocity({0, 0, -1}, {0, 0, 0});
   body.contact.active = true;
@@ -39,11 +40,11 @@ void meet_plane(MultiBody& body, double on, double off) {
 
 }  // namespace
 
-TEST_CASE("a plane that goes holds what has met it until then", "[contact]") {
+TEST_CASE("a plane acts on parts that reach it before it is switched off", "[contact]") {
   for (const auto& [method, tolerance] : {std::pair{"dop853", 1e-6}, std::pair{"rk4", 0.0}}) {
     for (const double off : {0.45, 0.55}) {
       MultiBody body;
-      meet_plane(body, 0, off);
+      ball_before_plane(body, 0, off);
       Simulation simulation(body, method, 1, tolerance);
       if (tolerance > 0)
         while (simulation.time() < 1) simulation.step_up_to(1);
@@ -55,41 +56,40 @@ TEST_CASE("a plane that goes holds what has met it until then", "[contact]") {
   }
 }
 
-TEST_CASE("a plane that is there for less than a step is met in it", "[contact]") {
+TEST_CASE("a plane that is active for less than a step is hit within the step", "[contact]") {
   MultiBody body;
-  meet_plane(body, 0.4997, 0.5003);
+  ball_before_plane(body, 0.4997, 0.5003);
   Simulation simulation(body, "rk4");
   test::run(simulation, 1, 500);
   CHECK(simulation.state().q[2] == Approx(0.6).margin(1e-12));
 }
 
-TEST_CASE("a paddle that ends where it began, or as far on the other side, meets what is between",
-          "[contact]") {
-  for (const char* way : {"0.5 * cos(100 * pi * t)", "0.5 * cos(200 * pi * t)"})
+TEST_CASE("a paddle that returns, or moves across, within a step hits the part in between", "[contact]") {
+  for (const char* formula : {"0.5 * cos(100 * pi * t)", "0.5 * cos(200 * pi * t)"})
     for (const bool soft : {false, true}) {
       MultiBody body;
       body.gravity.setZero();
       Part& target = body.add<Primitive<Ellipsoid>>("target");
       target.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}});
-      if (soft) soften(target);
-      PrescribedMotion to_and_fro;
-      to_and_fro.position = TimeVector(TimeFunction::formula(way), 0, 0);
-      body.add<Primitive<Box>>("paddle").rest({{"a1", 0.05}, {"a2", 0.3}, {"a3", 0.3}}).prescribe(to_and_fro);
+      if (soft) make_soft(target);
+      PrescribedMotion motion;
+      motion.position = TimeVector(TimeFunction::formula(formula), 0, 0);
+      body.add<Primitive<Box>>("paddle").rest({{"a1", 0.05}, {"a2", 0.3}, {"a3", 0.3}}).prescribe(motion);
       body.contact.active = true;
       Simulation simulation(body, "semi_implicit_euler");
       simulation.step(0.01);
-      CAPTURE(way, soft);
+      CAPTURE(formula, soft);
       CHECK(simulation.model().position(simulation.state(), 0)[0] < -0.3);
     }
 }
 
-TEST_CASE("a plane that goes to and fro within a step meets what is there", "[contact]") {
+TEST_CASE("a plane that oscillates within a step hits the part in its way", "[contact]") {
   for (const bool soft : {false, true}) {
     MultiBody body;
     body.gravity.setZero();
     Part& target = body.add<Primitive<Sphere>>("target");
     target.rest({{"r", 0.1}}).place({0, 0, 0.3});
-    if (soft) soften(target);
+    if (soft) make_soft(target);
     body.contact.active = true;
     ContactPlane& plane = body.contact.planes.emplace_back();
     plane.name = "piston";
@@ -101,8 +101,7 @@ TEST_CASE("a plane that goes to and fro within a step meets what is there", "[co
   }
 }
 
-TEST_CASE("a box rebounds as much from a table that was added first as from one that was added last",
-          "[contact]") {
+TEST_CASE("a box rebounds equally from a table that was added first or last", "[contact]") {
   auto height = [](bool table_first) {
     MultiBody body;
     auto add_table = [&] {
@@ -119,20 +118,20 @@ TEST_CASE("a box rebounds as much from a table that was added first as from one 
     body.contact.active = true;
     body.contact.restitution = 0.8;
     Simulation simulation(body, "rk4");
-    double most = 0;
+    double highest = 0;
     for (int i = 0; i < 250; ++i) {
       simulation.step(2e-3);
       if (simulation.time() > 0.2)
-        most = std::max(most, simulation.model().position(simulation.state(), table_first ? 1 : 0)[2]);
+        highest = std::max(highest, simulation.model().position(simulation.state(), table_first ? 1 : 0)[2]);
     }
-    return most;
+    return highest;
   };
   const double first = height(true), last = height(false);
   CHECK(last > 0.12);
   CHECK(first == Approx(last).epsilon(0.02));
 }
 
-TEST_CASE("N54: what is deep in something much larger is parted at one of its own sizes a second",
+TEST_CASE("N54: a part deep in a much larger one is separated at one of its own sizes a second",
           "[contact]") {
   for (const bool ground_first : {false, true}) {
     MultiBody body;

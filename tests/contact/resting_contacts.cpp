@@ -1,5 +1,5 @@
-// What rests on what is looked for again only about parts that have moved since: the same, to the last bit
-// and in the same order, as a search of all.
+// The search for resting contacts is repeated only near parts that have moved; the result is bit-identical,
+// and in the same order, to a search of all parts.
 #include "catch.h"
 
 #include <pliant/contact/resting_contacts.h>
@@ -14,15 +14,15 @@ using test::Draws;
 
 namespace {
 
-bool same(const Contact& one, const Contact& other) {
+bool equal(const Contact& one, const Contact& other) {
   return one.a.part == other.a.part && one.b.part == other.b.part && one.plane == other.plane &&
          one.obstacle == other.obstacle && one.x == other.x && one.normal == other.normal &&
          one.gap == other.gap && one.a.material.su.x == other.a.material.su.x &&
          one.b.material.cv.x == other.b.material.cv.x;
 }
 
-/// Bodies of three kinds that lie in each other, on two planes and on a mesh.
-void crowd(MultiBody& body, Draws& draws) {
+/// Adds overlapping bodies of three kinds, on two planes and on a mesh.
+void overlapping_bodies(MultiBody& body, Draws& draws) {
   for (int i = 0; i < 60; ++i) {
     const char* shape = i % 3 == 0 ? "ellipsoid" : i % 3 == 1 ? "box" : "capsule";
     Part& part = body.add(make_part("part" + std::to_string(i), shape, {}, 1000));
@@ -49,15 +49,15 @@ void crowd(MultiBody& body, Draws& draws) {
 
 }  // namespace
 
-TEST_CASE("resting contacts are found again about what has moved", "[contact]") {
+TEST_CASE("an incremental search for resting contacts agrees with a full search", "[contact]") {
   Draws draws(5);
   MultiBody body;
-  crowd(body, draws);
+  overlapping_bodies(body, draws);
   const Model model(body);
   const ContactFinder finder(model);
   RestingContacts resting(model, finder);
   State state = model.initial_state();
-  std::size_t most = 0;
+  std::size_t max_contacts = 0;
   for (const int moving : {0, 1, 2, 5, 20, 41, 43, 60, 1}) {
     for (int k = 0; k < moving; ++k) {
       const PartModel& m = model.parts()[static_cast<std::size_t>((7 * k + moving) % 60)];
@@ -68,14 +68,14 @@ TEST_CASE("resting contacts are found again about what has moved", "[contact]") 
             Eigen::Quaterniond(1, draws.uniform(-1, 1), draws.uniform(-1, 1), 0).normalized().coeffs();
       if (m.n_s > 0) state.q[m.q0 + 7] = draws.uniform(0.08, 0.12);
     }
-    if (moving == 20) finder.find(state, 0.5, 0.3);  // farther than is asked for afterwards
+    if (moving == 20) finder.find(state, 0.5, 0.3);  // farther than the distance of later searches
     const std::vector<Contact> before = resting.near(state, 0.5),
                                all = ContactFinder(model).find(state, 0.5, resting.gap());
     REQUIRE(before.size() == all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) CHECK(same(before[i], all[i]));
-    most = std::max(most, all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) CHECK(equal(before[i], all[i]));
+    max_contacts = std::max(max_contacts, all.size());
   }
-  CHECK(most > 100);
+  CHECK(max_contacts > 100);
 }
 
 }  // namespace resting_contacts_test

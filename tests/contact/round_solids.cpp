@@ -1,5 +1,5 @@
-// Contact of cylinders, cones, tori and capsules, and of what tapers, bends and shears: they lie still on
-// planes and on each other, slide and roll by the closed forms, and come to rest where they are dropped.
+// Contact of cylinders, cones, tori and capsules, and of tapered, bent and sheared solids: they are stable on
+// planes and on each other, slide and roll by the closed forms, and come to rest when they are dropped.
 #include "catch.h"
 
 #include <cmath>
@@ -27,7 +27,7 @@ Part& cylinder(MultiBody& body, const std::string& name, double radius, double h
   return test::add(body, name, "cylinder", {}, 1000)
       .rest({{"a1", radius}, {"a2", radius}, {"a3", half_height}});
 }
-/// 0.3 m high, of radius 0.1 m at half height.
+/// Adds a cone or frustum 0.3 m high, with radius 0.1 m at half height.
 Part& cone(MultiBody& body, const std::string& name, double slope) {
   return test::add(body, name, "cone", {}, 1000).rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.15}, {"t", slope}});
 }
@@ -38,19 +38,19 @@ Part& torus(MultiBody& body, const std::string& name, double tube, double ring) 
 Part& capsule(MultiBody& body, const std::string& name, double radius, double length) {
   return test::add(body, name, "capsule", {}, 1000).rest({{"r", radius}, {"l", length}});
 }
-/// A box 0.2 m wide and 0.3 m high, put on its end after a deformation.
+/// Adds a box 0.2 m wide and 0.3 m high with a deformation, standing on its end.
 void deformed_box(MultiBody& body, const std::string& link, const Part::Named& by) {
   test::add(body, "a", "box", {link}, 1000)
       .rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.15}})
       .rest(by)
       .place({0, 0, 0.15});
 }
-Eigen::Quaterniond about(double angle, const Vec3<double>& axis) {
+Eigen::Quaterniond rotation_about(double angle, const Vec3<double>& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
-/// The z axis of a part along the x axis of the world.
-Eigen::Quaterniond lying() {
-  return about(kPi / 2, Vec3<double>::UnitY());
+/// Rotates the z axis of a part to the x axis of the world.
+Eigen::Quaterniond lying_on_side() {
+  return rotation_about(kPi / 2, Vec3<double>::UnitY());
 }
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
@@ -58,15 +58,17 @@ void floor(MultiBody& body) {
 
 }  // namespace
 
-TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each other, which carries them",
-          "[contact]") {
-  struct Way {
+TEST_CASE(
+    "cylinders, cones, tori and capsules are stable on a plane and on each other, with the correct contact "
+    "force",
+    "[contact]") {
+  struct Case {
     const char* name;
     std::function<void(MultiBody&)> build;
-    double creep;  // m
+    double displacement;  // largest displacement, m
   };
-  const double tip = std::atan(2.0 / 3);  // half the angle at the tip of a cone
-  const std::vector<Way> ways{
+  const double tip = std::atan(2.0 / 3);  // half the opening angle of a cone
+  const std::vector<Case> cases{
       {"cylinder",
        [](MultiBody& body) {
          cylinder(body, "a", 0.1, 0.15).place({0, 0, 0.15});
@@ -74,7 +76,7 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
        1e-13},
       {"lying cylinder",
        [](MultiBody& body) {
-         cylinder(body, "a", 0.1, 0.15).place({0, 0, 0.1}, lying());
+         cylinder(body, "a", 0.1, 0.15).place({0, 0, 0.1}, lying_on_side());
        },
        1e-12},
       {"cone",
@@ -94,7 +96,9 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
        1e-13},
       {"lying cone",
        [&](MultiBody& body) {
-         cone(body, "a", -1).place({0, 0, 0.15 * std::sin(tip)}, about(tip, Vec3<double>::UnitY()) * lying());
+         cone(body, "a", -1)
+             .place({0, 0, 0.15 * std::sin(tip)},
+                    rotation_about(tip, Vec3<double>::UnitY()) * lying_on_side());
        },
        3e-8},
       {"torus",
@@ -104,12 +108,12 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
        1e-13},
       {"upright torus",
        [](MultiBody& body) {
-         torus(body, "a", 0.05, 0.15).place({0, 0, 0.2}, about(kPi / 2, Vec3<double>::UnitX()));
+         torus(body, "a", 0.05, 0.15).place({0, 0, 0.2}, rotation_about(kPi / 2, Vec3<double>::UnitX()));
        },
        1e-12},
       {"capsule",
        [](MultiBody& body) {
-         capsule(body, "a", 0.1, 0.3).place({0, 0, 0.1}, lying());
+         capsule(body, "a", 0.1, 0.3).place({0, 0, 0.1}, lying_on_side());
        },
        1e-13},
       {"tapered box",
@@ -153,7 +157,7 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
        1e-13},
       {"box on lying cylinders",
        [](MultiBody& body) {
-         const Eigen::Quaterniond across = about(kPi / 2, Vec3<double>::UnitX());
+         const Eigen::Quaterniond across = rotation_about(kPi / 2, Vec3<double>::UnitX());
          cylinder(body, "a", 0.1, 0.15).place({-0.15, 0, 0.1}, across);
          cylinder(body, "b", 0.1, 0.15).place({0.15, 0, 0.1}, across);
          test::add(body, "c", "box", {}, 1000)
@@ -163,24 +167,24 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
        1e-13},
       {"lying cylinders across each other",
        [](MultiBody& body) {
-         cylinder(body, "a", 0.2, 0.3).place({0, 0, 0.2}, about(kPi / 2, Vec3<double>::UnitX()));
-         cylinder(body, "b", 0.1, 0.3).place({0, 0, 0.5}, lying());
+         cylinder(body, "a", 0.2, 0.3).place({0, 0, 0.2}, rotation_about(kPi / 2, Vec3<double>::UnitX()));
+         cylinder(body, "b", 0.1, 0.3).place({0, 0, 0.5}, lying_on_side());
        },
        1e-12}};
-  for (const Way& way : ways) {
-    CAPTURE(way.name);
+  for (const Case& tested : cases) {
+    CAPTURE(tested.name);
     MultiBody body;
     floor(body);
-    way.build(body);
+    tested.build(body);
     Simulation simulation(body, "rk4");
     const VecX<double> start = simulation.state().q;
-    double creep = 0;
+    double displacement = 0;
     const double h = 2e-3;
     for (int i = 0; i < 60; ++i) {
       simulation.step(h);
-      creep = std::max(creep, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
+      displacement = std::max(displacement, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
     }
-    CHECK(creep < way.creep);
+    CHECK(displacement < tested.displacement);
     CHECK(simulation.state().v.norm() < 1e-11);
     double mass = 0;
     for (const auto& part : body.parts()) mass += part->total_mass();
@@ -192,20 +196,20 @@ TEST_CASE("cylinders, cones, tori and capsules lie still on a plane and on each 
   }
 }
 
-TEST_CASE("standing cylinders and flat tori stop after v^2 / (2 mu g), lying cylinders along their axis too",
+TEST_CASE("standing cylinders, flat tori and lying cylinders along their axis stop after v^2 / (2 mu g)",
           "[contact]") {
-  for (const std::string way : {"standing", "lying", "torus"})
+  for (const std::string tested : {"standing", "lying", "torus"})
     for (const double h : {4e-3, 2e-3}) {
-      CAPTURE(way, h);
+      CAPTURE(tested, h);
       MultiBody body;
       body.contact.friction = 0.4;
       floor(body);
-      Part& part = way == "torus"
+      Part& part = tested == "torus"
                        ? torus(body, "a", 0.05, 0.15)
-                       : cylinder(body, "a", way == "lying" ? 0.1 : 0.2, way == "lying" ? 0.3 : 0.05);
-      part.place({0, 0, way == "lying" ? 0.1 : 0.05},
-                 way == "lying" ? lying() : Eigen::Quaterniond::Identity());
-      part.velocity({1, way == "lying" ? 0 : 0.3, 0}, {0, 0, 0});
+                       : cylinder(body, "a", tested == "lying" ? 0.1 : 0.2, tested == "lying" ? 0.3 : 0.05);
+      part.place({0, 0, tested == "lying" ? 0.1 : 0.05},
+                 tested == "lying" ? lying_on_side() : Eigen::Quaterniond::Identity());
+      part.velocity({1, tested == "lying" ? 0 : 0.3, 0}, {0, 0, 0});
       Simulation simulation(body, "rk4");
       const double v2 = simulation.state().v.head<3>().squaredNorm();
       test::run(simulation, 0.5, static_cast<int>(std::lround(0.5 / h)));
@@ -215,47 +219,47 @@ TEST_CASE("standing cylinders and flat tori stop after v^2 / (2 mu g), lying cyl
 }
 
 TEST_CASE("cylinders, capsules and tori roll down a slope by the closed form", "[contact]") {
-  // a = g sin / (1 + I / (m r^2)). The rim of a cylinder and the sides of a capsule are found by points, of
-  // which each one that is passed takes a little speed: a thousandth in all.
+  // a = g sin / (1 + I / (m r^2)). The rim of a cylinder and the sides of a capsule are represented by
+  // points. Each passage of a point costs some speed: a thousandth in all.
   const double angle = 0.3, tube = 0.05, ring = 0.15, r = 0.1, l = 0.3;
-  const double side = l, caps = 4.0 / 3 * r;  // shares of the volume of a capsule
-  struct Way {
+  const double side = l, caps = 4.0 / 3 * r;  // fractions of the volume of a capsule
+  struct Case {
     const char* name;
-    double radius, turning;  // m; I / (m r^2)
+    double radius, inertia_ratio;  // m; I / (m r^2)
     double error;
   };
-  const std::vector<Way> ways{
+  const std::vector<Case> cases{
       {"cylinder", r, 0.5, 3e-3},
       {"capsule", r, (side / 2 + caps * 2 / 5) / (side + caps), 3e-3},
       {"torus", ring + tube, (ring * ring + 0.75 * tube * tube) / ((ring + tube) * (ring + tube)), 4e-9}};
-  for (const Way& way : ways) {
-    CAPTURE(way.name);
+  for (const Case& tested : cases) {
+    CAPTURE(tested.name);
     MultiBody body;
     body.contact.friction = 0.6;
-    const Eigen::Quaterniond tilt = about(angle, Vec3<double>::UnitY());
+    const Eigen::Quaterniond tilt = rotation_about(angle, Vec3<double>::UnitY());
     const Vec3<double> n = tilt * Vec3<double>::UnitZ(), down = tilt * Vec3<double>::UnitX();
     body.plane("slope", Vec3<double>(0, 0, 0), n);
-    Part& part = std::string(way.name) == "torus"     ? torus(body, "a", tube, ring)
-                 : std::string(way.name) == "capsule" ? capsule(body, "a", r, l)
-                                                      : cylinder(body, "a", r, 0.15);
-    part.place(way.radius * n, tilt * about(kPi / 2, Vec3<double>::UnitX()));
+    Part& part = std::string(tested.name) == "torus"     ? torus(body, "a", tube, ring)
+                 : std::string(tested.name) == "capsule" ? capsule(body, "a", r, l)
+                                                         : cylinder(body, "a", r, 0.15);
+    part.place(tested.radius * n, tilt * rotation_about(kPi / 2, Vec3<double>::UnitX()));
     Simulation simulation(body, "rk4");
     test::run(simulation, 0.5, 200);
-    const double a = kG * std::sin(angle) / (1 + way.turning);
-    const Vec3<double> moved = simulation.state().q.head<3>() - way.radius * n;
-    CHECK(simulation.state().v.head<3>().dot(down) == Approx(a / 2).epsilon(way.error));
-    CHECK(moved.dot(down) == Approx(a / 8).epsilon(way.error));
-    CHECK(std::abs(moved.dot(n)) < 1e-6);
+    const double a = kG * std::sin(angle) / (1 + tested.inertia_ratio);
+    const Vec3<double> displacement = simulation.state().q.head<3>() - tested.radius * n;
+    CHECK(simulation.state().v.head<3>().dot(down) == Approx(a / 2).epsilon(tested.error));
+    CHECK(displacement.dot(down) == Approx(a / 8).epsilon(tested.error));
+    CHECK(std::abs(displacement.dot(n)) < 1e-6);
   }
 }
 
-TEST_CASE("a cone finds its place in a torus", "[contact]") {
+TEST_CASE("a cone, tip down, comes to rest in a torus", "[contact]") {
   const double half = std::atan(2.0 / 3), ring = 0.075, tube = 0.05;
   for (const double drop : {0.0, 0.02}) {
     MultiBody body;
     floor(body);
     torus(body, "a", tube, ring).place({0, 0, tube});
-    // Where the cone, tip down, is as far from the core of the tube as this is thick.
+    // Height at which the distance of the cone from the core ring equals the radius of the tube.
     const double tip = tube - (ring * std::cos(half) - tube) / std::sin(half);
     cone(body, "b", 1).place({0, 0, tip + 0.15 + drop});
     Simulation simulation(body, "rk4");
@@ -265,7 +269,7 @@ TEST_CASE("a cone finds its place in a torus", "[contact]") {
   }
 }
 
-TEST_CASE("what lies on a line of its side rolls no farther than to the next point of its rim",
+TEST_CASE("a part in contact along a line of its side rolls at most to the next point of its rim",
           "[contact][long]") {
   Draws draws(3);
   Worst rolled, raised;
@@ -277,10 +281,11 @@ TEST_CASE("what lies on a line of its side rolls no farther than to the next poi
       Part& part = shape == "cylinder" ? cylinder(body, "a", 0.1, 0.15)
                    : shape == "cone"   ? cone(body, "a", -1)
                                        : capsule(body, "a", 0.1, 0.3);
-      const Eigen::Quaterniond yaw = about(draws.uniform(-3, 3), Vec3<double>::UnitZ()),
-                               roll = about(draws.uniform(-3, 3), Vec3<double>::UnitZ()),
-                               side =
-                                   shape == "cone" ? about(half, Vec3<double>::UnitY()) * lying() : lying();
+      const Eigen::Quaterniond yaw = rotation_about(draws.uniform(-3, 3), Vec3<double>::UnitZ()),
+                               roll = rotation_about(draws.uniform(-3, 3), Vec3<double>::UnitZ()),
+                               side = shape == "cone"
+                                          ? rotation_about(half, Vec3<double>::UnitY()) * lying_on_side()
+                                          : lying_on_side();
       part.place({0, 0, shape == "cone" ? 0.15 * std::sin(half) : 0.1}, yaw * side * roll);
       Simulation simulation(body, "rk4");
       const VecX<double> start = simulation.state().q;
@@ -296,7 +301,7 @@ TEST_CASE("what lies on a line of its side rolls no farther than to the next poi
   CHECK(raised < 1.5e-9);
 }
 
-TEST_CASE("faces that are nearly flat lie on their deepest point", "[contact]") {
+TEST_CASE("parts with nearly flat faces rest on their deepest point", "[contact]") {
   for (const double eps1 : {0.03, 0.036, 0.04, 0.043, 0.046, 0.2}) {
     CAPTURE(eps1);
     MultiBody body;
@@ -311,7 +316,7 @@ TEST_CASE("faces that are nearly flat lie on their deepest point", "[contact]") 
   }
 }
 
-TEST_CASE("dropped cylinders, cones, tori and deformed solids come to rest on what is lowest",
+TEST_CASE("dropped cylinders, cones, tori and deformed solids come to rest on their lowest points",
           "[contact][long]") {
   struct Kind {
     const char *name, *shape;

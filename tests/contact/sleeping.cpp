@@ -1,4 +1,5 @@
-// Sleep of bodies at rest: they stay to the last bit and cost nothing; what meets or drives them wakes them.
+// Sleep of bodies at rest: their states do not change in any bit and need no evaluation; impacts and loads
+// wake them.
 #include "catch.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ Part& cube(MultiBody& body, const std::string& name, const Vec3<double>& at) {
   return part;
 }
 
-/// A tower of cubes on a floor; bodies sleep.
+/// Adds a tower of cubes on a floor; sleep is active.
 void tower(MultiBody& body, int n) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
   body.contact.sleep = Sleep{1e-3, 0.1};
@@ -40,17 +41,17 @@ bool all_sleep(const Simulation& simulation) {
   return true;
 }
 bool none_sleeps(const Simulation& simulation) {
-  const std::vector<double>& rested = simulation.state().at_rest;
-  return std::none_of(rested.begin(), rested.end(), [](double time) { return time < 0; });
+  const std::vector<double>& rest_times = simulation.state().at_rest;
+  return std::none_of(rest_times.begin(), rest_times.end(), [](double time) { return time < 0; });
 }
 
-/// Steps until all sleep, for at most 1 s.
-void lull(Simulation& simulation) {
+/// Steps until all bodies sleep, for at most 1 s.
+void run_until_asleep(Simulation& simulation) {
   for (int i = 0; i < 500 && !all_sleep(simulation); ++i) simulation.step(kStep);
   REQUIRE(all_sleep(simulation));
 }
 
-/// Whether a body wakes in 20 steps.
+/// Returns whether a body wakes within 20 steps.
 bool wakes(Simulation& simulation) {
   for (int i = 0; i < 20; ++i) {
     simulation.step(kStep);
@@ -61,13 +62,13 @@ bool wakes(Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("what sleeps is where it was to the last bit, and is not evaluated", "[sleep][contact]") {
+TEST_CASE("a sleeping body keeps its state to the last bit, and is not evaluated", "[sleep][contact]") {
   for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit"}) {
     MultiBody body;
     tower(body, 3);
     Simulation simulation(body, method);
     CHECK(none_sleeps(simulation));
-    lull(simulation);
+    run_until_asleep(simulation);
     CHECK(simulation.time() == Approx(0.1).margin(1.5 * kStep));
     const State asleep = simulation.state();
     const Counters before = simulation.counters();
@@ -81,7 +82,7 @@ TEST_CASE("what sleeps is where it was to the last bit, and is not evaluated", "
     }
     CHECK(simulation.contact()->contacts().empty());
     CHECK(std::abs(simulation.ledger().balance) < 1e-9);
-    // A stored state goes on as it did.
+    // A run resumed from a stored state continues identically.
     MultiBody other;
     tower(other, 3);
     Simulation resumed(other, method);
@@ -91,7 +92,7 @@ TEST_CASE("what sleeps is where it was to the last bit, and is not evaluated", "
   }
 }
 
-TEST_CASE("nothing sleeps unless asked, and none that moves", "[sleep][contact]") {
+TEST_CASE("bodies sleep only if sleep is active, and moving bodies stay awake", "[sleep][contact]") {
   MultiBody body;
   tower(body, 2);
   body.contact.sleep.reset();
@@ -110,13 +111,14 @@ TEST_CASE("nothing sleeps unless asked, and none that moves", "[sleep][contact]"
   CHECK(both.state().v[6] == Approx(0.5).epsilon(1e-6));
 }
 
-TEST_CASE("a body that falls on sleepers wakes all of them, as if they had not slept", "[sleep][contact]") {
+TEST_CASE("a body that falls on sleeping ones wakes all of them, and the motion is that without sleep",
+          "[sleep][contact]") {
   VecX<double> end[2];
   for (const bool sleep : {false, true}) {
     MultiBody body;
     tower(body, 3);
     if (!sleep) body.contact.sleep.reset();
-    // It falls for 0.5 s.
+    // The ball falls for 0.5 s.
     Part& ball = test::add(body, "ball", "sphere", {}, 2000);
     ball.rest({{"r", 0.1}}).place({0.05, 0, 0.7 + 0.5 * 9.81 * 0.25}, Eigen::Quaterniond::Identity());
     Simulation simulation(body, "rk4");
@@ -134,11 +136,11 @@ TEST_CASE("a body that falls on sleepers wakes all of them, as if they had not s
   CHECK((end[1] - end[0]).lpNorm<Eigen::Infinity>() < 1e-4);
 }
 
-TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
+TEST_CASE("a changing load wakes a sleeping body", "[sleep][contact]") {
   const TimeFunction late = TimeFunction::formula("50 * min(max((t - 0.5) / 0.01, 0), 1)");
   auto wakes_at_half = [](MultiBody& body) {
     Simulation simulation(body, "rk4");
-    lull(simulation);
+    run_until_asleep(simulation);
     while (simulation.time() < 0.497) simulation.step(kStep);
     CHECK(all_sleep(simulation));
     Simulation resumed(body, "rk4");
@@ -160,14 +162,14 @@ TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
     body.torque("turn", *body.parts()[0], TimeVector(0., 0., late));
     CHECK(wakes_at_half(body));
   }
-  SECTION("a torque against it") {
+  SECTION("the reaction of a torque") {
     MultiBody body;
     tower(body, 2);
     Part& post = cube(body, "post", {3, 0, 1}).fix();
     body.torque("turn", post, TimeVector(0., 0., late)).against = body.parts()[0].get();
     CHECK(wakes_at_half(body));
   }
-  SECTION("a hand that turns the axes of a torque against it") {
+  SECTION("a part with prescribed motion that rotates the axes of a torque's reaction") {
     MultiBody body;
     tower(body, 2);
     PrescribedMotion motion;
@@ -190,13 +192,13 @@ TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
     body.spring("pull", point(*body.parts()[1], 0, 0), world(TimeVector(late, 0., 0.3)), 1e-3, 0, 0);
     CHECK(wakes_at_half(body));
   }
-  SECTION("a joint that begins to act") {
+  SECTION("a joint that switches on") {
     MultiBody body;
     tower(body, 2);
     body.ball("hook", point(*body.parts()[1], 0, 0), world(0.11, 0, 0.3)).during(0.5);
     CHECK(wakes_at_half(body));
   }
-  SECTION("a joint that ceases to act") {
+  SECTION("a joint that switches off") {
     MultiBody body;
     body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
     body.contact.sleep = Sleep{1e-3, 0.1};
@@ -219,21 +221,21 @@ TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
     body.gravity.setZero();
     CHECK(wakes_at_half(body));
   }
-  SECTION("a floor that goes") {
+  SECTION("a floor that is removed") {
     MultiBody body;
     tower(body, 2);
     body.contact.planes.front().off = 0.5;
     Simulation simulation(body, "rk4");
-    lull(simulation);
+    run_until_asleep(simulation);
     while (simulation.time() < 0.6) simulation.step(kStep);
     CHECK(none_sleeps(simulation));
     CHECK(simulation.state().v[2] == Approx(-9.81 * 0.1).epsilon(0.05));
   }
-  SECTION("a velocity that is given") {
+  SECTION("a velocity that the user sets") {
     MultiBody body;
     tower(body, 2);
     Simulation simulation(body, "rk4");
-    lull(simulation);
+    run_until_asleep(simulation);
     State state = simulation.state();
     state.v[6] = 1;
     simulation.set_state(state);
@@ -242,7 +244,7 @@ TEST_CASE("what drives a sleeper wakes it", "[sleep][contact]") {
   }
 }
 
-TEST_CASE("what lies on a plane that hands move does not sleep", "[sleep][contact]") {
+TEST_CASE("bodies on a moving plane do not sleep", "[sleep][contact]") {
   MultiBody body;
   tower(body, 2);
   body.contact.planes.front().point = TimeVector(0., 0., TimeFunction::formula("-0.2 * max(t - 0.5, 0) ^ 2"));
@@ -252,13 +254,13 @@ TEST_CASE("what lies on a plane that hands move does not sleep", "[sleep][contac
   CHECK(simulation.state().q[2] == Approx(0.1 - 0.05).margin(1e-5));
 }
 
-TEST_CASE("bodies sleep together or not at all", "[sleep][contact]") {
+TEST_CASE("connected bodies sleep together or not at all", "[sleep][contact]") {
   MultiBody body;
   tower(body, 2);
   cube(body, "apart", {3, 0, 0.1});
   Part& bob = test::add(body, "bob", "sphere", {}, 500);
   bob.rest({{"r", 0.05}}).place({1.5, 0, 0.65}, Eigen::Quaterniond::Identity());
-  // A pendulum that a spring ties to the upper cube.
+  // A spring connects a pendulum to the upper cube.
   body.join("line", String{1}, {point(bob, 0, 0, 0), world(1, 0, 1.5)});
   body.spring("tie", point(bob, 0, 0, 0), point(*body.parts()[1], 0, 0, 0), 1e-2);
   Simulation simulation(body, "rk4");
@@ -268,7 +270,7 @@ TEST_CASE("bodies sleep together or not at all", "[sleep][contact]") {
   CHECK_FALSE(sleeps(simulation.state(), 1));
 }
 
-TEST_CASE("what a torque turns against each other sleeps together or not at all", "[sleep][contact]") {
+TEST_CASE("bodies connected by a torque sleep together or not at all", "[sleep][contact]") {
   MultiBody body;
   tower(body, 2);
   Part& top = test::add(body, "top", "sphere", {}, 500);
@@ -280,14 +282,15 @@ TEST_CASE("what a torque turns against each other sleeps together or not at all"
   CHECK(none_sleeps(simulation));
 }
 
-TEST_CASE("under error control, and in long steps between which a joint begins to act", "[sleep][contact]") {
+TEST_CASE("sleep with error control, and with long steps within which a joint switches on",
+          "[sleep][contact]") {
   for (const char* method : {"dormand_prince", "dop853", "esdirk"})
     for (const double tolerance : {0., 1e-6})
-      for (const double begins : {0.2, 0.207}) {
-        CAPTURE(method, tolerance, begins);
+      for (const double on : {0.2, 0.207}) {
+        CAPTURE(method, tolerance, on);
         MultiBody body;
         tower(body, 2);
-        body.ball("hook", point(*body.parts()[1], 0, 0), world(0.11, 0, 0.3)).during(begins);
+        body.ball("hook", point(*body.parts()[1], 0, 0), world(0.11, 0, 0.3)).during(on);
         Simulation simulation(body, method, 1, tolerance);
         for (int i = 0; i < 11; ++i) simulation.step(1. / 60);
         CHECK(all_sleep(simulation));
@@ -298,7 +301,7 @@ TEST_CASE("under error control, and in long steps between which a joint begins t
       }
 }
 
-TEST_CASE("constant forces, springs and dampers do no work on sleepers", "[sleep][contact]") {
+TEST_CASE("constant forces, springs and dampers do no work on sleeping bodies", "[sleep][contact]") {
   for (const char* method : {"rk4", "implicit_midpoint", "linearly_implicit", "esdirk"}) {
     CAPTURE(method);
     MultiBody body;
@@ -306,7 +309,7 @@ TEST_CASE("constant forces, springs and dampers do no work on sleepers", "[sleep
     body.force("push", point(*body.parts()[1], 0, 0), {1, 0, 0});
     body.spring("tie", point(*body.parts()[0], 0, 0), world(0.5, 0, 0.2), 10, 2);
     Simulation simulation(body, method);
-    lull(simulation);
+    run_until_asleep(simulation);
     const double balance = simulation.ledger().balance;
     const State asleep = simulation.state();
     for (int i = 0; i < 50; ++i) simulation.step(kStep);
@@ -315,7 +318,7 @@ TEST_CASE("constant forces, springs and dampers do no work on sleepers", "[sleep
   }
 }
 
-TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][contact][long]") {
+TEST_CASE("parts with local deformation sleep, on planes and obstacles", "[sleep][contact][long]") {
   for (const auto basis : {LocalSettings::Basis::nodes, LocalSettings::Basis::polynomial}) {
     const bool obstacle = basis == LocalSettings::Basis::nodes;
     CAPTURE(obstacle);
@@ -338,7 +341,7 @@ TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][c
     settings.alpha = 30;
     settings.energies = {local_law("elastic", {1e5, 0.3})};
     jelly.deform_locally(settings);
-    // It falls for 0.8 s.
+    // The ball falls for 0.8 s.
     Part& ball = test::add(body, "ball", "sphere", {}, 200);
     ball.rest({{"r", 0.03}}).place({0, 0, 0.13 + 0.5 * 9.81 * 0.64}, Eigen::Quaterniond::Identity());
     Simulation simulation(body, "linearly_implicit");
@@ -353,7 +356,7 @@ TEST_CASE("parts that deform locally sleep, on planes and obstacles", "[sleep][c
   }
 }
 
-TEST_CASE("settings of sleep out of range are refused", "[sleep][failure]") {
+TEST_CASE("sleep settings out of range are refused", "[sleep][failure]") {
   for (const Sleep& bad :
        {Sleep{0, 0.5}, Sleep{-1, 0.5}, Sleep{1e-3, -1}, Sleep{1e-3, 0}, Sleep{kInfinity, 0.5}}) {
     MultiBody body;

@@ -1,4 +1,5 @@
-// Contact of parts that deform locally: their nodes on planes, their surfaces as meshes against others.
+// Contact of parts with local deformation: their nodes against planes, their surface meshes against other
+// parts.
 #include "catch.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace {
 
 constexpr double kG = 9.81;
 
-/// A shell of rubber, 98 nodes, R = 0.1 m, with or without air in it.
+/// Adds a rubber shell with 98 nodes, R = 0.1 m, under the pressure `air` (Pa).
 Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, double air = 20) {
   auto& part = body.add<Primitive<Ellipsoid>>(name, 1.0);
   part.make_shell().rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.1}}).place(at);
@@ -37,19 +38,20 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
   return part;
 }
 
-/// The lowest node of all parts, m above the plane z = 0.
+/// Returns the height of the lowest node of all parts above the plane z = 0, m.
 double lowest(const Simulation& simulation) {
-  double least = 1;
+  double min_height = 1;
   for (int i = 0; i < static_cast<int>(simulation.model().parts().size()); ++i) {
     const Eigen::Matrix3Xd p = simulation.model().node_positions(simulation.state(), i).transpose();
     const Eigen::Matrix3Xd x = simulation.model().orientation(simulation.state(), i).toRotationMatrix() * p;
-    least = std::min(least, x.row(2).minCoeff() + simulation.model().position(simulation.state(), i)[2]);
+    min_height =
+        std::min(min_height, x.row(2).minCoeff() + simulation.model().position(simulation.state(), i)[2]);
   }
-  return least;
+  return min_height;
 }
 
-/// 0.3 s in which they meet, and go no deeper into each other than 1e-3 of a balloon.
-void run_through_contact(Simulation& simulation) {
+/// Runs 0.3 s with contact and checks that no overlap exceeds 1e-3 of a balloon's size.
+void run_contact(Simulation& simulation) {
   double deep = 0;
   bool met = false;
   for (int k = 0; k < 1500; ++k) {
@@ -90,7 +92,7 @@ TEST_CASE("a balloon dropped on a plane comes to rest on it, and the plane carri
   }
 }
 
-TEST_CASE("balloons that collide keep their momenta, lose energy, and stay out of each other", "[contact]") {
+TEST_CASE("balloons that collide conserve their momenta, lose energy, and do not overlap", "[contact]") {
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -99,17 +101,17 @@ TEST_CASE("balloons that collide keep their momenta, lose energy, and stay out o
   Simulation simulation(body, "semi_implicit_euler");
   const Ledger before = simulation.ledger();
   const double scale = body.parts()[0]->total_mass() * 0.5;
-  run_through_contact(simulation);
+  run_contact(simulation);
   const Ledger after = simulation.ledger();
   CHECK((after.momentum - before.momentum).norm() < 1e-12 * scale);
   CHECK((after.angular_momentum - before.angular_momentum).norm() < 5e-3 * scale * 0.1);
   CHECK(after.energy() < before.energy());
-  // They bounced off each other.
+  // They have rebounded.
   CHECK(simulation.state().v[simulation.model().parts()[0].v0] < 0);
   CHECK(simulation.state().v[simulation.model().parts()[1].v0] > 0);
 }
 
-TEST_CASE("a balloon and a rigid box collide: momenta stay, and nothing sinks in", "[contact]") {
+TEST_CASE("a balloon and a rigid box collide: momenta are conserved, without penetration", "[contact]") {
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -119,13 +121,13 @@ TEST_CASE("a balloon and a rigid box collide: momenta stay, and nothing sinks in
   box.velocity({-1, 0, 0}, {1, 2, -1});
   Simulation simulation(body, "semi_implicit_euler");
   const Ledger before = simulation.ledger();
-  run_through_contact(simulation);
+  run_contact(simulation);
   const Ledger after = simulation.ledger();
   CHECK((after.momentum - before.momentum).norm() < 1e-12 * before.momentum.norm());
   CHECK(after.energy() < before.energy());
 }
 
-TEST_CASE("balloons on strings that collide: strings hold", "[contact][joints][long]") {
+TEST_CASE("balloons on strings that collide: the strings stay taut", "[contact][joints][long]") {
   MultiBody body;
   body.contact.active = true;
   Part& left = balloon(body, "left", {-0.3, 0, -0.4});
@@ -157,14 +159,14 @@ TEST_CASE("N53: a fast balloon does not pass through a thin plate", "[contact]")
         simulation.step(speed > 50 ? 5e-4 : 2e-3);
         through = through || simulation.state().q[0] > 0.02;
       }
-    } catch (const NumericalFailure&) {  // it burst
+    } catch (const NumericalFailure&) {  // the balloon burst
     }
     CAPTURE(speed);
     CHECK_FALSE(through);
   }
 }
 
-TEST_CASE("meshes that cross: corners behind faces, edges across edges", "[contact]") {
+TEST_CASE("contacts of crossing meshes: corners behind faces, edges across edges", "[contact]") {
   MultiBody body;
   for (const char* name : {"a", "b"}) {
     Part& part = body.add(make_part(name, "box", {}, 1000));
@@ -180,21 +182,21 @@ TEST_CASE("meshes that cross: corners behind faces, edges across edges", "[conta
     find_touches(a, b, found);
     return found;
   };
-  // Edges along y of a and, turned by 45 degrees about two axes, along another direction of b.
-  const Eigen::Quaterniond turned(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitX()));
+  // Edges along y of a and, rotated by 45 degrees about two axes, along another direction of b.
+  const Eigen::Quaterniond rotated(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitX()));
   const double reach = std::sqrt(2.0);
-  {  // an edge of b, along x, on the upper face of a
-    const auto found = touches(turned, {0.1, 0.05, 1 + reach - 1e-3});
+  {  // an edge of b along x, on the upper face of a
+    const auto found = touches(rotated, {0.1, 0.05, 1 + reach - 1e-3});
     REQUIRE_FALSE(found.empty());
     for (const MeshTouch& touch : found) {
       CHECK(touch.gap == Approx(-1e-3).margin(1e-12));
       CHECK((touch.normal - Vec3<double>(0, 0, -1)).norm() < 1e-12);
     }
   }
-  {  // edge across edge: a turned by 45 degrees about y, b about x
+  {  // edge across edge: a rotated by 45 degrees about y, b about x
     const Eigen::Quaterniond other(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitY()));
     const PlacedMesh a(mesh, other.toRotationMatrix() * p),
-        b(mesh, (turned.toRotationMatrix() * p).colwise() + Vec3<double>(0.13, 0.07, 2 * reach - 1e-3));
+        b(mesh, (rotated.toRotationMatrix() * p).colwise() + Vec3<double>(0.13, 0.07, 2 * reach - 1e-3));
     std::vector<MeshTouch> found;
     find_touches(a, b, found);
     REQUIRE(found.size() == 1);
@@ -210,14 +212,14 @@ TEST_CASE("meshes that cross: corners behind faces, edges across edges", "[conta
     CHECK(found[0].gap == Approx(-1e-3).margin(1e-12));
     CHECK(found[0].b.vertex[1] == -1);
   }
-  CHECK(touches(turned, {0.1, 0.05, 1 + reach + 1e-3}).empty());
+  CHECK(touches(rotated, {0.1, 0.05, 1 + reach + 1e-3}).empty());
   CHECK(touches(Eigen::Quaterniond::Identity(), {0, 0, 2.001}).empty());
 }
 
 namespace {
 
-/// The nodes of a part where they are.
-Eigen::Matrix3Xd placed(const Simulation& simulation, int part) {
+/// Returns the positions of the nodes of a part in the world.
+Eigen::Matrix3Xd world_nodes(const Simulation& simulation, int part) {
   const Mat3<double> R = simulation.model().orientation(simulation.state(), part).toRotationMatrix();
   return (R * simulation.model().node_positions(simulation.state(), part).transpose()).colwise() +
          simulation.model().position(simulation.state(), part);
@@ -228,7 +230,7 @@ struct Ground {
   Eigen::Matrix3Xi triangles;
   int n;
 
-  /// Over n x n squares of a map of [-1, 1]^2, half a metre to each side.
+  /// A mesh of n x n squares over [-1, 1]^2, scaled to half a metre on each side, with the given height.
   template <class F>
   Ground(int squares, F&& height) : n(squares) {
     x.resize(3, (n + 1) * (n + 1));
@@ -243,7 +245,7 @@ struct Ground {
         triangles.col(t++) = Eigen::Vector3i(k, next + 1, k + 1);
       }
   }
-  /// How far a point is above the triangle below it, m.
+  /// Returns the height of a point above the triangle below it, m.
   double above(const Vec3<double>& p) const {
     for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
       const Vec3<double> a = x.col(triangles(0, t)), b = x.col(triangles(1, t)), c = x.col(triangles(2, t));
@@ -258,18 +260,18 @@ struct Ground {
   }
 };
 
-/// How deep a point is in a closed mesh, m; 0 outside.
+/// Returns the depth of a point in a closed mesh, m; 0 outside.
 double depth_in(const ObstacleMesh& mesh, const Vec3<double>& p) {
-  double turns = 0, nearest = 1;
+  double solid_angle = 0, nearest = 1;
   for (int t = 0; t < mesh.triangles().cols(); ++t) {
     const Vec3<double> a = mesh.vertices().col(mesh.triangles()(0, t)) - p,
                        b = mesh.vertices().col(mesh.triangles()(1, t)) - p,
                        c = mesh.vertices().col(mesh.triangles()(2, t)) - p;
-    turns += std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
-                                               b.dot(c) * a.norm() + c.dot(a) * b.norm());
+    solid_angle += std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                     b.dot(c) * a.norm() + c.dot(a) * b.norm());
     nearest = std::min(nearest, (mesh.nearest(t, p) - p).norm());
   }
-  return turns > kPi ? nearest : 0;  // half the solid angle
+  return solid_angle > kPi ? nearest : 0;  // half the full solid angle
 }
 
 }  // namespace
@@ -296,7 +298,7 @@ TEST_CASE("a balloon rests on a plate, on a flat mesh and in a bowl, and each ca
     for (int i = 0; i < steps; ++i) {
       simulation.step(5e-4);
       if (i % 20 == 0) {
-        const Eigen::Matrix3Xd x = placed(simulation, 0);
+        const Eigen::Matrix3Xd x = world_nodes(simulation, 0);
         for (Eigen::Index k = 0; k < x.cols(); ++k) deep = std::max(deep, -ground.above(x.col(k)));
       }
       if (i >= steps - 1000)
@@ -309,7 +311,7 @@ TEST_CASE("a balloon rests on a plate, on a flat mesh and in a bowl, and each ca
   }
 }
 
-TEST_CASE("a ridge and a peak dent a balloon and do not come in", "[contact]") {
+TEST_CASE("a ridge and a peak dent a balloon without penetrating it", "[contact]") {
   for (const std::string what : {"ridge", "peak"}) {
     CAPTURE(what);
     const double slope = 0.8;
@@ -332,7 +334,7 @@ TEST_CASE("a ridge and a peak dent a balloon and do not come in", "[contact]") {
       simulation.step(1e-4);
       met = met || !simulation.contact()->contacts().empty();
       if (i % 10 != 0) continue;
-      const ObstacleMesh surface(placed(simulation, 0), surface_nodes(mesh).triangles);
+      const ObstacleMesh surface(world_nodes(simulation, 0), surface_nodes(mesh).triangles);
       for (const Vec3<double>& p : sharp) deep = std::max(deep, depth_in(surface, p));
     }
     REQUIRE(met);

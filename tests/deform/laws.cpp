@@ -1,5 +1,5 @@
-// What must hold for every global deformation of the list (design 1.1, physics 2): identity, inverse,
-// derivatives, determinants, and the kernel that multiplies a link into a chain.
+// Laws of every global deformation in the list: identity, inverse, derivatives, determinants, and the kernel
+// that applies a link of a chain.
 #include "catch.h"
 
 #include <cmath>
@@ -31,8 +31,8 @@ Numbers<Deform> defaults() {
     b[k] = Deform::parameters[static_cast<std::size_t>(k)].standard;
   return b;
 }
-/// Anywhere in the dynamic range; tapers short of the tip and bends short of the fold, where there is no
-/// inverse.
+/// Returns random parameters in the dynamic range. Tapers stay below the tip and bends below the fold, where
+/// no inverse exists.
 template <class Deform>
 Numbers<Deform> draw(Draws& draws) {
   Numbers<Deform> b;
@@ -42,7 +42,7 @@ Numbers<Deform> draw(Draws& draws) {
   return b;
 }
 constexpr double kHalfHeight = 1.7;
-/// A point of a body slim enough that no bend of the range folds it: 1 - k r > 0.4.
+/// Returns a random point of a body that is so slim that no bend in the range folds it: 1 - k r > 0.4.
 Vec3<double> body_point(Draws& draws) {
   return {draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), draws.uniform(-kHalfHeight, kHalfHeight)};
 }
@@ -51,16 +51,16 @@ template <class Deform>
 Mat3<double> gradient(const Vec3<double>& p, double h, const Numbers<Deform>& b) {
   using D = Dual<3>;
   const Vec3<D> at{D::variable(p[0], 0), D::variable(p[1], 1), D::variable(p[2], 2)};
-  const Vec3<D> moved = Deform::template apply<D>(at, D(h), b.template cast<D>());
+  const Vec3<D> result = Deform::template apply<D>(at, D(h), b.template cast<D>());
   Mat3<double> F;
   for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 3; ++c) F(r, c) = moved[r].d[static_cast<std::size_t>(c)];
+    for (int c = 0; c < 3; ++c) F(r, c) = result[r].d[static_cast<std::size_t>(c)];
   return F;
 }
 
-/// T of everything it depends on: (p, h, b).
+/// Evaluates T as a function of all its arguments (p, h, b).
 template <class Deform, class T>
-Vec3<T> all_moved(const Vec<T, 4 + deform_size<Deform>>& all) {
+Vec3<T> apply_to_all(const Vec<T, 4 + deform_size<Deform>>& all) {
   return Deform::template apply<T>(Vec3<T>(all.template head<3>()), all[3],
                                    Vec<T, deform_size<Deform>>(all.template tail<deform_size<Deform>>()));
 }
@@ -77,8 +77,9 @@ TEMPLATE_LIST_TEST_CASE("the defaults are the identity, bit for bit", "[deform]"
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("amplitudes at their defaults are the identity, whatever the other parameters",
-                        "[deform]", AllDeforms) {
+TEMPLATE_LIST_TEST_CASE(
+    "with amplitudes at their defaults the deformation is the identity, for any other parameters", "[deform]",
+    AllDeforms) {
   Draws draws(8);
   for (int trial = 0; trial < 200; ++trial) {
     Numbers<TestType> b = draw<TestType>(draws);
@@ -94,15 +95,15 @@ TEMPLATE_LIST_TEST_CASE("amplitudes at their defaults are the identity, whatever
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("inverse undoes apply", "[deform]", AllDeforms) {
+TEMPLATE_LIST_TEST_CASE("the inverse reverses the deformation", "[deform]", AllDeforms) {
   Draws draws(2);
   for (int trial = 0; trial < 1000; ++trial) {
     const Vec3<double> p = body_point(draws);
     const Numbers<TestType> b = draw<TestType>(draws);
-    const Vec3<double> moved = TestType::template apply<double>(p, kHalfHeight, b);
-    const Vec3<double> back = TestType::template inverse<double>(moved, kHalfHeight, b);
+    const Vec3<double> result = TestType::template apply<double>(p, kHalfHeight, b);
+    const Vec3<double> back = TestType::template inverse<double>(result, kHalfHeight, b);
     INFO(TestType::name << " b " << b.transpose() << " p " << p.transpose());
-    // A taper near its tip spreads the rounding of what it has drawn together.
+    // A taper near its tip amplifies rounding errors in the inverse.
     const double stretch = std::max(1.0, gradient<TestType>(p, kHalfHeight, b).inverse().norm());
     CHECK((back - p).norm() <= 2e-14 * stretch);
   }
@@ -126,7 +127,7 @@ TEMPLATE_LIST_TEST_CASE("derivatives agree with differences in long double", "[d
       x_d[k] = D::variable(x[k], k);
       x_t[k] = Taylor2<double>(x[k], rate[k], 0);
     }
-    const Vec3<D> dual = all_moved<TestType, D>(x_d);
+    const Vec3<D> dual = apply_to_all<TestType, D>(x_d);
     using VecL = Vec<Long, 4 + K>;
     const VecL x_l = x.template cast<Long>(), rate_l = rate.template cast<Long>();
     const double size = std::max(1.0, dual[0].v * dual[0].v + dual[1].v * dual[1].v + dual[2].v * dual[2].v);
@@ -135,16 +136,16 @@ TEMPLATE_LIST_TEST_CASE("derivatives agree with differences in long double", "[d
           [&](Long t) {
             VecL at = x_l;
             at[k] += t;
-            return all_moved<TestType, Long>(at);
+            return apply_to_all<TestType, Long>(at);
           },
           5e-4L);
       for (int r = 0; r < 3; ++r)
         worst.note(std::abs(dual[r].d[static_cast<std::size_t>(k)] - static_cast<double>(slope[r])) / size);
     }
-    auto path = [&](Long t) { return all_moved<TestType, Long>(VecL(x_l + t * rate_l)); };
+    auto path = [&](Long t) { return apply_to_all<TestType, Long>(VecL(x_l + t * rate_l)); };
     const Vec3<Long> first = test::first_derivative(path, 5e-4L),
                      second = test::second_derivative(path, 1.7e-3L);
-    const Vec3<Taylor2<double>> along = all_moved<TestType, Taylor2<double>>(x_t);
+    const Vec3<Taylor2<double>> along = apply_to_all<TestType, Taylor2<double>>(x_t);
     for (int r = 0; r < 3; ++r) {
       worst.note(std::abs(along[r].d - static_cast<double>(first[r])) / size);
       worst_curvature.note(std::abs(along[r].dd - static_cast<double>(second[r])) /
@@ -155,7 +156,7 @@ TEMPLATE_LIST_TEST_CASE("derivatives agree with differences in long double", "[d
   CHECK(worst_curvature < 1e-12);
 }
 
-TEST_CASE("N11: a bend and its derivatives are continuous at no bend", "[deform]") {
+TEST_CASE("N11: a bend and its derivatives are continuous at zero bend", "[deform]") {
   Draws draws(4);
   for (double angle : {0.0, 1e-300, 1e-12, -1e-12, 1e-6, -1e-6}) {
     for (int trial = 0; trial < 20; ++trial) {
@@ -163,23 +164,23 @@ TEST_CASE("N11: a bend and its derivatives are continuous at no bend", "[deform]
       const double h = kHalfHeight, k = angle / h, r = p[0], z = p[2];
       using D = Dual<2>;
       const Vec<D, 2> b{D::variable(angle, 0), D::variable(0.0, 1)};
-      const Vec3<D> moved = Bend::apply<D>(p.cast<D>(), D(h), b);
+      const Vec3<D> result = Bend::apply<D>(p.cast<D>(), D(h), b);
       // Power series in k of r cos kz + (1 - cos kz)/k and sin(kz)/k - r sin kz.
       const double across = r + k * z * z / 2 - k * k * r * z * z / 2 - k * k * k * z * z * z * z / 24;
       const double along = z - k * r * z - k * k * z * z * z / 6;
       const double across_slope = z * z / 2 - k * r * z * z - k * k * z * z * z * z / 8;
       const double along_slope = -r * z - k * z * z * z / 3 + k * k * r * z * z * z / 2;
-      CHECK(moved[0].v == Approx(across).epsilon(1e-14).margin(1e-15));
-      CHECK(moved[2].v == Approx(along).epsilon(1e-14).margin(1e-15));
-      CHECK(moved[0].d[0] == Approx(across_slope / h).epsilon(1e-12).margin(1e-14));
-      CHECK(moved[2].d[0] == Approx(along_slope / h).epsilon(1e-12).margin(1e-14));
-      // Where it bends to does not matter while it does not bend.
-      CHECK(std::abs(moved[1].d[1]) <= std::abs(angle) * 10);
+      CHECK(result[0].v == Approx(across).epsilon(1e-14).margin(1e-15));
+      CHECK(result[2].v == Approx(along).epsilon(1e-14).margin(1e-15));
+      CHECK(result[0].d[0] == Approx(across_slope / h).epsilon(1e-12).margin(1e-14));
+      CHECK(result[2].d[0] == Approx(along_slope / h).epsilon(1e-12).margin(1e-14));
+      // The direction has no effect at zero bend.
+      CHECK(std::abs(result[1].d[1]) <= std::abs(angle) * 10);
     }
   }
 }
 
-TEST_CASE("a bend turns its axis by its angle, and keeps its length", "[deform]") {
+TEST_CASE("a bend rotates its axis by its angle, and conserves its length", "[deform]") {
   for (double angle : {0.3, -1.0, 2.0, 3.1})
     for (double direction : {0.0, 0.7, -2.0}) {
       const Vec<double, 2> b(angle, direction);
@@ -192,32 +193,33 @@ TEST_CASE("a bend turns its axis by its angle, and keeps its length", "[deform]"
     }
 }
 
-TEST_CASE("N11: the inverse of a bend holds to the end of its range, half a turn and past it", "[deform]") {
+TEST_CASE("N11: the inverse of a bend is valid up to the end of its range, half a turn, and beyond",
+          "[deform]") {
   Draws draws(9);
   for (double angle : {3.14, -3.14, kPi, -kPi, kPi / 2, -kPi / 2, 1.5707963, 3.1})
     for (double zeta : {-1.0, -0.999, -0.5, 0.0, 0.5, 0.999, 1.0})
       for (int trial = 0; trial < 40; ++trial) {
         const Vec3<double> p(draws.uniform(-0.2, 0.2), draws.uniform(-0.2, 0.2), zeta * kHalfHeight);
         const Vec<double, 2> b(angle, draws.uniform(-6.3, 6.3));
-        const Vec3<double> moved = Bend::apply<double>(p, kHalfHeight, b);
-        Vec3<double> back = Bend::inverse<double>(moved, kHalfHeight, b);
+        const Vec3<double> result = Bend::apply<double>(p, kHalfHeight, b);
+        Vec3<double> back = Bend::inverse<double>(result, kHalfHeight, b);
         INFO("angle " << angle << " zeta " << zeta << " p " << p.transpose());
-        // Bent by half a turn each way, the two ends meet.
+        // With a bend of half a turn each way, the two ends coincide.
         if (std::abs(angle) == kPi && std::abs(zeta) == 1) back[2] = std::copysign(back[2], zeta);
         CHECK((back - p).norm() <= 1e-14);
       }
 }
 
-TEST_CASE("determinants of the deformations", "[deform]") {
+TEST_CASE("determinants of the deformations agree with closed forms", "[deform]") {
   Draws draws(5);
   for (int trial = 0; trial < 300; ++trial) {
     const Vec3<double> p = body_point(draws);
     const double h = kHalfHeight, zeta = p[2] / h;
-    {  // N12: up to 100 turns
+    {  // twists of up to 100 turns
       const double turns = trial % 3 == 0 ? 0.5 : (trial % 3 == 1 ? 10 : 100);
       CHECK(gradient<Twist>(p, h, Vec<double, 1>(2 * kPi * turns)).determinant() == Approx(1).epsilon(1e-13));
     }
-    {  // N14
+    {  // large shears
       const Vec<double, 2> b(1e3, draws.uniform(-1e3, 1e3));
       CHECK(gradient<Shear>(p, h, b).determinant() == Approx(1).epsilon(1e-13));
     }
@@ -238,9 +240,9 @@ TEST_CASE("determinants of the deformations", "[deform]") {
   }
 }
 
-// The kernel that multiplies a link into a chain: J <- [F J + T_h dh/dq, G_T], and the rates along a motion
-// of the incoming point, of the half height and of the link's own parameters.
-TEMPLATE_LIST_TEST_CASE("a link carries jets as the chain rule says", "[deform]", AllDeforms) {
+// The kernel that applies a link of a chain: J <- [F J + T_h dh/dq, G_T], and the rates for a motion of the
+// incoming point, of the half height and of the link's own parameters.
+TEMPLATE_LIST_TEST_CASE("a link propagates jets by the chain rule", "[deform]", AllDeforms) {
   constexpr int K = deform_size<TestType>;
   Draws draws(6);
   for (int trial = 0; trial < 60; ++trial) {
@@ -251,7 +253,7 @@ TEMPLATE_LIST_TEST_CASE("a link carries jets as the chain rule says", "[deform]"
       dynamic[static_cast<std::size_t>(k)] = draws.uniform(0, 1) < 0.6;
       b_dot[k] = dynamic[static_cast<std::size_t>(k)] ? draws.uniform(-1, 1) : 0.0;
     }
-    // Two columns from the shape, of which the first moves h too, and one from an earlier link.
+    // Two columns belong to the shape, the first of which also changes h, and one to an earlier link.
     HalfHeight<double> half;
     half.h = Taylor2<double>(kHalfHeight, draws.uniform(-1, 1), draws.uniform(-1, 1));
     half.slope.resize(2);

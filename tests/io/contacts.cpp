@@ -1,5 +1,5 @@
-// contacts.csv and joint_impulses.csv: what touched, with which force, and what joints took up of it; broken
-// runs tell the same.
+// contacts.csv and joint_impulses.csv: contacts with their forces, and the impulses on joints; a resumed run
+// writes identical files.
 #include <pliant/io/run/run.h>
 
 #include <sstream>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A box that lies still, and two balls on a rod that fall onto it and the floor.
+/// A box at rest, and two balls on a rod that fall onto it and the floor.
 std::unique_ptr<Scene> falling_scene() {
   auto scene = std::make_unique<Scene>();
   scene->end = 0.4;
@@ -77,7 +77,7 @@ constexpr const char* kTables[] = {kContactsFile, kContactsTable, kJointImpulses
 
 }  // namespace
 
-TEST_CASE("contacts are told with names, places and forces", "[contact]") {
+TEST_CASE("contacts are recorded with names, positions and forces", "[contact]") {
   const NewFolder folder;
   auto scene = falling_scene();
   REQUIRE(run(*scene, folder / "out"));
@@ -103,7 +103,7 @@ TEST_CASE("contacts are told with names, places and forces", "[contact]") {
     if (t > 0.399) weight += std::stod(row[15]);
   }
   CHECK(ball);
-  CHECK(lowest == Approx(0.2));  // it stands on its corners
+  CHECK(lowest == Approx(0.2));  // the box stands on its corners
   CHECK(weight == Approx(9.81 * scene->body.parts()[0]->total_mass()));
   CHECK(t_last == Approx(0.4));
   const auto impulses = table_of(folder / "out" / kJointImpulsesTable);
@@ -115,13 +115,14 @@ TEST_CASE("contacts are told with names, places and forces", "[contact]") {
   for (const char* table : kTables) CHECK(layout.at("tables").contains(table));
   const auto record = nlohmann::json::parse(bytes_of(folder / "out" / kRunFile));
   for (const char* table : kTables) CHECK(record.dump().find(table) != std::string::npos);
-  REQUIRE(run(*falling_scene(), folder / "out", Existing::force));  // all of it is a run's
+  // Existing::force replaces all files of the run
+  REQUIRE(run(*falling_scene(), folder / "out", Existing::force));
   scene->contacts = false;
   REQUIRE(run(*scene, folder / "without"));
   for (const char* table : kTables) CHECK_FALSE(fs::exists(folder / "without" / table));
 }
 
-TEST_CASE("a run that was broken tells the same contacts", "[contact]") {
+TEST_CASE("a resumed run records identical contacts", "[contact]") {
   const NewFolder folder;
   REQUIRE(run(*falling_scene(), folder / "unbroken"));
   for (const long stop : {0L, 7L, 100L, 133L}) {

@@ -1,4 +1,4 @@
-// Which steps are taken and recorded; which frames are asked for.
+// Steps that are taken and recorded, and frames that are requested.
 #include <pliant/io/frame_schedule.h>
 
 #include <cmath>
@@ -13,12 +13,12 @@ namespace frame_schedule_test {
 
 using namespace pliant;
 
-TEST_CASE("N28: steps fill the run, and the last falls on its end") {
-  const FrameSchedule whole(1, 1e-3, 25);
-  CHECK(whole.steps() == 1000);
-  CHECK(whole.step() == 1e-3);
-  CHECK(whole.end() == 1);
-  CHECK(whole.frames() == 26);
+TEST_CASE("N28: steps fill the run, and the last ends at its end") {
+  const FrameSchedule one_second(1, 1e-3, 25);
+  CHECK(one_second.steps() == 1000);
+  CHECK(one_second.step() == 1e-3);
+  CHECK(one_second.end() == 1);
+  CHECK(one_second.frames() == 26);
   const FrameSchedule third(1, 0.3, 25);
   CHECK(third.steps() == 4);
   CHECK(third.step() == 0.25);
@@ -47,7 +47,7 @@ TEST_CASE("I33, N24: impossible runs are refused with the reason") {
   CHECK_THROWS_AS(FrameSchedule(1, 0.1, 1e300), std::invalid_argument);
 }
 
-TEST_CASE("N30: a frame is a recorded step, or lies inside a recorded step") {
+TEST_CASE("N30: a frame is a recorded step, or between two recorded steps") {
   for (const double step : {1e-3, 0.0007, 0.01, 0.4, 1.0 / 3})
     for (const double rate : {1.0, 24.0, 25.0, 60.0, 1000.0, 2999.0}) {
       const FrameSchedule schedule(1.3, step, rate);
@@ -70,7 +70,7 @@ TEST_CASE("N30: a frame is a recorded step, or lies inside a recorded step") {
     }
 }
 
-TEST_CASE("ranges of frames") {
+TEST_CASE("ranges of frames are parsed, and divided into shards") {
   const auto frames = [](const std::string& text) { return FrameRange::parse(text).frames(10); };
   CHECK(frames(":").size() == 10);
   CHECK(frames("2:5:2") == std::vector<std::int64_t>{2, 4});
@@ -80,10 +80,10 @@ TEST_CASE("ranges of frames") {
   for (const char* bad : {"", "a", "1:2:0", "-1", "1:2:3:4", "1.5", " 1", "0:5:-1", "5:3", "5:5"})
     CHECK_THROWS_AS(FrameRange::parse(bad), std::invalid_argument);
   for (const char* beyond : {"10", "0:11", "12:"}) CHECK_THROWS_AS(frames(beyond), std::invalid_argument);
-  // Far more frames than files can be named for are refused before their numbers take memory.
-  constexpr std::int64_t most = FrameRange::kMaxFrames, many = 1000000000000;
-  CHECK(FrameRange().size(most) == most);
-  CHECK_THROWS_AS(FrameRange().frames(most + 1), std::invalid_argument);
+  // Numbers of frames above the limit are refused before memory is allocated.
+  constexpr std::int64_t limit = FrameRange::kMaxFrames, many = 1000000000000;
+  CHECK(FrameRange().size(limit) == limit);
+  CHECK_THROWS_AS(FrameRange().frames(limit + 1), std::invalid_argument);
   CHECK_THROWS_AS(FrameRange().frames(many), std::invalid_argument);
   CHECK(FrameRange::parse("::9223372036854775807").frames(many) == std::vector<std::int64_t>{0});
   FrameRange few = FrameRange::parse(":");

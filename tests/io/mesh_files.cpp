@@ -1,4 +1,4 @@
-// OBJ and PLY: every number comes back, groups and indices are right.
+// OBJ and PLY files: every number is read back exactly; groups and indices are correct.
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -89,27 +89,27 @@ TEST_CASE("an OBJ file reads back exactly") {
   CHECK(mtl_text(meshes).find("newmtl wall\nKd 0.8 0.5 0.2\n") != std::string::npos);
 }
 
-TEST_CASE("a rigid part moved is the surface evaluated anew") {
+TEST_CASE("the transformed mesh of a rigid part equals a new evaluation of its surface") {
   const auto scene = free_top();
   Simulation simulation(scene->body, "rk4");
   FrameMeshes frame(*scene, simulation.model());
   for (int i = 0; i < 3; ++i) {
     simulation.step(0.1);
-    const TriangleMesh& moved = frame.at(simulation.state())[0].mesh;
+    const TriangleMesh& transformed = frame.at(simulation.state())[0].mesh;
     const Part& part = *scene->body.parts()[0];
-    const TriangleMesh anew =
+    const TriangleMesh evaluated =
         Surface(part, 8).world_mesh(part, simulation.model().values(simulation.state(), 0),
                                     simulation.model().position(simulation.state(), 0),
                                     simulation.model().orientation(simulation.state(), 0));
-    CHECK((moved.x - anew.x).cwiseAbs().maxCoeff() < 1e-15);
-    CHECK(moved.triangles == anew.triangles);
+    CHECK((transformed.x - evaluated.x).cwiseAbs().maxCoeff() < 1e-15);
+    CHECK(transformed.triangles == evaluated.triangles);
     const Eigen::AlignedBox3d box = frame.bounds(simulation.state());
-    CHECK((box.min() - anew.x.rowwise().minCoeff()).cwiseAbs().maxCoeff() < 1e-15);
-    CHECK((box.max() - anew.x.rowwise().maxCoeff()).cwiseAbs().maxCoeff() < 1e-15);
+    CHECK((box.min() - evaluated.x.rowwise().minCoeff()).cwiseAbs().maxCoeff() < 1e-15);
+    CHECK((box.max() - evaluated.x.rowwise().maxCoeff()).cwiseAbs().maxCoeff() < 1e-15);
   }
 }
 
-TEST_CASE("a PLY file has the size and the numbers its header tells") {
+TEST_CASE("a PLY file has the size and the numbers of its header") {
   const auto scene = pulled_scene();
   const Simulation simulation(scene->body);
   FrameMeshes frame(*scene, simulation.model());
@@ -132,14 +132,14 @@ TEST_CASE("a PLY file has the size and the numbers its header tells") {
   std::memcpy(n, bytes.data() + data + sizeof x, sizeof n);
   CHECK(Vec3<double>(x[0], x[1], x[2]) == meshes[0].mesh.x.col(0));
   CHECK(std::abs(std::hypot(n[0], n[1], n[2]) - 1) < 1e-6);
-  // The last face is of the last part.
+  // The last face belongs to the last part.
   std::int32_t corner = 0;
   std::memcpy(&corner, bytes.data() + bytes.size() - 4, 4);
   CHECK(corner == vertices - meshes.back().mesh.x.cols() +
                       meshes.back().mesh.triangles(2, meshes.back().mesh.triangles.cols() - 1));
 }
 
-TEST_CASE("frames become files of their number") {
+TEST_CASE("frames become files with their number") {
   const NewFolder folder;
   const auto scene = free_top();
   scene->appearance[0].resolution = 1;
@@ -158,7 +158,7 @@ TEST_CASE("frames become files of their number") {
   CHECK(fs::exists(folder / "m" / "frame_000010.obj"));
   CHECK(fs::exists(folder / "m" / "frame_000003.ply"));
   CHECK(fs::exists(folder / "m" / "parts.mtl"));
-  // The part moves at 0.5 m/s: after 1 s it is half a metre on.
+  // The part moves at 0.5 m/s: after 1 s it is displaced by half a metre.
   const ReadObj first = read_obj(bytes_of(folder / "m" / "frame_000000.obj")),
                 last = read_obj(bytes_of(folder / "m" / "frame_000010.obj"));
   Vec3<double> shift = Vec3<double>::Zero();
@@ -169,7 +169,7 @@ TEST_CASE("frames become files of their number") {
 
 namespace {
 
-/// A soft solid with curved elements that turns, one that only changes its radius, and a rigid one.
+/// A soft solid with curved elements and a rotation, a part with a dynamic radius, and a rigid part.
 std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   auto scene = std::make_unique<Scene>();
   scene->body.gravity.setZero();
@@ -179,7 +179,7 @@ std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
   settings.resolution = 2;
   settings.order = 2;
   settings.energies = {local_law("elastic", {1e5, 0.3})};
-  // Free of rigid motion: a stretch along the axes.
+  // A displacement without rigid motion: a stretch along the axes.
   settings.displacement = [](const Vec3<double>& X) { return Vec3<double>(0.1 * X); };
   soft.deform_locally(std::move(settings));
   Part& ball = scene->body.add(make_part("ball", "sphere", {}, 1000));
@@ -193,7 +193,7 @@ std::unique_ptr<Scene> soft_scene(SurfaceQuantity by) {
 
 }  // namespace
 
-TEST_CASE("values of the surface: a known stretch, by nodes or by parameters; nothing for rigid motion") {
+TEST_CASE("values of the surface: a known stretch by nodes or by parameters; zero for rigid motion") {
   for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
     const auto scene = soft_scene(by);
     Simulation simulation(scene->body, "rk4");
@@ -227,25 +227,25 @@ TEST_CASE("values of the surface: a known stretch, by nodes or by parameters; no
   }
 }
 
-TEST_CASE("a soft part that only moves has values of rounding") {
-  auto moved = std::make_unique<Scene>();
-  moved->body.gravity.setZero();
-  Part& soft = moved->body.add(make_part("soft", "ellipsoid", {}, 1000));
+TEST_CASE("a soft part in pure translation has values of rounding size") {
+  auto scene = std::make_unique<Scene>();
+  scene->body.gravity.setZero();
+  Part& soft = scene->body.add(make_part("soft", "ellipsoid", {}, 1000));
   LocalSettings settings;
   settings.resolution = 2;
   settings.energies = {local_law("neo_hookean", {1e5, 0.3})};
   soft.deform_locally(std::move(settings)).velocity({5, -3, 2}, {0, 0, 0});
-  moved->appearance.resize(1);
+  scene->appearance.resize(1);
   for (const SurfaceQuantity by : {SurfaceQuantity::strain, SurfaceQuantity::displacement}) {
-    moved->coloring = Coloring{by, {}, {}};
-    Simulation simulation(moved->body, "rk4");
-    FrameMeshes frame(*moved, simulation.model());
+    scene->coloring = Coloring{by, {}, {}};
+    Simulation simulation(scene->body, "rk4");
+    FrameMeshes frame(*scene, simulation.model());
     for (int i = 0; i < 50; ++i) simulation.step(1e-3);
     CHECK(frame.at(simulation.state())[0].values.cwiseAbs().maxCoeff() < 1e-12);
   }
 }
 
-TEST_CASE("only the nodes on the surface of a soft solid are written, all are kept") {
+TEST_CASE("only surface nodes of a soft solid are in its mesh, while the state has all nodes") {
   const auto scene = soft_scene(SurfaceQuantity::strain);
   const Simulation simulation(scene->body);
   FrameMeshes frame(*scene, simulation.model());
@@ -271,7 +271,7 @@ TEST_CASE("only the nodes on the surface of a soft solid are written, all are ke
   CHECK(static_cast<Eigen::Index>(obj.x.size()) == vertices);
 }
 
-TEST_CASE("PLY vertices carry the values under their name") {
+TEST_CASE("PLY vertices have the values under their name") {
   const NewFolder folder;
   const auto scene = soft_scene(SurfaceQuantity::strain);
   const Simulation simulation(scene->body);

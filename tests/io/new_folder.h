@@ -1,4 +1,4 @@
-// A new folder for the files of a test, gone at its end.
+// A new folder for the files of a test, removed at its end.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Tables: round trips, going on after a cut, and what a reader makes of damage.
+// NumPy tables: round trips, continuation after a truncation, and damaged files.
 #include <pliant/io/format/npy.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ TEST_CASE("a table reads back bit for bit") {
   }
 }
 
-TEST_CASE("the header is NumPy's") {
+TEST_CASE("the header is that of NumPy") {
   const NewFolder folder;
   {
     NpyWriter writer = NpyWriter::create(folder / "q.npy", 3);
@@ -69,7 +69,7 @@ TEST_CASE("the header is NumPy's") {
   CHECK(bytes[127] == '\n');
 }
 
-TEST_CASE("I53: rows that were not flushed do not count, and half a row neither") {
+TEST_CASE("I53: rows that were not flushed, and partial rows, are ignored") {
   const NewFolder folder;
   const fs::path file = folder / "v.npy";
   NpyWriter writer = NpyWriter::create(file, 2);
@@ -78,7 +78,7 @@ TEST_CASE("I53: rows that were not flushed do not count, and half a row neither"
   append_rows(writer, 2, 5, 9);
   CHECK(NpyReader(file).rows() == 5);
   const std::string whole = bytes_of(file);
-  // Killed between writing rows and the header that counts them.
+  // The writer was killed between the rows and the header that counts them.
   set_bytes(file, whole + std::string(100, 'x'));
   CHECK(NpyReader(file).rows() == 5);
   for (std::size_t cut = 128; cut <= whole.size(); ++cut) {
@@ -91,7 +91,7 @@ TEST_CASE("I53: rows that were not flushed do not count, and half a row neither"
   }
 }
 
-TEST_CASE("going on cuts off what comes behind") {
+TEST_CASE("a resumed table drops the rows after the resume position") {
   const NewFolder folder;
   const fs::path file = folder / "v.npy", unbroken = folder / "u.npy";
   {
@@ -154,7 +154,7 @@ TEST_CASE("I51: a full disk is an error at once") {
   CHECK_THROWS_AS(WholeFile("/dev/full/file"), std::system_error);
 }
 
-TEST_CASE("a whole file replaces a link and leaves nothing when it is given up") {
+TEST_CASE("a new file replaces a link, and an abandoned file leaves nothing") {
   const NewFolder folder;
   set_bytes(folder / "precious", "data");
   fs::create_symlink(folder / "precious", folder / "out.txt");

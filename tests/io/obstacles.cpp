@@ -1,4 +1,4 @@
-// Obstacles in the files of a run: the mesh beside the scene, and the surfaces of frames, of planes too.
+// Obstacles in the files of a run: the mesh beside the scene, and the surfaces in frames, including planes.
 #include "catch.h"
 
 #include <memory>
@@ -18,7 +18,8 @@ using namespace pliant;
 
 namespace {
 
-/// A ball above a roof of two triangles, whose corners are no round numbers, and a plate that goes.
+/// A ball above a roof of two triangles, whose coordinates are not round numbers, and a plate that is
+/// removed.
 std::string scene_text() {
   return R"json({
     "time": {"end": 0.1, "step": 0.005},
@@ -62,7 +63,7 @@ TEST_CASE("a run keeps the meshes of its obstacles, and reads them back to the l
   CHECK(is_run_file(kept));
   CHECK_FALSE(is_run_file("roof.ply"));
   CHECK_FALSE(std::filesystem::exists(folder / "run" / recorded_mesh_name("plate")));
-  std::filesystem::remove_all(folder / "meshes");  // a run needs nothing but its folder
+  std::filesystem::remove_all(folder / "meshes");  // a run needs only its own folder
   const std::unique_ptr<Scene> again = read(folder / "run" / kSceneFile, MeshFiles::of_a_run);
   CHECK(again->hash == scene->hash);
   REQUIRE(again->body.contact.obstacles.size() == 3);
@@ -74,7 +75,7 @@ TEST_CASE("a run keeps the meshes of its obstacles, and reads them back to the l
   CHECK(read(folder / "roof.json")->hash != scene->hash);
 }
 
-TEST_CASE("obstacles are among the surfaces of a frame while they are there, open ones from both sides") {
+TEST_CASE("obstacles are among the surfaces of a frame while they are active, open ones with both sides") {
   const NewFolder folder;
   write_scene(folder, "0.1234567 2.1 0.3");
   const std::unique_ptr<Scene> scene = read(folder / "roof.json");
@@ -87,7 +88,7 @@ TEST_CASE("obstacles are among the surfaces of a frame while they are there, ope
   CHECK(meshes[1].color == Color{1, 0, 0});
   CHECK(meshes[1].mesh.triangles.cols() == 4);
   CHECK(meshes[1].mesh.x.cols() == 4);
-  // Corners come in an order of the importer's own.
+  // The importer chooses the order of the vertices.
   const Eigen::Matrix3Xd off = meshes[1].mesh.x.colwise() - Vec3<double>(0.47, 0.61, 0.3);
   CHECK(off.colwise().norm().minCoeff() < 1e-7);
   CHECK((meshes[1].mesh.normals.col(0) + meshes[1].mesh.normals.col(2)).norm() == 0);
@@ -102,7 +103,7 @@ TEST_CASE("obstacles are among the surfaces of a frame while they are there, ope
   CHECK(frame.at(state).size() == 3);
 }
 
-TEST_CASE("planes that are shown are among the surfaces of a frame while they are there, about their point") {
+TEST_CASE("visible planes are among the surfaces of a frame while they are active, centred at their point") {
   Diagnostics diagnostics;
   const std::unique_ptr<Scene> scene = parse_scene("s.json", R"json({
     "time": {"end": 1},

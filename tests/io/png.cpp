@@ -1,4 +1,4 @@
-// PNG files read back by libpng, and failures that leave nothing behind.
+// PNG files read back by libpng, and failures that leave no file.
 #include <png.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A new folder, gone at the end.
+// A new folder, removed at the end.
 struct Folder {
   fs::path path;
   Folder() {
@@ -70,7 +70,7 @@ std::string bytes_of(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("A picture survives the way through a PNG file") {
+TEST_CASE("a picture is read back unchanged from a PNG file") {
   const Folder folder;
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(640, 480), std::pair(33, 7), std::pair(1, 300)}) {
@@ -84,7 +84,7 @@ TEST_CASE("A picture survives the way through a PNG file") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("The same picture gives the same file") {
+TEST_CASE("equal pictures give equal files") {
   const Folder folder;
   write_png(pattern(123, 45), folder.path / "a.png");
   write_png(pattern(123, 45), folder.path / "b.png");
@@ -92,7 +92,7 @@ TEST_CASE("The same picture gives the same file") {
   CHECK(bytes_of(folder.path / "a.png") == bytes_of(folder.path / "b.png"));
 }
 
-TEST_CASE("A PNG that cannot be written leaves nothing and says where and why") {
+TEST_CASE("a PNG file that cannot be written leaves nothing, and the error gives place and reason") {
   const Folder folder;
   const Image image = pattern(8, 8);
   const auto reason = [&](const fs::path& path) {
@@ -126,7 +126,7 @@ TEST_CASE("A PNG that cannot be written leaves nothing and says where and why") 
   }
 }
 
-TEST_CASE("An image whose size does not fit its bytes is refused") {
+TEST_CASE("an image whose size does not fit its bytes is refused") {
   const Folder folder;
   Image image = pattern(4, 4);
   image.rgb.pop_back();
@@ -136,7 +136,7 @@ TEST_CASE("An image whose size does not fit its bytes is refused") {
   CHECK(folder.entries() == 0);
 }
 
-TEST_CASE("A file is replaced as a whole") {
+TEST_CASE("a file is replaced as a whole") {
   const Folder folder;
   const fs::path path = folder.path / "data";
   write_whole_file(path, "long contents", 13);

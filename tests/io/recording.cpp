@@ -1,4 +1,4 @@
-// Recordings: states come back to the last bit, damage is found, pictures between steps are smooth.
+// Recordings: states are read back to the last bit, damage is detected, pictures between steps are smooth.
 #include <pliant/io/recording.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool same_bits(const State& a, const State& b) {
+bool bit_equal(const State& a, const State& b) {
   return a.start == b.start && a.h == b.h && a.step == b.step && a.q == b.q && a.v == b.v &&
          a.work == b.work && a.at_limit == b.at_limit;
 }
@@ -50,7 +50,7 @@ std::vector<State> record(const fs::path& folder, Scene& scene, int steps, int s
 
 }  // namespace
 
-TEST_CASE("recorded states come back to the last bit, limits and works included") {
+TEST_CASE("recorded states are read back to the last bit, with limits and works") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   const std::vector<State> states = record(folder.path, *scene, 60, 3);
@@ -59,14 +59,14 @@ TEST_CASE("recorded states come back to the last bit, limits and works included"
   REQUIRE(recording.rows() == static_cast<std::int64_t>(states.size()));
   bool limited = false;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    CHECK(same_bits(recording.state(static_cast<std::int64_t>(i)), states[i]));
+    CHECK(bit_equal(recording.state(static_cast<std::int64_t>(i)), states[i]));
     for (const std::int8_t at : states[i].at_limit) limited = limited || at != 0;
   }
   CHECK(limited);
   CHECK(states.back().work.cwiseAbs().maxCoeff() > 0);
 }
 
-TEST_CASE("recorded sleepers sleep on") {
+TEST_CASE("recorded sleeping bodies continue to sleep") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   scene->body.plane("floor", Vec3<double>(0, 0, -5), {0, 0, 1});
@@ -103,7 +103,7 @@ std::unique_ptr<Scene> standing_scene() {
 
 }  // namespace
 
-TEST_CASE("recorded supports come back, and damage in them is found") {
+TEST_CASE("recorded contact caches are read back, and damage in them is detected") {
   const NewFolder folder;
   const auto scene = standing_scene();
   const std::vector<State> states = record(folder.path, *scene, 12, 3);
@@ -116,7 +116,8 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
       CHECK(hash(recording.state(static_cast<std::int64_t>(i))) == hash(states[i]));
     CHECK(states.back().contact_cache.size() > 4);
   }
-  // Cut off within the last state's, it is one state less; going on from there makes the same file again.
+  // If the cache of the last state is truncated, the recording has one state less; resuming from there writes
+  // an identical file.
   set_bytes(folder / kContactCacheFile, whole.substr(0, whole.size() - 8));
   const auto rows = static_cast<std::int64_t>(states.size() - 1);
   CHECK(Recording(folder.path, model).rows() == rows);
@@ -125,7 +126,7 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
   writer.flush();
   CHECK(bytes_of(folder / kContactCacheFile) == whole);
   CHECK(hash(Recording(folder.path, model).state(rows)) == hash(states.back()));
-  for (const std::size_t from_end : {5, 75, 85}) {  // a force, and what it is between
+  for (const std::size_t from_end : {5, 75, 85}) {  // a force, and the identity of the contact
     std::string bytes = whole;
     bytes[bytes.size() - from_end] = static_cast<char>(bytes[bytes.size() - from_end] ^ 0x40);
     set_bytes(folder / kContactCacheFile, bytes);
@@ -133,7 +134,7 @@ TEST_CASE("recorded supports come back, and damage in them is found") {
     CHECK_NOTHROW(Recording(folder.path, model).state(0));
   }
   set_bytes(folder / kContactCacheFile, whole);
-  // Which of them are a state's: a bit that flips there spoils no other state.
+  // The range of the cache that belongs to a state: a flipped bit there damages no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
   for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;
@@ -169,7 +170,7 @@ TEST_CASE("the layout names every column") {
   CHECK(layout.at("frames").at("rate") == 50);
 }
 
-TEST_CASE("I53: after a kill the shortest table tells how many states there are") {
+TEST_CASE("I53: after a kill the shortest table determines the number of states") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   const std::vector<State> states = record(folder.path, *scene, 20, 2);
@@ -182,15 +183,15 @@ TEST_CASE("I53: after a kill the shortest table tells how many states there are"
     set_bytes(folder / table, bytes.substr(0, 128 + row * static_cast<std::size_t>(rows) + 5));
     const Recording recording(folder.path, model);
     REQUIRE(recording.rows() == rows);
-    CHECK(same_bits(recording.state(rows - 1), states[static_cast<std::size_t>(rows - 1)]));
+    CHECK(bit_equal(recording.state(rows - 1), states[static_cast<std::size_t>(rows - 1)]));
   }
   RecordingWriter writer = RecordingWriter::resume(folder.path, model, rows);
   writer.append(states[static_cast<std::size_t>(rows)]);
   writer.flush();
-  CHECK(same_bits(Recording(folder.path, model).state(rows), states[static_cast<std::size_t>(rows)]));
+  CHECK(bit_equal(Recording(folder.path, model).state(rows), states[static_cast<std::size_t>(rows)]));
 }
 
-TEST_CASE("I55: one bit that flipped is found") {
+TEST_CASE("I55: one flipped bit is detected") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   record(folder.path, *scene, 4, 1);
@@ -210,7 +211,7 @@ TEST_CASE("I55: one bit that flipped is found") {
   }
 }
 
-TEST_CASE("I55: a recording of another scene is refused by the column that differs") {
+TEST_CASE("I55: a recording of another scene is refused with the column that differs") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   record(folder.path, *scene, 4, 1);
@@ -222,7 +223,7 @@ TEST_CASE("I55: a recording of another scene is refused by the column that diffe
   CHECK_THROWS_AS(Recording(folder.path, model), RecordingMismatch);
 }
 
-TEST_CASE("pictures between two steps lie on the motion to fourth order") {
+TEST_CASE("pictures between two steps follow the motion to fourth order") {
   double last = 0;
   for (const double h : {0.04, 0.02}) {
     const NewFolder folder;
@@ -231,7 +232,7 @@ TEST_CASE("pictures between two steps lie on the motion to fourth order") {
     record(folder.path, *scene, static_cast<int>(std::lround(0.4 / h)), 1);
     const Model model(scene->body);
     const Recording recording(folder.path, model);
-    // The truth from much smaller steps.
+    // Reference with much smaller steps.
     const auto fine = free_top();
     Simulation simulation(fine->body, "rk4");
     double worst = 0;
@@ -247,7 +248,7 @@ TEST_CASE("pictures between two steps lie on the motion to fourth order") {
   CHECK(last < 1e-6);
 }
 
-TEST_CASE("pictures between two steps to a tolerance are as near to the motion as the steps are") {
+TEST_CASE("with error control, pictures between two steps are as accurate as the steps") {
   auto errors = [](const char* method, double tolerance, double stiffness) {
     struct {
       double at_steps = 0, between = 0;
@@ -295,13 +296,13 @@ TEST_CASE("pictures between two steps to a tolerance are as near to the motion a
     CAPTURE(worst.at_steps, worst.between);
     CHECK(worst.between < 1.5 * worst.at_steps);
   }
-  // Where no explicit step follows it is interpolated.
+  // Stiff motion, which no explicit step resolves, is interpolated.
   const auto worst = errors("esdirk", 1e-5, 1e10);
   CAPTURE(worst.at_steps, worst.between);
   CHECK(worst.between < 3 * worst.at_steps);
 }
 
-TEST_CASE("pictures between long steps show what rests as it rests, and what rolls on what it rolls on") {
+TEST_CASE("pictures between long steps show resting parts at rest, and rolling parts on their support") {
   const NewFolder folder;
   MultiBody body;
   body.contact.active = true;
@@ -331,8 +332,8 @@ TEST_CASE("pictures between long steps show what rests as it rests, and what rol
     const State state = recording.at(t);
     CAPTURE(t);
     CHECK((simulation.model().position(state, 2) - box).norm() < 1e-9);
-    const double rolled = 0.5 * 5.0 / 7 * 9.81 * std::sin(0.3) * t * t;
-    CHECK((simulation.model().position(state, 1) - 0.2 * up - rolled * down).norm() < 1e-4);
+    const double distance = 0.5 * 5.0 / 7 * 9.81 * std::sin(0.3) * t * t;
+    CHECK((simulation.model().position(state, 1) - 0.2 * up - distance * down).norm() < 1e-4);
   }
 }
 
@@ -343,12 +344,12 @@ TEST_CASE("a recorded time gives the recorded state itself") {
   const Model model(scene->body);
   const Recording recording(folder.path, model);
   for (const State& state : states) {
-    CHECK(same_bits(recording.at(state.time()), state));
-    CHECK(same_bits(recording.at(std::nextafter(state.time(), 0)), state));
-    CHECK(same_bits(recording.at(std::nextafter(state.time(), 9)), state));
+    CHECK(bit_equal(recording.at(state.time()), state));
+    CHECK(bit_equal(recording.at(std::nextafter(state.time(), 0)), state));
+    CHECK(bit_equal(recording.at(std::nextafter(state.time(), 9)), state));
   }
-  CHECK(same_bits(recording.at(-1), states.front()));
-  CHECK(same_bits(recording.at(99), states.back()));
+  CHECK(bit_equal(recording.at(-1), states.front()));
+  CHECK(bit_equal(recording.at(99), states.back()));
 }
 
 TEST_CASE("I59: a scene without parts records its times") {

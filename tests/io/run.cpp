@@ -1,5 +1,5 @@
-// Runs in their folders: broken and resumed ones end with the same bytes as unbroken ones, folders are never
-// shared or mixed, and run.json tells the truth about every ending.
+// Runs in their folders: interrupted and resumed runs write files identical to those of uninterrupted ones,
+// folders are never shared or mixed, and run.json reports every kind of ending correctly.
 #include <pliant/io/run/run.h>
 
 #include <algorithm>
@@ -38,20 +38,20 @@ nlohmann::json record_of(const fs::path& folder) {
   return nlohmann::json::parse(bytes_of(folder / kRunFile));
 }
 
-struct How {
+struct RunSettings {
   Existing existing = Existing::refuse;
   int threads = 1;
   long stop_after = -1;  // steps
 };
 
-bool run(Scene& scene, const fs::path& folder, const How& how = {}) {
+bool run(Scene& scene, const fs::path& folder, const RunSettings& settings = {}) {
   Progress silent;
   RunOptions options;
   options.folder = folder;
-  options.existing = how.existing;
-  options.threads = how.threads;
+  options.existing = settings.existing;
+  options.threads = settings.threads;
   long steps = 0;
-  if (how.stop_after >= 0) options.stop = [&] { return steps++ >= how.stop_after; };
+  if (settings.stop_after >= 0) options.stop = [&] { return steps++ >= settings.stop_after; };
   Run session(scene, options, silent);
   const bool complete = session.simulate();
   session.finish(complete ? RunRecord::Status::complete : RunRecord::Status::stopped,
@@ -67,7 +67,7 @@ std::unique_ptr<Scene> scene_for(const std::string& integrator) {
 
 }  // namespace
 
-TEST_CASE("N66: any number of threads gives the same bytes") {
+TEST_CASE("N66: any number of threads gives identical files") {
   const NewFolder folder;
   for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
     std::string first;
@@ -81,8 +81,8 @@ TEST_CASE("N66: any number of threads gives the same bytes") {
 }
 
 TEST_CASE(
-    "N67: stopped anywhere and resumed, with other threads, the run ends with the bytes of the unbroken "
-    "one",
+    "N67: a run that is stopped anywhere and resumed with other threads writes files identical to the "
+    "unbroken run",
     "[long]") {
   const NewFolder folder;
   for (const char* integrator : {"semi_implicit_euler", "rk4", "linearly_implicit"}) {
@@ -105,7 +105,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("I53: killed at any moment, the run can be resumed to the same bytes") {
+TEST_CASE("I53: a run that is killed at any time can be resumed to identical files") {
   const NewFolder folder;
   const fs::path unbroken = folder / "unbroken", killed = folder / "killed";
   const auto long_scene = [] {
@@ -144,7 +144,7 @@ TEST_CASE("I53: killed at any moment, the run can be resumed to the same bytes")
   CHECK(results_of(killed) == results_of(unbroken));
 }
 
-TEST_CASE("a complete run goes on to a later end as if it had never stopped") {
+TEST_CASE("a complete run continues to a later end as if it had never stopped") {
   const NewFolder folder;
   const auto until = [](double end) {
     auto scene = pulled_scene();
@@ -152,10 +152,10 @@ TEST_CASE("a complete run goes on to a later end as if it had never stopped") {
     return scene;
   };
   REQUIRE(run(*until(0.2), folder / "a"));
-  REQUIRE(run(*until(0.13), folder / "b"));  // not on a frame
+  REQUIRE(run(*until(0.13), folder / "b"));  // not at a frame
   REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));
   CHECK(results_of(folder / "a") == results_of(folder / "b"));
-  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));  // nothing left to do
+  REQUIRE(run(*until(0.2), folder / "b", {Existing::resume}));  // nothing remains to be done
   CHECK(results_of(folder / "a") == results_of(folder / "b"));
   CHECK_THROWS_AS(run(*until(0.1), folder / "b", {Existing::resume}), RecordingMismatch);
 }
@@ -170,8 +170,7 @@ std::unique_ptr<Scene> scene_to(double tolerance, double end) {
 }
 }  // namespace
 
-TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywhere or gone on with",
-          "[long]") {
+TEST_CASE("N67: runs with error control also write identical files when stopped or extended", "[long]") {
   const NewFolder folder;
   const fs::path unbroken = folder / "unbroken", longer = folder / "longer";
   REQUIRE(run(*scene_to(1e-7, 0.2), unbroken));
@@ -192,7 +191,7 @@ TEST_CASE("N67: runs to a tolerance end with the same bytes too, stopped anywher
   CHECK_THROWS_AS(run(*scene_to(1e-6, 0.2), longer, {Existing::resume}), RecordingMismatch);
 }
 
-TEST_CASE("N67: so does a stiff shell, whose steps are as long as its factors hold") {
+TEST_CASE("N67: a stiff shell, whose steps depend on its reused factors, also gives identical files") {
   auto scene_until = [](double end) {
     auto scene = std::make_unique<Scene>();
     scene->name = "shell";
@@ -243,7 +242,7 @@ TEST_CASE("N57: a joint that pulls a part into a plane is named with both") {
   CHECK(notes.find("unless ball 'pull' prevents it") != std::string::npos);
 }
 
-TEST_CASE("I53: a run in which bodies stand goes on from where it was stopped as if it had not been") {
+TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, gives identical files") {
   auto scene_of = [] {
     auto scene = pulled_scene();
     scene->body.contact.active = true;
@@ -267,8 +266,8 @@ TEST_CASE("I53: a run in which bodies stand goes on from where it was stopped as
   CHECK(NpyReader(folder / "whole" / kContactCacheFile).rows() > 10);
 }
 
-TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its steps") {
-  // A free top, and a ball that bounces: its steps are as long as its flights.
+TEST_CASE("pictures of a run with error control follow the motion, for all step lengths") {
+  // A free top, and a bouncing ball whose steps are as long as its flights.
   auto scene_of = [](double tolerance) {
     auto scene = free_top();
     scene->tolerance = tolerance;
@@ -302,10 +301,10 @@ TEST_CASE("pictures of a run to a tolerance lie on the motion, however long its 
   CHECK(worst < 5e-3);
 }
 
-TEST_CASE("the estimated error of a run is its error") {
+TEST_CASE("the estimated error of a run agrees with its true error") {
   const NewFolder folder;
   Progress silent;
-  auto measured = [&](const std::string& name, Scene& scene) {
+  auto check_error = [&](const std::string& name, Scene& scene) {
     RunOptions options;
     options.folder = folder / name;
     Run session(scene, options, silent);
@@ -327,13 +326,13 @@ TEST_CASE("the estimated error of a run is its error") {
   auto controlled = free_top(), fixed = free_top();
   controlled->tolerance = 1e-7;
   controlled->integrator = "dormand_prince";
-  measured("tolerance", *controlled);
+  check_error("tolerance", *controlled);
   fixed->integrator = "rk4";
   fixed->step = 0.01;
-  measured("step", *fixed);
+  check_error("step", *fixed);
 }
 
-TEST_CASE("the estimated error tells of joints' forces and gaps, and of contact by half its steps") {
+TEST_CASE("the error estimate covers joint forces and gaps, and contact by steps of half the length") {
   const NewFolder folder;
   Progress silent;
   auto scene_of = [](const char* name) {
@@ -351,40 +350,40 @@ TEST_CASE("the estimated error tells of joints' forces and gaps, and of contact 
     REQUIRE(session.simulate());
     return session.estimate_error();
   };
-  // A pendulum: what holds it is m g cos + m v^2 / l, which one more accurate by far tells.
-  auto hang = [](MultiBody& body) {
+  // A pendulum: the joint force m g cos + m v^2 / l is compared with a far more accurate run.
+  auto add_pendulum = [](MultiBody& body) {
     Part& bob = body.add(make_part("bob", "sphere", {}, 1000));
     bob.rest({{"r", 0.1}}).place({0.5, 0, 0});
     body.ball("pivot", world(0, 0, 0), point(bob, 0, kPi));
     bob.place({0.1, 0, 0});
   };
   auto pendulum = scene_of("pendulum");
-  hang(pendulum->body);
+  add_pendulum(pendulum->body);
   pendulum->integrator = "rk4";
   pendulum->step = 0.02;
-  const ErrorEstimate of_joint = estimate(*pendulum);
+  const ErrorEstimate joint_estimate = estimate(*pendulum);
   MultiBody exact_body;
-  hang(exact_body);
+  add_pendulum(exact_body);
   Simulation exact(exact_body, "dop853", 1, 1e-12), coarse(pendulum->body, "rk4");
-  Workspace<double> of_exact, of_coarse;
+  Workspace<double> exact_work, coarse_work;
   double worst = 0;
   for (int i = 1; i <= 25; ++i) {
     coarse.step(0.02);
     while (exact.time() < coarse.time()) exact.step_up_to(coarse.time());
-    exact.dynamics().ledger(exact.state(), of_exact);
-    coarse.dynamics().ledger(coarse.state(), of_coarse);
-    worst = std::max(worst, (exact.dynamics().joint_wrench(exact.time(), 0, of_exact).force -
-                             coarse.dynamics().joint_wrench(coarse.time(), 0, of_coarse).force)
+    exact.dynamics().ledger(exact.state(), exact_work);
+    coarse.dynamics().ledger(coarse.state(), coarse_work);
+    worst = std::max(worst, (exact.dynamics().joint_wrench(exact.time(), 0, exact_work).force -
+                             coarse.dynamics().joint_wrench(coarse.time(), 0, coarse_work).force)
                                 .norm());
   }
-  CAPTURE(worst, of_joint.joint_force, of_joint.gap);
-  CHECK(of_joint.joint_force > 0.3 * worst);
-  CHECK(of_joint.joint_force < 2 * worst);
-  CHECK(of_joint.joint_torque == 0);
-  CHECK(of_joint.gap < 1e-14);
-  CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == of_joint.joint_force);
+  CAPTURE(worst, joint_estimate.joint_force, joint_estimate.gap);
+  CHECK(joint_estimate.joint_force > 0.3 * worst);
+  CHECK(joint_estimate.joint_force < 2 * worst);
+  CHECK(joint_estimate.joint_torque == 0);
+  CHECK(joint_estimate.gap < 1e-14);
+  CHECK(record_of(folder / "pendulum").at("error_estimate").at("joint_force") == joint_estimate.joint_force);
 
-  // A box that slides to a stop: to a tolerance its steps are as short as the settings say, and no better.
+  // A box that slides to a stop: with error control its steps are limited by the settings.
   auto box = scene_of("box");
   box->tolerance = 1e-6;
   box->integrator = "dop853";
@@ -392,13 +391,13 @@ TEST_CASE("the estimated error tells of joints' forces and gaps, and of contact 
   part.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.1}}).place({0, 0, 0.1}).velocity({1, 0, 0}, {0, 0, 0});
   box->body.contact.active = true;
   box->body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
-  const ErrorEstimate of_contact = estimate(*box);
-  CHECK(of_contact.place > 1e-8);
-  CHECK(of_contact.place < 1e-3);
+  const ErrorEstimate contact_estimate = estimate(*box);
+  CHECK(contact_estimate.place > 1e-8);
+  CHECK(contact_estimate.place < 1e-3);
   CHECK(box->body.contact.longest_step == 2e-3);
 }
 
-TEST_CASE("N30: the frame rate does not steer the motion") {
+TEST_CASE("N30: the frame rate does not change the motion") {
   const NewFolder folder;
   const Model* model = nullptr;
   std::vector<State> last;
@@ -417,7 +416,7 @@ TEST_CASE("N30: the frame rate does not steer the motion") {
   }
 }
 
-TEST_CASE("I55: a run goes on only with the scene, step, method and frame rate it began with") {
+TEST_CASE("I55: a run resumes only with its original scene, step, method and frame rate") {
   const NewFolder folder;
   run(*pulled_scene(), folder / "r", {Existing::refuse, 1, 50});
   const std::string before = results_of(folder / "r");
@@ -437,7 +436,7 @@ TEST_CASE("I55: a run goes on only with the scene, step, method and frame rate i
   CHECK(results_of(folder / "r") == before);
 }
 
-TEST_CASE("I49: a folder that is not empty is refused; force removes the files of a run and nothing else") {
+TEST_CASE("I49: a folder that is not empty is refused; force removes only the files of a run") {
   const NewFolder folder;
   const fs::path out = folder / "r";
   REQUIRE(run(*pulled_scene(), out));
@@ -467,7 +466,7 @@ TEST_CASE("I49: a folder that is not empty is refused; force removes the files o
   CHECK_FALSE(fs::exists(folder / "absent"));
 }
 
-TEST_CASE("I50: files, links and the folder of the scene are not written over") {
+TEST_CASE("I50: files, links and the folder of the scene are never overwritten") {
   const NewFolder folder;
   set_bytes(folder / "file", "x");
   CHECK_THROWS_AS(run(*free_top(), folder / "file", {Existing::force}), OutputRefused);
@@ -495,11 +494,11 @@ TEST_CASE("I58: two runs never share a folder") {
     CHECK_THROWS_AS(RunFolder(folder / "r", Existing::resume), OutputRefused);
   }
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
-  set_bytes(folder / "r" / kLockFile, "12345");  // of a process that was killed
+  set_bytes(folder / "r" / kLockFile, "12345");  // lock of a process that was killed
   CHECK_NOTHROW(RunFolder(folder / "r", Existing::force));
 }
 
-TEST_CASE("a motion beyond all bounds ends with its last good state on record") {
+TEST_CASE("a motion that diverges ends with its last good state in the recording") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   scene->step = 0.5;
@@ -519,7 +518,7 @@ TEST_CASE("a motion beyond all bounds ends with its last good state on record") 
   CHECK(table.find("inf") == std::string::npos);
 }
 
-TEST_CASE("a bad scene is refused before a folder is made") {
+TEST_CASE("a bad scene is refused before a folder is created") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   scene->integrator = "rk5";
@@ -530,7 +529,7 @@ TEST_CASE("a bad scene is refused before a folder is made") {
   CHECK_FALSE(fs::exists(folder / "r"));
 }
 
-TEST_CASE("I59: no parts, and no time, are runs too") {
+TEST_CASE("I59: runs without parts, or without duration, are valid") {
   const NewFolder folder;
   Scene empty;
   REQUIRE(run(empty, folder / "empty"));
@@ -541,7 +540,7 @@ TEST_CASE("I59: no parts, and no time, are runs too") {
   CHECK(record_of(folder / "still").at("progress").at("states") == 1);
 }
 
-TEST_CASE("run.json tells what was done and what was not needed") {
+TEST_CASE("run.json reports the methods used and the quantities that were skipped") {
   const NewFolder folder;
   const auto scene = free_top();
   scene->end = 0.335;
@@ -558,12 +557,12 @@ TEST_CASE("run.json tells what was done and what was not needed") {
   CHECK(record.counters.rate_points == 0);
   CHECK(record.counters.surfaces == 0);
   CHECK_FALSE(record.skipped.empty());
-  CHECK(record.stable_step == Approx(0.5 / std::sqrt(5.01)));  // nothing stiff: half a radian of its spin
+  CHECK(record.stable_step == Approx(0.5 / std::sqrt(5.01)));  // nothing is stiff: half a radian of its spin
   for (const std::string& file : record.files) CHECK(fs::exists(folder / "r" / file));
   CHECK_FALSE(fs::exists(folder / "r" / kLockFile));
 }
 
-TEST_CASE("run.json tells once which part is turned too far for elasticity that is linear in d") {
+TEST_CASE("run.json reports once which part rotates too far for elasticity that is linear in d") {
   const NewFolder folder;
   auto notes = [&](const char* name, const char* law, double twist) {
     const auto scene = free_top();
@@ -590,7 +589,7 @@ TEST_CASE("run.json tells once which part is turned too far for elasticity that 
   CHECK(notes("alike", "loaded_membrane", 0.8) == 0);
 }
 
-TEST_CASE("run.json tells once which rows of joints follow from others, and what stays open") {
+TEST_CASE("run.json reports once which joint rows are redundant, and which joints stay open") {
   const NewFolder folder;
   auto notes_of = [&](const char* name, const std::function<void(MultiBody&, Part&)>& join) {
     const auto scene = free_top();
@@ -603,7 +602,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     return std::count_if(record.notes.begin(), record.notes.end(),
                          [&](const std::string& note) { return note.find(text) != std::string::npos; });
   };
-  SECTION("a joint twice") {
+  SECTION("a doubled joint") {
     const RunRecord record = notes_of("twice", [](MultiBody& body, Part& top) {
       const Point at = point(top, 0, 0, 0);
       for (const char* name : {"once", "again"})
@@ -614,7 +613,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(count(record, "redundant") == 1);
     CHECK(record.open_gap == 0);
   }
-  SECTION("a joint twice, from a time on") {
+  SECTION("a doubled joint that switches on later") {
     const RunRecord record = notes_of("later", [](MultiBody& body, Part& top) {
       const Point at = point(top, 0, 0, 0);
       body.ball("once", world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
@@ -634,7 +633,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(record.open_gap == Approx(1));
     CHECK(record.max_gap <= 1e-12);
   }
-  SECTION("a joint that takes hold of what moves") {
+  SECTION("a joint that switches on at a moving part") {
     const RunRecord record = notes_of("hold", [](MultiBody& body, Part& top) {
       body.gravity.setZero();
       top.velocity({0.5, 0, 0}, {0, 0, 0});
@@ -643,7 +642,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(count(record, "at t = 0.2 s ball 'hook' engages with an impulse of ") == 1);
     CHECK(count(record, "engages") == 1);
   }
-  SECTION("a joint that stops a spin, and one beside it that does nothing") {
+  SECTION("a joint that stops a spin, and one beside it without effect") {
     const RunRecord record = notes_of("spin", [](MultiBody& body, Part& top) {
       body.gravity.setZero();
       top.velocity({0, 0, 0}, {0, 0, 5});
@@ -659,7 +658,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
     CHECK(count(record, " N s") == 0);
     CHECK(count(record, "the largest of") == 0);
   }
-  SECTION("a path whose rate jumps again and again") {
+  SECTION("a path whose rate jumps repeatedly") {
     const RunRecord record = notes_of("path", [](MultiBody& body, Part& top) {
       const Vec3<double> c = top.c0();
       body.ball(
@@ -670,7 +669,7 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
           1);
     CHECK(record.max_balance_error <= 1e-2);
   }
-  SECTION("a string that gravity pulls at while it closes does so") {
+  SECTION("a string that closes against gravity") {
     const RunRecord record = notes_of("string", [](MultiBody& body, Part& top) {
       body.gravity = {0, 0, -9.81};
       top.velocity({0, 0, 0}, {0, 0, 0});
@@ -701,11 +700,11 @@ TEST_CASE("run.json tells once which rows of joints follow from others, and what
   }
 }
 
-TEST_CASE("what is told of redundant rows is told once, however often other joints switch") {
+TEST_CASE("redundant rows are reported once, also when other joints switch") {
   struct Listener : Progress {
-    int told = 0;
+    int redundant_notes = 0;
     void note(const std::string& text) override {
-      if (text.find("redundant") != std::string::npos) ++told;
+      if (text.find("redundant") != std::string::npos) ++redundant_notes;
     }
   };
   const NewFolder folder;
@@ -723,7 +722,7 @@ TEST_CASE("what is told of redundant rows is told once, however often other join
   RunOptions options;
   options.folder = (folder / "r").string();
   Run(*scene, options, listener).simulate();
-  CHECK(listener.told == 1);
+  CHECK(listener.redundant_notes == 1);
 }
 
 }  // namespace run_test

@@ -1,4 +1,4 @@
-// Scenes for the tests of recordings, built without a file: deforming and rigid parts, springs, forcing,
+// Scenes for the tests of recordings, built without a file: deforming and rigid parts, springs, forces,
 // limits.
 #pragma once
 
@@ -9,8 +9,8 @@
 #include <pliant/scene/scene.h>
 
 /// Four parts: one that tapers, twists and stretches against its limits, pulled by a moving spring and an
-/// actuated rest value; a rigid one on a spring, with another that hangs from it on a joint and a string; a
-/// fixed one.
+/// actuated rest value; a rigid one on a spring, with another one that hangs from it on a joint and a string;
+/// a fixed one.
 inline std::unique_ptr<pliant::Scene> pulled_scene() {
   using namespace pliant;
   auto scene = std::make_unique<Scene>();

@@ -1,4 +1,4 @@
-// trajectory.csv: header, full precision, totals only for crowds.
+// trajectory.csv: header, full precision, totals only for many parts.
 #include <pliant/io/trajectory.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ std::vector<std::string> cells(const std::string& line) {
 
 }  // namespace
 
-TEST_CASE("the table holds the recorded numbers exactly, by name") {
+TEST_CASE("the table contains the recorded numbers exactly, with their names") {
   const NewFolder folder;
   const auto scene = pulled_scene();
   Progress silent;
@@ -95,9 +95,9 @@ TEST_CASE("the table holds the recorded numbers exactly, by name") {
   CHECK(worst < 1e-3);
 }
 
-TEST_CASE("a joint's force is that on its first side, in the world's frame, and its gap is closed") {
-  // Weights at rest under balls at their tops, however their frames are turned, with the weight on either
-  // side of the joint; and one that swings.
+TEST_CASE("a joint's force is the one on its first side, in the world frame, and its gap is closed") {
+  // Weights at rest that hang from ball joints at their tops, with rotated frames and with the weight on
+  // either side of the joint; and a swinging weight.
   const double g = 9.81, r = 0.1, mass = 3;
   const Eigen::Quaterniond upright = Eigen::Quaterniond::Identity(),
                            turned = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.4).normalized();
@@ -109,7 +109,7 @@ TEST_CASE("a joint's force is that on its first side, in the world's frame, and 
       bob.rest({{"r", r}}).mass(mass).place({0.4, 0, -r}, R);
       Part& swung = scene.body.add(make_part("swung", "sphere", {}, 1000));
       swung.rest({{"r", r}}).mass(mass).place({2 + r, 0, 0}, R);
-      // The material points at the world's up, and at minus x.
+      // The material points in the world directions up and minus x.
       const auto on = [&](const Part& part, const Vec3<double>& direction) {
         const Vec3<double> at = R.conjugate() * direction;
         return point(part, std::asin(at[2]), std::atan2(at[1], at[0]));
@@ -137,7 +137,7 @@ TEST_CASE("a joint's force is that on its first side, in the world's frame, and 
         return Vec3<double>(number(joint + ".force.x"), number(joint + ".force.y"),
                             number(joint + ".force.z"));
       };
-      const double sign = first ? 1 : -1;  // the force on the bob is up
+      const double sign = first ? 1 : -1;  // the force on the bob points upwards
       for (int i = 0; i < 200; ++i) {
         if (i > 0) simulation.step(5e-3);
         table.row(simulation.state(), numbers);
@@ -145,18 +145,18 @@ TEST_CASE("a joint's force is that on its first side, in the world's frame, and 
         REQUIRE((force("joint.hold") - sign * Vec3<double>(0, 0, mass * g)).norm() <= 1e-11 * mass * g);
         REQUIRE(number("joint.hold.gap") <= 1e-12);
         REQUIRE(number("joint.swing.gap") <= 1e-12);
-        // m (c_ddot - g) of a compound pendulum, by its angle below the x axis.
+        // m (c_ddot - g) of a compound pendulum, from its angle below the x axis.
         const Vec3<double> along = (simulation.state().q.segment<3>(7) - Vec3<double>(2, 0, 0)) / r,
                            across(along[2], 0, -along[0]);
-        const double inertia = 1.4 * r, turning = across[2] * -g / inertia,  // 7/5 m r^2 / (m r)
+        const double inertia = 1.4 * r, acceleration = across[2] * -g / inertia,  // 7/5 m r^2 / (m r)
             rate = simulation.state().v.segment<3>(6).squaredNorm() / r;
-        const Vec3<double> needed = mass * (r * turning * across - rate * along + Vec3<double>(0, 0, g));
+        const Vec3<double> needed = mass * (r * acceleration * across - rate * along + Vec3<double>(0, 0, g));
         REQUIRE((force("joint.swing") - sign * needed).norm() <= 1e-10 * mass * g);
       }
     }
 }
 
-TEST_CASE("above a hundred parts only totals are written, unless the scene asks for every part") {
+TEST_CASE("above a hundred parts only totals are written, unless the scene requests every part") {
   Scene scene;
   for (int i = 0; i < 101; ++i) scene.body.add(make_part("p" + std::to_string(i), "sphere", {}, 1));
   scene.appearance.resize(101);

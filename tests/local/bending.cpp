@@ -1,5 +1,5 @@
-// Bending by mid-edge normals: exact for constant curvature, blind to rigid motion, convergent on irregular
-// meshes of plates, rolled sheets, and the laws of every energy.
+// Bending by mid-edge normals: exact for constant curvature, zero for rigid motion, convergent on irregular
+// meshes of plates and rolled sheets, and the general laws of energies.
 #include <pliant/local/shell/bending.h>
 
 #include "catch.h"
@@ -15,8 +15,8 @@ namespace {
 constexpr Sheet kSheet{7e4, 0.3, 0.02};
 constexpr double kMass = 54;  // kg/m^2
 
-/// Local coordinates: nodes from a field, own coordinates as given or none.
-VecX<double> with_own(const VecX<double>& nodal, const VecX<double>& own) {
+/// Local coordinates: those of the nodes, followed by the own coordinates of the energy.
+VecX<double> with_own_coordinates(const VecX<double>& nodal, const VecX<double>& own) {
   VecX<double> x(nodal.size() + own.size());
   x << nodal, own;
   return x;
@@ -25,7 +25,7 @@ VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
 VecX<double> all_masses(const NodalEnergy& bending, const ShellMesh& mesh) {
-  return with_own(kMass * thrice(node_areas(mesh)), bending.own_inertia());
+  return with_own_coordinates(kMass * thrice(node_areas(mesh)), bending.own_inertia());
 }
 
 template <class Bending>
@@ -35,7 +35,8 @@ void check_laws() {
   const bool linear = bending.of() == NodalEnergy::Of::displacement;
   const Eigen::Index own = bending.own_inertia().size();
   Draws draws(1);
-  const VecX<double> at_rest = with_own((linear ? 0.0 : 1.0) * rest(small), VecX<double>::Zero(own));
+  const VecX<double> at_rest =
+      with_own_coordinates((linear ? 0.0 : 1.0) * rest(small), VecX<double>::Zero(own));
   const VecX<double> x = at_rest + random_vector(draws, at_rest.size(), 0.05);
   CHECK(bending.energy(at_rest) == 0);
   CHECK(force(bending, at_rest).norm() == 0);
@@ -43,13 +44,13 @@ void check_laws() {
   check_stiffness(bending, x);
   check_bound(bending, at_rest, all_masses(bending, small), 2);
   check_bound(bending, x, all_masses(bending, small), 3);
-  check_threads(more,
-                with_own((linear ? 0.0 : 1.0) * rest(large), VecX<double>::Zero(more.own_inertia().size())) +
-                    random_vector(draws, 3 * large.n_nodes() + more.own_inertia().size(), 0.005));
+  check_threads(more, with_own_coordinates((linear ? 0.0 : 1.0) * rest(large),
+                                           VecX<double>::Zero(more.own_inertia().size())) +
+                          random_vector(draws, 3 * large.n_nodes() + more.own_inertia().size(), 0.005));
 }
 
-/// phi for which no moment is left over at the edges, the nodes held.
-VecX<double> relaxed(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_nodes) {
+/// Returns x with the phi for which the edge moments vanish; the nodes are fixed.
+VecX<double> with_balanced_edges(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_nodes) {
   const Eigen::Index own = x.size() - 3 * n_nodes;
   const Eigen::SparseMatrix<double> K = stiffness(bending, x).bottomRightCorner(own, own);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
@@ -59,7 +60,7 @@ VecX<double> relaxed(const NodalEnergy& bending, VecX<double> x, Eigen::Index n_
 
 }  // namespace
 
-TEST_CASE("bending: slopes, matrix, threads, bound, rest", "[local]") {
+TEST_CASE("bending: derivatives, matrix, threads, frequency bound, rest state", "[local]") {
   SECTION("linear") {
     check_laws<LinearBending>();
   }
@@ -68,7 +69,7 @@ TEST_CASE("bending: slopes, matrix, threads, bound, rest", "[local]") {
   }
 }
 
-TEST_CASE("bending: rigid motion strains nothing, own coordinates carry no momentum", "[local]") {
+TEST_CASE("bending: rigid motion causes no strain, own coordinates carry no momentum", "[local]") {
   Draws draws(2);
   const ShellMesh mesh = icosphere(2, 0.7);
   const LinearBending linear(mesh, kSheet, kMass);
@@ -81,18 +82,19 @@ TEST_CASE("bending: rigid motion strains nothing, own coordinates carry no momen
       field(mesh, [&](const Vec3<double>& X) -> Vec3<double> { return c + w.cross(X); });
   const VecX<double> large = field(mesh, [&](const Vec3<double>& X) -> Vec3<double> { return c + R * X; });
   const VecX<double> none = VecX<double>::Zero(small.size());
-  const VecX<double> push = force(linear, with_own(none, phi));
-  CHECK((force(linear, with_own(small, phi)) - push).norm() <= 1e-12 * push.norm());
-  CHECK(folding.energy(with_own(large, phi)) ==
-        Approx(folding.energy(with_own(rest(mesh), phi))).epsilon(1e-12));
-  CHECK(linear.energy(with_own(small, phi)) == Approx(linear.energy(with_own(none, phi))).epsilon(1e-12));
-  // What phi pushes at the nodes has no resultant.
+  const VecX<double> push = force(linear, with_own_coordinates(none, phi));
+  CHECK((force(linear, with_own_coordinates(small, phi)) - push).norm() <= 1e-12 * push.norm());
+  CHECK(folding.energy(with_own_coordinates(large, phi)) ==
+        Approx(folding.energy(with_own_coordinates(rest(mesh), phi))).epsilon(1e-12));
+  CHECK(linear.energy(with_own_coordinates(small, phi)) ==
+        Approx(linear.energy(with_own_coordinates(none, phi))).epsilon(1e-12));
+  // The nodal forces of phi have no resultant.
   const auto at = nodes(push, mesh.n_nodes());
-  Vec3<double> turn = Vec3<double>::Zero();
+  Vec3<double> torque = Vec3<double>::Zero();
   for (Eigen::Index i = 0; i < mesh.n_nodes(); ++i)
-    turn += Vec3<double>(mesh.X().row(i)).cross(Vec3<double>(at.row(i)));
+    torque += Vec3<double>(mesh.X().row(i)).cross(Vec3<double>(at.row(i)));
   CHECK(at.colwise().sum().norm() <= 1e-12 * push.norm());
-  CHECK(turn.norm() <= 1e-12 * push.norm());
+  CHECK(torque.norm() <= 1e-12 * push.norm());
   CHECK(linear.own_inertia().sum() ==
         Approx(kMass * node_areas(mesh).sum() * kSheet.thickness * kSheet.thickness / 12));
 }
@@ -109,24 +111,26 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Sheet sheet{7e4, nu, 0.02};
     const LinearBending bending(mesh, sheet, kMass);
     const std::vector<ShellEdge> edges = shell_edges(mesh);
-    // The slope of w outwards across an edge at its middle, less that of a triangle.
+    // The slope of w outwards across an edge at its middle, minus the slope of a triangle.
     VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const Vec3<double> p = mesh.X().row(edges[e].a), q = mesh.X().row(edges[e].b), middle = 0.5 * (p + q);
-      const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));  // away from the left
+      // away from the left triangle
+      const Vec3<double> across = (q - p).normalized().cross(Vec3<double>(0, 0, 1));
       const Vec3<double> slope(xx * middle[0] + xy * middle[1], yy * middle[1] + xy * middle[0], 0);
-      const auto turn =
-          [&](int t) {  // of the mid-edge normal against the triangle's; a normal is (-slope, 1)
+      const auto normal_angle =
+          [&](int t) {  // rotation of the mid-edge normal relative to the triangle's; a normal is (-slope, 1)
             const Vec3<double> A = mesh.corner(t, 0), B = mesh.corner(t, 1), C = mesh.corner(t, 2);
             Vec3<double> m = Vec3<double>(B[0] - A[0], B[1] - A[1], w(B) - w(A))
                                  .cross(Vec3<double>(C[0] - A[0], C[1] - A[1], w(C) - w(A)));
             m /= m[2];
             return -slope.dot(across) - m.dot(across);
           };
-      const double left = turn(edges[e].left);
-      phi[static_cast<Eigen::Index>(e)] = edges[e].inside() ? 0.5 * (left + turn(edges[e].right)) : left;
+      const double left = normal_angle(edges[e].left);
+      phi[static_cast<Eigen::Index>(e)] =
+          edges[e].inside() ? 0.5 * (left + normal_angle(edges[e].right)) : left;
     }
-    const VecX<double> x = with_own(d, phi), f = force(bending, x);
+    const VecX<double> x = with_own_coordinates(d, phi), f = force(bending, x);
     const double trace = xx + yy, square = xx * xx + yy * yy + 2 * xy * xy;
     CHECK(bending.energy(x) ==
           Approx(0.5 * sheet.bending_stiffness() * (nu * trace * trace + (1 - nu) * square) * a * b)
@@ -135,7 +139,7 @@ TEST_CASE("bending: constant curvature is exact on irregular meshes", "[local]")
     const Eigen::Index n = mesh.n_nodes();
     for (std::size_t e = 0; e < edges.size(); ++e)
       if (edges[e].inside()) CHECK(std::abs(f[3 * n + static_cast<Eigen::Index>(e)]) <= 1e-12 * largest);
-    // A node across a boundary edge turns the normal there, whose moment nothing balances.
+    // A node opposite to a boundary edge rotates the normal there; no other triangle balances this moment.
     std::vector<bool> across(static_cast<std::size_t>(n), false);
     for (const ShellEdge& edge : edges)
       if (!edge.inside())
@@ -154,11 +158,11 @@ TEST_CASE("bending: for small displacements the folding energy is the linear one
   const FoldingBending folding(mesh, kSheet, kMass);
   const Eigen::Index own = linear.own_inertia().size();
   const VecX<double> dx = random_vector(draws, 3 * mesh.n_nodes() + own), f = force(linear, dx);
-  CHECK((derivative(folding, with_own(rest(mesh), VecX<double>::Zero(own)), dx) - f).norm() <=
+  CHECK((derivative(folding, with_own_coordinates(rest(mesh), VecX<double>::Zero(own)), dx) - f).norm() <=
         1e-12 * f.norm());
 }
 
-TEST_CASE("bending: an irregular sheet rolled half round has the energy of the cylinder", "[local]") {
+TEST_CASE("bending: an irregular sheet rolled to half a cylinder has the energy of the cylinder", "[local]") {
   const double a = 1, b = 0.6, r = a / kPi;
   double error[3];
   for (int k = 0; k < 3; ++k) {
@@ -168,8 +172,8 @@ TEST_CASE("bending: an irregular sheet rolled half round has the energy of the c
     const auto roll = [&](const Vec3<double>& X) {
       return Vec3<double>(r * std::sin(X[0] / r), X[1], r * std::cos(X[0] / r));
     };
-    // From a triangle's normal to that of the cylinder at the middle of its edge k, about the edge.
-    const auto turn = [&](int t, int corner) {
+    // Angle from the normal of a triangle to that of the cylinder at the middle of the edge, about the edge.
+    const auto normal_angle = [&](int t, int corner) {
       const std::array<Vec3<double>, 3> X{mesh.corner(t, corner), mesh.corner(t, (corner + 1) % 3),
                                           mesh.corner(t, (corner + 2) % 3)};
       const Vec3<double> e = (roll(X[2]) - roll(X[1])).normalized(), own = e.cross(roll(X[0]) - roll(X[1]));
@@ -180,21 +184,21 @@ TEST_CASE("bending: an irregular sheet rolled half round has the energy of the c
     const std::vector<ShellEdge> edges = shell_edges(mesh);
     VecX<double> phi(static_cast<Eigen::Index>(edges.size()));
     for (std::size_t e = 0; e < edges.size(); ++e) {
-      const double left = turn(edges[e].left, edges[e].left_corner);
+      const double left = normal_angle(edges[e].left, edges[e].left_corner);
       phi[static_cast<Eigen::Index>(e)] =
-          edges[e].inside() ? 0.5 * (left - turn(edges[e].right, edges[e].right_corner)) : left;
+          edges[e].inside() ? 0.5 * (left - normal_angle(edges[e].right, edges[e].right_corner)) : left;
     }
     const double expected = 0.5 * kSheet.bending_stiffness() / (r * r) * a * b;
-    error[k] = std::abs(bending.energy(with_own(field(mesh, roll), phi)) / expected - 1);
+    error[k] = std::abs(bending.energy(with_own_coordinates(field(mesh, roll), phi)) / expected - 1);
   }
   INFO("errors " << error[0] << ", " << error[1] << ", " << error[2]);
   CHECK(error[2] <= 0.005);
   CHECK(std::log2(error[0] / error[2]) >= 2 * 1.7);
 }
 
-TEST_CASE("bending: on a sphere it converges to the energy of Koiter and Sanders", "[local]") {
-  // Displacements w Y along the normal and u grad Y along the sphere turn normals by grad (u - w) Y:
-  // E = D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
+TEST_CASE("bending: on a sphere the energy converges to that of Koiter and Sanders", "[local]") {
+  // Displacements w Y along the normal and u grad Y along the sphere rotate normals by grad (u - w) Y: E =
+  // D/2 b (b - 1 + nu) (u - w)^2 int Y^2 on the unit sphere, b = n (n + 1).
   const int n = 2;
   const double b = n * (n + 1), nu = 0.3;
   for (const bool along : {false, true}) {
@@ -204,11 +208,11 @@ TEST_CASE("bending: on a sphere it converges to the energy of Koiter and Sanders
       const Sheet sheet{12 * (1 - nu * nu), nu, 1};
       const LinearBending bending(mesh, sheet, 1);
       const VecX<double> area = sphere_areas(mesh), d = harmonic_fields(mesh, n).col(along ? 1 : 0);
-      // grad Y/n in the column: int |grad Y|^2 = b int Y^2.
+      // The column contains grad Y/n: int |grad Y|^2 = b int Y^2.
       const double square = thrice(area).dot(d.cwiseAbs2()) * (along ? n * n / b : 1);
       const double scale = along ? 1.0 / n : 1;
-      const VecX<double> x =
-          relaxed(bending, with_own(d, VecX<double>::Zero(bending.own_inertia().size())), mesh.n_nodes());
+      const VecX<double> x = with_balanced_edges(
+          bending, with_own_coordinates(d, VecX<double>::Zero(bending.own_inertia().size())), mesh.n_nodes());
       error[k] = std::abs(bending.energy(x) / (0.5 * b * (b - 1 + nu) * square * scale * scale) - 1);
     }
     INFO((along ? "along" : "across") << ": errors " << error[0] << ", " << error[1] << ", " << error[2]);
@@ -225,17 +229,17 @@ struct Deflection {
 };
 Deflection plate(int n, bool clamped, std::uint64_t seed) {
   Draws draws(seed);
-  const ShellMesh drawn = irregular_sheet(n, n, 1, 1, draws);
-  Nodes X = drawn.X();
+  const ShellMesh random_sheet = irregular_sheet(n, n, 1, 1, draws);
+  Nodes X = random_sheet.X();
   const Eigen::Index center = (n / 2) * (n + 1) + n / 2;
   X.row(center).setZero();
-  const ShellMesh mesh(X, drawn.triangles());
+  const ShellMesh mesh(X, random_sheet.triangles());
   const Sheet sheet{12 * (1 - 0.3 * 0.3) * 1e6, 0.3, 0.01};
   const LinearBending bending(mesh, sheet, 1);
   const std::vector<ShellEdge> edges = shell_edges(mesh);
   const Eigen::Index nodes = mesh.n_nodes(), own = static_cast<Eigen::Index>(edges.size());
   const auto on_boundary = [&](Eigen::Index i) { return X.row(i).cwiseAbs().maxCoeff() > 0.4999; };
-  // Coordinates that are left: z inside, phi; a clamped edge has phi = -z/height of the corner across.
+  // Free coordinates: z of inner nodes, and phi; a clamped edge has phi = -z/height of the opposite corner.
   std::vector<Eigen::Index> column(static_cast<std::size_t>(nodes), -1);
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::Index n_free = 0;
@@ -265,7 +269,7 @@ Deflection plate(int n, bool clamped, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("bending: plates on irregular meshes converge with the square of the edge", "[local]") {
+TEST_CASE("bending: plates on irregular meshes converge with the square of the edge length", "[local]") {
   double integral = 0;  // Navier's series
   for (int m = 1; m < 60; m += 2)
     for (int n = 1; n < 60; n += 2)

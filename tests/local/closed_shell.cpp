@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kRadius = 2.5, kE = 2e11, kDensity = 7800, kThickness = 0.1;
 
-/// Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of the lower branch; n = 0: breathing.
+/// Returns Omega^2 = omega^2 r^2 rho (1 - nu^2)/E of the lower branch; n = 0: breathing.
 double membrane_value(int n, double nu) {
   if (n == 0) return 2 * (1 + nu);
   const double b = n * n + n + 1 + 3 * nu;
@@ -31,17 +31,17 @@ double unit(double nu) {
   return kE / (kRadius * kRadius * kDensity * (1 - nu * nu));
 }
 
-/// A shell as modes see it.
+/// Mesh and masses of a shell.
 struct Shell {
   ShellMesh mesh;
   VecX<double> M;
 };
-Shell on_icosphere(int levels) {
+Shell icosphere_shell(int levels) {
   const ShellMesh mesh = icosphere(levels, kRadius);
   return {mesh, kDensity * kThickness * thrice(sphere_areas(mesh))};
 }
-/// The mesh that a part has, and the masses of its nodes.
-Shell on_part(int resolution) {
+/// Returns the mesh of a part and the masses of its nodes.
+Shell part_shell(int resolution) {
   Primitive<Sphere> ball("ball", kDensity * kThickness);
   LocalSettings settings;
   settings.resolution = resolution;
@@ -55,7 +55,7 @@ Sparse membrane_stiffness(const Shell& shell, double nu) {
   return stiffness(LinearMembrane(shell.mesh, {kE, nu, kThickness}), VecX<double>::Zero(shell.M.size()));
 }
 
-/// Fields of the degrees beside n.
+/// Returns the harmonic fields of the degrees next to n.
 MatX<double> neighbours(const ShellMesh& mesh, int n) {
   const MatX<double> above = harmonic_fields(mesh, n + 1), below = harmonic_fields(mesh, std::max(n - 1, 2));
   if (n <= 2) return above;
@@ -64,8 +64,8 @@ MatX<double> neighbours(const ShellMesh& mesh, int n) {
   return both;
 }
 
-/// Relative error of Omega of degree n: root of the mean of 2n + 1 modes of the mesh.
-double error_of_modes(const Shell& shell, int n, double nu) {
+/// Returns the relative error of Omega of degree n: square root of the mean of 2n + 1 modes of the mesh.
+double mode_error(const Shell& shell, int n, double nu) {
   const double exact = membrane_value(n, nu) * unit(nu);
   return std::sqrt(mean_of_modes(membrane_stiffness(shell, nu), shell.M, exact,
                                  harmonic_fields(shell.mesh, n), neighbours(shell.mesh, n), 2 * n + 1) /
@@ -75,8 +75,8 @@ double error_of_modes(const Shell& shell, int n, double nu) {
 
 constexpr std::array<int, 6> kDegrees{0, 2, 3, 4, 5, 6};
 using Errors = std::array<double, kDegrees.size()>;
-/// The same of the exact fields of all degrees, let go on the mesh.
-Errors errors_of_fields(const Shell& shell, double nu) {
+/// Returns these errors for the exact fields of all degrees, smoothed on the mesh.
+Errors field_errors(const Shell& shell, double nu) {
   const Sparse K = membrane_stiffness(shell, nu), M(shell.M.asDiagonal());
   Errors errors;
   const SmoothedFields breathing(K, M, membrane_value(0, nu) * unit(nu)), lower(K, M, 0.5 * unit(nu));
@@ -88,13 +88,13 @@ Errors errors_of_fields(const Shell& shell, double nu) {
   return errors;
 }
 
-/// Hz, of the shell that bends too (code_aster SDLS07).
+/// Frequencies of the shell with bending, Hz (code_aster SDLS07).
 constexpr std::array<double, 11> kBending{0,      0,      237.25, 282.85, 305.24, 324.17,
                                           346.76, 376.68, 416,    465.75, 526.20};
 
-/// Relative errors of the frequencies of n = 2 .. 10, roots of means of 2n + 1 modes.
+/// Returns relative errors of the frequencies of n = 2 .. 10, square roots of means of 2n + 1 modes.
 std::array<double, 11> bending_errors(int levels) {
-  const Shell shell = on_icosphere(levels);
+  const Shell shell = icosphere_shell(levels);
   const Sheet sheet{kE, 0.3, kThickness};
   const LinearMembrane membrane(shell.mesh, sheet);
   const LinearBending bending(shell.mesh, sheet, kDensity * kThickness);
@@ -103,7 +103,7 @@ std::array<double, 11> bending_errors(int levels) {
   M << shell.M, bending.own_inertia();
   const VecX<double> zero = VecX<double>::Zero(all);
   const Sparse K = stiffness(membrane, zero) + stiffness(bending, zero);
-  const auto with_own = [&](const MatX<double>& fields) {
+  const auto with_own_coordinates = [&](const MatX<double>& fields) {
     MatX<double> U = MatX<double>::Zero(all, fields.cols());
     U.topRows(nodal) = fields;
     return U;
@@ -111,8 +111,8 @@ std::array<double, 11> bending_errors(int levels) {
   std::array<double, 11> errors{};
   for (int n = 2; n <= 10; ++n) {
     const double exact = std::pow(2 * kPi * kBending[static_cast<std::size_t>(n)], 2);
-    const double mean = mean_of_modes(K, M, exact, with_own(harmonic_fields(shell.mesh, n)),
-                                      with_own(neighbours(shell.mesh, n)), 2 * n + 1);
+    const double mean = mean_of_modes(K, M, exact, with_own_coordinates(harmonic_fields(shell.mesh, n)),
+                                      with_own_coordinates(neighbours(shell.mesh, n)), 2 * n + 1);
     errors[static_cast<std::size_t>(n)] = std::sqrt(mean / exact) - 1;
   }
   return errors;
@@ -122,46 +122,47 @@ double slope(double coarse, double fine, double ratio = 2) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// Whether modes of the mesh are those of one degree: from n = 4 on modes of short waves lie among them, and
-/// for nu = 0 torsion of n = 2 has the frequency of breathing.
-bool stands_alone(int n, double nu) {
+/// Returns whether modes of the mesh belong to one degree. From n = 4 on there are modes of short waves
+/// between them; for nu = 0 torsion of n = 2 has the frequency of breathing.
+bool is_separate(int n, double nu) {
   return n == 0 ? nu > 0 : n <= 3;
 }
 
 }  // namespace
 
-TEST_CASE("closed shell: the membrane's spectrum on 642 nodes", "[local][long]") {
-  const Shell shell = on_icosphere(3);
+TEST_CASE("closed shell: the spectrum of the membrane on 642 nodes", "[local][long]") {
+  const Shell shell = icosphere_shell(3);
   REQUIRE(shell.mesh.n_nodes() == 642);
   for (const double nu : {0.0, 0.3, 0.5})
     for (const int n : kDegrees) {
-      const double error = error_of_modes(shell, n, nu);
+      const double error = mode_error(shell, n, nu);
       INFO("nu " << nu << ", n " << n << ": error " << error);
       CHECK(std::abs(error) <= (n <= 3 ? 0.0024 : 0.0055));
     }
   CHECK(std::sqrt(membrane_value(2, 0.3)) == Approx(0.70094).epsilon(1e-5));
 }
 
-TEST_CASE("closed shell: modes of the membrane converge with the square of the edge", "[local][long]") {
-  const Shell coarse = on_icosphere(2), fine = on_icosphere(3), finest = on_icosphere(4);
+TEST_CASE("closed shell: modes of the membrane converge with the square of the edge length",
+          "[local][long]") {
+  const Shell coarse = icosphere_shell(2), fine = icosphere_shell(3), finest = icosphere_shell(4);
   for (const double nu : {0.0, 0.3, 0.5})
     for (const int n : kDegrees) {
-      if (!stands_alone(n, nu)) continue;
-      const double a = error_of_modes(coarse, n, nu), b = error_of_modes(fine, n, nu),
-                   c = error_of_modes(finest, n, nu);
+      if (!is_separate(n, nu)) continue;
+      const double a = mode_error(coarse, n, nu), b = mode_error(fine, n, nu), c = mode_error(finest, n, nu);
       INFO("nu " << nu << ", n " << n << ": errors " << a << ", " << b << ", " << c);
-      // For nu = 0 slopes come to 2 from below.
+      // For nu = 0 the slopes approach 2 from below.
       CHECK(slope(a, b) >= (nu == 0 ? 1.4 : 1.9));
       CHECK(slope(b, c) >= (nu == 0 ? 1.8 : 1.95));
       CHECK(std::abs(c) <= 0.0006);
     }
 }
 
-TEST_CASE("closed shell: all degrees of the membrane converge with the square of the edge", "[local]") {
-  const Shell coarse = on_icosphere(3), fine = on_icosphere(4);
+TEST_CASE("closed shell: all degrees of the membrane converge with the square of the edge length",
+          "[local]") {
+  const Shell coarse = icosphere_shell(3), fine = icosphere_shell(4);
   const Errors largest{0.0007, 0.00033, 0.00046, 0.0009, 0.00145, 0.0021};
   for (const double nu : {0.0, 0.3, 0.5}) {
-    const Errors a = errors_of_fields(coarse, nu), b = errors_of_fields(fine, nu);
+    const Errors a = field_errors(coarse, nu), b = field_errors(fine, nu);
     for (std::size_t i = 0; i < a.size(); ++i) {
       INFO("nu " << nu << ", n " << kDegrees[i] << ": errors " << a[i] << ", " << b[i]);
       CHECK(std::abs(b[i]) <= largest[i]);
@@ -170,15 +171,14 @@ TEST_CASE("closed shell: all degrees of the membrane converge with the square of
   }
 }
 
-TEST_CASE("closed shell: the membrane on a part's own mesh and masses", "[local][long]") {
-  const Shell coarse = on_part(5), fine = on_part(10), finest = on_part(20);
+TEST_CASE("closed shell: the spectrum of the membrane on the mesh and masses of a part", "[local][long]") {
+  const Shell coarse = part_shell(5), fine = part_shell(10), finest = part_shell(20);
   REQUIRE(coarse.mesh.n_nodes() == 602);
   REQUIRE(fine.mesh.n_nodes() == 2402);
   const Errors on_602{0.0061, 0.0027, 0.0085, 0.0158, 0.0245, 0.035},
       on_2402{0.0016, 0.00074, 0.0023, 0.0043, 0.0068, 0.0098};
   for (const double nu : {0.0, 0.3, 0.5}) {
-    const Errors a = errors_of_fields(coarse, nu), b = errors_of_fields(fine, nu),
-                 c = errors_of_fields(finest, nu);
+    const Errors a = field_errors(coarse, nu), b = field_errors(fine, nu), c = field_errors(finest, nu);
     for (std::size_t i = 0; i < a.size(); ++i) {
       INFO("nu " << nu << ", n " << kDegrees[i] << ": errors " << a[i] << ", " << b[i] << ", " << c[i]);
       CHECK(std::abs(a[i]) <= on_602[i]);
@@ -187,18 +187,17 @@ TEST_CASE("closed shell: the membrane on a part's own mesh and masses", "[local]
       CHECK(slope(b[i], c[i]) >= 1.75);
     }
     for (const int n : kDegrees) {
-      if (!stands_alone(n, nu)) continue;
-      const double x = error_of_modes(coarse, n, nu), y = error_of_modes(fine, n, nu),
-                   z = error_of_modes(finest, n, nu);
+      if (!is_separate(n, nu)) continue;
+      const double x = mode_error(coarse, n, nu), y = mode_error(fine, n, nu), z = mode_error(finest, n, nu);
       INFO("nu " << nu << ", modes of n " << n << ": errors " << x << ", " << y << ", " << z);
       CHECK(std::abs(x) <= (n == 0 ? 0.0048 : n == 2 ? 0.0018 : 0.0045));
       CHECK(std::abs(y) <= (n == 0 ? 0.0014 : n == 2 ? 0.00056 : 0.0013));
-      CHECK(slope(y, z) >= 1.45);  // 1.9 and more but for n = 2 and 3
+      CHECK(slope(y, z) >= 1.45);  // 1.9 and more except for n = 2 and 3
     }
   }
 }
 
-TEST_CASE("closed shell: with bending, all degrees on 2562 nodes", "[local][long]") {
+TEST_CASE("closed shell: the spectrum with bending, all degrees on 2562 nodes", "[local][long]") {
   const std::array<double, 11> coarse = bending_errors(3), fine = bending_errors(4),
                                largest{0,      0,      0.00021, 0.00034, 0.00096, 0.00245,
                                        0.0055, 0.0108, 0.0186,  0.0288,  0.04};
@@ -207,7 +206,7 @@ TEST_CASE("closed shell: with bending, all degrees on 2562 nodes", "[local][long
     INFO("n " << n << ": errors " << coarse[k] << ", " << fine[k]);
     CHECK(std::abs(coarse[k]) <= 0.0012 * n * n);
     CHECK(std::abs(fine[k]) <= largest[k]);
-    // On 642 nodes modes of n = 10 are mixed with others: five edges a wave.
+    // On 642 nodes modes of n = 10 mix with others: there are five edges in a wave.
     if (n < 10) CHECK(slope(coarse[k], fine[k]) >= (n <= 5 ? 1.95 : n <= 8 ? 1.8 : 1.75));
   }
 }

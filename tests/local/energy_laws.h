@@ -1,6 +1,6 @@
-// What holds for every energy of local deformation at a point x: the force is its slope, the derivative that
-// of the force, the matrix that of the derivative; bits do not depend on threads; the bound of the frequency
-// holds.
+// Laws of every energy of local deformation at a point x: the force is minus its gradient, the derivative is
+// that of the force, the matrix that of the derivative. Bits do not depend on threads; the frequency bound is
+// valid.
 #pragma once
 
 #include <vector>
@@ -41,7 +41,7 @@ inline Eigen::SparseMatrix<double> stiffness(const NodalEnergy& energy, const Ve
   return K;
 }
 
-/// h: a step over which differences of tenth order are exact to rounding.
+/// Checks force and derivative; h: a step for which differences of tenth order are exact to rounding.
 inline void check_slopes(const NodalEnergy& energy, const VecX<double>& x, double h) {
   Draws draws(7);
   const VecX<double> f = force(energy, x);
@@ -68,7 +68,7 @@ inline void check_stiffness(const NodalEnergy& energy, const VecX<double>& x) {
   CHECK((K - Eigen::SparseMatrix<double>(K.transpose())).norm() <= 1e-13 * K.norm());
 }
 
-/// For meshes of more elements than a range has (element_batches.h).
+/// Needs a mesh with more elements than a range has (element_batches.h).
 inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   Draws draws(9);
   const VecX<double> dx = random_vector(draws, x.size());
@@ -81,7 +81,8 @@ inline void check_threads(const NodalEnergy& energy, const VecX<double>& x) {
   }
 }
 
-/// The bound is above the largest frequency and at most `times` of it; K: the matrix, dense for small meshes.
+/// Checks that the bound is above the largest frequency and at most `times` as large. The matrix is dense:
+/// for small meshes.
 inline void check_bound(const NodalEnergy& energy, const VecX<double>& x, const VecX<double>& M,
                         double times) {
   const VecX<double> root = M.cwiseSqrt().cwiseInverse();

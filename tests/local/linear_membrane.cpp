@@ -1,4 +1,4 @@
-// The linear membrane: exact for constant strain, blind to small rotations, and the laws of every energy.
+// The linear membrane: exact for constant strain, zero for small rotations, and the general laws of energies.
 #include <pliant/local/shell/linear_membrane.h>
 
 #include <Eigen/SparseCholesky>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr Sheet kSheet{7e4, 0.3, 0.02};
 
-/// Largest force at nodes that are not on the edge of a sheet a x b.
+/// Returns the largest force at the inner nodes of a sheet a x b.
 double inside(const ShellMesh& mesh, const VecX<double>& f, double a, double b) {
   const Eigen::Index n = mesh.n_nodes();
   double largest = 0;
@@ -46,7 +46,7 @@ TEST_CASE("linear membrane: constant strain is exact on irregular meshes", "[loc
   }
 }
 
-TEST_CASE("linear membrane: small rigid motions strain nothing on a curved mesh", "[local]") {
+TEST_CASE("linear membrane: small rigid motions cause no strain on a curved mesh", "[local]") {
   const ShellMesh mesh = icosphere(2, 0.7);
   const LinearMembrane membrane(mesh, kSheet);
   const Vec3<double> c(0.3, -0.2, 0.1), w(0.4, 0.1, -0.5);
@@ -58,7 +58,7 @@ TEST_CASE("linear membrane: small rigid motions strain nothing on a curved mesh"
   CHECK(membrane.energy(VecX<double>::Zero(rigid.size())) == 0);
 }
 
-TEST_CASE("linear membrane: slopes, matrix, threads, bound", "[local]") {
+TEST_CASE("linear membrane: derivatives, matrix, threads, frequency bound", "[local]") {
   Draws draws(3);
   const ShellMesh small = icosphere(1, 0.7), large = icosphere(4, 0.7);
   const LinearMembrane membrane(small, kSheet), more(large, kSheet);
@@ -70,7 +70,7 @@ TEST_CASE("linear membrane: slopes, matrix, threads, bound", "[local]") {
   check_threads(more, random_vector(draws, 3 * large.n_nodes()));
 }
 
-TEST_CASE("linear membrane: bad sheets and meshes are refused", "[local]") {
+TEST_CASE("linear membrane: invalid sheets and meshes are refused", "[local]") {
   const ShellMesh mesh = icosphere(0, 1);
   CHECK_THROWS_WITH(LinearMembrane(mesh, Sheet{1, 0.6, 1}), has_text("Poisson"));
   CHECK_THROWS_WITH(LinearMembrane(mesh, Sheet{1, -1, 1}), has_text("Poisson"));

@@ -1,5 +1,5 @@
-// The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the laws
-// of every energy.
+// The loaded membrane against its exact spectra, on the parameter rectangle and on the sphere, and the
+// general laws of energies.
 #include <pliant/local/shell/loaded_membrane.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/local/local_laws.h>
@@ -18,7 +18,8 @@ using namespace pliant::test;
 
 namespace {
 
-/// -pi/2 <= u <= pi/2 in `rows` strips, -pi <= v < pi in `columns`, closed in v, with one node at each pole.
+/// The rectangle -pi/2 <= u <= pi/2 in `rows` strips, -pi <= v < pi in `columns`, periodic in v, with one
+/// node at each pole.
 ParameterMesh parameter_grid(int rows, int columns) {
   ParameterMesh mesh{(rows - 1) * columns + 2, {}, {}};
   mesh.triangles.resize(3, 2 * rows * columns);
@@ -45,7 +46,7 @@ ParameterMesh parameter_grid(int rows, int columns) {
   return mesh;
 }
 
-/// mu du dv, a third of each triangle at its corners.
+/// Returns nodal masses mu du dv; each node receives a third of its triangles.
 VecX<double> parameter_masses(const ParameterMesh& mesh, double mu) {
   VecX<double> M = VecX<double>::Zero(mesh.n_nodes);
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -56,7 +57,7 @@ VecX<double> parameter_masses(const ParameterMesh& mesh, double mu) {
   return M;
 }
 
-/// All omega^2 of the displacement along x.
+/// Returns all omega^2 of the displacement along x.
 VecX<double> spectrum(const NodalEnergy& energy, const VecX<double>& M) {
   const Eigen::Index n = M.size();
   const Eigen::SparseMatrix<double> K = stiffness(energy, VecX<double>::Zero(3 * n)).topLeftCorner(n, n);
@@ -65,8 +66,8 @@ VecX<double> spectrum(const NodalEnergy& energy, const VecX<double>& M) {
   return symmetric_eigenvalues(scaled);
 }
 
-/// The lowest omega^2 of the displacement along x, by the law "loaded_membrane_uv" on the mesh of a part,
-/// with the mass mu du dv.
+/// Returns the lowest omega^2 of the displacement along x, for the law "loaded_membrane_uv" on the mesh of a
+/// part, with the mass mu du dv.
 VecX<double> part_spectrum(const char* shape, int resolution, double w0, double w1, double mu, int wanted) {
   const auto part = make_part("skin", shape, {}, 1);
   LocalSettings settings;
@@ -84,7 +85,8 @@ VecX<double> part_spectrum(const char* shape, int resolution, double w0, double 
 }  // namespace
 
 TEST_CASE("loaded membrane: the spectrum of the parameter rectangle with poles", "[local]") {
-  // omega^2 = (w0 + w1 (m^2 + n^2))/mu: m = 0: n = 0, 1, ...; m >= 1, twice: n = 1, 2, ..., nothing at poles.
+  // omega^2 = (w0 + w1 (m^2 + n^2))/mu. m = 0: n = 0, 1, ...; m >= 1, twice: n = 1, 2, ..., zero at the
+  // poles.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 10> exact{0, 1, 2, 2, 4, 5, 5, 5, 5, 8};
   VecX<double> error[2];
@@ -104,8 +106,9 @@ TEST_CASE("loaded membrane: the spectrum of the parameter rectangle with poles",
   }
 }
 
-TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on a torus's own mesh", "[local]") {
-  // omega^2 = (w0 + w1 (m^2 + n^2))/mu, m and n any integers: the rectangle closes both ways.
+TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh of a torus", "[local]") {
+  // omega^2 = (w0 + w1 (m^2 + n^2))/mu for all integers m and n: the rectangle is periodic in both
+  // directions.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 9> exact{0, 1, 1, 1, 1, 2, 2, 2, 2};
   const VecX<double> coarse = part_spectrum("supertoroid", 4, w0, w1, mu, 9),
@@ -121,15 +124,15 @@ TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on a torus's
   }
 }
 
-TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on a ball's own mesh", "[local][long]") {
-  // As above with poles. Rings about a pole have 8, 16, ... nodes, an eighth of a turn apart on the first one
-  // however fine the mesh is. A mode with m >= 1 falls to nothing at the pole in proportion to the distance
-  // x, and its straight line between nodes of ring k, which are pi/(4k) apart, misses it by a share of x/k^2:
-  // its slope across the ring is wrong by some 1/k on a strip one edge wide, which sums up to the first power
-  // of the edge. m = 0 knows no v.
+TEST_CASE("loaded membrane: the spectrum of the parameter rectangle on the mesh of a ball", "[local][long]") {
+  // The spectrum with poles. Rings around a pole have 8, 16, ... nodes; on the first ring they are pi/4
+  // apart, however fine the mesh is. A mode with m >= 1 vanishes at the pole in proportion to the distance x.
+  // Its linear interpolation between nodes of ring k, which are pi/(4k) apart, has an error of x/k^2. The
+  // slope across the ring therefore errs by 1/k on a strip one edge wide, which sums to the first power of
+  // the edge length. Modes with m = 0 do not depend on v.
   const double w0 = 0.3, w1 = 2, mu = 1.7;
   const std::array<int, 12> exact{0, 1, 2, 2, 4, 5, 5, 5, 5, 8, 8, 9};
-  const auto along_u = [](int i) { return i == 1 || i == 4 || i == 11; };  // m = 0
+  const auto along_u = [](int i) { return i == 1 || i == 4 || i == 11; };  // modes with m = 0
   std::array<VecX<double>, 3> error;
   for (const int k : {0, 1, 2}) {
     const VecX<double> values = part_spectrum("sphere", 8 << k, w0, w1, mu, 12);
@@ -167,7 +170,7 @@ TEST_CASE("loaded membrane: the spectrum of the sphere", "[local]") {
   }
 }
 
-TEST_CASE("loaded membrane: slopes, matrix, threads, bound, translation", "[local]") {
+TEST_CASE("loaded membrane: derivatives, matrix, threads, frequency bound, translation", "[local]") {
   Draws draws(2);
   const ShellMesh small = icosphere(1, 0.7), large = icosphere(4, 0.7);
   for (const Load::Size size : {Load::Size::lumped, Load::Size::consistent}) {
@@ -183,13 +186,13 @@ TEST_CASE("loaded membrane: slopes, matrix, threads, bound, translation", "[loca
     check_slopes(on_grid, y, 0.1);
     check_stiffness(on_grid, y);
     check_bound(on_grid, y, thrice(parameter_masses(grid, 1)), 2);
-    // All of it moved by one vector costs its size only.
+    // A translation costs only the energy of the size of the displacement.
     const double cost = LoadedMembrane(grid, {0.4, 3, size}).energy(VecX<double>::Ones(y.size()));
     CHECK(cost == Approx(0.5 * 0.4 * 3 * 2 * kPi * kPi).epsilon(1e-12));
   }
 }
 
-TEST_CASE("loaded membrane: bad weights and meshes are refused", "[local]") {
+TEST_CASE("loaded membrane: invalid weights and meshes are refused", "[local]") {
   ParameterMesh grid = parameter_grid(3, 4);
   CHECK_THROWS_WITH(LoadedMembrane(grid, {-1, 1}), has_text("w0"));
   grid.uv.col(3) = grid.uv.col(4);

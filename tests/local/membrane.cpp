@@ -1,5 +1,5 @@
-// Membranes that deform by any amount: their energies against those of the continuum, rigid motion, the limit
-// of small strain, and the laws of every energy.
+// Membranes for large deformations: their energies against the continuum, rigid motion, the limit of small
+// strain, and the general laws of energies.
 #include <pliant/local/shell/membrane.h>
 
 #include <pliant/local/shell/linear_membrane.h>
@@ -18,7 +18,7 @@ namespace {
 VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
-VecX<double> turned(const ShellMesh& mesh) {
+VecX<double> rotated_sheet(const ShellMesh& mesh) {
   const Mat3<double> R = Eigen::AngleAxisd(2.1, Vec3<double>(1, -2, 0.5).normalized()).toRotationMatrix();
   return field(mesh, [&](const Vec3<double>& X) -> Vec3<double> { return Vec3<double>(3, 4, 5) + R * X; });
 }
@@ -33,15 +33,15 @@ void check_laws(double nu) {
   const VecX<double> X = rest(small), x = X + random_vector(draws, X.size(), 0.06);
   CHECK(membrane.energy(X) == 0);
   CHECK(force(membrane, X).norm() <= 1e-13 * force(membrane, x).norm());
-  CHECK(membrane.energy(turned(small)) <= 1e-13 * membrane.energy(x));
-  CHECK(force(membrane, turned(small)).norm() <= 1e-13 * force(membrane, x).norm());
+  CHECK(membrane.energy(rotated_sheet(small)) <= 1e-13 * membrane.energy(x));
+  CHECK(force(membrane, rotated_sheet(small)).norm() <= 1e-13 * force(membrane, x).norm());
   check_slopes(membrane, x, 2e-3);
   check_stiffness(membrane, x);
   const VecX<double> M = thrice(node_areas(small));
   check_bound(membrane, X, M, 2);
   check_bound(membrane, x, M, 2);
   check_threads(more, rest(large) + random_vector(draws, 3 * large.n_nodes(), 0.005));
-  // Near rest it is the linear membrane.
+  // Near rest the law is the linear membrane.
   const VecX<double> dx = random_vector(draws, X.size());
   const VecX<double> linear = force(LinearMembrane(small, sheet), dx);
   CHECK((derivative(membrane, X, dx) - linear).norm() <= 1e-12 * linear.norm());
@@ -49,7 +49,7 @@ void check_laws(double nu) {
 
 }  // namespace
 
-TEST_CASE("membranes: slopes, matrix, threads, bound, rest and rigid motion", "[local]") {
+TEST_CASE("membranes: derivatives, matrix, threads, frequency bound, rest and rigid motion", "[local]") {
   for (const double nu : {-0.4, 0.0, 0.3, 0.5}) {
     check_laws<StVenantKirchhoffSheet>(nu);
     check_laws<NeoHookeanSheet>(nu);
@@ -70,7 +70,7 @@ TEST_CASE("membranes: homogeneous stretch has the energy and the stress of the c
     const double e1 = 0.5 * (l1 * l1 - 1), e2 = 0.5 * (l2 * l2 - 1);
     CHECK(StVenantKirchhoffMembrane(mesh, sheet).energy(stretched(l1, l2)) ==
           Approx(E * t / (2 * (1 - nu * nu)) * (e1 * e1 + e2 * e2 + 2 * nu * e1 * e2)).epsilon(1e-12));
-    // The three-dimensional energy, least over the stretch l3 of the thickness.
+    // The three-dimensional energy, minimised over the stretch l3 of the thickness.
     const double mu = E / (2 * (1 + nu)), beta = nu < 0.5 ? nu / (1 - 2 * nu) : 0;
     auto density = [&](double l3) {
       const double sum = l1 * l1 + l2 * l2 + l3 * l3 - 3, J = l1 * l2 * l3;
@@ -87,7 +87,7 @@ TEST_CASE("membranes: homogeneous stretch has the energy and the stress of the c
   }
 }
 
-TEST_CASE("membranes: homogeneous strain pushes no node inside", "[local]") {
+TEST_CASE("membranes: homogeneous strain exerts no force on inner nodes", "[local]") {
   Draws draws(5);
   const ShellMesh mesh = irregular_sheet(6, 5, 1, 1, draws);
   const VecX<double> x = field(mesh, [](const Vec3<double>& X) {

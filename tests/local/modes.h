@@ -1,5 +1,5 @@
-// A few modes of K u = omega^2 M u near a frequency, by inverse iteration of a block of vectors, and fields
-// on the sphere to begin with.
+// Modes of K u = omega^2 M u near a frequency, by inverse iteration of a block of vectors; and harmonic
+// fields on the sphere as initial vectors.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 
 namespace pliant::test {
 
-/// Mean omega^2 of the `count` modes below 2 `near` that lie most in the space of the columns of U, after
-/// inverse iterations of U and V at `near`; V holds what would mix in.
+/// Returns the mean omega^2 of the `count` modes below 2 `near` that have the largest components in the space
+/// of U, after inverse iterations of U and V at `near`. V contains fields of other modes that would mix.
 inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<double>& M, double near,
                             const MatX<double>& U, const MatX<double>& V, int count) {
   Eigen::SparseMatrix<double> A = K;
@@ -46,8 +46,8 @@ inline double mean_of_modes(const Eigen::SparseMatrix<double>& K, const VecX<dou
   return sum / count;
 }
 
-/// Fields on the sphere of the surface harmonics Y of degree n: Y along the normal, and the slope of Y, for
-/// 2n + 1 of them. Y = Re and Im (a.X)^n with a.a = 0. n = 0: the normal.
+/// Returns fields of 2n + 1 surface harmonics Y of degree n on the sphere: Y along the normal, and grad Y. Y
+/// = Re (a.X)^n with a.a = 0. n = 0: the normal.
 inline MatX<double> harmonic_fields(const ShellMesh& mesh, int n) {
   Draws draws(11);
   const int count = 2 * n + 1;

@@ -1,4 +1,4 @@
-// Nearly incompressible solids (N22): what locks, and that averaged dilatation does not.
+// Nearly incompressible solids: plain elements lock, elements with averaged dilatation do not.
 #include "catch.h"
 
 #include <cmath>
@@ -26,7 +26,7 @@ SolidMesh sphere(int resolution) {
   return test::solid_mesh("sphere", {}, resolution, test::order_of(Element::n_nodes));
 }
 
-/// Frequency of the spheroidal modes of order 2 of a free sphere, omega r / c_t (Lamb 1882; physics 8.3).
+/// Returns omega r / c_t of the spheroidal modes of order 2 of a free sphere (Lamb 1882).
 double lamb_S2(double nu) {
   const double slow = std::sqrt((1 - 2 * nu) / (2 * (1 - nu)));
   auto j = [](unsigned l, double x) { return std::sph_bessel(l, x); };
@@ -43,7 +43,7 @@ double lamb_S2(double nu) {
   return low;
 }
 
-/// Largest relative errors of the five S2 modes, which are the lowest ten without the five of T2.
+/// Returns the largest relative error of the five S2 modes: the lowest ten modes without the five of T2.
 template <class Element>
 double S2_error(const NodalEnergy& energy, const SolidMesh& mesh, double nu) {
   const test::Sparse M = Element::n_nodes == 4
@@ -71,8 +71,8 @@ double averaged_error(int resolution, double nu) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion, threads, bound", "[solid]",
-                   LinearTetrahedron, QuadraticTetrahedron, EnrichedTetrahedron) {
+TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion, threads, frequency bound",
+                   "[solid]", LinearTetrahedron, QuadraticTetrahedron, EnrichedTetrahedron) {
   const SolidMesh mesh = sphere<TestType>(TestType::n_nodes == 4 ? 2 : 1);
   const Elasticity material(3, 0.48);
   const AveragedLinearSolid<TestType> energy(mesh.rest, mesh.elements, material);
@@ -92,9 +92,9 @@ TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion,
   const MatX<double> K = test::stiffness_at(energy, x), K_plain = test::stiffness_at(plain, x);
   CHECK((K * x + f).norm() <= 1e-13 * f.norm());
   CHECK((K - K.transpose()).norm() <= 1e-14 * K.norm());
-  // No stiffer in any direction.
+  // The stiffness is not larger in any direction.
   CHECK(symmetric_eigenvalues(K_plain - K).minCoeff() >= -1e-12 * K.norm());
-  // Uniform strains are what they are without averages, rigid motion among them.
+  // Uniform strains, and rigid motion, have the energy of plain elements.
   Mat3<double> A;
   A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;
   const VecX<double> uniform = test::affine(mesh.rest, A, {1, 2, 3});
@@ -119,7 +119,7 @@ TEMPLATE_TEST_CASE("averaged dilatation: force, energy, stiffness, rigid motion,
                     test::has_text("0.4999"));
 }
 
-TEMPLATE_TEST_CASE("averaged dilatation: a uniform strain stresses all elements alike", "[solid]",
+TEMPLATE_TEST_CASE("averaged dilatation: a uniform strain gives equal stress in all elements", "[solid]",
                    LinearTetrahedron, QuadraticTetrahedron, EnrichedTetrahedron) {
   Mat3<double> A;
   A << 0.2, 0.1, -0.05, 0.03, -0.1, 0.08, -0.02, 0.12, 0.15;

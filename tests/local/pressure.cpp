@@ -1,5 +1,5 @@
-// Pressure in closed shells: its resultants, a balloon in balance with its rubber, and the laws of every
-// energy.
+// Pressure in closed shells: its resultants, the equilibrium of a rubber balloon, and the general laws of
+// energies.
 #include <pliant/local/shell/pressure.h>
 
 #include <pliant/local/shell/membrane.h>
@@ -20,7 +20,7 @@ VecX<double> rest(const ShellMesh& mesh) {
   return field(mesh, [](const Vec3<double>& X) { return X; });
 }
 
-/// Slopes, threads, and the matrix with its rank-one part.
+/// Checks derivatives, threads, and the matrix with its rank-one part.
 void check_laws(const Pressure& pressure, const Pressure& more, const ShellMesh& small,
                 const ShellMesh& large) {
   Draws draws(1);
@@ -38,19 +38,19 @@ void check_laws(const Pressure& pressure, const Pressure& more, const ShellMesh&
   INFO("bound " << bound << ", largest " << largest);
   CHECK(bound >= largest);
   CHECK(bound <= 4 * largest);
-  // It pushes and turns the whole by nothing.
+  // The resulting force and torque are zero.
   const VecX<double> f = force(pressure, x);
   const auto push = nodes(f, small.n_nodes()), at = nodes(x, small.n_nodes());
-  Vec3<double> turn = Vec3<double>::Zero();
+  Vec3<double> torque = Vec3<double>::Zero();
   for (Eigen::Index i = 0; i < small.n_nodes(); ++i)
-    turn += Vec3<double>(at.row(i)).cross(Vec3<double>(push.row(i)));
+    torque += Vec3<double>(at.row(i)).cross(Vec3<double>(push.row(i)));
   CHECK(push.colwise().sum().norm() <= 1e-13 * f.norm());
-  CHECK(turn.norm() <= 1e-13 * f.norm());
+  CHECK(torque.norm() <= 1e-13 * f.norm());
 }
 
 }  // namespace
 
-TEST_CASE("pressure: slopes, matrix, threads, bound, resultants", "[local]") {
+TEST_CASE("pressure: derivatives, matrix, threads, frequency bound, resultants", "[local]") {
   const ShellMesh small = icosphere(1, 0.7), large = icosphere(4, 0.7);
   const double V0 = ConstantPressure(small, 1).volume(rest(small));
   for (const double p : {300.0, -200.0})
@@ -62,7 +62,7 @@ TEST_CASE("pressure: slopes, matrix, threads, bound, resultants", "[local]") {
     }
 }
 
-TEST_CASE("pressure: the volume does not feel where the shell is", "[local]") {
+TEST_CASE("pressure: the volume does not depend on the position of the shell", "[local]") {
   const ShellMesh mesh = icosphere(3, 1);
   const ConstantPressure pressure(mesh, 1);
   const VecX<double> far =
@@ -71,7 +71,7 @@ TEST_CASE("pressure: the volume does not feel where the shell is", "[local]") {
   CHECK(pressure.volume(far) == Approx(pressure.volume(rest(mesh))).epsilon(1e-9));
 }
 
-TEST_CASE("pressure: a rubber balloon is in balance where theory says", "[local]") {
+TEST_CASE("pressure: the equilibrium of a rubber balloon agrees with theory", "[local]") {
   // p = (2 t mu/r)(1/s - 1/s^7) at the stretch s of a neo-Hookean sphere.
   const double r = 0.5, t = 1e-3, E = 1e6, s = 1.3, mu = E / 3;
   const double p = 2 * t * mu / r * (1 / s - std::pow(s, -7));
@@ -80,7 +80,7 @@ TEST_CASE("pressure: a rubber balloon is in balance where theory says", "[local]
     const VecX<double> x = s * rest(mesh);
     const VecX<double> pull = force(NeoHookeanMembrane(mesh, {E, 0.5, t}), x),
                        push = force(ConstantPressure(mesh, p), x);
-    // The virtual work on a growing sphere.
+    // The ratio of virtual works on a growing sphere.
     return std::abs(pull.dot(x) / push.dot(x) + 1);
   };
   const double coarse = error(2), fine = error(3);
@@ -89,7 +89,7 @@ TEST_CASE("pressure: a rubber balloon is in balance where theory says", "[local]
   CHECK(std::log2(coarse / fine) >= 1.9);
 }
 
-TEST_CASE("pressure: open, disoriented and inverted shells are refused", "[local]") {
+TEST_CASE("pressure: open, inconsistently oriented and inverted shells are refused", "[local]") {
   const ShellMesh closed = icosphere(0, 1);
   const Eigen::Matrix3Xi triangles = closed.triangles();
   Eigen::Matrix3Xi one_turned = triangles, all_turned = triangles;

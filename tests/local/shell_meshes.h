@@ -24,7 +24,7 @@ inline ShellMesh shell_mesh(const std::vector<Vec3<double>>& X,
   return ShellMesh(nodes, corners);
 }
 
-/// Sphere about the origin; each level splits every triangle of the icosahedron in four.
+/// Returns a sphere about the origin; each level splits every triangle of the icosahedron into four.
 inline ShellMesh icosphere(int levels, double radius) {
   const double g = 0.5 * (1 + std::sqrt(5.0));
   std::vector<Vec3<double>> X{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -53,7 +53,8 @@ inline ShellMesh icosphere(int levels, double radius) {
   return shell_mesh(X, triangles);
 }
 
-/// Rectangle a x b in the plane z = 0 about the origin with irregular triangles, the edges straight.
+/// Returns a rectangle a x b in the plane z = 0 about the origin, with irregular triangles and straight
+/// edges.
 template <class Draws>
 ShellMesh irregular_sheet(int n, int m, double a, double b, Draws&& draws) {
   std::vector<Vec3<double>> X;
@@ -75,13 +76,13 @@ ShellMesh irregular_sheet(int n, int m, double a, double b, Draws&& draws) {
   return shell_mesh(X, triangles);
 }
 
-/// Solid angle of a triangle seen from the origin (Van Oosterom & Strackee 1983).
+/// Returns the solid angle of a triangle seen from the origin (Van Oosterom & Strackee 1983).
 inline double solid_angle(const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   return 2 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
-/// Area of each node on the sphere itself: a third of each triangle about it; in all 4 pi r^2.
+/// Returns the area of each node on the sphere: a third of each adjacent triangle; the sum is 4 pi r^2.
 inline VecX<double> sphere_areas(const ShellMesh& mesh) {
   VecX<double> area = VecX<double>::Zero(mesh.n_nodes());
   for (Eigen::Index t = 0; t < mesh.n_triangles(); ++t)
@@ -91,7 +92,7 @@ inline VecX<double> sphere_areas(const ShellMesh& mesh) {
   return area;
 }
 
-/// A third of the triangles about each node.
+/// Returns a third of the area of the adjacent triangles for each node.
 inline VecX<double> node_areas(const ShellMesh& mesh) {
   VecX<double> area = VecX<double>::Zero(mesh.n_nodes());
   for (Eigen::Index t = 0; t < mesh.n_triangles(); ++t)
@@ -99,14 +100,14 @@ inline VecX<double> node_areas(const ShellMesh& mesh) {
   return area;
 }
 
-/// A value a node, three times: what local coordinates along x, y and z have in common.
+/// Repeats one value a node for the local coordinates along x, y and z.
 inline VecX<double> thrice(const VecX<double>& a) {
   VecX<double> all(3 * a.size());
   all << a, a, a;
   return all;
 }
 
-/// Local coordinates from one vector a node.
+/// Returns local coordinates from one vector a node.
 template <class F>
 VecX<double> field(const ShellMesh& mesh, F&& f) {
   const Eigen::Index n = mesh.n_nodes();

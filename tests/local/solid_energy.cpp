@@ -1,4 +1,5 @@
-// Laws of the energies of tetrahedra: forces, derivatives, stiffness, patches, rigid motion, threads, bounds.
+// Laws of the energies of tetrahedra: forces, derivatives, stiffness, patch tests, rigid motion, threads,
+// frequency bounds.
 #include <pliant/local/solid/solid_energy.h>
 
 #include <cmath>
@@ -38,8 +39,8 @@ struct Kind {
   static constexpr int N = Element::n_nodes;
   static constexpr bool linear = Law::of == NodalEnergy::Of::displacement;
   static Energy make(const SolidMesh& mesh) { return Energy(mesh.rest, mesh.elements, Law(kRubber)); }
-  /// How far nodes are drawn about: by strains of some tenths, and no element inside out that does not bear
-  /// it.
+  /// Size of the random displacements: strains of some tenths. Elements are inverted only for laws that
+  /// permit it.
   static constexpr double kSize = N == 15 && std::is_same_v<Law, Corotated> ? 0.01 : 0.05;
   static VecX<double> state(const SolidMesh& mesh, double size = kSize) {
     Draws draws(3);
@@ -130,7 +131,7 @@ TEMPLATE_TEST_CASE("the assembled stiffness is the derivative, and symmetric", "
   if (TestType::linear) CHECK((K * x + force(energy, x)).norm() <= 1e-13 * (K * x).norm());
 }
 
-TEMPLATE_TEST_CASE("at rest every law is that of linear elasticity", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("at rest every law has the stiffness of linear elasticity", "[solid]", PLIANT_ALL_KINDS) {
   const SolidMesh mesh = crooked_box(TestType::N);
   using Linear = Kind<typename TestType::Shape, LinearLaw>;
   const VecX<double> rest = TestType::state(mesh, 0);
@@ -140,7 +141,7 @@ TEMPLATE_TEST_CASE("at rest every law is that of linear elasticity", "[solid]", 
   CHECK(force(TestType::make(mesh), rest).norm() <= 1e-13 * linear.norm());
 }
 
-TEMPLATE_TEST_CASE("a uniform strain stresses all elements alike", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("a uniform strain gives equal stress in all elements", "[solid]", PLIANT_ALL_KINDS) {
   Mat3<double> A = uniform_strain();
   if (!TestType::linear) A += Mat3<double>::Identity();
   const SolidMesh box = crooked_box(TestType::N);
@@ -152,19 +153,19 @@ TEMPLATE_TEST_CASE("a uniform strain stresses all elements alike", "[solid]", PL
     double volume = 0;
     for (int e = 0; e < energy.n_elements(); ++e) volume += energy.volume(e);
     CHECK(energy.energy(x) == Approx(volume * energy.law().density(A)).epsilon(1e-13));
-    // The work of the boundary: sum of f_a X_a^T = -V P.
+    // The virtual work of the boundary: sum of f_a X_a^T = -V P.
     const Mat3<double> stress = nodes(f, mesh.n()).transpose() * mesh.rest;
     CHECK((stress + volume * energy.law().stress(A)).norm() <= 1e-13 * stress.norm());
   }
 }
 
-TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding, but where the rest shape is deformed",
+TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding unless the rest shape is deformed",
           "[solid]") {
-  // A node in balance is an integral of degree 3 over elements whose places are quadratic, which the rule of
-  // degree 5 has exactly; a bubble of the boundary adds nothing, by the symmetry of the rule. Solid places
-  // the nodes of faces and middles inside without bubbles in the shape; taper and bend make bubbles of them,
-  // and degree 7 of the integral.
-  auto unbalanced = [](const SolidMesh& mesh) {
+  // The force on a node is an integral of degree 3 over elements with quadratic geometry, for which the rule
+  // of degree 5 is exact. A boundary bubble adds nothing, by the symmetry of the rule. In the undeformed
+  // shape Solid places face and middle nodes without bubbles; taper and bend create bubbles, and an integrand
+  // of degree 7.
+  auto residual = [](const SolidMesh& mesh) {
     using Linear = Kind<EnrichedTetrahedron, LinearLaw>;
     const VecX<double> f = force(Linear::make(mesh), affine(mesh.rest, uniform_strain(), {0, 0, 0}));
     return largest_inside(f, mesh) / f.norm();
@@ -175,9 +176,9 @@ TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding, but where
                                   resolution, Solid::Order::enriched, {"taper", "bend"})
                : test::solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}}, resolution, Solid::Order::enriched);
   };
-  CHECK(unbalanced(box(2, false)) <= 1e-14);
-  const double coarse = unbalanced(box(1, true)), middle = unbalanced(box(2, true)),
-               fine = unbalanced(box(4, true));
+  CHECK(residual(box(2, false)) <= 1e-14);
+  const double coarse = residual(box(1, true)), middle = residual(box(2, true)),
+               fine = residual(box(4, true));
   INFO(coarse << ", " << middle << ", " << fine);
   CHECK(coarse <= 3.2e-6);
   CHECK(middle <= 1.9e-7);
@@ -186,17 +187,17 @@ TEST_CASE("elements of 15 nodes balance a uniform stress: to rounding, but where
   CHECK(std::log2(middle / fine) >= 3.5);
 }
 
-TEMPLATE_TEST_CASE("rigid motion strains nothing", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("rigid motion causes no strain", "[solid]", PLIANT_ALL_KINDS) {
   const SolidMesh mesh = crooked_box(TestType::N);
   const auto energy = TestType::make(mesh);
   const double scale = stiffness(energy, TestType::state(mesh, 0)).norm();
-  const Mat3<double> turn =
+  const Mat3<double> rotation =
       TestType::linear ? skew(Vec3<double>(0.3, -0.5, 0.8))
                        : Eigen::AngleAxisd(2.4, Vec3<double>(1, 2, -1).normalized()).toRotationMatrix();
-  const VecX<double> x = affine(mesh.rest, turn, {3, 1, -2});
+  const VecX<double> x = affine(mesh.rest, rotation, {3, 1, -2});
   CHECK(force(energy, x).norm() <= 1e-13 * scale);
   CHECK(std::abs(energy.energy(x)) <= 1e-13 * scale);
-  // No force and no torque from inside, however deformed.
+  // The internal forces have no resultant force or torque in any deformed state.
   const VecX<double> deformed = TestType::state(mesh), f = force(energy, deformed);
   CHECK(nodes(f, mesh.n()).colwise().sum().norm() <= 1e-13 * f.norm());
   Vec3<double> torque = Vec3<double>::Zero();
@@ -208,7 +209,7 @@ TEMPLATE_TEST_CASE("rigid motion strains nothing", "[solid]", PLIANT_ALL_KINDS) 
   CHECK(torque.norm() <= 1e-12 * f.norm());
 }
 
-TEMPLATE_TEST_CASE("the same bits for any number of threads", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("identical bits for any number of threads", "[solid]", PLIANT_ALL_KINDS) {
   const SolidMesh mesh =
       test::solid_mesh("sphere", {}, TestType::N == 4 ? 5 : 3, test::order_of(TestType::N));
   const auto energy = TestType::make(mesh);
@@ -221,7 +222,7 @@ TEMPLATE_TEST_CASE("the same bits for any number of threads", "[solid]", PLIANT_
   }
 }
 
-TEMPLATE_TEST_CASE("the bound of frequencies holds, and is not far away", "[solid]", PLIANT_ALL_KINDS) {
+TEMPLATE_TEST_CASE("the frequency bound is valid, and close", "[solid]", PLIANT_ALL_KINDS) {
   for (const SolidMesh& mesh : {crooked_box(TestType::N), ball(TestType::N)}) {
     const auto energy = TestType::make(mesh);
     const VecX<double> M = lumped_mass(mesh.rest, mesh.elements, 2.5).replicate(3, 1);
@@ -237,7 +238,7 @@ TEMPLATE_TEST_CASE("the bound of frequencies holds, and is not far away", "[soli
   }
 }
 
-TEST_CASE("elements that are turned inside out: refused, or pushed back", "[solid]") {
+TEST_CASE("inverted elements are refused, or pushed back", "[solid]") {
   const SolidMesh mesh = ball(4);
   Mat3<double> mirror = Mat3<double>::Identity();
   mirror(2, 2) = -0.5;
@@ -258,7 +259,7 @@ TEST_CASE("elements that are turned inside out: refused, or pushed back", "[soli
   CHECK(neo_hookean.energy(affine(mesh.rest, mirror, Vec3<double>::Zero())) > neo_hookean.energy(x));
 }
 
-TEST_CASE("rotations nearest to strong deformations", "[solid]") {
+TEST_CASE("the nearest rotation of strong deformations", "[solid]") {
   Draws draws(5);
   for (int trial = 0; trial < 200; ++trial) {
     const Mat3<double> R =
@@ -272,7 +273,7 @@ TEST_CASE("rotations nearest to strong deformations", "[solid]") {
   }
 }
 
-TEST_CASE("materials and elements that cannot be are refused", "[solid]") {
+TEST_CASE("invalid materials and elements are refused", "[solid]") {
   CHECK_THROWS_WITH(Elasticity(0, 0.3), test::has_text("must be positive and finite"));
   CHECK_THROWS_WITH(Elasticity(kInfinity, 0.3), test::has_text("must be positive and finite"));
   CHECK_THROWS_WITH(Elasticity(1, 0.5), test::has_text("averaged dilatation"));
@@ -290,7 +291,7 @@ TEST_CASE("materials and elements that cannot be are refused", "[solid]") {
                     test::has_text("elements 4 to 7"));
 }
 
-TEST_CASE("energies by name of law are those of their types", "[solid]") {
+TEST_CASE("energies by name of law agree with those by type", "[solid]") {
   for (int n : {4, 10}) {
     const SolidMesh mesh = ball(n);
     const VecX<double> x = Kind<LinearTetrahedron, NeoHookean>::state(mesh);
@@ -315,7 +316,7 @@ TEST_CASE("energies by name of law are those of their types", "[solid]") {
                     test::has_text("4, 10 or 15"));
 }
 
-TEST_CASE("masses: sums, moments, positive", "[solid]") {
+TEST_CASE("masses: sums, moments, positive values", "[solid]") {
   for (int n : {4, 10, 15}) {
     INFO(n);
     const SolidMesh mesh = ball(n);
@@ -328,7 +329,8 @@ TEST_CASE("masses: sums, moments, positive", "[solid]") {
     CHECK(lumped.sum() == Approx(ones.dot(M * ones)).epsilon(n == 15 ? 1e-3 : 1e-14));
     if (n == 4) CHECK((lumped - M * ones).norm() <= 1e-14 * lumped.norm());
     if (n == 10) CHECK((M * ones).minCoeff() < 0);
-    // Moments of inertia of the ball, 4 pi / 15 rho; exact over the mesh where positions are in the space.
+    // Moments of inertia of the ball, 4 pi / 15 rho; exact over the mesh if positions are in the function
+    // space.
     const double exact = 3 * 4 * kPi / 15;
     CHECK(z.dot(M * z) == Approx(exact).epsilon(n == 4 ? 0.15 : 0.02));
     CHECK(z.dot(lumped.cwiseProduct(z)) == Approx(exact).epsilon(n == 15 ? 0.005 : 0.2));
@@ -336,7 +338,7 @@ TEST_CASE("masses: sums, moments, positive", "[solid]") {
   CHECK_THROWS_WITH(lumped_mass(Nodes(1, 3), Eigen::MatrixXi(8, 1), 1), test::has_text("8 nodes"));
 }
 
-TEST_CASE("rules of tetrahedra: exact to their degree, shape functions add up", "[solid]") {
+TEST_CASE("rules of tetrahedra: exact to their degree, shape functions sum to one", "[solid]") {
   auto worst = [](const auto& rule, int degree) {
     test::Worst error;
     for (int i = 0; i <= degree; ++i)

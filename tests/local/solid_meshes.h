@@ -1,4 +1,4 @@
-// Meshes of solid parts as the energies of tetrahedra take them.
+// Meshes of solid parts, in the form that the energies of tetrahedra use.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace pliant::test {
 
-/// The order of elements of so many nodes.
+/// Returns the order of elements with this number of nodes.
 inline Solid::Order order_of(int n_nodes) {
   return n_nodes == 4    ? Solid::Order::linear
          : n_nodes == 10 ? Solid::Order::quadratic
@@ -37,17 +37,17 @@ inline SolidMesh solid_mesh(const std::string& shape, const Part::Named& values,
           solid.boundary()};
 }
 
-/// A bent and tapered box: 48 elements of every orientation, or with 4 nodes 8 x 48.
+/// A bent and tapered box: 48 elements of all orientations, or 8 x 48 elements of 4 nodes.
 inline SolidMesh crooked_box(int n_nodes) {
   return solid_mesh("box", {{"a1", 0.7}, {"a3", 1.4}, {"taper.tx", 0.2}, {"bend.angle", 0.4}},
                     n_nodes == 4 ? 2 : 1, order_of(n_nodes), {"taper", "bend"});
 }
 
-/// The nodes of faces and middles where the quadratic function of the other nodes has them, so that elements
-/// of 15 nodes have the places of those of 10.
+/// Moves face and middle nodes to the quadratic interpolation of the other nodes, so that elements of 15
+/// nodes have the geometry of elements of 10.
 inline SolidMesh without_bubbles(SolidMesh mesh) {
   std::array<Vec3<double>, EnrichedTetrahedron::n_nodes> X;
-  std::array<Vec3<double>, 5> size;  // of the bubbles of faces and middle
+  std::array<Vec3<double>, 5> size;  // bubbles of the faces and the middle
   auto measure = [&] {
     for (int r = 0; r < 3; ++r) {
       double face[4], middle;
@@ -69,7 +69,7 @@ inline SolidMesh without_bubbles(SolidMesh mesh) {
   return mesh;
 }
 
-/// The largest force on a node inside.
+/// Returns the largest force on an inner node.
 inline double largest_inside(const VecX<double>& f, const SolidMesh& mesh) {
   std::vector<bool> is(static_cast<std::size_t>(mesh.n()), true);
   for (Eigen::Index i = 0; i < mesh.boundary.size(); ++i)
@@ -80,7 +80,7 @@ inline double largest_inside(const VecX<double>& f, const SolidMesh& mesh) {
   return largest;
 }
 
-/// Positions or displacements A X + b of all nodes.
+/// Returns positions or displacements A X + b of all nodes.
 inline VecX<double> affine(const Nodes& X, const Mat3<double>& A, const Vec3<double>& b) {
   VecX<double> x(3 * X.rows());
   nodes(x, X.rows()) = (X * A.transpose()).rowwise() + b.transpose();

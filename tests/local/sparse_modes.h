@@ -1,4 +1,5 @@
-// Eigenvalues of K u = lambda M u next to a shift, by inverse subspace iteration; those of given fields.
+// Eigenvalues of K u = lambda M u near a shift, by inverse subspace iteration; and Rayleigh quotients of
+// given fields.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +28,7 @@ inline Sparse stiffness_at(const NodalEnergy& energy, const VecX<double>& x) {
   energy.add_stiffness(x, entries);
   return sparse(entries, x.size());
 }
-/// A matrix over nodes for each of the three directions.
+/// Returns the matrix over nodes repeated for each of the three directions.
 inline Sparse in_space(const std::vector<Eigen::Triplet<double>>& entries, int n) {
   std::vector<Eigen::Triplet<double>> all;
   for (const auto& entry : entries)
@@ -38,16 +39,16 @@ inline Sparse in_space(const VecX<double>& masses) {
   return Sparse(VecX<double>(masses.replicate(3, 1)).asDiagonal());
 }
 
-/// omega^2 of what a mesh does that is let go in given fields. One solution of (K + below M) U' = M U makes
-/// fields of the mesh's own of them; what else is in these are modes of frequencies nearby, of which each
-/// value is a mean, however modes of the mesh mix that lie close together.
+/// Computes omega^2 of given fields on a mesh. One solution of (K + below M) U' = M U smooths the fields on
+/// the mesh. Other modes in U' have frequencies nearby, and each value is a weighted mean of them, also if
+/// close modes of the mesh mix.
 class SmoothedFields {
  public:
   SmoothedFields(Sparse K, Sparse M, double below) : K_(std::move(K)), M_(std::move(M)) {
     factor_.compute(K_ + below * M_);
-    if (factor_.info() != Eigen::Success) throw std::runtime_error("no factor of K + below M");
+    if (factor_.info() != Eigen::Success) throw std::runtime_error("K + below M could not be factored");
   }
-  /// In rising order, one a column of U.
+  /// Returns the values in rising order, one for each column of U.
   VecX<double> values(const MatX<double>& U) const {
     const MatX<double> smooth = factor_.solve(MatX<double>(M_ * U));
     const MatX<double> k = smooth.transpose() * (K_ * smooth), m = smooth.transpose() * (M_ * smooth);
@@ -64,11 +65,11 @@ struct Modes {
   MatX<double> vectors;
 };
 
-/// The `wanted` modes whose values are nearest to the shift, which must not be an eigenvalue.
+/// Returns the `wanted` modes nearest to the shift, which must not be an eigenvalue.
 inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int wanted, int spare = 8) {
   const Sparse A = K - shift * M;
   const Eigen::SimplicialLDLT<Sparse> factor(A);
-  if (factor.info() != Eigen::Success) throw std::runtime_error("no factor of K - shift M");
+  if (factor.info() != Eigen::Success) throw std::runtime_error("K - shift M could not be factored");
   const Eigen::Index n = K.rows(), block = std::min<Eigen::Index>(n, wanted + spare);
   Draws draws(4);
   MatX<double> X(n, block);
@@ -91,7 +92,7 @@ inline Modes modes_near(const Sparse& K, const Sparse& M, double shift, int want
       return modes;
     last = modes.values;
   }
-  throw std::runtime_error("modes do not settle");
+  throw std::runtime_error("the subspace iteration did not converge");
 }
 
 }  // namespace pliant::test

@@ -1,4 +1,4 @@
-// The strain that colours tell: right for known stretches, nothing for rigid motion.
+// The surface strain for colouring: correct for known stretches, zero for rigid motion.
 #include <pliant/local/shell/surface_strain.h>
 
 #include <Eigen/Geometry>
@@ -39,7 +39,7 @@ Skin two_triangles() {
 
 }  // namespace
 
-TEST_CASE("a uniform stretch strains every vertex alike") {
+TEST_CASE("a uniform stretch gives equal strain at every vertex") {
   for (const char* shape : {"sphere", "superellipsoid", "box", "cylinder", "supertoroid"}) {
     INFO(shape);
     const Skin skin = skin_of(shape);
@@ -52,7 +52,7 @@ TEST_CASE("a uniform stretch strains every vertex alike") {
   }
 }
 
-TEST_CASE("rigid motion strains nothing, and turning changes no strain") {
+TEST_CASE("rigid motion causes no strain, and rotation does not change the strain") {
   const Skin skin = skin_of("superellipsoid");
   const SurfaceStrain strain(skin.X, skin.triangles);
   const Mat3<double> R = Eigen::AngleAxisd(2.1, Vec3<double>(1, -2, 0.5).normalized()).toRotationMatrix();
@@ -65,13 +65,13 @@ TEST_CASE("rigid motion strains nothing, and turning changes no strain") {
   CHECK((here - turned).cwiseAbs().maxCoeff() < 1e-12);
 }
 
-TEST_CASE("the largest principal strain counts") {
+TEST_CASE("the strain is the largest principal strain") {
   const Skin skin = two_triangles();
   const SurfaceStrain strain(skin.X, skin.triangles);
-  // Longer along x, shorter along y: the first counts.
+  // Longer along x, shorter along y: the first is the result.
   Mat3<double> F = Vec3<double>(1.3, 0.7, 5).asDiagonal();
   CHECK((strain.at(F * skin.X).array() - 0.5 * (1.69 - 1)).abs().maxCoeff() < 1e-14);
-  // Shorter both ways: the lesser shortening does.
+  // Shorter along both axes: the smaller contraction is the result.
   F = Vec3<double>(0.6, 0.9, 1).asDiagonal();
   CHECK((strain.at(F * skin.X).array() - 0.5 * (0.81 - 1)).abs().maxCoeff() < 1e-14);
   // Simple shear g: 2 G = [[0, g], [g, g^2]].
@@ -82,7 +82,7 @@ TEST_CASE("the largest principal strain counts") {
   CHECK((strain.at(F * skin.X).array() - largest).abs().maxCoeff() < 1e-14);
 }
 
-TEST_CASE("a vertex has the mean of its triangles by area") {
+TEST_CASE("the strain of a vertex is the area-weighted mean of its triangles") {
   const Skin skin = two_triangles();
   const SurfaceStrain strain(skin.X, skin.triangles);
   Eigen::Matrix3Xd x = skin.X;
@@ -94,9 +94,9 @@ TEST_CASE("a vertex has the mean of its triangles by area") {
   CHECK(at[1] == at[0]);
 }
 
-TEST_CASE("triangles without area count for nothing") {
+TEST_CASE("degenerate triangles have no weight") {
   Skin skin = two_triangles();
-  skin.X.col(3) << 0, 0.5, 0;  // on the edge
+  skin.X.col(3) << 0, 0.5, 0;  // the vertex is on the edge
   const SurfaceStrain strain(skin.X, skin.triangles);
   const VecX<double> at = strain.at(1.1 * skin.X);
   CHECK(at.head(3).isApproxToConstant(0.105, 1e-12));

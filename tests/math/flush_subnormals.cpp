@@ -1,4 +1,4 @@
-// Subnormal numbers within steps, in all threads alike.
+// Flushing of subnormal numbers during steps, equally in all threads.
 #include "catch.h"
 
 #include <limits>
@@ -12,14 +12,14 @@ namespace flush_subnormals_test {
 using namespace pliant;
 
 namespace {
-/// Half of the smallest normal number, by a product that is not known beforehand.
+/// Returns half of the smallest normal number, by a product that the compiler cannot evaluate.
 double half_of_smallest() {
   volatile double half = 0.5;
   return std::numeric_limits<double>::min() * half;
 }
 }  // namespace
 
-TEST_CASE("subnormal numbers are zero while they are flushed, and numbers again afterwards", "[math]") {
+TEST_CASE("subnormal numbers are zero while flushing is active, and numbers again afterwards", "[math]") {
   REQUIRE_FALSE(FlushSubnormals::active());
   CHECK(half_of_smallest() != 0);
   {
@@ -35,7 +35,7 @@ TEST_CASE("subnormal numbers are zero while they are flushed, and numbers again 
   CHECK(half_of_smallest() != 0);
 }
 
-TEST_CASE("threads of a pool take subnormal numbers as the thread that asks", "[math]") {
+TEST_CASE("threads of a pool use the subnormal mode of the calling thread", "[math]") {
   ThreadPool pool(4);
   for (const bool flush : {false, true, false}) {
     const FlushSubnormals flushed(flush);

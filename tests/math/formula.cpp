@@ -1,4 +1,4 @@
-// Formulas: values, exact derivatives, precedence, and every fault with its place.
+// Formulas: values, exact derivatives, precedence, and every error with its position.
 #include <pliant/math/formula.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-/// First and second derivative of f by fourth-order central differences in long double.
+/// Computes the first and second derivative of f by fourth-order central differences in long double.
 void differences(const std::function<Real(Real)>& f, Real t, Real* first, Real* second) {
   const Real h = 1.0L / 4096;
   const Real a = f(t - 2 * h), b = f(t - h), c = f(t), d = f(t + h), e = f(t + 2 * h);
@@ -91,7 +91,7 @@ std::string fault(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a formula gives value, rate and second derivative") {
+TEST_CASE("a formula gives its value, rate and second derivative") {
   for (const Case& c : cases()) {
     const Formula formula(c.text);
     CHECK_FALSE(formula.is_constant());
@@ -108,7 +108,7 @@ TEST_CASE("a formula gives value, rate and second derivative") {
   }
 }
 
-TEST_CASE("derivatives are exact, not differences") {
+TEST_CASE("derivatives are exact, not finite differences") {
   const Formula wave("3*sin(2*t)");
   for (const double t : {-1.0, 0.25, 40.0}) {
     const auto y = wave.at(t);
@@ -125,7 +125,7 @@ TEST_CASE("derivatives are exact, not differences") {
   CHECK((none.v == 1 && none.d == 0 && none.dd == 0));
 }
 
-TEST_CASE("signs and powers bind as in mathematics") {
+TEST_CASE("precedence of signs and powers follows mathematics") {
   CHECK(value("-2^2") == -4);
   CHECK(value("(-2)^2") == 4);
   CHECK(value("2^3^2") == 512);
@@ -156,7 +156,7 @@ TEST_CASE("parts without t are computed once") {
   CHECK(fault("(-8)^(1/3)") == "at character 5: the value here is not a finite number");
 }
 
-TEST_CASE("at a kink the derivatives are those ahead") {
+TEST_CASE("at a kink the derivatives are one-sided from later times") {
   CHECK(Formula("abs(t)").at(0).d == 1);
   CHECK(Formula("abs(-t)").at(0).d == 1);
   CHECK(Formula("abs(t^2)").at(0).dd == 2);
@@ -172,7 +172,7 @@ TEST_CASE("at a kink the derivatives are those ahead") {
   CHECK(Formula("smoothstep(0, 1, t)").at(1e-9).dd == Approx(6e-8).epsilon(1e-6));
 }
 
-TEST_CASE("what is not finite is never hidden") {
+TEST_CASE("values that are not finite are never hidden") {
   CHECK(std::isinf(value("1/t", 0)));
   CHECK(std::isnan(value("log(t)", -1)));
   for (const char* text :
@@ -183,7 +183,7 @@ TEST_CASE("what is not finite is never hidden") {
   }
 }
 
-TEST_CASE("faults name place, expectation and nearest name") {
+TEST_CASE("errors name the position, the expectation and the nearest name") {
   CHECK(fault("") ==
         "at character 1: expected a number, t, pi, a function or \"(\", but the formula ends here");
   CHECK(fault("2*") ==
@@ -216,7 +216,7 @@ TEST_CASE("faults name place, expectation and nearest name") {
   CHECK(fault_offset(".") == 0);
 }
 
-TEST_CASE("depth and length are bounded") {
+TEST_CASE("nesting depth and length are bounded") {
   const auto nested = [](int n) { return std::string(n, '(') + "t" + std::string(n, ')'); };
   CHECK(value(nested(64), 2) == 2);
   CHECK(fault(nested(65)) == "at character 66: nested deeper than 64 levels");

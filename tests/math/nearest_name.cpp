@@ -1,4 +1,4 @@
-// The name a user probably meant.
+// Suggestions of the name that a user probably meant.
 #include <pliant/math/nearest_name.h>
 
 #include "catch.h"

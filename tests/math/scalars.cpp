@@ -1,4 +1,4 @@
-// Laws of the numbers that formulas are written in: Dual, Taylor2, Pack, and signed powers.
+// Laws of the scalar types of formulas: Dual, Taylor2, Pack, and signed powers.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -25,8 +25,8 @@ bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// A random formula of two variables whose value and derivatives stay moderate: a postfix program over a pool
-/// of sub-results, so that it runs on any scalar.
+/// A random formula of two variables with moderate values and derivatives: a postfix program over a pool of
+/// intermediate results, which runs on any scalar.
 class RandomFormula {
  public:
   RandomFormula(unsigned seed, int length) {
@@ -94,7 +94,7 @@ bool close(double a, Real b, double tolerance) {
 }  // namespace
 
 TEST_CASE("every operation has its closed-form derivatives") {
-  // x = 0.7 moving at rate 1.3 with second derivative -0.4; a function f gives f' xd and f'' xd^2 + f' xdd.
+  // x = 0.7 with rate 1.3 and second derivative -0.4; a function f gives f' xd and f'' xd^2 + f' xdd.
   const double x = 0.7, xd = 1.3, xdd = -0.4, c = 1.7;
   const Taylor2<double> t(x, xd, xdd);
   const Dual<1> d = Dual<1>::variable(x, 0);
@@ -134,7 +134,7 @@ TEST_CASE("every operation has its closed-form derivatives") {
         math::where_positive(Dual<1>(-d), Dual<1>(1.0), d * d), x * x, 2 * x, 2);
 }
 
-TEST_CASE("assignment operators are the operators") {
+TEST_CASE("assignment operators agree with the binary operators") {
   Taylor2<double> t(0.7, 1.3, -0.4), u = t;
   const Taylor2<double> w(2.0, -1.0, 0.5);
   u += w;
@@ -229,7 +229,7 @@ TEST_CASE("the lanes of a pack have the bits of the scalar") {
 TEST_CASE("sine, cosine and exponential are within a unit in the last place, in every lane") {
   std::mt19937 generator(5);
   double worst_sine = 0, worst_cosine = 0, worst_exp = 0;
-  const auto off = [](double x, Real exact) {  // in units in the last place
+  const auto ulp_error = [](double x, Real exact) {  // error in units in the last place
     const double nearest = static_cast<double>(exact);
     const double unit = std::nextafter(std::abs(nearest), HUGE_VAL) - std::abs(nearest);
     return static_cast<double>(std::abs(Real(x) - exact) / unit);
@@ -245,9 +245,9 @@ TEST_CASE("sine, cosine and exponential are within a unit in the last place, in 
       const auto [s, c] = math::sin_cos(x);
       const Pack e = math::exp(y);
       for (int i = 0; i < Pack::kLanes; ++i) {
-        worst_sine = std::max(worst_sine, off(s[i], std::sin(Real(x[i]))));
-        worst_cosine = std::max(worst_cosine, off(c[i], std::cos(Real(x[i]))));
-        worst_exp = std::max(worst_exp, off(e[i], std::exp(Real(y[i]))));
+        worst_sine = std::max(worst_sine, ulp_error(s[i], std::sin(Real(x[i]))));
+        worst_cosine = std::max(worst_cosine, ulp_error(c[i], std::cos(Real(x[i]))));
+        worst_exp = std::max(worst_exp, ulp_error(e[i], std::exp(Real(y[i]))));
         if (trial % 16 != 0) continue;
         CHECK((same_bits(s[i], math::sin(x[i])) && same_bits(c[i], math::cos(x[i]))));
         CHECK(same_bits(e[i], math::exp(y[i])));
@@ -257,15 +257,15 @@ TEST_CASE("sine, cosine and exponential are within a unit in the last place, in 
   CHECK(worst_sine < 1);
   CHECK(worst_cosine < 1);
   CHECK(worst_exp < 1);
-  // Multiples of pi/2, as near as doubles come to them.
+  // The doubles nearest to multiples of pi/2.
   for (int k = -2000; k <= 2000; ++k) {
     const double x = static_cast<double>(k * 1.57079632679489661923L);
-    CHECK(off(math::sin(x), std::sin(Real(x))) < 1);
-    CHECK(off(math::cos(x), std::cos(Real(x))) < 1);
+    CHECK(ulp_error(math::sin(x), std::sin(Real(x))) < 1);
+    CHECK(ulp_error(math::cos(x), std::cos(Real(x))) < 1);
   }
 }
 
-TEST_CASE("sine, cosine and exponential at the ends of the numbers") {
+TEST_CASE("sine, cosine and exponential at the limits of the number range") {
   CHECK((math::sin(0.0) == 0 && math::cos(0.0) == 1 && math::exp(0.0) == 1));
   CHECK((math::exp(-1e6) == 0 && math::exp(-HUGE_VAL) == 0 && math::exp(-745.0) > 0));
   CHECK((std::isinf(math::exp(710.0)) && std::isinf(math::exp(HUGE_VAL)) && std::isfinite(math::exp(709.7))));
@@ -282,7 +282,7 @@ TEST_CASE("sine, cosine and exponential at the ends of the numbers") {
   CHECK((std::isnan(s[1]) && std::isnan(c[2]) && s[3] == static_cast<double>(std::sin(1e17L))));
 }
 
-TEST_CASE("a pack adds its lanes and broadcasts") {
+TEST_CASE("a pack sums its lanes and broadcasts") {
   Pack p(2.5);
   CHECK(sum(p) == 10);
   p.set(2, -1);
@@ -291,7 +291,7 @@ TEST_CASE("a pack adds its lanes and broadcasts") {
   CHECK((chosen[1] == 1 && chosen[2] == 7));
 }
 
-TEST_CASE("the branch not taken leaves no trace") {
+TEST_CASE("the unused branch of a selection has no effect") {
   const Taylor2<double> t(-1.0, 1.0, 0.0);
   const auto y = math::where_positive(t, log(t), Taylor2<double>(2.0));
   CHECK((y.v == 2 && y.d == 0 && y.dd == 0));
@@ -299,7 +299,7 @@ TEST_CASE("the branch not taken leaves no trace") {
   CHECK((d.v == 2 && d.d[0] == 0));
 }
 
-TEST_CASE("signed powers have value and derivatives, at zero too") {
+TEST_CASE("signed powers have value and derivatives, also at zero") {
   for (const double x : {-1.0, -0.3, -1e-8, 5e-324, 1e-3, 0.5, 1.0}) {
     for (const double eps : {0.02, 0.3, 1.0, 1.9, 5.0}) {
       INFO("x " << x << " eps " << eps);

@@ -1,5 +1,5 @@
-// Eigen's factorisation and CHOLMOD's, simplicial and supernodal: the same answers, and the same verdict on
-// bad input.
+// The factorisations of Eigen and CHOLMOD, simplicial and supernodal: equal solutions, and equal reports of
+// singular matrices.
 #include <pliant/math/sparse_factor.h>
 #include <pliant/solve/cholmod_factor.h>
 
@@ -34,8 +34,8 @@ std::vector<Backend> backends() {
           {"CHOLMOD supernodal", [] { return pliant::make_cholmod_factor({0}); }}};
 }
 
-/// Random links between n points, each a spring of random strength, and a weak tie of every point to the
-/// ground.
+/// Returns the stiffness matrix of random springs of random strength between n points, and of a weak spring
+/// from every point to the ground.
 SparseMatrix spring_net(int n, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> point(0, n - 1);
@@ -66,7 +66,7 @@ SparseMatrix lower(const Eigen::MatrixXd& dense) {
 
 }  // namespace
 
-TEST_CASE("solutions of a random net of springs") {
+TEST_CASE("solutions of a random net of springs are accurate") {
   const int n = 400;
   const SparseMatrix first = spring_net(n, 1);
   SparseMatrix A = first;
@@ -76,7 +76,7 @@ TEST_CASE("solutions of a random net of springs") {
     const auto factor = backend.make();
     factor->analyse(first);
     CHECK(factor->size() == n);
-    for (const double scale : {1.0, 7.0}) {  // new values, same pattern
+    for (const double scale : {1.0, 7.0}) {  // new values, unchanged pattern
       A.coeffs() = scale * first.coeffs();
       REQUIRE(factor->factor(A));
       Eigen::MatrixXd x = b;
@@ -92,7 +92,7 @@ TEST_CASE("solutions of a random net of springs") {
   }
 }
 
-TEST_CASE("a pivot that fails is named by its row") {
+TEST_CASE("a pivot that fails is reported with its row") {
   Eigen::MatrixXd good = Eigen::MatrixXd::Identity(6, 6) * 2;
   good(1, 0) = good(0, 1) = 0.5;
   for (const Backend& backend : backends()) {
@@ -126,13 +126,13 @@ TEST_CASE("a pivot that fails is named by its row") {
     }
     Eigen::MatrixXd x = good;
     CHECK_THROWS_AS(factor->solve(x), std::logic_error);
-    REQUIRE(factor->factor(lower(good)));  // good values again: as if nothing had happened
+    REQUIRE(factor->factor(lower(good)));  // With valid values the factor works again.
     factor->solve(x);
     CHECK((x - Eigen::MatrixXd::Identity(6, 6)).norm() < 1e-14);
   }
 }
 
-TEST_CASE("misuse of a factorisation") {
+TEST_CASE("misuse of a factorisation is refused") {
   for (const Backend& backend : backends()) {
     CAPTURE(backend.name);
     const auto factor = backend.make();

@@ -57,7 +57,7 @@ TEST_CASE("clamped key frames reproduce cubic polynomials") {
   }
 }
 
-TEST_CASE("key frames are met and are twice continuously differentiable inside") {
+TEST_CASE("key frames are interpolated, and the spline is twice continuously differentiable inside") {
   std::mt19937 generator(2);
   std::uniform_real_distribution<double> height(-1, 1);
   const std::vector<double> t = random_times(12, &generator);
@@ -108,7 +108,7 @@ TEST_CASE("key frames of a sine converge at fourth order") {
   CHECK(std::log2(worst(20) / worst(40)) > 3.9);
 }
 
-TEST_CASE("key frames hold their end values outside") {
+TEST_CASE("a spline has constant end values outside its key frames") {
   const TimeFunction spline = TimeFunction::key_frames({0, 1, 3}, {2, 5, 4});
   for (const double t : {-1e300, -1.0, -1e-9}) {
     CHECK(spline.at(t).v == 2);
@@ -127,7 +127,7 @@ TEST_CASE("key frames hold their end values outside") {
   CHECK(line.at(2).dd == 0);
 }
 
-TEST_CASE("bad key frames are refused") {
+TEST_CASE("invalid key frames are refused") {
   const double inf = std::numeric_limits<double>::infinity();
   CHECK(fault({}, {}) == "key frames: there is no key");
   CHECK(fault({0, 1}, {1}) == "key frames: 2 times, but 1 values");
@@ -156,7 +156,7 @@ TEST_CASE("formulas are functions of time") {
   CHECK(TimeVector(pliant::Vec3<double>(1, 2, 3)).is_constant());
 }
 
-TEST_CASE("functions of time tell where their rate jumps, and where they jump themselves") {
+TEST_CASE("functions of time report the times at which their rate or their value jumps") {
   using pliant::Kink;
   auto times = [](const TimeFunction& f, bool jumps) {
     std::vector<double> all;
@@ -185,12 +185,12 @@ TEST_CASE("functions of time tell where their rate jumps, and where they jump th
        {-4.05, -3.05, -2.05, -1.05, -0.05, 0.95, 1.95, 2.95, 3.95, 4.95, 5.95, 6.95, 7.95, 8.95, 9.95});
   near(times(TimeFunction::formula("t * step(t - 0.33)"), true), {0.33});
   near(times(TimeFunction::formula("smoothstep(1, 1, t)"), true), {1});
-  // What joins smoothly has none, whatever it is made of.
+  // Smooth functions have no kinks, even if they contain functions with kinks.
   for (const char* smooth :
        {"max(t - 7.2, 0)^2", "0.5 * (1 - cos(0.45 * max(t - 7.2, 0)))", "smoothstep(1, 2, t)", "sin(t) + t^3",
         "abs(t)^3", "max(sin(2 * pi * t), 0)^6", "5"})
     near(times(TimeFunction::formula(smooth), false), {});
-  // Later than the first time, no later than the second.
+  // A kink is later than the first time, and not later than the second.
   const TimeFunction keys = TimeFunction::key_frames({0.25, 0.75}, {0, 1});
   CHECK(keys.first_kink(0, 0.25).time == 0.25);
   CHECK(keys.first_kink(0.25, 1).time == 0.75);

@@ -1,5 +1,5 @@
-// Steps to a tolerance: the error follows it, times are hit exactly, states go on to the same bits, events
-// are met, what cannot be done is told; and the choice of a method.
+// Steps with error control: the error follows the tolerance, times are hit exactly, a resumed run gives
+// identical bits, events are located, and failures are reported. Also the automatic choice of the method.
 #include "catch.h"
 
 #include <functional>
@@ -18,7 +18,7 @@ using namespace pliant;
 
 namespace {
 
-void swing(MultiBody& body) {
+void pendulum(MultiBody& body) {
   Part& part = body.add<Primitive<Ellipsoid>>("link");
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.3, 0, 0}).velocity({0, 0.6, 0}, {0, 0, 2});
   body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
@@ -35,7 +35,7 @@ State end_of(const std::function<void(MultiBody&)>& build, const std::string& me
   return simulation.state();
 }
 
-/// A shell whose vibrations die in a few milliseconds, on a string.
+/// A shell on a string; its vibrations decay within a few milliseconds.
 void stiff_pendulum(MultiBody& body) {
   Part& part = body.add<Primitive<Sphere>>("shell", 1.0);
   part.rest({{"r", 0.5}}).make_shell();
@@ -48,8 +48,8 @@ void stiff_pendulum(MultiBody& body) {
   body.ball("string", world(0, 0, 0.5), point(part, kPi / 2, 0));
 }
 
-/// A force that jumps up and down faster than any step.
-void shaken(MultiBody& body) {
+/// Applies a force that changes its sign more often than any step can resolve.
+void noisy_ball(MultiBody& body) {
   Part& part = body.add<Primitive<Sphere>>("ball");
   body.force("noise", point(part, 0, 0), [](double t, const Vec3<double>&, const Vec3<double>&) {
     const double noise = std::sin(1e20 * t) > 0 ? 1e9 : -1e9;
@@ -60,12 +60,12 @@ void shaken(MultiBody& body) {
 }  // namespace
 
 TEST_CASE("errors follow the tolerance", "[error]") {
-  const State exact = end_of(swing, "dop853", 1e-12, 3);
+  const State exact = end_of(pendulum, "dop853", 1e-12, 3);
   for (const std::string& method : controlled_integrators()) {
     const bool low = make_integrator(method)->order() == 2;
     double before = 1;
     for (double tolerance = 1e-4; tolerance > (low ? 2e-7 : 2e-9); tolerance *= 0.1) {
-      const State end = end_of(swing, method, tolerance, 3);
+      const State end = end_of(pendulum, method, tolerance, 3);
       const double error = (end.q - exact.q).norm();
       CAPTURE(method, tolerance, error);
       CHECK(error < 300 * tolerance);
@@ -75,20 +75,21 @@ TEST_CASE("errors follow the tolerance", "[error]") {
   }
 }
 
-TEST_CASE("steps to a tolerance hit times exactly, and a cut one does not hold up the next", "[error]") {
+TEST_CASE("steps with error control hit times exactly, and a shortened step does not shorten the next one",
+          "[error]") {
   MultiBody body;
-  swing(body);
+  pendulum(body);
   Simulation free(body, "dop853", 1, 1e-8);
   while (free.time() < 1) free.step_up_to(1);
   MultiBody other;
-  swing(other);
-  Simulation cut(other, "dop853", 1, 1e-8);
-  cut.step_up_to(0.5);
-  const double natural = cut.state().h;
-  cut.step(1e-6);
-  CHECK(cut.state().h >= natural);
+  pendulum(other);
+  Simulation shortened(other, "dop853", 1, 1e-8);
+  shortened.step_up_to(0.5);
+  const double free_step = shortened.state().h;
+  shortened.step(1e-6);
+  CHECK(shortened.state().h >= free_step);
   MultiBody third;
-  swing(third);
+  pendulum(third);
   Simulation frames(third, "dop853", 1, 1e-8);
   for (int i = 1; i <= 25; ++i) frames.step(0.04);
   CHECK(frames.time() == Approx(1).epsilon(1e-14));
@@ -96,7 +97,7 @@ TEST_CASE("steps to a tolerance hit times exactly, and a cut one does not hold u
   CHECK_THROWS_AS(frames.step_up_to(0.5), std::invalid_argument);
 }
 
-TEST_CASE("a state to a tolerance goes on to the same bits elsewhere", "[error]") {
+TEST_CASE("a run with error control, resumed from a state, gives identical bits", "[error]") {
   for (const std::string& method : controlled_integrators()) {
     CAPTURE(method);
     MultiBody body, other;
@@ -113,7 +114,8 @@ TEST_CASE("a state to a tolerance goes on to the same bits elsewhere", "[error]"
   }
 }
 
-TEST_CASE("so does a state whose joints close as the length of each step tells", "[error]") {
+TEST_CASE("a resumed run gives identical bits while joints close at a rate that depends on the step",
+          "[error]") {
   const char* method = GENERATE("dormand_prince", "dop853");
   MultiBody body;
   body.stabilization.rule = BaumgarteRule::step_consistent;
@@ -139,13 +141,13 @@ TEST_CASE("so does a state whose joints close as the length of each step tells",
   CHECK(closing);
 }
 
-TEST_CASE("N25: what no step can follow is told, with the last good state kept", "[error]") {
+TEST_CASE("N25: a motion that no step can resolve stops the run, with the last good state kept", "[error]") {
   MultiBody body;
-  shaken(body);
+  noisy_ball(body);
   Simulation simulation(body, "dop853", 1, 1e-9);
   try {
     while (simulation.time() < 1) simulation.step_up_to(1);
-    FAIL("the motion cannot be followed");
+    FAIL("the motion could not be reproduced");
   } catch (const NumericalFailure& failure) {
     CHECK_THAT(failure.what(), test::has_text("tolerance"));
   }
@@ -153,28 +155,28 @@ TEST_CASE("N25: what no step can follow is told, with the last good state kept",
   CHECK(simulation.state().q.allFinite());
 }
 
-TEST_CASE("tolerances that mean nothing, and methods that have none, are refused", "[error]") {
+TEST_CASE("meaningless tolerances, and methods without an error estimate, are refused", "[error]") {
   for (const double tolerance : {-1.0, 1e-13, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
     MultiBody body;
-    swing(body);
+    pendulum(body);
     CHECK_THROWS_AS(Simulation(body, "dop853", 1, tolerance), std::invalid_argument);
   }
   MultiBody body;
-  swing(body);
+  pendulum(body);
   try {
     Simulation simulation(body, "rk4", 1, 1e-6);
-    FAIL("rk4 does not tell its error");
+    FAIL("rk4 has no error estimate");
   } catch (const std::invalid_argument& failure) {
     CHECK_THAT(failure.what(), test::has_text("'dop853'"));
   }
   MultiBody fixed;
-  swing(fixed);
+  pendulum(fixed);
   Simulation simulation(fixed, "dop853");
   CHECK_THROWS_AS(simulation.step_up_to(1), std::logic_error);
 }
 
-TEST_CASE("strings and limits are met as exactly as the tolerance asks", "[error]") {
-  // A ball falls until its string is taut, 0.5 s later, and a disc spreads against its limit.
+TEST_CASE("a string becomes taut as accurately as the tolerance asks", "[error]") {
+  // A ball falls until its string is taut, 0.5 s later.
   auto build = [](MultiBody& body) {
     Part& ball = body.add<Primitive<Sphere>>("ball");
     ball.rest({{"r", 0.1}});
@@ -192,13 +194,13 @@ TEST_CASE("strings and limits are met as exactly as the tolerance asks", "[error
   }
 }
 
-TEST_CASE("joints close as exactly as the tolerance asks", "[error]") {
+TEST_CASE("joints close as accurately as the tolerance asks", "[error]") {
   auto closing = [](MultiBody& body) {
     Part& part = body.add<Primitive<Ellipsoid>>("link");
     part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).place({0.5, 0.2, 0}).velocity({0, 0.6, 0}, {0, 0, 2});
     body.ball("joint", world(0, 0, 0), point(part, 0, kPi));
   };
-  constexpr double opens = 0.5, closes = 2;  // before it has closed, and after
+  constexpr double opens = 0.5, closes = 2;  // before the joint has closed, and after
   for (const std::string& method : controlled_integrators()) {
     const bool low = make_integrator(method)->order() == 2;
     for (const double end : {opens, closes}) {
@@ -215,21 +217,22 @@ TEST_CASE("joints close as exactly as the tolerance asks", "[error]") {
   }
 }
 
-TEST_CASE("stiff shells swing in steps as long as the swing lets them be, and factors are kept", "[error]") {
+TEST_CASE("steps on a stiff shell depend on its slow swing, and factors are reused", "[error]") {
   constexpr double end = 0.5;
-  StepCounters of_explicit;
-  const State exact = end_of(stiff_pendulum, "dop853", 1e-8, end, &of_explicit);
+  StepCounters explicit_counters;
+  const State exact = end_of(stiff_pendulum, "dop853", 1e-8, end, &explicit_counters);
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
     StepCounters counters;
     const State state = end_of(stiff_pendulum, "linearly_implicit", tolerance, end, &counters);
     CAPTURE(tolerance, counters.steps, counters.factorisations);
     CHECK((state.q - exact.q).lpNorm<Eigen::Infinity>() < 10 * tolerance);
-    CHECK(5 * counters.steps < of_explicit.steps);
+    CHECK(5 * counters.steps < explicit_counters.steps);
     CHECK(counters.factorisations < 15);
   }
 }
 
-TEST_CASE("a soft shell that spins does so to the tolerance, in steps that hardly change", "[error]") {
+TEST_CASE("a stiff shell that spins is integrated to the tolerance, with few changes of the step",
+          "[error]") {
   auto spin = [](MultiBody& body) {
     body.gravity.setZero();
     Part& part = body.add<Primitive<Ellipsoid>>("shell");
@@ -240,7 +243,7 @@ TEST_CASE("a soft shell that spins does so to the tolerance, in steps that hardl
     settings.beta = 1e-4;
     part.deform_locally(settings).velocity({0, 0, 0}, {1, 2, 3});
   };
-  constexpr double end = 3;  // s, nearly two turns
+  constexpr double end = 3;  // s, nearly two rotations
   const State exact = end_of(spin, "dop853", 1e-9, end);
   for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
     StepCounters counters;
@@ -252,7 +255,7 @@ TEST_CASE("a soft shell that spins does so to the tolerance, in steps that hardl
   }
 }
 
-TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
+TEST_CASE("the method is chosen by the stiffness of the model, the tolerance and the contacts", "[error]") {
   auto chosen = [](const std::function<void(MultiBody&)>& build) {
     MultiBody body;
     build(body);
@@ -262,9 +265,9 @@ TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
     INFO(simulation.choice().why);
     return simulation.choice().integrator;
   };
-  CHECK(chosen(swing) == "dop853");
+  CHECK(chosen(pendulum) == "dop853");
   CHECK(chosen([](MultiBody& body) { test::tumbling_solid(body); }) == "dop853");
-  MultiBody dust;  // its parameters move, and nothing pushes back
+  MultiBody dust;  // its parameters are dynamic, without elasticity
   Part& cloud = dust.add<Primitive<Ellipsoid>>("dust");
   cloud.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).make_dynamic({"a1", "a2", "a3"});
   cloud.velocity({0, 0, 0}, {1, 2, 3});
@@ -293,8 +296,9 @@ TEST_CASE("a method is chosen by what the motion lets it do", "[error]") {
   CHECK(Simulation(dropped, kAutomatic, 1, 1e-7).choice().integrator == "dop853");
 }
 
-TEST_CASE("impacts are met within the tolerance, whatever the steps", "[error]") {
-  // A ball dropped from 1 m rebounds 0.8 times as fast: its k-th bounce is at T (1 + 2 e + ... + 2 e^k).
+TEST_CASE("impacts are located within the tolerance for every step length", "[error]") {
+  // A ball dropped from 1 m rebounds with 0.8 of its impact speed: its k-th bounce is at T (1 + 2 e + ... + 2
+  // e^k).
   MultiBody body;
   body.add<Primitive<Sphere>>("ball").rest({{"r", 0.1}}).place({0, 0, 1.1});
   body.contact.active = true;
@@ -311,8 +315,7 @@ TEST_CASE("impacts are met within the tolerance, whatever the steps", "[error]")
   const double since = 2 - start;
   CHECK(simulation.state().q[2] == Approx(0.1 + up * since - 0.5 * 9.81 * since * since).margin(1e-9));
   CHECK(simulation.step_counters().impacts == 3);
-  CHECK(simulation.step_counters().evaluations <
-        300);  // four steps or so an impact, on the path of the first
+  CHECK(simulation.step_counters().evaluations < 300);  // about four steps for each impact
   CHECK(simulation.step_counters().uncontrolled == 0);
   CHECK(simulation.step_counters().steps < 40);
 }

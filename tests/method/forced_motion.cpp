@@ -1,5 +1,5 @@
-// The energy ledger of forced motion (N33): everything that does work, one at a time and together; the
-// balance falls at the order of the method.
+// The energy ledger of forced motion: each source of work alone, and all together. The balance error falls at
+// the order of the method.
 #include "catch.h"
 
 #include <functional>
@@ -14,12 +14,12 @@ namespace {
 
 using Build = std::function<void(MultiBody&, Part&, Part&)>;
 
-struct End {
+struct Result {
   State state;
   Ledger ledger;
 };
-/// Two deforming parts and what build adds to them, a quarter of a second later.
-End end_of(const char* method, int steps, const Build& build) {
+/// Returns the state of two deforming parts, with the loads that `build` adds, after 0.25 s.
+Result end_of(const char* method, int steps, const Build& build) {
   MultiBody body;
   Part& a = test::tumbling_solid(body, "a");
   Part& b = test::add(body, "b", "superellipsoid", {"taper"}, 500);
@@ -35,10 +35,10 @@ double distance(const State& a, const State& b) {
   return (a.q - b.q).norm() + (a.v - b.v).norm() + (a.work - b.work).norm();
 }
 
-/// Coordinates, velocities and every work of the ledger converge at the order of the method, and the ledger
-/// balances.
+/// Checks that coordinates, velocities and all works of the ledger converge at the order of the method, and
+/// that the ledger balances.
 void check_orders(const std::string& what, const Build& build) {
-  const End reference = end_of("rk4", 3200, build);
+  const Result reference = end_of("rk4", 3200, build);
   const double energy = std::abs(reference.ledger.kinetic) + reference.ledger.work.cwiseAbs().sum();
   INFO(what << ": balance " << reference.ledger.balance << " of " << energy << ", works "
             << reference.ledger.work.transpose());
@@ -49,7 +49,7 @@ void check_orders(const std::string& what, const Build& build) {
   CHECK(test::observed_order(rk4) >= 3.9);
   std::vector<double> balances;
   for (int steps : {1000, 2000}) {
-    const End end = end_of("semi_implicit_euler", steps, build);
+    const Result end = end_of("semi_implicit_euler", steps, build);
     euler.push_back(distance(end.state, reference.state));
     balances.push_back(std::abs(end.ledger.balance));
   }
@@ -59,47 +59,49 @@ void check_orders(const std::string& what, const Build& build) {
 
 }  // namespace
 
-TEST_CASE("N33: gravity", "[forced][long]") {
+TEST_CASE("N33: the ledger with gravity", "[forced][long]") {
   check_orders("gravity", [](MultiBody& body, Part&, Part&) { body.gravity = {1, -2, -9.81}; });
 }
-TEST_CASE("N33: springs of no rest length, with damping, between parts and to the world", "[forced][long]") {
+TEST_CASE("N33: the ledger with springs of zero rest length, with damping, between parts and to the world",
+          "[forced][long]") {
   check_orders("springs", [](MultiBody& body, Part& a, Part& b) {
     body.spring("tie", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7), 800, 30);
     body.spring("link", point(a, -0.2, 2), world(0.3, 1, 0), 500, 20);
   });
 }
-TEST_CASE("N33: springs with a rest length, with damping", "[forced][long]") {
+TEST_CASE("N33: the ledger with springs that have a rest length, with damping", "[forced][long]") {
   check_orders("springs", [](MultiBody& body, Part& a, Part& b) {
     body.spring("tie", point(a, 0.5, 0.3), point(b, -0.4, 1, 0.7), 800, 30, 0.5);
     body.spring("link", world(0.3, 1, 0), point(a, -0.2, 2), 500, 20, 0.4);
   });
 }
-TEST_CASE("N33: moving anchors of both kinds of spring", "[forced][long]") {
+TEST_CASE("N33: the ledger with moving anchors of both kinds of spring", "[forced][long]") {
   check_orders("anchors", [](MultiBody& body, Part& a, Part& b) {
     body.spring("hand", world({test::wave(0.5, 0.3, 4), 0.2, test::wave(0.1, 0.2, 3, 1)}), point(b, 1.2, -2),
                 600, 10, 0.3);
     body.spring("other", point(a, 0.3, 1), world({0, test::wave(1, 0.5, 6), 0.4}), 300, 10);
   });
 }
-TEST_CASE("N33: actuation, a rest value that moves", "[forced][long]") {
+TEST_CASE("N33: the ledger with actuation, a time-dependent rest value", "[forced][long]") {
   check_orders("actuation", [](MultiBody&, Part& a, Part& b) {
     a.rest("twist.angle", test::wave(0.3, 0.4, 9));
     b.rest("a1", test::wave(0.3, 0.05, 7, 1));
   });
 }
-TEST_CASE("N33: mass- and stiffness-proportional damping", "[forced][long]") {
+TEST_CASE("N33: the ledger with mass- and stiffness-proportional damping", "[forced][long]") {
   check_orders("damping", [](MultiBody&, Part& a, Part& b) {
     a.damping(0.8, 0.004);
     b.damping(0.5, 0.002);
   });
 }
-TEST_CASE("N33: drag", "[forced][long]") {
+TEST_CASE("N33: the ledger with drag", "[forced][long]") {
   check_orders("drag", [](MultiBody&, Part& a, Part& b) {
     a.damping(0, 0, 0.7);
     b.damping(0, 0, 0.3);
   });
 }
-TEST_CASE("N33: point forces and torques in both frames, and one's own", "[forced][long]") {
+TEST_CASE("N33: the ledger with point forces and torques in both frames, and a user-defined force",
+          "[forced][long]") {
   check_orders("forces", [](MultiBody& body, Part& a, Part& b) {
     body.force("push", point(b, 0.3, 0.3), TimeVector(test::wave(10, 20, 6), 5, 0));
     body.force("jet", point(a, -0.7, 1), TimeVector(3, test::wave(0, 30, 5), 8), Frame::body);
@@ -110,7 +112,7 @@ TEST_CASE("N33: point forces and torques in both frames, and one's own", "[force
     body.torque("spin", a, TimeVector(0, 2, test::wave(0, 4, 5)), Frame::body);
   });
 }
-TEST_CASE("N33: everything at once", "[forced][long]") {
+TEST_CASE("N33: the ledger with all loads at once", "[forced][long]") {
   check_orders("all", [](MultiBody& body, Part& a, Part& b) {
     body.gravity = {0.5, 0, -9.81};
     a.damping(0.3, 0.002, 0.2).rest("bend.angle", test::wave(0.4, 0.2, 5));
@@ -124,7 +126,7 @@ TEST_CASE("N33: everything at once", "[forced][long]") {
   });
 }
 
-TEST_CASE("N32: damping and drag only take energy", "[forced]") {
+TEST_CASE("N32: damping and drag only remove energy", "[forced]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -146,7 +148,7 @@ TEST_CASE("N32: damping and drag only take energy", "[forced]") {
   }
 }
 
-TEST_CASE("a part under drag alone slows down as exp(-nu t), its shape motion too", "[forced]") {
+TEST_CASE("a part under drag alone slows down as exp(-nu t), its parameter rates too", "[forced]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Sphere>>("ball", 1000);
@@ -157,7 +159,7 @@ TEST_CASE("a part under drag alone slows down as exp(-nu t), its shape motion to
   CHECK(simulation.state().v[6] == Approx(0.1 * std::exp(-0.8)).epsilon(1e-10));
 }
 
-TEST_CASE("a damped spring: the closed form", "[forced]") {
+TEST_CASE("a damped spring follows the closed form", "[forced]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Sphere>>("ball", 1000);
@@ -171,12 +173,12 @@ TEST_CASE("a damped spring: the closed form", "[forced]") {
 }
 
 TEST_CASE("a hanging body stretches its own springs: static equilibrium", "[forced]") {
-  // A solid ellipsoid held at its centre by a stiff damped spring; gravity does not stretch it about its own
-  // centre.
+  // A stiff damped spring at its centre would not stretch the solid ellipsoid: gravity does not strain it
+  // about its own centre.
   MultiBody body;
   auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
   part.mass(3).stiffness({{"a3", 400}}).damping(0, 0.02);
-  // Hung by its pole: m g / k3 (physics 8.2), here by a spring in place of the string.
+  // The pole carries the weight: the stretch is m g / k3. A stiff spring replaces the string.
   body.spring("string", point(part, material_at(kPi / 2, 0)), world(0, 0, 3), 2000, 60);
   Simulation simulation(body, "rk4");
   test::run(simulation, 20, 20000);

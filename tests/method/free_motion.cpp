@@ -1,5 +1,5 @@
-// Free motion (physics 8.1, 8.2): the torque-free top, dust, steady spin, breathing, pseudo-rigid bodies, and
-// a solid that tumbles with every parameter moving.
+// Free motion with known solutions: the torque-free top, dust, steady spin, breathing, pseudo-rigid bodies,
+// and a tumbling solid with all parameters dynamic.
 #include "catch.h"
 
 #include "motion.h"
@@ -17,7 +17,7 @@ Vec3<double> omega_of(const Simulation& s) {
 
 }  // namespace
 
-TEST_CASE("torque-free top: a solid ellipsoid at the stated digits", "[motion]") {
+TEST_CASE("torque-free top: a solid ellipsoid agrees with the exact solution in all digits", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("top", 1000);
@@ -38,7 +38,8 @@ TEST_CASE("torque-free top: a solid ellipsoid at the stated digits", "[motion]")
   CHECK((end.momentum - start.momentum).norm() < 1e-14);
 }
 
-TEST_CASE("torque-free top: the period, and the same from its angular momentum in the world", "[motion]") {
+TEST_CASE("torque-free top: the period of omega, also from the angular momentum in the world frame",
+          "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("top", 1000);
@@ -50,36 +51,36 @@ TEST_CASE("torque-free top: the period, and the same from its angular momentum i
   CHECK((omega_of(simulation) - Vec3<double>(1, 0, 1.2)).norm() < 2e-10);
 }
 
-TEST_CASE("torque-free top: a lamina by its inertia", "[motion]") {
+TEST_CASE("torque-free top: a lamina given by its inertia", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Box>>("lamina", 1000);
   part.inertia(1, Vec3<double>(1, 2, 3).asDiagonal()).velocity({0, 0, 0}, {1, 0, 1.2});
   Simulation simulation(body, "rk4");
   test::run(simulation, 10, 10000);
-  // The last digit of physics.md's third component (…4715) is off: Euler's equations in long double give
-  // …4710.
+  // Reference: Euler's equations in long double.
   CHECK((omega_of(simulation) - Vec3<double>(0.2342940841, -0.9721657689, 1.0606434710)).norm() < 1.5e-10);
   Simulation again(body, "rk4");
   test::run(again, 5.58617892142, 5000);
   CHECK((omega_of(again) - Vec3<double>(1, 0, 1.2)).norm() < 2e-10);
 }
 
-TEST_CASE("torque-free top: spin about the middle axis grows at the known rate", "[motion]") {
+TEST_CASE("torque-free top: a perturbation of spin about the middle axis grows at the known rate",
+          "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Box>>("box", 1000);
   const double tiny = 1e-7;
   part.inertia(1, Vec3<double>(1, 2, 2.5).asDiagonal());
   const double rate = 1.5 * std::sqrt(1.0 * 0.5 / 2.5);
-  // The growing direction: omega_1 / omega_3 = sqrt(I3 (I3 - I2) / (I1 (I2 - I1))).
+  // The unstable direction: omega_1 / omega_3 = sqrt(I3 (I3 - I2) / (I1 (I2 - I1))).
   part.velocity({0, 0, 0}, {tiny, 1.5, -tiny / std::sqrt(2.5 * 0.5)});
   Simulation simulation(body, "rk4");
   test::run(simulation, 4, 4000);
   CHECK(std::abs(omega_of(simulation)[0]) == Approx(tiny * std::exp(rate * 4)).epsilon(1e-4));
 }
 
-TEST_CASE("N17: a free box over 500 steps", "[motion]") {
+TEST_CASE("N17: a free box over 500 steps: drift of energy and angular momentum", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Box>>("box", 1000);
@@ -92,7 +93,7 @@ TEST_CASE("N17: a free box over 500 steps", "[motion]") {
   CHECK((end.angular_momentum - start.angular_momentum).norm() <= 1e-8 * start.angular_momentum.norm());
 }
 
-TEST_CASE("a dust ellipsoid: every particle moves straight", "[motion]") {
+TEST_CASE("a dust ellipsoid: every particle moves on a straight line", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("dust", 700);
@@ -123,7 +124,7 @@ TEST_CASE("a dust ellipsoid: every particle moves straight", "[motion]") {
   }
 }
 
-TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / 5k) and stays so", "[motion]") {
+TEST_CASE("steady spin: the ellipsoid widens to a0 / (1 - m omega^2 / 5k) and keeps this width", "[motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
@@ -160,7 +161,7 @@ TEST_CASE("free breathing of one semi-axis: omega^2 = k / (m <zeta^2>)", "[motio
   }
 }
 
-TEST_CASE("pseudo-rigid ellipsoid against its own Lagrangian", "[motion]") {
+TEST_CASE("pseudo-rigid ellipsoid against the integration of its own Lagrangian", "[motion]") {
   const double m = 10, k[3] = {300, 500, 400}, rest[3] = {0.5, 0.4, 0.6};
   MultiBody body;
   body.gravity.setZero();
@@ -173,7 +174,7 @@ TEST_CASE("pseudo-rigid ellipsoid against its own Lagrangian", "[motion]") {
   part.mass(m);
   Simulation simulation(body, "rk4");
 
-  // (a, a_dot, H = I omega) in the body frame, physics 8.2.
+  // The state (a, a_dot, H = I omega) in the body frame.
   using Vec9 = Vec<double, 9>;
   auto inertia = [m](const Vec9& y) {
     return Vec3<double>(m / 5 * (y[1] * y[1] + y[2] * y[2]), m / 5 * (y[0] * y[0] + y[2] * y[2]),
@@ -191,7 +192,7 @@ TEST_CASE("pseudo-rigid ellipsoid against its own Lagrangian", "[motion]") {
   Vec9 y;
   y << 0.6, rest[1], rest[2], 0, 0.5, 0, 0, 0, 0;
   y.tail<3>() = inertia(y).cwiseProduct(Vec3<double>(2, 3, 1));
-  // The mass was taken at rest, so the axes at time 0 do not change it.
+  // The mass is that of the rest shape, so that the axes at time 0 do not change it.
   const double T = 3;
   const int steps = 6000;
   for (int i = 0; i < steps; ++i) {
@@ -207,7 +208,7 @@ TEST_CASE("pseudo-rigid ellipsoid against its own Lagrangian", "[motion]") {
   }
 }
 
-TEST_CASE("tumbling with every parameter moving: orders of RK4", "[motion][long]") {
+TEST_CASE("tumbling with all parameters dynamic: orders of RK4", "[motion][long]") {
   std::vector<VecX<double>> ends;
   std::vector<double> energy, momentum, angular;
   for (int steps : {100, 200, 400, 800, 3200}) {
@@ -239,7 +240,7 @@ TEST_CASE("tumbling with every parameter moving: orders of RK4", "[motion][long]
   CHECK(test::observed_order(angular) >= 3.9);
 }
 
-TEST_CASE("tumbling with every parameter moving: semi-implicit Euler is of first order", "[motion][long]") {
+TEST_CASE("tumbling with all parameters dynamic: semi-implicit Euler is of first order", "[motion][long]") {
   std::vector<VecX<double>> ends;
   std::vector<double> energy;
   for (int steps : {2000, 4000, 8000}) {
@@ -260,7 +261,7 @@ TEST_CASE("tumbling with every parameter moving: semi-implicit Euler is of first
   CHECK(test::observed_order(energy) >= 0.9);
 }
 
-TEST_CASE("a moving exponent conserves energy and momenta at fourth order too", "[motion][long]") {
+TEST_CASE("with a dynamic exponent energy and momenta are conserved at fourth order, too", "[motion][long]") {
   std::vector<double> energy, angular;
   for (int steps : {80, 160, 320}) {
     MultiBody body;
@@ -280,7 +281,7 @@ TEST_CASE("a moving exponent conserves energy and momenta at fourth order too", 
   CHECK(test::observed_order(angular) >= 3.9);
 }
 
-TEST_CASE("P is conserved to rounding where the frame sits at the centre of mass", "[motion]") {
+TEST_CASE("P is conserved to rounding where the frame is at the centre of mass", "[motion]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -294,7 +295,7 @@ TEST_CASE("P is conserved to rounding where the frame sits at the centre of mass
   }
 }
 
-TEST_CASE("N26: turning the velocities round brings RK4 back at its order", "[motion][long]") {
+TEST_CASE("N26: after reversal of the velocities RK4 returns to the start at its order", "[motion][long]") {
   std::vector<double> errors;
   for (int steps : {100, 200, 400}) {
     MultiBody body;
@@ -312,7 +313,7 @@ TEST_CASE("N26: turning the velocities round brings RK4 back at its order", "[mo
   CHECK(test::observed_order(errors) >= 3.9);
 }
 
-TEST_CASE("N28: time is a count of steps", "[motion]") {
+TEST_CASE("N28: the time is the number of steps times the step", "[motion]") {
   MultiBody body;
   body.add<Primitive<Sphere>>("ball", 1000);
   Simulation simulation(body);

@@ -1,5 +1,5 @@
-// Modes that oscillate freely under explicit Runge-Kutta methods with error control: exactly, so that how
-// stiff they are costs no step.
+// Free modes under explicit Runge-Kutta methods with error control: the methods integrate the oscillators
+// exactly, so that stiff modes do not shorten the steps.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>
@@ -13,7 +13,7 @@ using namespace pliant;
 
 namespace {
 
-/// A solid that tumbles, and perhaps rings, by polynomials, with three parameters that move, or none.
+/// A solid that tumbles, with polynomial modes that may oscillate, and with three dynamic parameters or none.
 void tumbling(MultiBody& body, double E, double beta, bool parameters, bool ringing = true) {
   body.gravity.setZero();
   auto& part = body.add(make_part("soft", "superellipsoid", {"taper", "twist"}, 20));
@@ -46,7 +46,7 @@ VecX<double> end_of(const std::string& method, int steps, double beta, bool para
 
 }  // namespace
 
-TEST_CASE("explicit methods keep their orders where modes oscillate freely", "[modal][long]") {
+TEST_CASE("explicit methods keep their orders with free modes", "[modal][long]") {
   for (const bool parameters : {false, true})
     for (const double beta : {0.0, 5e-4}) {
       const VecX<double> reference = end_of("dop853", 400, beta, parameters);
@@ -69,7 +69,8 @@ TEST_CASE("explicit methods keep their orders where modes oscillate freely", "[m
 }
 
 TEST_CASE(
-    "to a tolerance, modes a thousand times as stiff cost no more steps where nothing holds or strikes them",
+    "with error control, modes a thousand times as stiff need no more steps if no joint or contact acts on "
+    "them",
     "[modal]") {
   for (const char* method : {"dormand_prince", "dop853"}) {
     std::vector<double> steps, energies, stable;
@@ -84,9 +85,9 @@ TEST_CASE(
       stable.push_back(largest_stable_step(simulation));
     }
     CAPTURE(method, steps, energies, stable);
-    CHECK(steps[1] <= 6 * steps[0]);  // the lowest modes of the softest are as slow as the tumbling
+    CHECK(steps[1] <= 6 * steps[0]);  // the lowest modes of the softest solid are as slow as the tumbling
     CHECK(steps[2] <= 1.5 * steps[1]);
-    CHECK(stable[2] >= 0.5 * stable[0]);  // that of its spin
+    CHECK(stable[2] >= 0.5 * stable[0]);  // the limit of its spin
     for (const double energy : energies) CHECK(energy <= 1e-4);
   }
 }

@@ -1,4 +1,5 @@
-// The linearly implicit method: its order, steps far beyond the explicit limit, what it factors and when.
+// The linearly implicit method: its order, steps far above the explicit limit, and which matrices it factors
+// when.
 #include "catch.h"
 
 #include <new>
@@ -20,9 +21,9 @@ using Basis = LocalSettings::Basis;
 using test::deepest;
 using test::widest_gap;
 
-using test::bump;
 using test::observed_order;
-using test::rush;
+using test::sample_displacement;
+using test::sample_velocity;
 
 namespace {
 
@@ -33,14 +34,14 @@ struct Law {
   std::vector<double> numbers;
 };
 
-/// What is soft about a part.
+/// Settings of a soft part.
 struct Soft {
   std::vector<Law> laws;
   bool shell = false;
-  bool parameters = false;     ///< whether its axes are dynamic
-  double alpha = 0, beta = 0;  ///< of its nodes
-  double displaced = 0;        ///< sizes of the bump and the rush at time 0
-  double rushing = 0.5;
+  bool parameters = false;         ///< whether its axes are dynamic
+  double alpha = 0, beta = 0;      ///< damping coefficients of the nodes
+  double displacement_factor = 0;  ///< factors of the sample displacement and velocity at time 0
+  double velocity_factor = 0.5;
   int resolution = 2;
   Basis basis = Basis::nodes;
 };
@@ -72,9 +73,13 @@ Part& add(MultiBody& body, const std::string& name, const Soft& soft) {
   settings.modes = 12;
   settings.alpha = soft.alpha;
   settings.beta = soft.beta;
-  const double displaced = soft.displaced, rushing = soft.rushing;
-  settings.displacement = [=](const Vec3<double>& X) -> Vec3<double> { return displaced * bump(X); };
-  settings.velocity = [=](const Vec3<double>& X) -> Vec3<double> { return rushing * rush(X); };
+  const double displacement_factor = soft.displacement_factor, velocity_factor = soft.velocity_factor;
+  settings.displacement = [=](const Vec3<double>& X) -> Vec3<double> {
+    return displacement_factor * sample_displacement(X);
+  };
+  settings.velocity = [=](const Vec3<double>& X) -> Vec3<double> {
+    return velocity_factor * sample_velocity(X);
+  };
   for (const Law& law : soft.laws) settings.energies.push_back(local_law(law.name, law.numbers));
   part.deform_locally(settings);
   return part;
@@ -82,14 +87,14 @@ Part& add(MultiBody& body, const std::string& name, const Soft& soft) {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// One part in free flight, spinning.
+/// One spinning part in free flight.
 Build flying(const Soft& soft) {
   return [=](MultiBody& body) {
     body.gravity.setZero();
     add(body, "soft", soft).place({1, 2, 3}).velocity({0.3, -0.2, 0.1}, {0.5, -0.4, 0.6});
   };
 }
-/// Two parts hung from each other.
+/// Two parts, one hanging from the other.
 Build hanging(const Soft& soft) {
   return [=](MultiBody& body) {
     Part& upper = add(body, "upper", soft).place({0, 0, -0.6});
@@ -100,7 +105,7 @@ Build hanging(const Soft& soft) {
 }
 
 /// One part between two damped springs.
-Build sprung(const Soft& soft) {
+Build between_springs(const Soft& soft) {
   return [=](MultiBody& body) {
     Part& part = add(body, "soft", soft).velocity({0.3, -0.2, 0.1}, {0.5, -0.4, 0.6});
     body.spring("above", world(0, 0.2, 1.5), point(part, 0.8, 0.3), 100, 0.5, 0.2);
@@ -111,7 +116,7 @@ Build sprung(const Soft& soft) {
 struct Errors {
   std::vector<double> q, v;
 };
-/// Of trajectories of a time, against fine steps of RK4.
+/// Returns the errors of the states at `time` against fine steps of RK4.
 Errors errors(const Build& build, double time, const std::vector<int>& steps) {
   MultiBody exact;
   build(exact);
@@ -130,10 +135,10 @@ Errors errors(const Build& build, double time, const std::vector<int>& steps) {
   return errors;
 }
 void check_order(const Build& build, double time, const std::vector<int>& steps) {
-  const Errors of = errors(build, time, steps);
-  CAPTURE(of.q, of.v);
-  CHECK(observed_order(of.q) >= 1.9);
-  CHECK(observed_order(of.v) >= 1.9);
+  const Errors error = errors(build, time, steps);
+  CAPTURE(error.q, error.v);
+  CHECK(observed_order(error.q) >= 1.9);
+  CHECK(observed_order(error.v) >= 1.9);
 }
 
 double explicit_limit(const Build& build) {
@@ -159,32 +164,33 @@ TEST_CASE("a soft part in free flight: order 2 in positions and velocities", "[i
     sheet.beta = 2e-3;
     check_order(flying(sheet), 0.4, {100, 200, 400});
   }
-  SECTION("St. Venant-Kirchhoff, with global parameters that its energy holds") {
+  SECTION("St. Venant-Kirchhoff, with global parameters that the strain energy resists") {
     Soft soft = solid("st_venant_kirchhoff", 300);
     soft.parameters = true;
     soft.alpha = 0.5;
     check_order(flying(soft), 0.4, {50, 100, 200});
   }
-  SECTION("a shell with gas in it") {
+  SECTION("a shell that contains gas") {
     Soft soft = shell("neo_hookean_membrane", "folding", 300);
     soft.laws.push_back({"gas", {10, 1.4, 8}});
     check_order(flying(soft), 0.4, {50, 100, 200});
   }
-  SECTION("an energy that tells nothing of its stiffness: order 2 for any A") {
+  SECTION("an energy that provides no stiffness: order 2 for any A") {
     check_order(
         [](MultiBody& body) {
           body.gravity.setZero();
           auto& part = body.add<Primitive<Sphere>>("ball", 1);
           part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
           LocalSettings settings = test::net(2, 5);
-          settings.velocity = rush;
+          settings.velocity = sample_velocity;
           part.deform_locally(settings);
         },
         0.4, {100, 200, 400});
   }
 }
 
-TEST_CASE("soft parts hung from each other: order 2, joints closed to rounding", "[implicit][joints][long]") {
+TEST_CASE("soft parts that hang from each other: order 2, joints closed to rounding",
+          "[implicit][joints][long]") {
   for (const bool parameters : {false, true}) {
     Soft soft = solid("elastic", 1000);
     soft.parameters = parameters;
@@ -196,7 +202,7 @@ TEST_CASE("soft parts hung from each other: order 2, joints closed to rounding",
   check_order(hanging(solid("corotated", 1000)), 0.2, {50, 100, 200});
 }
 
-TEST_CASE("a part of modes, free, on joints and on springs: order 2 in positions and velocities",
+TEST_CASE("a part with modes, free, on joints and on springs: order 2 in positions and velocities",
           "[implicit][modal][joints][long]") {
   for (const bool parameters : {false, true}) {
     Soft soft = solid("elastic", 1000);
@@ -208,7 +214,7 @@ TEST_CASE("a part of modes, free, on joints and on springs: order 2 in positions
       soft.basis = basis;
       check_order(flying(soft), 0.4, {100, 200, 400});
       check_order(hanging(soft), 0.3, {100, 200, 400});
-      check_order(sprung(soft), 0.3, {100, 200, 400});
+      check_order(between_springs(soft), 0.3, {100, 200, 400});
     }
   }
   Soft sheet = shell("membrane", "bending", 300);
@@ -218,25 +224,25 @@ TEST_CASE("a part of modes, free, on joints and on springs: order 2 in positions
   check_order(hanging(sheet), 0.3, {100, 200, 400});
 }
 
-TEST_CASE("a stiff solid, damped a little: order 2 in steps from the explicit limit to four times it",
+TEST_CASE("a stiff solid with light damping: order 2 in steps of one to four times the explicit limit",
           "[implicit][motion][joints][long]") {
   for (const bool parameters : {false, true})
-    for (const double rushing : {0.0, 0.5}) {
-      CAPTURE(parameters, rushing);
+    for (const double velocity_factor : {0.0, 0.5}) {
+      CAPTURE(parameters, velocity_factor);
       Soft soft = solid("elastic", 1e7);
       soft.parameters = parameters;
       soft.resolution = 3;
-      soft.rushing = rushing;
-      soft.beta = 3e-5;  // its fastest motion, which such steps do not follow, is near its critical damping
+      soft.velocity_factor = velocity_factor;
+      soft.beta = 3e-5;  // near critical damping of the fastest motion, which such steps do not resolve
       for (const Build& build : {flying(soft), hanging(soft)})
         check_order(build, 64 * explicit_limit(build), {16, 32, 64});
     }
 }
 
-TEST_CASE("momentum of a free soft part stays to rounding, angular momentum at order 2",
+TEST_CASE("momentum of a free soft part is conserved to rounding, angular momentum at order 2",
           "[implicit][motion][long]") {
   for (const bool parameters : {false, true}) {
-    std::vector<double> turning;
+    std::vector<double> angular;
     for (const int steps : {100, 200, 400}) {
       Soft soft = solid("elastic", 300);
       soft.parameters = parameters;
@@ -247,14 +253,14 @@ TEST_CASE("momentum of a free soft part stays to rounding, angular momentum at o
       test::run(simulation, 0.4, steps);
       const Ledger end = simulation.ledger();
       CHECK((end.momentum - start.momentum).norm() <= 1e-13 * start.momentum.norm() * steps);
-      turning.push_back((end.angular_momentum - start.angular_momentum).norm());
+      angular.push_back((end.angular_momentum - start.angular_momentum).norm());
     }
-    CAPTURE(parameters, turning);
-    CHECK(observed_order(turning) >= 1.9);
+    CAPTURE(parameters, angular);
+    CHECK(observed_order(angular) >= 1.9);
   }
 }
 
-TEST_CASE("the centre of mass of a stiff part flies straight at 100 times the explicit limit",
+TEST_CASE("the centre of mass of a stiff part moves on a straight line at 100 times the explicit limit",
           "[implicit][motion]") {
   const Build build = flying(solid("elastic", 3e5));
   MultiBody body;
@@ -268,7 +274,7 @@ TEST_CASE("the centre of mass of a stiff part flies straight at 100 times the ex
         1e-12 * simulation.time());
 }
 
-TEST_CASE("the ledger of a soft part: damping, drag, a spring, a hand, at order 2",
+TEST_CASE("the ledger of a soft part with damping, drag, a spring and a moving anchor, at order 2",
           "[implicit][joints][long]") {
   std::vector<double> balance;
   for (const int steps : {200, 400, 800}) {
@@ -296,8 +302,8 @@ TEST_CASE("the ledger of a soft part: damping, drag, a spring, a hand, at order 
 TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implicit][stable][long]") {
   std::vector<std::pair<std::string, Build>> all;
   auto each = [&](const std::string& name, Soft soft) {
-    soft.displaced = 0.05;
-    soft.rushing = 0.1;
+    soft.displacement_factor = 0.05;
+    soft.velocity_factor = 0.1;
     all.emplace_back(name, flying(soft));
     soft.parameters = true;
     all.emplace_back(name + ", global parameters", flying(soft));
@@ -324,14 +330,14 @@ TEST_CASE("100 times the explicit limit: stable for a thousand steps", "[implici
       if (i % 50 == 0) REQUIRE(simulation.ledger().energy() <= 1.05 * start.energy());
     }
     const Ledger end = simulation.ledger();
-    // What is too fast for the step has died down, and the spin has not.
+    // The motions that are too fast for the step have decayed, and the spin has not.
     CHECK(end.local <= 1e-3 * start.energy());
     CHECK(end.kinetic >= 0.5 * start.kinetic);
   }
 }
 
 TEST_CASE(
-    "100 times the explicit limit for membranes that follow any rotation, and under pressure: none gains",
+    "100 times the explicit limit for membranes invariant to rotation, also under pressure: no energy gain",
     "[implicit][stable][long]") {
   for (const std::string membrane : {"st_venant_kirchhoff_membrane", "neo_hookean_membrane"})
     for (const Law& filled : {Law{"nothing", {}}, Law{"pressure", {200}}, Law{"gas", {8200, 1.4, 8000}}})
@@ -339,8 +345,8 @@ TEST_CASE(
         CAPTURE(membrane, filled.name, parameters);
         Soft soft = shell(membrane, "folding", 3e5);
         if (!filled.numbers.empty()) soft.laws.push_back(filled);
-        soft.displaced = 0.05;
-        soft.rushing = 0.1;
+        soft.displacement_factor = 0.05;
+        soft.velocity_factor = 0.1;
         soft.parameters = parameters;
         MultiBody body;
         use_suitesparse(body.joint_solver);
@@ -353,7 +359,7 @@ TEST_CASE(
         for (int i = 0; i < 200; ++i) {
           simulation.step(h);
           const double now = simulation.ledger().energy();
-          REQUIRE(now <= before + 1e-4 * start.kinetic);  // turning is of order 2
+          REQUIRE(now <= before + 1e-4 * start.kinetic);  // the rotation is integrated at order 2
           before = now;
         }
         CHECK(before < start.energy());
@@ -367,14 +373,14 @@ TEST_CASE("100 times the explicit limit on joints: stable, and joints closed to 
     for (const bool parameters : {false, true}) {
       Soft soft = solid(law, 3e6);
       soft.parameters = parameters;
-      soft.rushing = 0.05;
+      soft.velocity_factor = 0.05;
       MultiBody body;
       hanging(soft)(body);
       Simulation simulation(body, kMethod);
       const double h = 100 * explicit_limit(hanging(soft));
       CAPTURE(law, parameters, h);
       const double start = simulation.ledger().energy();
-      const int steps = law == "elastic" ? 1000 : 200;  // dear: factored at each
+      const int steps = law == "elastic" ? 1000 : 200;  // fewer steps where each step needs a factorisation
       for (int i = 0; i < steps; ++i) {
         simulation.step(h);
         REQUIRE(widest_gap(simulation) <= 1e-11);
@@ -383,8 +389,8 @@ TEST_CASE("100 times the explicit limit on joints: stable, and joints closed to 
     }
 }
 
-TEST_CASE("a stiff part on joints moves as a rigid one, the stiffer the nearer", "[implicit][joints]") {
-  // At the same long step, which is far beyond what the stiff ones explicitly allow.
+TEST_CASE("a stiff part on joints approaches the rigid motion as its stiffness grows", "[implicit][joints]") {
+  // All runs use one long step, far above the explicit limit of the stiff parts.
   auto tip = [](const Build& build) {
     MultiBody body;
     build(body);
@@ -403,19 +409,20 @@ TEST_CASE("a stiff part on joints moves as a rigid one, the stiffer the nearer",
     body.ball("top", world(0, 0, 0), point(*parts[0], kPi / 2, 0));
     body.ball("between", point(*parts[0], 0, 0), point(*parts[1], kPi / 2, 0));
   });
-  std::vector<double> far;
+  std::vector<double> distance;
   for (const double E : {1e5, 1e6, 1e7}) {
     Soft soft = solid("elastic", E);
-    soft.rushing = 0;
-    far.push_back((tip(hanging(soft)) - rigid).norm());
+    soft.velocity_factor = 0;
+    distance.push_back((tip(hanging(soft)) - rigid).norm());
   }
-  CAPTURE(far);
-  CHECK(far[1] <= 0.3 * far[0]);
-  CHECK(far[2] <= 0.3 * far[1]);
+  CAPTURE(distance);
+  CHECK(distance[1] <= 0.3 * distance[0]);
+  CHECK(distance[2] <= 0.3 * distance[1]);
 }
 
-TEST_CASE("the stiffness is factored once; again for another step, and each time where it changes",
-          "[implicit]") {
+TEST_CASE(
+    "the stiffness is factored once; again after a change of the step, and in each step where it changes",
+    "[implicit]") {
   MultiBody body;
   flying(solid("elastic", 1000))(body);
   Simulation simulation(body, kMethod);
@@ -426,12 +433,13 @@ TEST_CASE("the stiffness is factored once; again for another step, and each time
   for (int i = 0; i < 10; ++i) simulation.step(1e-3);
   CHECK(simulation.step_counters().factorisations == 3);
 
-  // What couples it to the rest, and what is tied to it, has small matrices of its own.
+  // The coupling to parameters, springs and other parts uses small matrices of its own.
   for (const bool parameters : {false, true}) {
     Soft soft = solid("elastic", 1000);
     soft.parameters = parameters;
     soft.alpha = 0.5;
-    for (const auto& [build, parts] : {std::pair(flying(soft), 1), {sprung(soft), 1}, {hanging(soft), 2}}) {
+    for (const auto& [build, parts] :
+         {std::pair(flying(soft), 1), {between_springs(soft), 1}, {hanging(soft), 2}}) {
       CAPTURE(parameters, parts);
       MultiBody coupled;
       build(coupled);
@@ -444,12 +452,12 @@ TEST_CASE("the stiffness is factored once; again for another step, and each time
 
   MultiBody changing;
   flying(solid("neo_hookean", 1000))(changing);
-  Simulation follows(changing, kMethod);
-  for (int i = 0; i < 10; ++i) follows.step(1e-3);
-  CHECK(follows.step_counters().factorisations == 10);
+  Simulation changing_run(changing, kMethod);
+  for (int i = 0; i < 10; ++i) changing_run.step(1e-3);
+  CHECK(changing_run.step_counters().factorisations == 10);
 }
 
-TEST_CASE("without local deformation nothing is factored, and a ringing parameter keeps its energy",
+TEST_CASE("without local deformation no matrix is factored, and an oscillating parameter keeps its energy",
           "[implicit]") {
   MultiBody body;
   body.gravity.setZero();
@@ -459,18 +467,18 @@ TEST_CASE("without local deformation nothing is factored, and a ringing paramete
   const double h = 0.3 / std::sqrt(500.0);
   Simulation simulation(body, kMethod);
   const double start = simulation.ledger().energy();
-  double least = start, most = start;
+  double lowest = start, highest = start;
   for (int i = 0; i < 20000; ++i) {
     simulation.step(h);
-    least = std::min(least, simulation.ledger().energy());
-    most = std::max(most, simulation.ledger().energy());
+    lowest = std::min(lowest, simulation.ledger().energy());
+    highest = std::max(highest, simulation.ledger().energy());
   }
   CHECK(simulation.step_counters().factorisations == 0);
-  CHECK(least >= 0.9 * start);
-  CHECK(most <= 1.1 * start);
+  CHECK(lowest >= 0.9 * start);
+  CHECK(highest <= 1.1 * start);
 }
 
-TEST_CASE("a state says all: another simulation goes on from it to the same bits", "[implicit]") {
+TEST_CASE("the state is complete: another simulation, resumed from it, gives identical bits", "[implicit]") {
   for (const char* law : {"elastic", "neo_hookean"}) {
     Soft soft = solid(law, 1000);
     soft.parameters = true;
@@ -484,15 +492,16 @@ TEST_CASE("a state says all: another simulation goes on from it to the same bits
     MultiBody other;
     hanging(soft)(other);
     Simulation resumed(other, kMethod, 2);
-    for (int i = 0; i < 3; ++i) resumed.step(1e-3);  // leaves factors of another step and state
+    for (int i = 0; i < 3; ++i) resumed.step(1e-3);  // factors of another step and state remain
     resumed.set_state(middle);
     for (int i = 0; i < 20; ++i) resumed.step(2e-3);
     CHECK(hash(resumed.state()) == hash(unbroken.state()));
   }
 }
 
-TEST_CASE("Eigen's factor and CHOLMOD's give the same motion, blocks and the augmented matrix too",
-          "[implicit][joints]") {
+TEST_CASE(
+    "Eigen's and CHOLMOD's factors give one motion, with the block solver and with the augmented matrix",
+    "[implicit][joints]") {
   std::vector<VecX<double>> ends;
   for (const bool cholmod : {false, true})
     for (const auto solver : {JointSolver::Choice::blocks, JointSolver::Choice::augmented}) {
@@ -509,41 +518,40 @@ TEST_CASE("Eigen's factor and CHOLMOD's give the same motion, blocks and the aug
   for (const VecX<double>& end : ends) CHECK((end - ends[0]).norm() <= 1e-9 * ends[0].norm());
 }
 
-TEST_CASE("a limit that holds a parameter of a stiff part, alone and on a joint",
-          "[implicit][limits][long]") {
+TEST_CASE("a limit stops a parameter of a stiff part, alone and on a joint", "[implicit][limits][long]") {
   for (const bool joined : {false, true}) {
     MultiBody body;
     if (!joined) body.gravity.setZero();
     Soft soft = solid("elastic", 1e5);
     soft.parameters = true;
     Part& part = add(body, "ball", soft);
-    // Pressed against its limit by its own stiffness, whose rest lies beyond.
+    // The rest value moves beyond the limit, so that the elasticity presses the parameter against it.
     part.rest("a1", test::wave(0.5, 0.1, 5)).limits("a1", {0.45, 0.52}).place({0, 0, -0.6});
     if (joined) body.ball("top", world(0, 0, 0), point(part, kPi / 2, 0));
     Simulation simulation(body, kMethod);
     const Ledger start = simulation.ledger();
-    int resting = 0;
+    int steps_at_limit = 0;
     for (int i = 0; i < 600; ++i) {
       simulation.step(2e-3);
       const double a1 = simulation.state().q[7];
       REQUIRE(a1 >= 0.45);
       REQUIRE(a1 <= 0.52);
-      resting += simulation.state().v[6] == 0 && (a1 == 0.45 || a1 == 0.52) ? 1 : 0;
+      steps_at_limit += simulation.state().v[6] == 0 && (a1 == 0.45 || a1 == 0.52) ? 1 : 0;
       if (joined) REQUIRE(widest_gap(simulation) <= 1e-11);
     }
-    CAPTURE(joined, resting);
-    CHECK(resting >= 100);
+    CAPTURE(joined, steps_at_limit);
+    CHECK(steps_at_limit >= 100);
     const Ledger end = simulation.ledger();
     if (!joined) CHECK((end.momentum - start.momentum).norm() <= 1e-9);
   }
 }
 
-TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints][long]") {
+TEST_CASE("a stiff part on a string that becomes taut", "[implicit][joints][long]") {
   for (const double E : {1e5, 1e6, 1e7, 1e8, 1e9}) {  // 1.3, 4, 13, 40 and 130 times the explicit limit
     CAPTURE(E);
     MultiBody body;
     Soft soft = solid("elastic", E);
-    soft.rushing = 0;
+    soft.velocity_factor = 0;
     Part& part = add(body, "ball", soft).place({0.4, 0, -0.4});
     body.join("cord", String{0.6}, {world(0, 0, 0), point(part, kPi / 2, 0)});
     Simulation simulation(body, kMethod);
@@ -561,7 +569,7 @@ TEST_CASE("a stiff part on a string that goes taut", "[implicit][joints][long]")
 
 namespace {
 
-/// A ball of elements or polynomials, of Young's modulus E, is dropped on a plane.
+/// Drops a ball of elements or polynomials, with Young's modulus E, on a plane.
 void drop(Basis basis, double E) {
   CAPTURE(basis == Basis::nodes, E);
   const double h = 1e-3, radius = 0.1;
@@ -590,8 +598,8 @@ void drop(Basis basis, double E) {
   }
   CHECK(impulse / (500 * h) == Approx(weight).epsilon(1e-2));
   CHECK(simulation.ledger().kinetic < 1e-4 * weight * radius);
-  CHECK(deep < 0.02 * radius);  // it strikes at 1 m/s, which is a hundredth of the radius in a step
-  // It is flattened as its weight asks, not by the steps.
+  CHECK(deep < 0.02 * radius);  // the ball hits at 1 m/s, which is a hundredth of the radius in a step
+  // The ball is flattened by its weight, independently of the steps.
   const double sag = radius - simulation.state().q[2];
   CHECK(sag > -3e-4 * radius);
   CHECK(sag < 30 * weight / (E * radius));
@@ -599,18 +607,20 @@ void drop(Basis basis, double E) {
 
 }  // namespace
 
-TEST_CASE("a stiff ball dropped on a plane bounces to rest, as it does by explicit steps",
+TEST_CASE("a stiff ball dropped on a plane bounces and comes to rest, at 10 times the explicit limit",
           "[implicit][contact][long]") {
   for (const Basis basis : {Basis::nodes, Basis::polynomial})
     drop(basis, 1e7);  // 10 times the explicit limit
 }
 
-TEST_CASE("softer and stiffer balls, 3 to 100 times the explicit limit", "[implicit][contact][long]") {
+TEST_CASE("softer and stiffer balls dropped on a plane, at 3 to 100 times the explicit limit",
+          "[implicit][contact][long]") {
   for (const Basis basis : {Basis::nodes, Basis::polynomial})
     for (const double E : {1e6, 1e9}) drop(basis, E);
 }
 
-TEST_CASE("gas in a thin shell is stable beyond the period of its breathing", "[implicit][stable]") {
+TEST_CASE("gas in a thin shell is stable with steps above the period of its breathing",
+          "[implicit][stable]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Sphere>>("ball", 0.1);
@@ -628,12 +638,12 @@ TEST_CASE("gas in a thin shell is stable beyond the period of its breathing", "[
   CHECK(simulation.ledger().kinetic <= start);
 }
 
-TEST_CASE("N20: springs at the nodes of a stiff part limit the step, on the safe side",
+TEST_CASE("N20: springs at the nodes of a stiff part limit the step, and the predicted limit is safe",
           "[implicit][stable]") {
   const Build build = [](MultiBody& body) {
     body.gravity.setZero();
     Soft soft = solid("elastic", 1e5);
-    soft.rushing = 1e-6;
+    soft.velocity_factor = 1e-6;
     Part& part = add(body, "ball", soft);
     body.spring("spring", world(1, 0, 0), point(part, 0, 0), 2000);
     body.spring("other", world(-1, 0, 0), point(part, 0, kPi), 2000);
@@ -651,7 +661,7 @@ TEST_CASE("N20: springs at the nodes of a stiff part limit the step, on the safe
 
 namespace {
 
-/// A factor that cannot be made.
+/// A factor whose factorisation always fails.
 class NoFactor final : public SparseFactor {
  public:
   explicit NoFactor(bool memory) : memory_(memory) {}
@@ -669,7 +679,7 @@ class NoFactor final : public SparseFactor {
 
 }  // namespace
 
-TEST_CASE("a stiffness that cannot be factored, or not in this memory, names its part",
+TEST_CASE("a stiffness that cannot be factored, or does not fit into memory, is reported with its part",
           "[implicit][failure]") {
   for (const bool memory : {false, true}) {
     MultiBody body;

@@ -1,4 +1,4 @@
-// Every law of local deformation in free flight: order 4, and what is conserved.
+// Every law of local deformation in free flight: order 4, and conservation of energy and momenta.
 #include "catch.h"
 
 #include <pliant/part/local/local_laws.h>
@@ -13,7 +13,7 @@ using namespace pliant;
 
 namespace {
 
-/// Numbers that make a soft part of any law.
+/// Returns coefficients that make a soft part with any law.
 std::vector<double> numbers(const LocalLawInfo& law) {
   static const std::vector<std::pair<std::string, double>> known{
       {"E", 300}, {"nu", 0.3}, {"thickness", 0.1}, {"w0", 10},  {"w1", 5},
@@ -25,7 +25,7 @@ std::vector<double> numbers(const LocalLawInfo& law) {
   return values;
 }
 
-/// A soft part of the law, global parameters among what moves.
+/// A soft part with the law; two global parameters are dynamic, too.
 Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("soft", law.shell ? 1 : 3);
@@ -37,10 +37,12 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
   LocalSettings settings;
   settings.resolution = 2;
   settings.beta = beta;
-  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * test::bump(X); };
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.5 * test::rush(X); };
+  settings.displacement = [](const Vec3<double>& X) -> Vec3<double> {
+    return 0.3 * test::sample_displacement(X);
+  };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.5 * test::sample_velocity(X); };
   settings.energies.push_back(local_law(law.name, numbers(law)));
-  // What only presses lets the nodes go where they like: something holds them.
+  // Pressure or bending alone does not resist in-plane motion of the nodes; a membrane is added.
   const std::string name = law.name;
   if (name == "pressure" || name == "gas" || name == "bending" || name == "folding")
     settings.energies.push_back(local_law("st_venant_kirchhoff_membrane", {300, 0.3, 0.1}));
@@ -51,12 +53,13 @@ Part& tumbling(MultiBody& body, const LocalLawInfo& law, double beta) {
 }  // namespace
 
 TEST_CASE(
-    "every law of local deformation keeps energy, momentum and angular momentum at order 4, damped or not",
+    "every law of local deformation conserves energy, momentum and angular momentum at order 4, with and "
+    "without damping",
     "[local][motion][long]") {
   for (const LocalLawInfo& law : all_local_laws())
     for (const double beta : {0.0, 1e-4}) {
       CAPTURE(law.name, beta);
-      std::vector<double> balance, momentum, turning;
+      std::vector<double> balance, momentum, angular;
       for (const int steps : {80, 160, 320}) {
         MultiBody body;
         tumbling(body, law, beta);
@@ -66,21 +69,21 @@ TEST_CASE(
         const Ledger end = simulation.ledger();
         balance.push_back(std::abs(end.balance) / start.kinetic);
         momentum.push_back((end.momentum - start.momentum).norm() / start.momentum.norm());
-        turning.push_back((end.angular_momentum - start.angular_momentum).norm() /
+        angular.push_back((end.angular_momentum - start.angular_momentum).norm() /
                           start.angular_momentum.norm());
-        const double lost = -end.work[static_cast<int>(Work::damping)] / start.kinetic;
-        CHECK((beta > 0 ? lost > 1e-5 : lost == 0));
+        const double dissipated = -end.work[static_cast<int>(Work::damping)] / start.kinetic;
+        CHECK((beta > 0 ? dissipated > 1e-5 : dissipated == 0));
       }
-      CAPTURE(balance, turning, momentum);
-      const bool exact = balance.back() <= 1e-10;  // all but rounding
+      CAPTURE(balance, angular, momentum);
+      const bool exact = balance.back() <= 1e-10;  // exact to rounding
       CHECK((exact || test::observed_order(balance) >= 3.8));
       CHECK(balance.back() <= 1e-5);
       CHECK(momentum.back() <= 1e-8);
-      CHECK(turning.back() <= 1e-7);
+      CHECK(angular.back() <= 1e-7);
     }
 }
 
-TEST_CASE("damping of every law: K x_dot about rest, nothing of rigid motion, never a gain", "[local]") {
+TEST_CASE("damping of every law: K x_dot about rest, zero for rigid motion, never adds energy", "[local]") {
   test::Draws draws(6);
   for (const LocalLawInfo& law : all_local_laws()) {
     CAPTURE(law.name);
@@ -117,7 +120,7 @@ TEST_CASE("damping of every law: K x_dot about rest, nothing of rigid motion, ne
       const VecX<double> x = rest + random(0.03), rate = random(1), f = viscous(x, rate);
       CHECK(f.dot(rate) < 0);
       if (!of_position) continue;
-      // No force and no couple on the whole, and none at all of rigid motion.
+      // No total force and no total torque, and no force at all in rigid motion.
       const Nodes at = nodes(x, n), force = nodes(std::as_const(f), n);
       Vec3<double> couple = Vec3<double>::Zero();
       for (Eigen::Index k = 0; k < n; ++k)
@@ -133,10 +136,10 @@ TEST_CASE("damping of every law: K x_dot about rest, nothing of rigid motion, ne
   }
 }
 
-TEST_CASE("small motion dies alike under a law of positions and under the linear one",
+TEST_CASE("small motion decays equally under a law of positions and under the linear one",
           "[local][motion][long]") {
   for (const bool shell : {false, true}) {
-    auto left = [&](const char* law) {
+    auto remaining_energy = [&](const char* law) {
       MultiBody body;
       body.gravity.setZero();
       auto& ball = body.add<Primitive<Sphere>>("ball", 1);
@@ -155,17 +158,18 @@ TEST_CASE("small motion dies alike under a law of positions and under the linear
       test::run(simulation, 3, 600);
       return simulation.ledger().energy() / start;
     };
-    const double linear = left(shell ? "membrane" : "elastic");
+    const double linear = remaining_energy(shell ? "membrane" : "elastic");
     CHECK(linear < 0.8);
     for (const char* law : {"st_venant_kirchhoff", "neo_hookean", "corotated"}) {
       CAPTURE(law);
       if (shell && law == std::string("corotated")) continue;
-      CHECK(left((std::string(law) + (shell ? "_membrane" : "")).c_str()) == Approx(linear).epsilon(1e-4));
+      CHECK(remaining_energy((std::string(law) + (shell ? "_membrane" : "")).c_str()) ==
+            Approx(linear).epsilon(1e-4));
     }
   }
 }
 
-TEST_CASE("laws of shells are refused by solids, and the other way round", "[local]") {
+TEST_CASE("laws of shells are refused for solids, and laws of solids for shells", "[local]") {
   for (const bool shell : {false, true}) {
     MultiBody body;
     auto& part = body.add<Primitive<Ellipsoid>>("soft");

@@ -1,4 +1,4 @@
-// Motion of parts whose nodes deform locally: what a push does, reference conditions, free flight, dust.
+// Motion of parts with local deformation: response to forces, reference conditions, free flight, dust.
 #include "catch.h"
 
 #include <string>
@@ -15,19 +15,19 @@ namespace local_motion_test {
 
 using namespace pliant;
 
-using test::bump;
 using test::net;
-using test::rush;
+using test::sample_displacement;
+using test::sample_velocity;
 
 namespace {
 
-/// What is soft about a part. order: of the elements, 0 for a shell.
+/// Material of a soft part; `order` of the elements, 0 for a shell.
 struct Kind {
   const char* name;
   int order;
   std::vector<LocalLaw> laws;
 };
-/// Energies that are quadratic in displacements, and energies of positions.
+/// Energies that are quadratic in the displacements, and energies of the positions.
 std::vector<Kind> kinds() {
   const std::vector<double> solid{300, 0.3}, sheet{300, 0.3, 0.05};
   return {{"a shell, linear", 0, {local_law("membrane", sheet), local_law("bending", sheet)}},
@@ -41,8 +41,8 @@ std::vector<Kind> kinds() {
           {"a curved solid of rubber", 2, {local_law("neo_hookean", solid)}}};
 }
 
-/// A tumbling part whose global parameters move too, where they are soft; with a net of springs where no laws
-/// are given. order: of the elements, 0 for a shell.
+/// A tumbling part; if `soft`, its global parameters are dynamic. Without laws it has a net of springs.
+/// `order` of the elements, 0 for a shell.
 Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
                const std::vector<LocalLaw>& laws = {}) {
   body.gravity.setZero();
@@ -59,22 +59,22 @@ Part& tumbling(MultiBody& body, int resolution, bool soft = true, int order = 0,
   if (order > 0) settings.energies = {local_law("elastic", {200, 0.3})};
   if (!laws.empty()) settings.energies = laws;
   settings.order = std::max(order, 1);
-  settings.displacement = bump;
-  settings.velocity = rush;
+  settings.displacement = sample_displacement;
+  settings.velocity = sample_velocity;
   part.deform_locally(settings);
   return part;
 }
 
-/// A force at each of some points of a part, which moves or does not, one at a time: the sums of m x_ddot and
-/// x x m x_ddot over the nodes are its own.
-void check_pushes(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
+/// Applies a force at each of the given points in turn, to a moving part or a part at rest. Checks that the
+/// sums of m x_ddot and x x m x_ddot over the nodes are the force and its torque.
+void check_forces(MultiBody& body, Part& part, const std::vector<Material<double>>& at, bool moving) {
   const Vec3<double> force(1, -2, 0.5);
-  std::size_t pushed = 0;
+  std::size_t active = 0;
   Vec3<double> place = Vec3<double>::Zero();
   for (std::size_t k = 0; k < at.size(); ++k)
     body.force("push" + std::to_string(k), point(part, at[k]),
                [&, k](double, const Vec3<double>& x, const Vec3<double>&) -> Vec3<double> {
-                 if (k != pushed) return {0, 0, 0};
+                 if (k != active) return {0, 0, 0};
                  place = x;
                  return force;
                });
@@ -82,7 +82,7 @@ void check_pushes(MultiBody& body, Part& part, const std::vector<Material<double
   State state = simulation.state();
   if (!moving) state.v.setZero();
   Workspace<double> work;
-  for (pushed = 0; pushed < at.size(); ++pushed) {
+  for (active = 0; active < at.size(); ++active) {
     simulation.dynamics().accelerations(0, state.q, state.v, state, work);
     const PartWorkspace<double>& w = work.parts[0];
     const NodalDeformation& local = *part.local()->nodal();
@@ -92,29 +92,29 @@ void check_pushes(MultiBody& body, Part& part, const std::vector<Material<double
     local.add_frame_velocities(w.a_r, 1, now, a.data(), a.data());
     const Eigen::Map<const Nodes> u(now.rates_of_p(n), n, 3);
     const Vec3<double> omega = w.v_r.segment<3>(3);
-    Vec3<double> sum = Vec3<double>::Zero(), turning = sum;
+    Vec3<double> sum = Vec3<double>::Zero(), couple = sum;
     for (Eigen::Index i = 0; i < n; ++i) {
       const Vec3<double> p = nodes(now.x, n).row(i).transpose(), rate = u.row(i).transpose();
       Vec3<double> x_ddot = a.row(i).transpose() + omega.cross(omega.cross(p) + 2 * rate);
       if (part.n_s() > 0) x_ddot += now.s2.row(i).transpose();
       const Vec3<double> ma = local.mesh().mass[i] * x_ddot;
       sum += ma;
-      turning += p.cross(ma);
+      couple += p.cross(ma);
     }
     const Vec3<double> f = w.R.transpose() * force, p = w.R.transpose() * (place - w.c);
     CHECK((sum - f).norm() <= 1e-12 * f.norm());
-    CHECK((turning - p.cross(f)).norm() <= 1e-12 * f.norm());
+    CHECK((couple - p.cross(f)).norm() <= 1e-12 * f.norm());
   }
 }
 
-/// How far parts are from their reference conditions: W^T d, of the scale of its largest term, and what those
-/// of the motion would change (c_dot, omega, q_s_dot) by, which are of the scale of 1.
-struct Unmet {
-  double of_place = 0, of_motion = 0;
+/// Violation of the reference conditions: W^T d, relative to the mass times the size of the part, and the
+/// change of (c_dot, omega, q_s_dot) that would satisfy the velocity conditions.
+struct Violation {
+  double position = 0, velocity = 0;
 };
-Unmet unmet(const Simulation& simulation, Workspace<double>& work) {
+Violation violation(const Simulation& simulation, Workspace<double>& work) {
   const State& state = simulation.state();
-  Unmet worst;
+  Violation worst;
   for (std::size_t i = 0; i < simulation.model().parts().size(); ++i) {
     const PartModel& m = simulation.model().parts()[i];
     simulation.dynamics().evaluate_masses(state.q, state.v, {static_cast<int>(i)}, work);
@@ -126,28 +126,28 @@ Unmet unmet(const Simulation& simulation, Workspace<double>& work) {
     Nodes x_dot = nodes(now.d_dot, n);
     local.add_frame_velocities(w.v_r, 1, now, x_dot.data(), x_dot.data());
     const VecMax<double> v_r = now.solve_transposed(local.frame_share(x_dot, now));
-    worst.of_place = std::max(worst.of_place, of_d.norm() / (m.part->total_mass() * m.part->size()));
-    worst.of_motion = std::max(worst.of_motion, (v_r - w.v_r).norm());
+    worst.position = std::max(worst.position, of_d.norm() / (m.part->total_mass() * m.part->size()));
+    worst.velocity = std::max(worst.velocity, (v_r - w.v_r).norm());
   }
   return worst;
 }
 
-/// The worst after each of some steps.
-Unmet worst_unmet(Simulation& simulation, double h, int steps) {
+/// Returns the largest violations after each of the steps.
+Violation max_violation(Simulation& simulation, double h, int steps) {
   Workspace<double> work;
-  Unmet worst;
+  Violation worst;
   for (int i = 0; i < steps; ++i) {
     simulation.step(h);
-    const Unmet now = unmet(simulation, work);
-    worst.of_place = std::max(worst.of_place, now.of_place);
-    worst.of_motion = std::max(worst.of_motion, now.of_motion);
+    const Violation now = violation(simulation, work);
+    worst.position = std::max(worst.position, now.position);
+    worst.velocity = std::max(worst.velocity, now.velocity);
   }
   return worst;
 }
 
 }  // namespace
 
-TEST_CASE("nodes carry the mass, the centre and the inertia of the part", "[local]") {
+TEST_CASE("nodes have the mass, the centre and the inertia of the part", "[local]") {
   MultiBody body;
   Part& part = tumbling(body, 4);
   const Model model(body);
@@ -166,39 +166,40 @@ TEST_CASE("nodes carry the mass, the centre and the inertia of the part", "[loca
   CHECK((I - whole.M.block<3, 3>(3, 3)).norm() <= 1e-12 * I.norm());
 }
 
-TEST_CASE("free flight of a shell that rings, tumbles and changes its shape: order 4, and what is conserved",
-          "[local][motion][long]") {
-  std::vector<double> energy, momentum, turning;
+TEST_CASE(
+    "free flight of a shell that oscillates, tumbles and changes its shape: order 4, and conservation laws",
+    "[local][motion][long]") {
+  std::vector<double> energy, momentum, angular;
   for (const int steps : {50, 100, 200, 400}) {
     MultiBody body;
     tumbling(body, 3);
     Simulation simulation(body, "rk4");
     const Ledger start = simulation.ledger();
     Workspace<double> work;
-    CHECK(unmet(simulation, work).of_place <= 1e-12);
-    const Unmet worst = worst_unmet(simulation, 1.0 / steps, steps);
-    CHECK(worst.of_place <= 1e-12);
-    CHECK(worst.of_motion <= 1e-12);
+    CHECK(violation(simulation, work).position <= 1e-12);
+    const Violation worst = max_violation(simulation, 1.0 / steps, steps);
+    CHECK(worst.position <= 1e-12);
+    CHECK(worst.velocity <= 1e-12);
     const Ledger end = simulation.ledger();
     energy.push_back(std::abs(end.energy() - start.energy()) / start.energy());
     momentum.push_back((end.momentum - start.momentum).norm() / start.momentum.norm());
-    turning.push_back((end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm());
+    angular.push_back((end.angular_momentum - start.angular_momentum).norm() / start.angular_momentum.norm());
   }
   CHECK(test::observed_order(energy) >= 3.9);
   CHECK(test::observed_order(momentum) >= 3.9);
-  CHECK(test::observed_order(turning) >= 3.9);
+  CHECK(test::observed_order(angular) >= 3.9);
   CHECK(energy.back() <= 1e-6);
 }
 
 namespace {
 
-/// A part of a kind in free flight, hung from a point of its surface, or falling onto a plane.
-enum class Way { flying, hung, falling };
-void lay(MultiBody& body, const Kind& kind, bool soft, Way way) {
+/// Adds a part in free flight, hanging from a point of its surface, or falling onto a plane.
+enum class Motion { flying, hanging, falling };
+void add_part(MultiBody& body, const Kind& kind, bool soft, Motion motion) {
   Part& part = tumbling(body, 1, soft, kind.order, kind.laws);
-  if (way == Way::flying) return;
+  if (motion == Motion::flying) return;
   body.gravity = {0, 0, -9.81};
-  if (way == Way::hung) {
+  if (motion == Motion::hanging) {
     const Material<double> top = material_at(kPi / 2, 0);
     const Vec3<double> place = [&] {
       const Model model(body);
@@ -214,33 +215,35 @@ void lay(MultiBody& body, const Kind& kind, bool soft, Way way) {
 
 }  // namespace
 
-TEST_CASE("W^T d = 0 holds to rounding along the way: laws of every kind, free, on a joint, in contact",
+TEST_CASE("W^T d = 0 to rounding during a run: laws of every kind, free, on a joint, in contact",
           "[local][motion][joints][contact][long]") {
-  // What brings parts back onto their joints leaves some of the motion's, to the end of the next step.
-  for (const auto& [method, of_joints] :
+  // The joint projection leaves a residual of the velocity conditions until the end of the next step.
+  for (const auto& [method, joint_tolerance] :
        {std::pair("rk4", 1e-11), {"semi_implicit_euler", 1e-5}, {"linearly_implicit", 1e-8}})
-    for (const Way way : {Way::flying, Way::hung, Way::falling})
+    for (const Motion motion : {Motion::flying, Motion::hanging, Motion::falling})
       for (const Kind& kind : kinds())
         for (const bool soft : {false, true}) {
-          CAPTURE(method, static_cast<int>(way), kind.name, soft);
-          if (kind.order == 2 && soft && method == std::string("linearly_implicit")) continue;  // dear
+          CAPTURE(method, static_cast<int>(motion), kind.name, soft);
+          // too slow for a test
+          if (kind.order == 2 && soft && method == std::string("linearly_implicit")) continue;
           MultiBody body;
-          lay(body, kind, soft, way);
+          add_part(body, kind, soft, motion);
           Simulation simulation(body, method);
-          const Unmet worst = worst_unmet(simulation, 1e-3, 80);
-          CHECK(worst.of_place <= 1e-12);
-          CHECK(worst.of_motion <= (way == Way::hung ? of_joints : 1e-12));
-          if (way == Way::hung) CHECK(simulation.state().joints[0] == JointMode::closed);
-          if (way == Way::falling) CHECK(simulation.step_counters().contact_sweeps > 0);
+          const Violation worst = max_violation(simulation, 1e-3, 80);
+          CHECK(worst.position <= 1e-12);
+          CHECK(worst.velocity <= (motion == Motion::hanging ? joint_tolerance : 1e-12));
+          if (motion == Motion::hanging) CHECK(simulation.state().joints[0] == JointMode::closed);
+          if (motion == Motion::falling) CHECK(simulation.step_counters().contact_sweeps > 0);
         }
 }
 
-TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P and L follow it for long",
+TEST_CASE("reference conditions do not disturb a long motion under gravity: P and L follow it",
           "[local][motion][long]") {
   const Vec3<double> g(0.5, 0, -9.81);
   for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"})
     for (const Kind& kind : kinds()) {
-      if (kind.order == 2 && method == "linearly_implicit") continue;  // dear: factored at each step
+      // too slow for a test: factored in each step
+      if (kind.order == 2 && method == "linearly_implicit") continue;
       CAPTURE(method, kind.name);
       MultiBody body;
       body.gravity = g;
@@ -252,8 +255,8 @@ TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P a
       LocalSettings settings;
       settings.resolution = 1;
       settings.order = std::max(kind.order, 1);
-      settings.displacement = bump;
-      settings.velocity = rush;
+      settings.displacement = sample_displacement;
+      settings.velocity = sample_velocity;
       settings.energies = kind.laws;
       part.deform_locally(settings);
       Simulation simulation(body, method);
@@ -262,12 +265,12 @@ TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P a
       const double m = part.local()->mesh().mass.sum(), t = steps * h;
       const Ledger start = simulation.ledger();
       const Vec3<double> c0 = simulation.state().q.head<3>();
-      const Unmet worst = worst_unmet(simulation, h, steps);
+      const Violation worst = max_violation(simulation, h, steps);
       const Ledger end = simulation.ledger();
       const Vec3<double> c = simulation.state().q.head<3>(), P = start.momentum + m * t * g,
                          fallen = c0 + t / m * start.momentum + 0.5 * t * t * g;
-      CHECK(worst.of_place <= 1e-13);
-      CHECK(worst.of_motion <= 1e-12);
+      CHECK(worst.position <= 1e-13);
+      CHECK(worst.velocity <= 1e-12);
       CHECK((end.momentum - P).norm() <= 1e-13 * P.norm());
       if (method != "semi_implicit_euler") CHECK((c - fallen).norm() <= 1e-12 * fallen.norm());
       const Vec3<double> L0 = start.angular_momentum - c0.cross(start.momentum),
@@ -279,8 +282,9 @@ TEST_CASE("a frame that keeps to its conditions is left alone: under gravity P a
     }
 }
 
-TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns the body by its torque",
-          "[local][long]") {
+TEST_CASE(
+    "N09: a force at any node accelerates the centre of mass by F / m and rotates the part by its torque",
+    "[local][long]") {
   std::vector<Kind> all = kinds();
   all.push_back({"a net of springs", 0, {}});
   for (const Kind& kind : all)
@@ -291,11 +295,12 @@ TEST_CASE("N09: a force on any node moves the centre of mass by F / m and turns 
         Part& part = tumbling(body, 1, soft, kind.order, kind.laws);
         part.prepare();
         const std::vector<Material<double>> every = part.local()->mesh().nodes;
-        check_pushes(body, part, every, moving);
+        check_forces(body, part, every, moving);
       }
 }
 
-TEST_CASE("N09: a force inside an element does so too, of shells and of solids of both orders", "[local]") {
+TEST_CASE("N09: a force inside an element does this too, for shells and for solids of both orders",
+          "[local]") {
   test::Draws draw(9);
   for (const bool soft : {false, true})
     for (const bool moving : {false, true})
@@ -308,12 +313,13 @@ TEST_CASE("N09: a force inside an element does so too, of shells and of solids o
         }
         MultiBody body;
         Part& part = tumbling(body, 2, soft, order);
-        check_pushes(body, part, at, moving);
+        check_forces(body, part, at, moving);
         for (const Material<double>& m : at) CHECK(part.local()->weights(part, m).node.size() >= 3);
       }
 }
 
-TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves straight", "[local]") {
+TEST_CASE("dust with nodes: every node of a spinning shell without elasticity moves on a straight line",
+          "[local]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("dust", 1);
@@ -321,7 +327,7 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
   part.make_dynamic({"a1", "a2", "a3"});
   LocalSettings settings;
   settings.resolution = 3;
-  settings.velocity = rush;
+  settings.velocity = sample_velocity;
   part.deform_locally(settings);
   std::vector<double> errors;
   for (const int steps : {50, 100, 200}) {
@@ -351,11 +357,11 @@ TEST_CASE("dust with nodes: every node of a spinning shell without elasticity mo
 namespace {
 
 struct Twisted {
-  double least = 3, most = -3;
-  double condition = 0;  ///< the worst of what tells the twist from the motion of the nodes
-  double balance = 0;    ///< of the energy at the start
+  double lowest = 3, highest = -3;
+  double condition = 0;  ///< the largest condition number of the separation of twist and nodal motion
+  double balance = 0;    ///< relative to the energy at the start
 };
-/// What the twist of a tube, its only parameter, comes to.
+/// Runs a tube whose only parameter is its twist, and returns the range of the twist.
 Twisted twist(MultiBody& body, double h, int steps) {
   Simulation simulation(body, "rk4");
   const double start = simulation.ledger().energy();
@@ -366,8 +372,8 @@ Twisted twist(MultiBody& body, double h, int steps) {
     const State& state = simulation.state();
     simulation.dynamics().evaluate_masses(state.q, state.v, {0}, work);
     all.condition = std::max(all.condition, work.parts[0].local->condition());
-    all.least = std::min(all.least, state.q[7]);
-    all.most = std::max(all.most, state.q[7]);
+    all.lowest = std::min(all.lowest, state.q[7]);
+    all.highest = std::max(all.highest, state.q[7]);
   }
   all.balance = simulation.ledger().balance / start;
   return all;
@@ -375,9 +381,8 @@ Twisted twist(MultiBody& body, double h, int steps) {
 
 }  // namespace
 
-TEST_CASE(
-    "a shell twists through 2.5 rad per half length, and its conditions still tell its coordinates apart",
-    "[local][long]") {
+TEST_CASE("a shell twists by 2.5 rad per half length, and the conditions still separate its coordinates",
+          "[local][long]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add(make_part("tube", "cylinder", {"twist"}, 2));
@@ -386,17 +391,17 @@ TEST_CASE(
       .stiffness({{"twist.angle", 2}})
       .initial({{"twist.angle", 2.5}});
   LocalSettings settings = net(3, 20);
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * rush(X); };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 0.3 * sample_velocity(X); };
   part.deform_locally(settings);
   const Twisted all = twist(body, 1e-3, 1500);
-  CAPTURE(all.least, all.most, all.condition, all.balance);
-  CHECK(all.most >= 2.4);
-  CHECK(all.least <= -2.2);
+  CAPTURE(all.lowest, all.highest, all.condition, all.balance);
+  CHECK(all.highest >= 2.4);
+  CHECK(all.lowest <= -2.2);
   CHECK(all.condition <= 2);
   CHECK(std::abs(all.balance) <= 1e-6);
 }
 
-TEST_CASE("a square tube with two dents in its membrane swings from 2.5 rad to as much the other way",
+TEST_CASE("a square tube with two dents in its membrane oscillates between -2.5 and 2.5 rad",
           "[local][long]") {
   MultiBody body;
   body.gravity.setZero();
@@ -416,16 +421,17 @@ TEST_CASE("a square tube with two dents in its membrane swings from 2.5 rad to a
   };
   part.deform_locally(settings);
   const Twisted all = twist(body, 1e-3, 1200);
-  CAPTURE(all.least, all.most, all.condition, all.balance);
-  CHECK(all.most >= 2.4);
-  CHECK(all.least <= -2.4);
+  CAPTURE(all.lowest, all.highest, all.condition, all.balance);
+  CHECK(all.highest >= 2.4);
+  CHECK(all.lowest <= -2.4);
   CHECK(all.condition <= 2);
   CHECK(std::abs(all.balance) <= 1e-6);
 }
 
 namespace {
 
-/// Adds an ellipsoid without elasticity whose nodes are, and go, towards its long axis.
+/// Adds an ellipsoid without elasticity. Its nodes are contracted towards its long axis by the fraction
+/// `closed`, at the rate `closing`.
 void needle(MultiBody& body, bool soft, double closed, double closing) {
   body.gravity.setZero();
   auto& part = body.add<Primitive<Ellipsoid>>("needle", 1);
@@ -442,7 +448,7 @@ void needle(MultiBody& body, bool soft, double closed, double closing) {
   part.deform_locally(settings);
 }
 
-/// Whether something stops since nodes do not tell frame and parameters apart.
+/// Returns whether `act` fails because the nodes do not separate the frame and the parameters.
 bool stops(const std::function<void()>& act) {
   std::string what;
   try {
@@ -458,7 +464,7 @@ bool stops(const std::function<void()>& act) {
 
 }  // namespace
 
-TEST_CASE("nodes on a line do not tell how their part is turned about it: the run stops, and names the part",
+TEST_CASE("nodes on a line do not determine the rotation about it: the run stops, and names the part",
           "[local][failure]") {
   for (const bool soft : {false, true}) {
     CAPTURE(soft);
@@ -467,7 +473,7 @@ TEST_CASE("nodes on a line do not tell how their part is turned about it: the ru
     needle(there, soft, 1 - 1e-9, 0);
     CHECK_FALSE(stops([&] { Simulation(near, "rk4"); }));
     CHECK(stops([&] { Simulation(there, "rk4"); }));
-    // On the way.
+    // The nodes reach the line during the run.
     for (const std::string method : {"rk4", "semi_implicit_euler", "linearly_implicit"}) {
       CAPTURE(method);
       MultiBody body;
@@ -481,16 +487,16 @@ TEST_CASE("nodes on a line do not tell how their part is turned about it: the ru
   }
 }
 
-TEST_CASE("N66: a soft shell has the same bits on any number of threads", "[local]") {
+TEST_CASE("N66: a soft shell gives identical bits with any number of threads", "[local]") {
   std::vector<std::uint64_t> bits;
   for (const int threads : {1, 2, 3}) {
     MultiBody body;
-    // Enough triangles for several ranges of elements.
+    // The mesh has enough triangles for several ranges of elements.
     auto& part = body.add<Primitive<Sphere>>("ball", 1);
     part.make_shell().rest({{"r", 0.5}}).velocity({0, 0, 0}, {0.5, 0.3, 1});
     LocalSettings settings;
     settings.resolution = 12;
-    settings.velocity = rush;
+    settings.velocity = sample_velocity;
     settings.energies = {local_law("membrane", {1e3, 0.3, 0.01}), local_law("pressure", {2})};
     part.deform_locally(settings);
     Simulation simulation(body, "rk4", threads);
@@ -501,14 +507,14 @@ TEST_CASE("N66: a soft shell has the same bits on any number of threads", "[loca
   CHECK(bits[0] == bits[2]);
 }
 
-TEST_CASE("N20: the largest stable step of a soft shell is on the safe side, and not far from the edge",
+TEST_CASE("N20: the largest stable step of a soft shell is safe, and not far below the true limit",
           "[local]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Sphere>>("ball", 1);
   part.make_shell().rest({{"r", 0.5}});
   LocalSettings settings = net(2, 20);
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * rush(X); };
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> { return 1e-3 * sample_velocity(X); };
   part.deform_locally(settings);
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     const double step = largest_stable_step(Simulation(body, method));

@@ -1,5 +1,5 @@
-// All methods of integration: their orders on smooth problems, free and jointed, along the way; what the
-// implicit midpoint rule keeps; the stiff method's steps.
+// All methods of integration: their orders on smooth problems with and without joints, at several times of a
+// run; the invariants of the implicit midpoint rule; the step lengths of the stiff method.
 #include "catch.h"
 
 #include <cmath>
@@ -22,10 +22,10 @@ struct Problem {
   const char* name;
   std::function<void(MultiBody&)> build;
   double end;
-  int steps;  ///< of the longest step of a method of order 4; others take more or fewer
+  int steps;  ///< of the longest step of a method of order 4; other methods use more or fewer
 };
 
-/// Two links hung from each other, both stretching.
+/// Two links, one hanging from the other, both stretching.
 void soft_pendulum(MultiBody& body) {
   Part* before = nullptr;
   for (int i = 0; i < 2; ++i) {
@@ -38,16 +38,16 @@ void soft_pendulum(MultiBody& body) {
   }
 }
 
-/// A body on a damped spring from its surface to a point that moves.
-void sprung(MultiBody& body) {
+/// A body on a damped spring from its surface to a moving anchor.
+void on_spring(MultiBody& body) {
   Part& part = body.add<Primitive<Ellipsoid>>("body");
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0.5, 0, 0}, {1, 2, 0.5});
   body.spring("spring", point(part, 0.4, 0.3), world(0, 0, 1), 500, 5, 0.5);
 }
 
-/// Bodies in a row, each joined to the one before in another way: a hinge to the world, a slider, a plane, a
-/// line and a weld.
-void joined(MultiBody& body) {
+/// Bodies in a row, each connected to the previous one by another joint: a hinge to the world, a slider, a
+/// plane, a line and a weld.
+void row_of_joints(MultiBody& body) {
   auto at = [](Part& part, const Vec3<double>& x) {
     part.prepare();
     return point(part, part.label(part.R0().conjugate() * (x - part.c0()), part.parameters().rest()));
@@ -66,7 +66,7 @@ void joined(MultiBody& body) {
   }
 }
 
-/// Links on ball joints in a ring, one corner of which is held.
+/// Links on ball joints in a ring; one corner is joined to the world.
 void ring(MultiBody& body) {
   constexpr int n = 5;
   std::vector<Part*> links;
@@ -85,7 +85,7 @@ void ring(MultiBody& body) {
   body.ball("nail", point(*links[0], 0, kPi), world(top * std::cos(-kPi / n), 0, top * std::sin(-kPi / n)));
 }
 
-/// A rubber shell under pressure that spins and is sheared as it starts.
+/// A rubber shell under pressure that spins and is sheared at the start.
 void shell(MultiBody& body) {
   auto& part = body.add<Primitive<Ellipsoid>>("shell", 1.0);
   part.make_shell().rest({{"a1", 0.1}, {"a2", 0.08}, {"a3", 0.12}}).velocity({0, 0, 0}, {2, 1, -3});
@@ -99,45 +99,46 @@ void shell(MultiBody& body) {
 const std::vector<Problem> kProblems{
     {"a free solid of many parameters", [](MultiBody& body) { test::tumbling_solid(body); }, 0.08, 16},
     {"stretching links on ball joints", soft_pendulum, 0.2, 16},
-    {"a body on a spring", sprung, 0.8, 16},
-    {"bodies on a hinge, a slider, a plane, a line and a weld", joined, 0.8, 16},
+    {"a body on a spring", on_spring, 0.8, 16},
+    {"bodies on a hinge, a slider, a plane, a line and a weld", row_of_joints, 0.8, 16},
     {"a ring of links", ring, 0.4, 16},
     {"a rubber shell", shell, 0.04, 16}};
 
-/// States and the forces of joints at the quarters of a run.
-struct Way {
+/// States and joint forces at the quarters of a run.
+struct Samples {
   VecX<double> q, v, lambda;
 };
-Way way(const Problem& problem, const std::string& method, int steps, double tolerance = 0) {
+Samples sample_run(const Problem& problem, const std::string& method, int steps, double tolerance = 0) {
   MultiBody body;
   problem.build(body);
   Simulation simulation(body, method, 1, tolerance);
-  Way way;
+  Samples samples;
   const Eigen::Index n_q = simulation.state().q.size(), n_v = simulation.state().v.size();
-  way.q.resize(4 * n_q);
-  way.v.resize(4 * n_v);
+  samples.q.resize(4 * n_q);
+  samples.v.resize(4 * n_v);
   for (int quarter = 0; quarter < 4; ++quarter) {
     if (tolerance > 0)
       simulation.step(problem.end / 4);
     else
       for (int i = 0; i < steps / 4; ++i) simulation.step(problem.end / steps);
-    way.q.segment(quarter * n_q, n_q) = simulation.state().q;
-    way.v.segment(quarter * n_v, n_v) = simulation.state().v;
+    samples.q.segment(quarter * n_q, n_q) = simulation.state().q;
+    samples.v.segment(quarter * n_v, n_v) = simulation.state().v;
     Workspace<double> work;
     const State& now = simulation.state();
     simulation.dynamics().accelerations(now.time(), now.q, now.v, now, work);
     const Eigen::Index n = work.joints.lambda.size();
-    way.lambda.conservativeResize(4 * n);
-    way.lambda.segment(quarter * n, n) = work.joints.lambda;
+    samples.lambda.conservativeResize(4 * n);
+    samples.lambda.segment(quarter * n, n) = work.joints.lambda;
   }
-  return way;
+  return samples;
 }
 
 }  // namespace
 
-TEST_CASE("every method has its order on smooth motion, free, jointed and sprung", "[methods][long]") {
+TEST_CASE("every method has its order on smooth motion, free, with joints and with springs",
+          "[methods][long]") {
   for (const Problem& problem : kProblems) {
-    const Way exact = way(problem, "dop853", 64 * problem.steps);
+    const Samples exact = sample_run(problem, "dop853", 64 * problem.steps);
     for (const IntegratorInfo& method : all_integrators()) {
       CAPTURE(problem.name, method.name);
       const int first = method.order >= 8   ? problem.steps / 4
@@ -146,27 +147,27 @@ TEST_CASE("every method has its order on smooth motion, free, jointed and sprung
                                             : 8 * problem.steps;
       std::vector<double> q, v, lambda;
       for (int halving = 0; halving < 3; ++halving) {
-        const Way at = way(problem, method.name, first << halving);
+        const Samples at = sample_run(problem, method.name, first << halving);
         q.push_back((at.q - exact.q).norm());
         v.push_back((at.v - exact.v).norm());
         if (exact.lambda.size() > 0) lambda.push_back((at.lambda - exact.lambda).norm());
       }
-      const double least = method.order >= 8 ? method.order - 0.5 : method.order - 0.1;
+      const double min_order = method.order >= 8 ? method.order - 0.5 : method.order - 0.1;
       CAPTURE(q, v, lambda);
-      CHECK(test::observed_order(q) > least);
-      CHECK(test::observed_order(v) > least);
-      // Forces come to their order late: that of the last two.
-      if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > least);
+      CHECK(test::observed_order(q) > min_order);
+      CHECK(test::observed_order(v) > min_order);
+      // The order of the forces appears late, so only the last two errors count.
+      if (!lambda.empty()) CHECK(std::log2(lambda[1] / lambda[2]) > min_order);
     }
   }
 }
 
-TEST_CASE("methods of different kinds come to the same end", "[methods]") {
+TEST_CASE("methods of different kinds agree at the end of a run", "[methods]") {
   for (const Problem& problem : kProblems) {
     CAPTURE(problem.name);
-    const Way exact = way(problem, "dop853", 0, 1e-12);
+    const Samples exact = sample_run(problem, "dop853", 0, 1e-12);
     for (const char* method : {"dormand_prince", "esdirk"}) {
-      const Way other = way(problem, method, 0, 1e-9);
+      const Samples other = sample_run(problem, method, 0, 1e-9);
       CHECK((other.q - exact.q).norm() < 1e-6);
     }
   }
@@ -174,7 +175,7 @@ TEST_CASE("methods of different kinds come to the same end", "[methods]") {
 
 namespace {
 
-/// The largest change of the energy or of the angular momentum, as part of it, of a free box that tumbles in
+/// Returns the largest relative change of the energy or of the angular momentum of a free box that tumbles in
 /// steps of 0.01 s by the implicit midpoint rule.
 double drift(long steps) {
   MultiBody body;
@@ -203,14 +204,14 @@ TEST_CASE("N17, N18: the implicit midpoint rule keeps energy and angular momentu
   CHECK(drift(20000) < 1e-12);
 }
 
-TEST_CASE("N18: and over a million steps", "[methods][long]") {
+TEST_CASE("N18: the implicit midpoint rule keeps energy and angular momentum bounded over a million steps",
+          "[methods][long]") {
   CHECK(drift(1000000) < 1e-11);
 }
 
-TEST_CASE(
-    "N18: a box that spins about its middle axis turns over at the times of Jacobi's elliptic functions",
-    "[methods]") {
-  // Between two of them lies 2 K(k) / p (Landau and Lifshitz, Mechanics, section 37).
+TEST_CASE("N18: a box that spins about its middle axis flips at the times of Jacobi's elliptic functions",
+          "[methods]") {
+  // The time between two flips is 2 K(k) / p (Landau and Lifshitz, Mechanics, section 37).
   const Vec3<double> omega(0.01, 3, 0.02);
   auto build = [&](MultiBody& body) -> Part& {
     body.gravity.setZero();
@@ -224,13 +225,13 @@ TEST_CASE(
   const Vec3<double> I = box.rest_inertia().M.diagonal().tail<3>(), L = I.cwiseProduct(omega);
   const double twice_E = L.dot(omega), M2 = L.squaredNorm();
   REQUIRE((I[0] > I[1] && I[1] > I[2]));
-  const bool about_greatest = M2 > twice_E * I[1];
-  const double great = about_greatest ? I[0] : I[2], small = about_greatest ? I[2] : I[0];
-  const double p = std::sqrt((great - I[1]) * (M2 - twice_E * small) / (I[0] * I[1] * I[2])),
-               k = std::sqrt((I[1] - small) * (twice_E * great - M2) /
-                             ((great - I[1]) * (M2 - twice_E * small)));
-  const double between = 2 * std::comp_ellint_1(k) / p;
-  // The mean time between two of so many, and the change of the energy.
+  const bool about_largest = M2 > twice_E * I[1];
+  const double largest = about_largest ? I[0] : I[2], smallest = about_largest ? I[2] : I[0];
+  const double p = std::sqrt((largest - I[1]) * (M2 - twice_E * smallest) / (I[0] * I[1] * I[2])),
+               k = std::sqrt((I[1] - smallest) * (twice_E * largest - M2) /
+                             ((largest - I[1]) * (M2 - twice_E * smallest)));
+  const double flip_time = 2 * std::comp_ellint_1(k) / p;
+  // Returns the mean time between flips, and the relative change of the energy.
   auto measure = [&](const char* method, double h, int times) {
     MultiBody body;
     build(body);
@@ -249,16 +250,17 @@ TEST_CASE(
     }
     return std::pair((last - first) / times, std::abs(simulation.ledger().kinetic / kinetic - 1));
   };
-  CHECK(measure("dop853", 2e-3, 10).first == Approx(between).epsilon(1e-7));
-  const double coarse = measure("implicit_midpoint", 1e-2, 200).first / between - 1,
-               fine = measure("implicit_midpoint", 5e-3, 200).first / between - 1;
-  CAPTURE(between, coarse, fine);
+  CHECK(measure("dop853", 2e-3, 10).first == Approx(flip_time).epsilon(1e-7));
+  const double coarse = measure("implicit_midpoint", 1e-2, 200).first / flip_time - 1,
+               fine = measure("implicit_midpoint", 5e-3, 200).first / flip_time - 1;
+  CAPTURE(flip_time, coarse, fine);
   CHECK(std::abs(coarse) < 1e-3);
   CHECK(std::log2(coarse / fine) == Approx(2).margin(0.1));
   CHECK(measure("implicit_midpoint", 1e-2, 200).second < 1e-12);
 }
 
-TEST_CASE("N21: implicit methods bear any stiffness: no growth, and the L-stable one damps", "[methods]") {
+TEST_CASE("N21: implicit methods are stable for any stiffness: no growth, and the L-stable one damps",
+          "[methods]") {
   for (const double stiffness : {1e4, 1e8, 1e12}) {
     for (const char* method : {"implicit_midpoint", "esdirk"}) {
       CAPTURE(stiffness, method);
@@ -280,7 +282,7 @@ TEST_CASE("N21: implicit methods bear any stiffness: no growth, and the L-stable
 }
 
 TEST_CASE("steps of the stiff method do not depend on the stiffness", "[methods]") {
-  // An ellipsoid that spins, or swings on a ball joint, ever stiffer, its vibrations damped.
+  // An ellipsoid that spins, or swings on a ball joint, with increasing stiffness and damped vibrations.
   struct Run {
     long steps;
     VecX<double> q;
@@ -307,9 +309,9 @@ TEST_CASE("steps of the stiff method do not depend on the stiffness", "[methods]
   }
 }
 
-TEST_CASE("implicit methods step along stiff links that turn on each other", "[methods]") {
+TEST_CASE("implicit methods integrate stiff links that rotate relative to each other", "[methods]") {
   // In the limit the links are rigid.
-  auto hang = [](MultiBody& body, double stiffness) {
+  auto build = [](MultiBody& body, double stiffness) {
     soft_pendulum(body);
     for (const auto& part : body.parts()) {
       if (stiffness > 0)
@@ -319,14 +321,14 @@ TEST_CASE("implicit methods step along stiff links that turn on each other", "[m
     }
   };
   MultiBody rigid;
-  hang(rigid, 0);
+  build(rigid, 0);
   Simulation exact(rigid, "dop853", 1, 1e-9);
   exact.step(0.2);
   for (const char* method : {"implicit_midpoint", "esdirk"})
     for (const double stiffness : {1e10, 1e12}) {
       CAPTURE(method, stiffness);
       MultiBody body;
-      hang(body, stiffness);
+      build(body, stiffness);
       Simulation simulation(body, method);
       test::run(simulation, 0.2, 40);
       for (const Eigen::Index q0 : {0, 10})
@@ -335,7 +337,8 @@ TEST_CASE("implicit methods step along stiff links that turn on each other", "[m
     }
 }
 
-TEST_CASE("implicit methods step along stiff parts that a torque turns against each other", "[methods]") {
+TEST_CASE("implicit methods integrate stiff parts that a torque rotates relative to each other",
+          "[methods]") {
   auto pair = [](MultiBody& body, double stiffness) {
     body.gravity.setZero();
     for (int i = 0; i < 2; ++i) {
@@ -364,11 +367,11 @@ TEST_CASE("implicit methods step along stiff parts that a torque turns against e
         CHECK((simulation.state().q.segment<7>(q0) - exact.state().q.segment<7>(q0 == 0 ? 0 : 7)).norm() <
               (std::string(method) == "esdirk" ? 1e-7 : 1e-4));
       CHECK((simulation.ledger().angular_momentum - L).norm() < 1e-6 * L.norm());
-      CHECK(simulation.step_counters().factorisations == 100);  // one matrix a step for both
+      CHECK(simulation.step_counters().factorisations == 100);  // one matrix in each step for both parts
     }
 }
 
-TEST_CASE("what brings stiff links onto their joints leaves their momentum as it is", "[methods]") {
+TEST_CASE("the projection of stiff links onto their joints does not change their momentum", "[methods]") {
   for (const char* method : {"implicit_midpoint", "esdirk"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -380,18 +383,18 @@ TEST_CASE("what brings stiff links onto their joints leaves their momentum as it
       links[i] = &link;
     }
     body.ball("joint", point(*links[0], 0, 0), point(*links[1], 0, kPi));
-    std::vector<double> turned;
+    std::vector<double> angular_change;
     for (const int steps : {20, 40}) {
       CAPTURE(method, steps);
       Simulation simulation(body, method);
       const Vec3<double> P = simulation.ledger().momentum, L = simulation.ledger().angular_momentum;
       test::run(simulation, 0.1, steps);
       CHECK((simulation.ledger().momentum - P).norm() < 1e-12 * P.norm());
-      turned.push_back((simulation.ledger().angular_momentum - L).norm() / L.norm());
+      angular_change.push_back((simulation.ledger().angular_momentum - L).norm() / L.norm());
     }
-    CAPTURE(method, turned);
-    CHECK(turned[1] < 1e-6);
-    CHECK(turned[1] < 0.3 * turned[0]);
+    CAPTURE(method, angular_change);
+    CHECK(angular_change[1] < 1e-6);
+    CHECK(angular_change[1] < 0.3 * angular_change[0]);
   }
 }
 

@@ -1,5 +1,5 @@
-// Motion of parts whose local deformation is a sum of modes: oscillators solved exactly, free flight, pushes,
-// joints, agreement with nodes.
+// Motion of parts whose local deformation is a sum of modes: exact solution of the oscillators, free flight,
+// forces, joints, agreement with nodal meshes.
 #include "catch.h"
 
 #include <complex>
@@ -21,10 +21,10 @@ namespace {
 
 using Basis = LocalSettings::Basis;
 
-Vec3<double> rush(const Vec3<double>& X) {
+Vec3<double> sample_velocity(const Vec3<double>& X) {
   return 0.2 * Vec3<double>(X[1] * X[2] / 0.25, 2 * X[0] * X[2], std::cos(3 * X[1]) * X[2]);
 }
-Vec3<double> bump(const Vec3<double>& X) {
+Vec3<double> sample_displacement(const Vec3<double>& X) {
   return 0.02 * Vec3<double>(4 * X[0] * X[1], X[2], 4 * X[1] * X[1] - X[2]);
 }
 
@@ -35,12 +35,12 @@ LocalSettings soft(Basis basis, double E = 2e3) {
   settings.modes = 12;
   settings.resolution = 3;
   settings.energies = {local_law("elastic", {E, 0.3})};
-  settings.displacement = bump;
-  settings.velocity = rush;
+  settings.displacement = sample_displacement;
+  settings.velocity = sample_velocity;
   return settings;
 }
 
-/// A tumbling solid that rings, with three parameters that move, or none.
+/// A tumbling, oscillating solid, with three dynamic parameters or none.
 Part& tumbling(MultiBody& body, Basis basis, bool parameters) {
   body.gravity.setZero();
   auto& part = body.add(make_part("soft", "superellipsoid", {"taper", "twist"}, 20));
@@ -57,7 +57,8 @@ Part& tumbling(MultiBody& body, Basis basis, bool parameters) {
 
 }  // namespace
 
-TEST_CASE("a mode of a free sphere rings for a hundred periods at three steps each, exactly", "[modal]") {
+TEST_CASE("a mode of a free sphere is integrated exactly over a hundred periods with three steps each",
+          "[modal]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double beta : {0.0, 1e-4, 0.5}) {
       MultiBody body;
@@ -77,7 +78,8 @@ TEST_CASE("a mode of a free sphere rings for a hundred periods at three steps ea
       simulation.set_state(state);
       test::run(simulation, 100.25 * period, 401 * 3 / 4);
       const double g = 0.5 * all.damping[0], t = simulation.state().time();
-      // Roots of x^2 + 2 g x + omega^2: c and s of a swing, or of two decays.
+      // Roots of x^2 + 2 g x + omega^2; c and s are the cosine and sine of an oscillation, or a pair of
+      // decays.
       const std::complex<double> kappa = std::sqrt(std::complex<double>(all.omega2[0] - g * g)), i(0, 1),
                                  one = i * kappa - g, other = all.omega2[0] / one;
       const double s = ((std::exp(one * t) - std::exp(other * t)) / (one - other)).real(),
@@ -89,11 +91,12 @@ TEST_CASE("a mode of a free sphere rings for a hundred periods at three steps ea
     }
 }
 
-TEST_CASE("free flight of modes that ring, tumble and change their shape: order 4, and what is conserved",
-          "[modal][motion][long]") {
+TEST_CASE(
+    "free flight of modes that oscillate, tumble and change their shape: order 4, and conservation laws",
+    "[modal][motion][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool parameters : {false, true}) {
-      std::vector<double> energy, momentum, turning;
+      std::vector<double> energy, momentum, angular;
       for (const int steps : {50, 100, 200}) {
         MultiBody body;
         tumbling(body, basis, parameters);
@@ -103,12 +106,12 @@ TEST_CASE("free flight of modes that ring, tumble and change their shape: order 
         const Ledger end = simulation.ledger();
         energy.push_back(std::abs(end.energy() - start.energy()) / start.energy());
         momentum.push_back((end.momentum - start.momentum).norm() / start.momentum.norm());
-        turning.push_back((end.angular_momentum - start.angular_momentum).norm() /
+        angular.push_back((end.angular_momentum - start.angular_momentum).norm() /
                           start.angular_momentum.norm());
       }
-      CAPTURE(static_cast<int>(basis), parameters, energy, momentum, turning);
+      CAPTURE(static_cast<int>(basis), parameters, energy, momentum, angular);
       CHECK(test::observed_order(energy) >= 3.8);
-      CHECK(test::observed_order(turning) >= 3.8);
+      CHECK(test::observed_order(angular) >= 3.8);
       CHECK((momentum.back() <= 1e-12 || test::observed_order(momentum) >= 3.8));
       CHECK(energy.back() <= 1e-5);
     }
@@ -128,7 +131,7 @@ TEST_CASE("semi-implicit Euler with modes: first order", "[modal][motion][long]"
   CHECK(test::observed_order(errors) >= 0.9);
 }
 
-TEST_CASE("a force on any node moves the centre of mass by F / m and turns the body by its torque",
+TEST_CASE("a force at any node accelerates the centre of mass by F / m and rotates the part by its torque",
           "[modal][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool parameters : {false, true})
@@ -178,7 +181,7 @@ TEST_CASE("a force on any node moves the centre of mass by F / m and turns the b
       }
 }
 
-TEST_CASE("dust of polynomials: every point of a spinning body without elasticity moves straight",
+TEST_CASE("dust of polynomials: every point of a spinning body without elasticity moves on a straight line",
           "[modal]") {
   std::vector<double> errors;
   for (const int steps : {50, 100, 200}) {
@@ -216,7 +219,7 @@ TEST_CASE("dust of polynomials: every point of a spinning body without elasticit
   CHECK(errors.back() <= 1e-7);
 }
 
-TEST_CASE("modes on a ball joint, a hinge and a loop: joints hold, and the order is kept",
+TEST_CASE("modes on a ball joint, a hinge and a loop: joints stay closed, and the order is kept",
           "[modal][joints][long]") {
   for (const Basis basis : {Basis::polynomial, Basis::modes})
     for (const bool loop : {false, true}) {
@@ -250,8 +253,9 @@ TEST_CASE("modes on a ball joint, a hinge and a loop: joints hold, and the order
 
 namespace {
 
-/// A part of a basis in free flight, or hung from a point of its surface; nodes are few, and swing slowly.
-void lay(MultiBody& body, Basis basis, bool hung) {
+/// Adds a part with a basis, in free flight or hanging from a point of its surface. The nodal mesh is coarse
+/// and its motion slow.
+void add_part(MultiBody& body, Basis basis, bool hanging) {
   auto& part = body.add<Primitive<Ellipsoid>>("soft", 20);
   part.rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}})
       .stiffness({{"a1", 200}})
@@ -260,60 +264,60 @@ void lay(MultiBody& body, Basis basis, bool hung) {
       .velocity({0.3, -0.2, 0.1}, {1, 0.6, -0.8});
   LocalSettings settings = soft(basis, 500);
   if (basis == Basis::nodes) settings.resolution = 1;
-  if (hung) settings.displacement = nullptr;
+  if (hanging) settings.displacement = nullptr;
   part.deform_locally(settings);
-  if (hung)
+  if (hanging)
     body.ball("top", world(0, 0, 0), point(part, kPi / 2, 0));
   else
     body.gravity.setZero();
 }
 
-State end_of(Basis basis, bool hung, const std::string& method, int steps) {
+State end_of(Basis basis, bool hanging, const std::string& method, int steps) {
   MultiBody body;
-  lay(body, basis, hung);
+  add_part(body, basis, hanging);
   Simulation simulation(body, method);
   test::run(simulation, 0.2, steps);
   return simulation.state();
 }
 
-struct Converging {
+struct MethodCase {
   const char* method;
-  int steps;  ///< of the longest
+  int steps;  ///< of the longest step
 };
 
 }  // namespace
 
-TEST_CASE("what deforms locally comes to the same end by every method, at its order, free and on a joint",
+TEST_CASE("methods agree at their orders on parts with local deformation, free and on a joint",
           "[modal][methods][joints][long]") {
   for (const Basis basis : {Basis::nodes, Basis::polynomial, Basis::modes})
-    for (const bool hung : {false, true}) {
-      const State exact = end_of(basis, hung, "rk4", 8000);
-      std::vector<Converging> all{{"esdirk", 20}, {"implicit_midpoint", 40}};
-      if (basis == Basis::nodes || hung) {
+    for (const bool hanging : {false, true}) {
+      const State exact = end_of(basis, hanging, "rk4", 8000);
+      std::vector<MethodCase> all{{"esdirk", 20}, {"implicit_midpoint", 40}};
+      if (basis == Basis::nodes || hanging) {
         all.push_back({"dop853", basis == Basis::modes ? 3 : 8});
         all.push_back({"dormand_prince", basis == Basis::modes        ? 10
                                          : basis == Basis::polynomial ? 160
-                                         : hung                       ? 80
+                                         : hanging                    ? 80
                                                                       : 40});
       }
-      for (const Converging& way : all) {
-        CAPTURE(static_cast<int>(basis), hung, way.method);
+      for (const MethodCase& tested : all) {
+        CAPTURE(static_cast<int>(basis), hanging, tested.method);
         std::vector<double> q, v;
         for (int halving = 0; halving < 3; ++halving) {
-          const State at = end_of(basis, hung, way.method, way.steps << halving);
+          const State at = end_of(basis, hanging, tested.method, tested.steps << halving);
           q.push_back((at.q - exact.q).norm());
           v.push_back((at.v - exact.v).norm());
         }
         CAPTURE(q, v);
-        const int order = make_integrator(way.method)->order();
-        const double least = order >= 8 ? order - 0.5 : order - 0.1;
-        CHECK(test::observed_order(q) >= least);
-        CHECK(test::observed_order(v) >= least);
+        const int order = make_integrator(tested.method)->order();
+        const double min_order = order >= 8 ? order - 0.5 : order - 0.1;
+        CHECK(test::observed_order(q) >= min_order);
+        CHECK(test::observed_order(v) >= min_order);
       }
     }
 }
 
-TEST_CASE("a spinning body swells alike by polynomials of a high degree, modes and a fine mesh",
+TEST_CASE("a spinning body swells equally with polynomials of a high degree, modes and a fine mesh",
           "[modal][long]") {
   std::vector<Nodes> shapes;
   double swell = 0;
@@ -338,17 +342,17 @@ TEST_CASE("a spinning body swells alike by polynomials of a high degree, modes a
       return x;
     };
     shapes.push_back(places(simulation.state()));
-    State still = simulation.state();
-    still.q.tail(part.n_d()).setZero();
-    swell = (places(still) - shapes.back()).norm();
+    State undeformed = simulation.state();
+    undeformed.q.tail(part.n_d()).setZero();
+    swell = (places(undeformed) - shapes.back()).norm();
   }
-  const double nodes_off = (shapes[0] - shapes[2]).norm(), modes_off = (shapes[1] - shapes[2]).norm();
-  CAPTURE(swell, nodes_off, modes_off);
-  CHECK(nodes_off <= 0.02 * swell);
-  CHECK(modes_off <= 0.05 * swell);
+  const double nodes_error = (shapes[0] - shapes[2]).norm(), modes_error = (shapes[1] - shapes[2]).norm();
+  CAPTURE(swell, nodes_error, modes_error);
+  CHECK(nodes_error <= 0.02 * swell);
+  CHECK(modes_error <= 0.05 * swell);
 }
 
-TEST_CASE("a blow on a body of modes has the momentum of its velocities", "[modal]") {
+TEST_CASE("the momenta of a body with modes are those of its initial velocity field", "[modal]") {
   for (const bool parameters : {false, true}) {
     MultiBody body;
     body.gravity.setZero();
@@ -364,7 +368,7 @@ TEST_CASE("a blow on a body of modes has the momentum of its velocities", "[moda
     part.deform_locally(settings);
     Simulation simulation(body, "rk4");
     const Ledger ledger = simulation.ledger();
-    // Of an ellipsoid int x^2 dm = m a^2 / 5.
+    // For an ellipsoid int x^2 dm = m a^2 / 5.
     const double m = part.total_mass();
     const Mat3<double> R = part.R0().toRotationMatrix();
     const Vec3<double> P = m * Vec3<double>(1 + 0.05, 0, 0.36 / 5),
@@ -374,7 +378,7 @@ TEST_CASE("a blow on a body of modes has the momentum of its velocities", "[moda
   }
 }
 
-TEST_CASE("modes have the same bits on any number of threads, and after a copy of the state", "[modal]") {
+TEST_CASE("modes give identical bits with any number of threads, and after a copy of the state", "[modal]") {
   std::vector<std::uint64_t> bits;
   for (const int threads : {1, 2, 3}) {
     MultiBody body;
@@ -394,8 +398,9 @@ TEST_CASE("modes have the same bits on any number of threads, and after a copy o
   CHECK(bits[0] == bits[2]);
 }
 
-TEST_CASE("the largest stable step of modes: none when they are free, that of the highest on a spring",
-          "[modal]") {
+TEST_CASE(
+    "the largest stable step of modes: unlimited when they are free, that of the highest mode on a spring",
+    "[modal]") {
   for (const bool pulled : {false, true}) {
     MultiBody body;
     body.gravity.setZero();

@@ -1,4 +1,4 @@
-// What is known between the ends of a step: its order of every method, and what it takes.
+// Interpolation within a step: its order for every method, and its cost in evaluations.
 #include "catch.h"
 
 #include <functional>
@@ -22,10 +22,10 @@ void stretching_link(MultiBody& body) {
   body.ball("joint", world(0, 0, 0), point(link, 0, kPi));
 }
 
-/// What a path errs by at the worst of some places, over one step of h from the start; taken: the evaluations
-/// that it needs.
+/// Returns the largest error of the path at three times within one step of h from the start. `evaluations`
+/// receives the number of evaluations that the path needs.
 double error_of(const std::function<void(MultiBody&)>& build, Integrator& method, bool controlled, double h,
-                long* taken) {
+                long* evaluations) {
   MultiBody body;
   build(body);
   Simulation simulation(body, "rk4");
@@ -41,7 +41,7 @@ double error_of(const std::function<void(MultiBody&)>& build, Integrator& method
   method.measure(nullptr);
   const long before = counters.evaluations;
   const StepPath path = method.path(simulation.dynamics(), low, h, high, counters);
-  *taken = counters.evaluations - before;
+  *evaluations = counters.evaluations - before;
   VecX<double> q;
   path.at(0, q);
   CHECK((q - low.q).norm() < 1e-15);
@@ -61,11 +61,11 @@ double error_of(const std::function<void(MultiBody&)>& build, Integrator& method
 
 }  // namespace
 
-TEST_CASE("a step is known in between to the order of its method's path", "[path][long]") {
+TEST_CASE("the interpolation within a step has the order of its method's path", "[path][long]") {
   struct Case {
     std::unique_ptr<Integrator> method;
     bool controlled;
-    double order, h;  ///< of the path over a step
+    double order, h;  ///< of the path over a step; length of the step, s
     long evaluations;
   };
   std::vector<Case> cases;
@@ -76,15 +76,16 @@ TEST_CASE("a step is known in between to the order of its method's path", "[path
   cases.push_back({std::make_unique<Rk4>(), false, 4, 0.005, 0});
   for (const auto& build : {std::function<void(MultiBody&)>(stretching_link),
                             std::function<void(MultiBody&)>([](MultiBody& b) { test::tumbling_solid(b); })}) {
-    for (const Case& of : cases) {
+    for (const Case& tested : cases) {
       std::vector<double> errors;
       for (int halving = 0; halving < 3; ++halving) {
-        long taken = -1;
-        errors.push_back(error_of(build, *of.method, of.controlled, of.h / (1 << halving), &taken));
-        CHECK(taken == of.evaluations);
+        long evaluations = -1;
+        errors.push_back(
+            error_of(build, *tested.method, tested.controlled, tested.h / (1 << halving), &evaluations));
+        CHECK(evaluations == tested.evaluations);
       }
-      CAPTURE(of.method->name(), of.controlled, errors);
-      CHECK(test::observed_order(errors) > of.order - 0.5);
+      CAPTURE(tested.method->name(), tested.controlled, errors);
+      CHECK(test::observed_order(errors) > tested.order - 0.5);
     }
   }
 }

@@ -1,11 +1,11 @@
-# Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is
-#   find        find_package(pliant COMPONENTS core) on the installation PREFIX, every package but core's own hidden
-#   components  find_package with all of COMPONENTS
-#   absent      find_package with a component that does not exist: must fail, naming it
-#   pkg-config  pliant.pc of PREFIX
-#   subdirectory  add_subdirectory(SOURCE); it links CORE, which is built: once more would take minutes
-#   readme      the program and the CMakeLists.txt that SOURCE/README.md shows, on the installation PREFIX
-# and GENERATOR, CXX, LAUNCHER are those of the build that runs this.
+# Builds and runs the client outside the tree: cmake -D WAY=... -P build_client.cmake. WAY is one of
+#   find          find_package(pliant COMPONENTS core) in the installation PREFIX, other packages hidden
+#   components    find_package with all of COMPONENTS
+#   absent        find_package with a component that does not exist: must fail and name it
+#   pkg-config    pliant.pc of PREFIX
+#   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
+#   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, with the installation PREFIX
+# GENERATOR, CXX and LAUNCHER are those of the calling build.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
 file(REMOVE_RECURSE ${work})
@@ -39,7 +39,7 @@ elseif(WAY STREQUAL absent)
   list(APPEND configure -DCLIENT_COMPONENTS=nosuch)
   execute_process(COMMAND ${configure} RESULT_VARIABLE status ERROR_VARIABLE errors OUTPUT_QUIET)
   if(status EQUAL 0 OR NOT errors MATCHES "has no component nosuch")
-    message(FATAL_ERROR "a component that does not exist: status ${status}, message: ${errors}")
+    message(FATAL_ERROR "a component that does not exist was not refused: status ${status}, message: ${errors}")
   endif()
   return()
 elseif(WAY STREQUAL pkg-config)
@@ -55,7 +55,7 @@ endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${work}/${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
 if(WAY STREQUAL readme)
-  # The time and the energy; what follows is rounding, which differs from processor to processor.
+  # Compare the time and the energy. The rest of the line is rounding, which differs from processor to processor.
   string(REGEX REPLACE ", balance.*" "" shown "${shown}")
   string(FIND "${printed}" "${shown}" at)
   if(NOT at EQUAL 0)

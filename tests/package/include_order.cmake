@@ -1,13 +1,13 @@
-# Scans the includes: a file includes its own folder and folders to its left only, core's headers need nothing but Eigen
-# and the standard library, and no include climbs out of its folder. Run as cmake -D SOURCE=... -P include_order.cmake.
+# Checks the includes: a file includes only its own folder and folders to its left, headers of core include only Eigen
+# and the standard library, and no include uses "..". Run as cmake -D SOURCE=... -P include_order.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(order math shape deform local part solve body collision project method contact simulate scene io render)
-set(outside_core scene io render)  # folders of libraries with packages of their own
+set(outside_core scene io render)  # folders of libraries with their own packages
 set(faults "")
 
 function(check_file path)
   cmake_path(RELATIVE_PATH path BASE_DIRECTORY ${SOURCE} OUTPUT_VARIABLE shown)
-  if(shown STREQUAL include/pliant/pliant.h)  # all of core, as if it were the last of core's folders
+  if(shown STREQUAL include/pliant/pliant.h)  # all of core, as if it were in the last folder of core
     set(shown include/pliant/simulate/pliant.h)
   endif()
   string(REGEX MATCH "^(include/pliant|src)/([a-z]+)/" ignored ${shown})
@@ -15,12 +15,12 @@ function(check_file path)
   set(folder ${CMAKE_MATCH_2})
   list(FIND order "${folder}" place)
   if(place EQUAL -1)
-    list(APPEND faults "${shown}: in none of the folders of the order")
+    list(APPEND faults "${shown}: not in a folder of the include order")
   endif()
   if(path MATCHES "\\.h$")
     file(STRINGS ${path} once REGEX "^#pragma once$")
     if(NOT once)
-      list(APPEND faults "${shown}: no #pragma once")
+      list(APPEND faults "${shown}: #pragma once is missing")
     endif()
   endif()
   file(STRINGS ${path} lines REGEX "^[ \t]*#[ \t]*include")
@@ -35,16 +35,16 @@ function(check_file path)
       list(APPEND faults "${shown}: ${line}: write <pliant/folder/file.h>")
     elseif(kind STREQUAL "include/pliant" AND NOT folder IN_LIST outside_core AND line MATCHES "<.*[./]"
            AND NOT line MATCHES "<Eigen/[A-Za-z]+>" AND NOT line MATCHES "<(immintrin|arm_neon)\\.h>")
-      list(APPEND faults "${shown}: ${line}: headers of core use Eigen and the standard library only")
+      list(APPEND faults "${shown}: ${line}: headers of core may include only Eigen and the standard library")
     endif()
   endforeach()
   set(faults "${faults}" PARENT_SCOPE)
 endfunction()
 
 file(GLOB_RECURSE files ${SOURCE}/include/*.h ${SOURCE}/src/*.h ${SOURCE}/src/*.cpp)
-list(REMOVE_ITEM files ${SOURCE}/include/pliant/pliant.h)  # the umbrella of core stands above the folders
+list(REMOVE_ITEM files ${SOURCE}/include/pliant/pliant.h)  # includes all folders of core
 if(NOT files)
-  message(FATAL_ERROR "no sources in ${SOURCE}")
+  message(FATAL_ERROR "there are no sources in ${SOURCE}")
 endif()
 foreach(path IN LISTS files)
   check_file(${path})

@@ -1,4 +1,5 @@
-# No file of the project names a place on somebody's machine. Run as cmake -D SOURCE=... -P no_machine_paths.cmake.
+# Checks that no file of the project contains a path of a particular machine.
+# Run as cmake -D SOURCE=... -P no_machine_paths.cmake.
 cmake_minimum_required(VERSION 3.25)
 set(places "(^|[^A-Za-z0-9_.])/(home|root|work|Users|mnt|media)/[A-Za-z0-9_]|[A-Z]:\\\\Users")
 set(folders .ci apps bench cmake include scenes src tests docs)
@@ -18,5 +19,5 @@ foreach(path IN LISTS files)
 endforeach()
 if(faults)
   list(JOIN faults "\n" text)
-  message(FATAL_ERROR "paths of one machine:\n${text}")
+  message(FATAL_ERROR "these lines contain paths of a machine:\n${text}")
 endif()

@@ -1,5 +1,4 @@
-// Global bases of local deformation: orthogonality, the modes of Lamb's sphere, of boxes and cylinders, of
-// meshes.
+// Global bases of local deformation: orthogonality; the modes of Lamb's sphere, of cylinders and of meshes.
 #include "catch.h"
 
 #include <array>
@@ -31,7 +30,7 @@ const ModalDeformation& modal(const Part& part) {
   return dynamic_cast<const ModalDeformation&>(*part.local());
 }
 
-/// omega r / c_t of the modes of a unit sphere.
+/// Returns omega r / c_t of the modes of a unit sphere.
 VecX<double> etas(int degree, double nu = 0.3) {
   const auto part = make_part("ball", "sphere", {}, 1);
   part->rest({{"r", 1}}).deform_locally(polynomials(degree, nu));
@@ -39,7 +38,7 @@ VecX<double> etas(int degree, double nu = 0.3) {
   return modal(*part).basis().omega2.cwiseSqrt();
 }
 
-/// Relative error of the five modes of T2 and of S2, and of the three of S1.
+/// Relative errors of the five modes of T2 and of S2, and of the three modes of S1.
 struct LambErrors {
   double T2, S2, S1;
 };
@@ -63,8 +62,9 @@ std::string refusal(Part& part, const LocalSettings& settings) {
 
 }  // namespace
 
-TEST_CASE("modes are orthonormal over the mass, and to rigid motion and the fields of the parameters",
-          "[bases][long]") {
+TEST_CASE(
+    "modes are orthonormal with the mass, and orthogonal to rigid motion and the fields of the parameters",
+    "[bases][long]") {
   for (const Basis kind : {Basis::polynomial, Basis::modes})
     for (const char* shape : {"ellipsoid", "superellipsoid", "cylinder", "cone", "supertoroid"}) {
       CAPTURE(shape, static_cast<int>(kind));
@@ -82,7 +82,7 @@ TEST_CASE("modes are orthonormal over the mass, and to rigid motion and the fiel
       CHECK(basis.omega2.minCoeff() > 0);
       CHECK(std::is_sorted(basis.omega2.begin(), basis.omega2.end()));
 
-      // W^T d by the points of the basis, which the phi are made of.
+      // W^T d is computed from the points of the basis that define phi.
       VecX<double> q_s(2);
       q_s << part->parameters().moving(0).rest_value(), part->parameters().moving(1).rest_value();
       std::vector<PointJet<double>> jets;
@@ -106,7 +106,7 @@ TEST_CASE("modes are orthonormal over the mass, and to rigid motion and the fiel
     }
 }
 
-TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing, closer with every second degree",
+TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing converge with every second degree",
           "[bases]") {
   const LambErrors three = lamb(3), four = lamb(4), five = lamb(5), six = lamb(6), seven = lamb(7);
   CAPTURE(three.T2, four.T2, five.T2, six.T2, three.S2, four.S2, five.S2, seven.S2, four.S1, five.S1, six.S1);
@@ -122,9 +122,9 @@ TEST_CASE("Lamb's sphere by polynomials: T2, S2, S1 and breathing, closer with e
   CHECK(nearest(etas(7), 4.99551) <= 2e-6);
 }
 
-TEST_CASE("Lamb's sphere by modes of curved elements: their consistent mass, fourth order, from above",
+TEST_CASE("Lamb's sphere by modes of curved elements: consistent mass, fourth order, from above",
           "[bases][long]") {
-  auto of_mesh = [](int resolution) {
+  auto mesh_errors = [](int resolution) {
     const auto part = make_part("ball", "sphere", {}, 1);
     LocalSettings settings = polynomials(0);
     settings.basis = Basis::modes;
@@ -135,7 +135,7 @@ TEST_CASE("Lamb's sphere by modes of curved elements: their consistent mass, fou
     part->prepare();
     return lamb(modal(*part).basis().omega2.cwiseSqrt());
   };
-  const LambErrors two = of_mesh(2), three = of_mesh(3), four = of_mesh(4);
+  const LambErrors two = mesh_errors(2), three = mesh_errors(3), four = mesh_errors(4);
   auto order = [](double coarse, double fine) { return std::log(coarse / fine) / std::log(4.0 / 3.0); };
   CAPTURE(two.T2, three.T2, four.T2, two.S2, three.S2, four.S2, two.S1, three.S1, four.S1);
   for (double LambErrors::*of : {&LambErrors::T2, &LambErrors::S2, &LambErrors::S1}) {
@@ -155,7 +155,8 @@ TEST_CASE("polynomials do not lock near nu_P = 1/2", "[bases]") {
   CHECK(harder.segment(5, 5).mean() == Approx(2.6656).epsilon(1e-3));
 }
 
-TEST_CASE("a long cylinder by polynomials: torsion, bending and stretching of a bar", "[bases]") {
+TEST_CASE("a long cylinder by polynomials: torsion, bending and stretching agree with those of a bar",
+          "[bases]") {
   const auto part = make_part("bar", "cylinder", {}, 1);
   part->rest({{"a1", 1}, {"a2", 1}, {"a3", 5}}).deform_locally(polynomials(8));
   part->prepare();
@@ -169,12 +170,12 @@ TEST_CASE("a long cylinder by polynomials: torsion, bending and stretching of a 
   CHECK(omega[1] == Approx(omega[0]).epsilon(1e-6));
 }
 
-TEST_CASE("a long cylinder by polynomials of degree 10: three frequencies of bending, near Timoshenko's",
+TEST_CASE("a long cylinder by polynomials of degree 10: three bending frequencies near those of Timoshenko",
           "[bases][long]") {
-  // The numbers of the solid are what tests/local/solid_modes.cpp takes for exact; apart: what the beam
-  // lacks.
+  // The values `solid` are the reference values of tests/local/solid_modes.cpp; `beam_error` is the error of
+  // the beam.
   constexpr std::array<double, 3> beam{20.3813, 49.2314, 83.9790}, solid{20.41175, 49.4462, 84.565},
-      apart{0.0016, 0.0046, 0.0072};
+      beam_error{0.0016, 0.0046, 0.0072};
   const auto part = make_part("bar", "cylinder", {}, 1);
   part->rest({{"a1", 1}, {"a2", 1}, {"a3", 5}}).deform_locally(polynomials(10));
   part->prepare();
@@ -183,16 +184,16 @@ TEST_CASE("a long cylinder by polynomials of degree 10: three frequencies of ben
   for (std::size_t k = 0; k < 3; ++k) {
     const Eigen::Index at = (omega.array() < (1 - 1e-5) * solid[k]).count();
     CHECK(omega[at] == Approx(solid[k]).epsilon(1e-5));
-    CHECK(omega[at + 1] == Approx(omega[at]).epsilon(1e-6));  // in two planes
+    CHECK(omega[at + 1] == Approx(omega[at]).epsilon(1e-6));  // one mode in each of two planes
     CHECK(omega[at] > beam[k]);
-    CHECK(omega[at] / beam[k] - 1 <= apart[k]);
+    CHECK(omega[at] / beam[k] - 1 <= beam_error[k]);
   }
 }
 
-TEST_CASE("modes of a mesh are those of its elements, with its conditions", "[bases]") {
+TEST_CASE("modes of a mesh are those of its elements under the reference conditions", "[bases]") {
   for (const bool shell : {false, true}) {
     CAPTURE(shell);
-    auto lay = [&](Basis kind, int resolution, int modes) {
+    auto make_soft_ball = [&](Basis kind, int resolution, int modes) {
       auto part = make_part("ball", "ellipsoid", {}, 2);
       if (shell) part->make_shell();
       part->rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).make_dynamic({"a1"});
@@ -206,38 +207,39 @@ TEST_CASE("modes of a mesh are those of its elements, with its conditions", "[ba
       part->prepare();
       return part;
     };
-    for (const int resolution : {2, 5}) {  // the dense solver, and the other
-      const auto nodal = lay(Basis::nodes, resolution, 0), part = lay(Basis::modes, resolution, 15);
-      const NodalDeformation& nodes_of = *nodal->local()->nodal();
+    for (const int resolution : {2, 5}) {  // the dense solver, and the sparse one
+      const auto nodal = make_soft_ball(Basis::nodes, resolution, 0),
+                 part = make_soft_ball(Basis::modes, resolution, 15);
+      const NodalDeformation& nodal_local = *nodal->local()->nodal();
       const ModalBasis& basis = modal(*part).basis();
-      // K Phi = omega^2 M Phi but for forces along W.
-      const Eigen::Index n = nodes_of.n_nodes();
+      // K Phi = omega^2 M Phi, apart from forces along W.
+      const Eigen::Index n = nodal_local.n_nodes();
       for (Eigen::Index j = 0; j < 15; ++j) {
         const VecX<double> mode =
             modal(*part).displacements(VecX<double>::Unit(15, j).eval().data()).reshaped();
         VecX<double> f = VecX<double>::Zero(3 * n);
         NodalEnergy::Buffer buffer;
-        nodes_of.energies()[0]->add_force(mode, f, buffer, nullptr);
-        f += basis.omega2[j] * nodes_of.inertia().cwiseProduct(mode);
-        // What is left is a sum of the columns of M G0: seven.
+        nodal_local.energies()[0]->add_force(mode, f, buffer, nullptr);
+        f += basis.omega2[j] * nodal_local.inertia().cwiseProduct(mode);
+        // The residual is a linear combination of the seven columns of M G0.
         MatX<double> W = MatX<double>::Zero(3 * n, 7);
-        const Nodes& X = nodes_of.mesh().X;
+        const Nodes& X = nodal_local.mesh().X;
         for (int i = 0; i < 3; ++i) {
           W.col(i).segment(i * n, n).setOnes();
           W.col(3 + i).segment((i + 2) % 3 * n, n) = X.col((i + 1) % 3);
           W.col(3 + i).segment((i + 1) % 3 * n, n) = -X.col((i + 2) % 3);
         }
         W.col(6).head(n) = X.col(0);
-        W = (nodes_of.inertia().asDiagonal() * W).eval();
+        W = (nodal_local.inertia().asDiagonal() * W).eval();
         CHECK((W.transpose() * mode).norm() <= 1e-10 * W.norm() * mode.norm());
         f -= W * W.colPivHouseholderQr().solve(f);
-        CHECK(f.norm() <= 1e-7 * basis.omega2[j] * nodes_of.inertia().cwiseProduct(mode).norm());
+        CHECK(f.norm() <= 1e-7 * basis.omega2[j] * nodal_local.inertia().cwiseProduct(mode).norm());
       }
     }
   }
 }
 
-TEST_CASE("weights of a material point make the displacement there", "[bases]") {
+TEST_CASE("weights of a material point give its displacement", "[bases]") {
   for (const Basis kind : {Basis::polynomial, Basis::modes}) {
     const auto part = make_part("ball", "ellipsoid", {"taper"}, 2);
     part->rest({{"taper.tx", 0.2}});
@@ -248,17 +250,18 @@ TEST_CASE("weights of a material point make the displacement there", "[bases]") 
     part->prepare();
     const ModalDeformation& local = modal(*part);
     const VecX<double> q = VecX<double>::LinSpaced(local.n_d(), -1, 1);
-    const Nodes shown = local.displacements(q.data());
+    const Nodes displacements = local.displacements(q.data());
     VecX<double> buffer;
     for (std::size_t k = 0; k < local.mesh().nodes.size(); k += 5) {
       const NodeWeights at = local.weights(*part, local.mesh().nodes[k]);
       const VecX<double> d = at_points({at}, local.at_nodes(q.data(), buffer));
-      CHECK((d - shown.row(static_cast<Eigen::Index>(k)).transpose()).norm() <= 1e-11 * shown.norm());
+      CHECK((d - displacements.row(static_cast<Eigen::Index>(k)).transpose()).norm() <=
+            1e-11 * displacements.norm());
     }
   }
 }
 
-TEST_CASE("bases that cannot be laid are refused in words", "[bases][long]") {
+TEST_CASE("invalid bases are refused with a message", "[bases][long]") {
   const auto shell = make_part("skin", "sphere", {}, 1);
   shell->make_shell();
   LocalSettings settings = polynomials(4);

@@ -1,4 +1,4 @@
-// Closed forms of the moments of a superellipsoid (physics 1.3), in long double.
+// Closed forms of the moments of a superellipsoid by Beta functions, in long double.
 #pragma once
 
 #include <cmath>
@@ -9,14 +9,14 @@ inline long double beta(long double x, long double y) {
   return std::exp(std::lgamma(x) + std::lgamma(y) - std::lgamma(x + y));
 }
 
-/// The integral of x^i y^j z^k over a superellipsoid, even i, j, k.
+/// Returns the integral of x^i y^j z^k over a superellipsoid; i, j and k are even.
 inline long double moment(const long double a[3], long double eps1, long double eps2, int i, int j, int k) {
   return std::pow(a[0], i + 1) * std::pow(a[1], j + 1) * std::pow(a[2], k + 1) * eps1 * eps2 /
          (i + j + k + 3) * beta((i + j + 2) * eps1 / 2, (k + 1) * eps1 / 2) * 2 *
          beta((i + 1) * eps2 / 2, (j + 1) * eps2 / 2);
 }
 
-/// The logarithmic derivative of Gamma.
+/// Returns the logarithmic derivative of Gamma.
 inline long double digamma(long double x) {
   long double shift = 0;
   for (; x < 20; x += 1) shift -= 1 / x;

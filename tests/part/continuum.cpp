@@ -1,4 +1,5 @@
-// The strain energy of the whole map: its rule, its derivatives, and stiffnesses known in closed form.
+// The strain energy of the map from the rest shape: its quadrature rule, its derivatives, and stiffnesses
+// with closed forms.
 #include "catch.h"
 
 #include <Eigen/LU>
@@ -54,7 +55,7 @@ std::unique_ptr<Part> make(const Body& body, const std::string& law, bool shell 
   return part;
 }
 
-/// Rest values changed by up to `size`, of the size of the body.
+/// Returns the rest values changed by random amounts of up to `size`, relative for lengths.
 VecMax<double> near_rest(Draws& draws, const Part& part, double size) {
   VecMax<double> q(part.n_s());
   for (int k = 0; k < part.n_s(); ++k) {
@@ -74,14 +75,14 @@ VecX<double> force(const Part& part, const VecMax<double>& q) {
   return force(part, q, VecMax<double>(VecMax<double>::Zero(q.size())), 0);
 }
 
-/// F at a material point, by the map's own gradients.
+/// Returns F at a material point, from the material gradients of the map.
 Mat3<double> gradient(const Part& part, const VecMax<double>& q, double u, double v, double w) {
-  const VecMax<double> still = VecMax<double>::Zero(q.size());
-  return part.material_gradient(u, v, w, part.parameters().expand<double>(q, still)) *
+  const VecMax<double> no_rate = VecMax<double>::Zero(q.size());
+  return part.material_gradient(u, v, w, part.parameters().expand<double>(q, no_rate)) *
          part.material_gradient(u, v, w, part.parameters().rest()).inverse();
 }
 
-/// The energy of a solid by a dense rule over u, v and w, in panels of an eighth of a turn.
+/// Returns the energy of a solid by a dense rule over u, v and w, with panels of pi / 4.
 template <class Law>
 double dense_energy(const Part& part, const Law& law, const VecMax<double>& q, bool torus) {
   const auto rule = gauss_rule(10);
@@ -101,7 +102,7 @@ double dense_energy(const Part& part, const Law& law, const VecMax<double>& q, b
   return sum;
 }
 
-/// The lowest omega^2 of the dynamic parameters in free motion, P = L = 0: all of them, rising.
+/// Returns omega^2 of the dynamic parameters in free motion with P = L = 0, in rising order.
 VecX<double> omega2(const Part& part) {
   VecMax<double> q(part.n_s());
   for (int k = 0; k < part.n_s(); ++k) q[k] = part.parameters().moving(k).rest_value();
@@ -119,7 +120,7 @@ TEST_CASE("the strain energy is the integral of the law over the rest body", "[c
   Draws draws(3);
   for (const Body& body : bodies()) {
     const std::string shape = body.shape;
-    // The trigonometric map of small exponents has no use for a rule in angles.
+    // A rule in the angles is not accurate for the trigonometric map with small exponents.
     if (shape == "superellipsoid") continue;
     const auto part = make(body, "neo_hookean");
     CAPTURE(test::describe(body.shape, body.chain), part->continuum()->points().n_points);
@@ -129,7 +130,7 @@ TEST_CASE("the strain energy is the integral of the law over the rest body", "[c
   }
 }
 
-TEST_CASE("where all points are strained alike one stands for all, and the energy is exact", "[continuum]") {
+TEST_CASE("with homogeneous strain one point represents all, and the energy is exact", "[continuum]") {
   for (const std::string& law : kSolidLaws) {
     const auto part = make(bodies()[0], law);
     CHECK(part->continuum()->points().n_points == 1);
@@ -152,7 +153,8 @@ TEST_CASE("where all points are strained alike one stands for all, and the energ
   CHECK(heavy.continuum()->energy(heavy, Vec3<double>(0.6, 0.3, 1.3)) == Approx(before).epsilon(1e-13));
 }
 
-TEST_CASE("the force is the slope of the energy, and the stiffness that of the force", "[continuum][long]") {
+TEST_CASE("the force is the derivative of the energy, and the stiffness that of the force",
+          "[continuum][long]") {
   Draws draws(5);
   for (const Body& body : bodies())
     for (const std::string& law : kSolidLaws) {
@@ -185,7 +187,7 @@ TEST_CASE("the force is the slope of the energy, and the stiffness that of the f
     }
 }
 
-TEST_CASE("at rest there is no force, and damping is beta times the stiffness", "[continuum][long]") {
+TEST_CASE("at rest the force is zero, and damping is beta times the stiffness", "[continuum][long]") {
   Draws draws(7);
   for (const Body& body : bodies())
     for (const std::string& law : kSolidLaws) {
@@ -198,7 +200,7 @@ TEST_CASE("at rest there is no force, and damping is beta times the stiffness", 
       CHECK(force(*part, rest).norm() <= 1e-11 * K.norm() * rest.norm());
       CHECK((force(*part, rest, rate, 0.5) + 0.5 * K * rate).norm() <= 1e-9 * size);
       CHECK((part->strain_stiffness(rest) - K).norm() <= 1e-9 * K.norm());
-      // Elsewhere it takes energy whatever the strain.
+      // In deformed states damping also removes energy.
       for (int i = 0; i < 10; ++i) {
         const VecMax<double> q = near_rest(draws, *part, 0.4), v = near_rest(draws, *part, 1) - rest;
         VecX<double> f = VecX<double>::Zero(q.size()), undamped = force(*part, q);
@@ -210,8 +212,10 @@ TEST_CASE("at rest there is no force, and damping is beta times the stiffness", 
     }
 }
 
-TEST_CASE("a solid sphere by its three scales alone: what homogeneous deformation gives", "[continuum]") {
-  // physics 8.3: deviatoric eta = sqrt(10), breathing eta^2 = 5 (3 lambda + 2 mu) / mu, eta = omega r / c_t.
+TEST_CASE("a solid sphere by its three scales alone: the frequencies of homogeneous deformation",
+          "[continuum]") {
+  // The deviatoric mode has eta = sqrt(10), breathing has eta^2 = 5 (3 lambda + 2 mu) / mu, eta = omega r /
+  // c_t.
   for (const std::string& law : kSolidLaws) {
     const double r = 0.7, density = 1000;
     const auto part = make({"ellipsoid", {}, {{"a1", r}, {"a2", r}, {"a3", r}}, {"a1", "a2", "a3"}}, law);
@@ -223,8 +227,8 @@ TEST_CASE("a solid sphere by its three scales alone: what homogeneous deformatio
   }
 }
 
-TEST_CASE("a slender bar by its scales: Young's modulus, the better the more slender", "[continuum]") {
-  // physics 8.5: one stretch has omega = sqrt(3) c / a3 with c = sqrt(E / rho).
+TEST_CASE("a slender bar by its scales: Young's modulus, in the limit of a slender bar", "[continuum]") {
+  // A homogeneous stretch has omega = sqrt(3) c / a3 with c = sqrt(E / rho).
   std::vector<double> error;
   for (const double aspect : {4.0, 8.0, 16.0}) {
     const auto part = make(
@@ -236,20 +240,20 @@ TEST_CASE("a slender bar by its scales: Young's modulus, the better the more sle
   CHECK(error[2] <= 1e-3);
 }
 
-TEST_CASE("a twisted cylinder: G J_p / L", "[continuum]") {
+TEST_CASE("a twisted cylinder has the stiffness G J_p / L", "[continuum]") {
   const double r = 0.3, half = 1.2, G = kMaterial.mu(), J_p = kPi / 2 * std::pow(r, 4), L = 2 * half;
   for (const std::string& law : kSolidLaws) {
     const auto part =
         make({"cylinder", {"twist"}, {{"a1", r}, {"a2", r}, {"a3", half}}, {"twist.angle"}}, law);
-    // The ends turn against each other by twice the angle.
+    // The ends rotate relative to each other by twice the angle.
     CHECK(part->elastic_stiffness(VecMax<double>::Zero(1))(0, 0) == Approx(4 * G * J_p / L).epsilon(1e-8));
-    CHECK(omega2(*part)[0] == Approx(3 * G / (1000 * half * half)).epsilon(1e-8));  // physics 8.5
+    CHECK(omega2(*part)[0] == Approx(3 * G / (1000 * half * half)).epsilon(1e-8));
   }
 }
 
-TEST_CASE("a bent bar: what a plane section held in its own shape gives", "[continuum]") {
-  // Sections do not narrow: lambda + 2 mu in place of E. Energy (lambda + 2 mu) I k^2 L / 2, k = angle /
-  // half.
+TEST_CASE("a bent bar has the stiffness of plane sections with constant shape", "[continuum]") {
+  // Sections do not contract laterally: lambda + 2 mu replaces E. Energy (lambda + 2 mu) I k^2 L / 2, k =
+  // angle / half.
   const double r = 0.05, half = 1, I = kPi / 4 * std::pow(r, 4);
   const auto part =
       make({"cylinder", {"bend"}, {{"a1", r}, {"a2", r}, {"a3", half}}, {"bend.angle"}}, "neo_hookean");
@@ -257,8 +261,8 @@ TEST_CASE("a bent bar: what a plane section held in its own shape gives", "[cont
         Approx((kMaterial.lambda() + 2 * kMaterial.mu()) * I * 2 / half).epsilon(1e-7));
 }
 
-TEST_CASE("a closed spherical shell that breathes: the exact frequency", "[continuum]") {
-  // physics 8.4: omega^2 r^2 rho (1 - nu^2) / E = 2 (1 + nu).
+TEST_CASE("a closed spherical shell that breathes has the exact frequency", "[continuum]") {
+  // omega^2 r^2 rho (1 - nu^2) / E = 2 (1 + nu).
   const double r = 0.8, thickness = 0.02, density = 3;
   auto part = make_part("shell", "sphere", {}, density);
   part->make_shell().rest({{"r", r}}).make_dynamic({"r"});
@@ -268,7 +272,7 @@ TEST_CASE("a closed spherical shell that breathes: the exact frequency", "[conti
         Approx(2).epsilon(kStrainSettled));
 }
 
-TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing", "[continuum][long]") {
+TEST_CASE("shells: force and stiffness are derivatives, and rotation causes no strain", "[continuum][long]") {
   Draws draws(9);
   for (const Body& body : {bodies()[0], bodies()[2], bodies()[3]}) {
     const auto part = make(body, "st_venant_kirchhoff_membrane", true);
@@ -285,7 +289,7 @@ TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing",
       CHECK(static_cast<double>(-slope[0]) == Approx(f[k]).epsilon(1e-8).margin(1e-9 * f.norm()));
     }
   }
-  // A bend towards another side is the same bend, turned.
+  // A bend in another direction is a rotated bend, with equal energy.
   auto part = make_part("part", "cylinder", {"bend"}, 1000);
   part->make_shell().rest({{"a1", 0.2}, {"a2", 0.2}}).make_dynamic({"bend.angle", "bend.direction"});
   part->elasticity({"st_venant_kirchhoff_membrane", kYoung, kPoisson, 0.01});
@@ -296,7 +300,7 @@ TEST_CASE("shells: force and stiffness are slopes, and turning strains nothing",
   CHECK(turned == Approx(there).epsilon(10 * kStrainSettled));
 }
 
-TEST_CASE("elasticity that a part cannot have is refused by name", "[continuum][long]") {
+TEST_CASE("elasticity that does not fit a part is refused by name", "[continuum][long]") {
   auto ball = [](const char* shape, const char* law) {
     auto part = make_part("ball", shape, {"taper"}, 1000);
     part->elasticity({law, 1e4, 0.3, 0.01}).make_dynamic({"a1"});

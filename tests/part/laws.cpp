@@ -1,5 +1,5 @@
-// Kinematics of parts, Eqs. (3) and (4): every shape with several chains of deformations, against a second
-// evaluation in long double.
+// Kinematics of parts, Eqs. (3) and (4): every shape with several chains of deformations, against an
+// independent evaluation in long double.
 #include "catch.h"
 
 #include <algorithm>
@@ -29,11 +29,11 @@ std::vector<std::string> shape_names() {
 template <class F>
 void for_every_part(F&& body) {
   for (const std::string& shape : shape_names())
-    for (const std::vector<std::string>& chain : test::usual_chains()) {
+    for (const std::vector<std::string>& chain : test::test_chains()) {
       const std::unique_ptr<Part> part = make_part("part", shape, chain, 1000);
       if (part->shape().mesh() == MeshPattern::torus)
         part->rest({{"a3", 1}});  // tall enough to bend without a fold
-      test::free_all(*part);
+      test::make_all_dynamic(*part);
       INFO(test::describe(shape, chain));
       body(*part);
     }
@@ -45,9 +45,10 @@ std::vector<Material<double>> points_of(Draws& draws, const Part& part, int n) {
   return points;
 }
 
-/// strong: how much more than usual the deformations turn and stretch, which rounding and differences feel.
+/// Checks s, J and the rates; `scale` multiplies the tolerances, as strong deformations amplify rounding and
+/// difference errors.
 void check_kinematics(const Part& part, const test::RandomState& state,
-                      const std::vector<Material<double>>& at, double strong = 1) {
+                      const std::vector<Material<double>>& at, double scale = 1) {
   const test::Reference reference(part, state.q_s, state.q_s_dot);
   std::vector<PointJet<double>> jets;
   Counters counters;
@@ -64,10 +65,10 @@ void check_kinematics(const Part& part, const test::RandomState& state,
     rate.note((jets[i].p1 - jets[i].J * state.q_s_dot).norm() / std::max(1.0, r.s1.norm()));
     curvature.note((jets[i].p2 - r.s2).norm() / std::max(1.0, r.s2.norm()));
   }
-  CHECK(value < 1e-14 * strong);
-  CHECK(slope < 1e-12 * strong);
-  CHECK(rate < 1e-12 * strong);
-  CHECK(curvature < 1e-12 * strong);
+  CHECK(value < 1e-14 * scale);
+  CHECK(slope < 1e-12 * scale);
+  CHECK(rate < 1e-12 * scale);
+  CHECK(curvature < 1e-12 * scale);
 }
 
 }  // namespace
@@ -81,19 +82,20 @@ TEST_CASE("s, J and Jdot qdot of every shape and several chains agree with long 
   });
 }
 
-TEST_CASE("N13: all orders of taper, bend, twist and shear", "[part]") {
+TEST_CASE("N13: all orders of taper, bend, twist and shear agree with long double", "[part]") {
   Draws draws(2);
   std::vector<std::string> chain{"bend", "shear", "taper", "twist"};
   do {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", chain, 1000);
-    test::free_all(*part);
+    test::make_all_dynamic(*part);
     INFO(test::describe("superellipsoid", chain));
     std::vector<Material<double>> at;
     for (int i = 0; i < 12; ++i) at.push_back(draws.material(MeshPattern::ball));
     check_kinematics(*part, test::draw_state(draws, *part), at);
     check_kinematics(*part, test::draw_end_state(draws, *part), at, 20);
 
-    // The mass matrix and the inertial forces of some mass points, summed again from the second evaluation.
+    // Reference: the mass matrix and the inertial forces of some mass points, from the independent
+    // evaluation.
     MassPoints points;
     for (int k = 0; k < 3; ++k) {
       std::array<Material<double>, Pack::kLanes> four;
@@ -141,9 +143,9 @@ TEST_CASE("N13: all orders of taper, bend, twist and shear", "[part]") {
   } while (std::next_permutation(chain.begin(), chain.end()));
 }
 
-TEST_CASE("material gradients agree with differences", "[part]") {
+TEST_CASE("material gradients agree with finite differences", "[part]") {
   Draws draws(3);
-  int judged = 0, asked = 0;
+  int n_smooth = 0, n_tested = 0;
   for_every_part([&](const Part& part) {
     const test::RandomState state = test::draw_state(draws, part);
     const ParameterValues<double> values = test::values_of(part, state);
@@ -154,11 +156,11 @@ TEST_CASE("material gradients agree with differences", "[part]") {
       const double u = draws.uniform(-tall, tall), v = draws.uniform(-kPi, kPi), w = draws.uniform(0.2, 1);
       const Mat3<double> E = part.material_gradient(u, v, w, values);
       auto point = [&](test::Long du, test::Long dv, test::Long dw) {
-        auto wide = [](test::Long x) {
+        auto width = [](test::Long x) {
           return Trig<test::Long>{x, x > 0 ? 1.0L : -1.0L, std::log(std::abs(x))};
         };
-        const Material<test::Long> m{wide(std::cos(u + du)), wide(std::sin(u + du)), wide(std::cos(v + dv)),
-                                     wide(std::sin(v + dv)), w + dw};
+        const Material<test::Long> m{width(std::cos(u + du)), width(std::sin(u + du)),
+                                     width(std::cos(v + dv)), width(std::sin(v + dv)), w + dw};
         return test::reference_point(part, m, all);
       };
       Mat3<test::Long> coarse, fine;
@@ -169,19 +171,20 @@ TEST_CASE("material gradients agree with differences", "[part]") {
         D.col(1) = test::first_derivative([&](test::Long t) { return point(0, t, 0); }, h);
         D.col(2) = test::first_derivative([&](test::Long t) { return point(0, 0, t); }, h);
       }
-      ++asked;
+      ++n_tested;
       if ((coarse - fine).norm() > 1e-11L * fine.norm()) continue;  // across a rim, or next to a pole
-      ++judged;
+      ++n_smooth;
       CHECK((E - fine.cast<double>()).norm() <= 1e-8 * E.norm());
     }
   });
-  CHECK(judged > 0.9 * asked);
+  CHECK(n_smooth > 0.9 * n_tested);
 }
 
-TEST_CASE("the inside-outside function, its gradient, the normal and the label follow the deformed surface",
-          "[part]") {
+TEST_CASE(
+    "the inside-outside function, its gradient, the normal and the label agree with the deformed surface",
+    "[part]") {
   Draws draws(4);
-  int judged = 0, asked = 0;
+  int n_smooth = 0, n_tested = 0;
   for_every_part([&](const Part& part) {
     const ParameterValues<double> values = test::values_of(part, test::draw_state(draws, part));
     std::vector<Material<double>> at;
@@ -198,33 +201,33 @@ TEST_CASE("the inside-outside function, its gradient, the normal and the label f
       CHECK((part.s({found}, values).col(0) - p).norm() <= 1e-10);
 
       const Vec3<double> slope = part.inside_outside_gradient(p, values);
-      Vec3<double> by_differences, coarse;
+      Vec3<double> differences, coarse;
       for (int r = 0; r < 3; ++r) {
         auto along = [&](long double t) {
-          Vec3<double> moved = p;
-          moved[r] += static_cast<double>(t);
-          return static_cast<long double>(part.inside_outside(moved, values));
+          Vec3<double> shifted = p;
+          shifted[r] += static_cast<double>(t);
+          return static_cast<long double>(part.inside_outside(shifted, values));
         };
-        by_differences[r] = static_cast<double>(test::first_derivative(along, 1e-3L));
+        differences[r] = static_cast<double>(test::first_derivative(along, 1e-3L));
         coarse[r] = static_cast<double>(test::first_derivative(along, 2e-3L));
       }
-      const bool smooth = (by_differences - coarse).norm() <= 1e-9 * slope.norm();  // no rim or edge near
-      ++asked;
-      judged += smooth ? 1 : 0;
-      if (smooth) CHECK((slope - by_differences).norm() <= 1e-8 * slope.norm());
+      const bool smooth = (differences - coarse).norm() <= 1e-9 * slope.norm();  // no rim or edge near
+      ++n_tested;
+      n_smooth += smooth ? 1 : 0;
+      if (smooth) CHECK((slope - differences).norm() <= 1e-8 * slope.norm());
       CHECK(normals[i].norm() == Approx(1).epsilon(1e-14));
       if (at[i].w == 1) CHECK((normals[i] - slope.normalized()).norm() <= 1e-9);
       CHECK(normals[i] == part.normal(at[i], values));
     }
-    // Along the normal the function grows.
+    // The function increases along the normal.
     const Vec3<double> p = s.col(1);
     CHECK(part.inside_outside(p + 1e-3 * normals[1], values) > 0);
     CHECK(part.inside_outside(p - 1e-3 * normals[1], values) < 0);
   });
-  CHECK(judged > 0.9 * asked);
+  CHECK(n_smooth > 0.9 * n_tested);
 }
 
-TEST_CASE("the normal stands on the surface's tangents", "[part]") {
+TEST_CASE("the normal is perpendicular to the tangents of the surface", "[part]") {
   Draws draws(5);
   for_every_part([&](const Part& part) {
     const ParameterValues<double> values = test::values_of(part, test::draw_state(draws, part));
@@ -240,7 +243,7 @@ TEST_CASE("the normal stands on the surface's tangents", "[part]") {
   });
 }
 
-TEST_CASE("parameters are called by link and name, repeated links by number", "[part]") {
+TEST_CASE("parameters are named by link and name, repeated links by number", "[part]") {
   const std::unique_ptr<Part> part =
       make_part("p", "ellipsoid", {"taper", "twist", "taper", "bend", "taper"}, 1000);
   CHECK(part->parameters().names() ==
@@ -250,7 +253,7 @@ TEST_CASE("parameters are called by link and name, repeated links by number", "[
   CHECK(part->parameters().find("taper4.tx") == -1);
 }
 
-TEST_CASE("what a parameter measures goes with its unit and its name", "[part]") {
+TEST_CASE("the unit of a parameter agrees with its name", "[part]") {
   auto check = [](const ParameterSpec& spec) {
     INFO(spec.name);
     const std::string name = spec.name;
@@ -266,7 +269,7 @@ TEST_CASE("what a parameter measures goes with its unit and its name", "[part]")
     for (const ParameterSpec& spec : info.parameters) check(spec);
 }
 
-TEST_CASE("a repeated link is two links", "[part]") {
+TEST_CASE("a repeated link acts twice", "[part]") {
   const std::unique_ptr<Part> part = make_part("p", "box", {"taper", "taper"}, 1000);
   part->rest({{"taper.tx", 0.5}, {"taper2.tx", -0.2}});
   const Vec3<double> s =
@@ -274,7 +277,7 @@ TEST_CASE("a repeated link is two links", "[part]") {
   CHECK(s[0] == Approx(1.5 * 0.8).epsilon(1e-15));
 }
 
-TEST_CASE("faults of a part name it, the parameter, the value and what is allowed", "[part]") {
+TEST_CASE("errors of a part name the part, the parameter, the value and the allowed range", "[part]") {
   using test::has_text;
   CHECK_THROWS_WITH(make_part("p", "pebble", {}, 1),
                     has_text("part 'p': no shape 'pebble'") && has_text("supertoroid"));
@@ -315,7 +318,7 @@ TEST_CASE("N11: a rest shape that folds over is refused, a slim one may bend by 
   CHECK_THROWS_WITH(slim->rest({{"bend.angle", 3.15}}), test::has_text("bend.angle = 3.15 is out of range"));
 }
 
-TEST_CASE("N11: initial values at which a part folds over are refused, and folds are told at any values",
+TEST_CASE("N11: initial values at which a part folds over are refused, and folds are detected at any values",
           "[part]") {
   const std::unique_ptr<Part> part = make_part("fat", "cylinder", {"bend"}, 1000);
   part->stiffness({{"bend.angle", 100}, {"a1", 1000}}).initial({{"bend.angle", 1.5}});
@@ -323,7 +326,7 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
                                          test::has_text("make the body slimmer"));
   part->initial({{"bend.angle", 0.5}});
   CHECK_NOTHROW(part->prepare());
-  // It folds where the curvature times the half width is one: angle a1 / a3 = 1.
+  // The part folds if the curvature times the half width exceeds one: angle a1 / a3 = 1.
   auto at = [](double a1, double angle) { return VecMax<double>(Eigen::Vector2d(a1, angle)); };
   CHECK_FALSE(part->folded(at(1, 0.99)));
   CHECK(part->folded(at(1, 1.01)));
@@ -340,7 +343,7 @@ TEST_CASE("N11: initial values at which a part folds over are refused, and folds
 
 namespace {
 
-/// All that is asked of points of the surface at these values, the ends of ranges among them.
+/// Checks all surface functions at these values, also at the ends of the parameter rectangle.
 void check_surface(const Part& part, double tolerance) {
   const ParameterValues<double> values = part.parameters().rest();
   std::vector<Material<double>> at;
@@ -366,19 +369,18 @@ void check_surface(const Part& part, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("N10: at the tip of a full taper everything asked of the surface is finite and right", "[part]") {
+TEST_CASE("N10: at the tip of a full taper all surface functions are finite and correct", "[part]") {
   for (const std::string& shape : shape_names())
     for (const std::vector<std::string>& chain : std::vector<std::vector<std::string>>{
              {"taper"}, {"taper", "twist", "shear"}, {"shear", "taper"}, {"taper", "bend"}})
       for (const auto& [tx, ty] : {std::pair(-1.0, -1.0), {1.0, 1.0}, {-1.0, 0.0}, {1.0, -1.0}}) {
         const std::unique_ptr<Part> part = make_part("part", shape, chain, 1000);
         const bool torus = part->shape().mesh() == MeshPattern::torus;
-        // The edge of a blade is drawn from lines; which of their points lies on the surface the inverse
-        // tells where that is in the middle.
+        // An edge of zero width is the image of lines; the inverse is unique only in its middle.
         if (tx != ty && (torus || chain[0] == "shear")) continue;
         if (torus) part->rest({{"a3", 2}});
-        for (const char* wide : {"a1", "a2", "r"})
-          if (!torus && part->parameters().find(wide) >= 0) part->rest({{wide, 0.4}});
+        for (const char* width : {"a1", "a2", "r"})
+          if (!torus && part->parameters().find(width) >= 0) part->rest({{width, 0.4}});
         part->rest({{"taper.tx", tx}, {"taper.ty", ty}});
         if (chain.back() == "bend") part->rest({{"bend.angle", 0.6}});
         if (part->parameters().find("shear.sx") >= 0) part->rest({{"shear.sx", 0.4}});
@@ -397,25 +399,24 @@ TEST_CASE("N10: at the tip of a full taper everything asked of the surface is fi
   CHECK(cone->inside_outside({0.1, 0, 1}, values) > 0);
 }
 
-TEST_CASE("N11: at the ends of the range of a bend everything asked of the surface is finite and right",
-          "[part]") {
+TEST_CASE("N11: at the ends of the range of a bend all surface functions are finite and correct", "[part]") {
   for (const std::string& shape : shape_names())
     for (const double angle : {kPi, -kPi, 3.14, kPi / 2, -kPi / 2, 1.6})
       for (const double direction : {0.0, 0.8, kPi, -6.3}) {
         const std::unique_ptr<Part> part = make_part("part", shape, {"bend"}, 1000);
         const bool torus = part->shape().mesh() == MeshPattern::torus;
         part->rest({{"bend.angle", angle}, {"bend.direction", direction}});
-        // Slim enough not to fold.
+        // The part is slim enough not to fold.
         if (torus) part->rest({{"a1", 0.05}, {"a2", 0.05}, {"a3", 1}});
-        for (const char* wide : {"a1", "a2", "r"})
-          if (!torus && part->parameters().find(wide) >= 0) part->rest({{wide, 0.14}});
-        if (shape == "sphere") continue;  // it cannot be slim
+        for (const char* width : {"a1", "a2", "r"})
+          if (!torus && part->parameters().find(width) >= 0) part->rest({{width, 0.14}});
+        if (shape == "sphere") continue;  // a sphere cannot be slim
         INFO(shape << " " << angle << " towards " << direction);
         check_surface(*part, 1e-10);
       }
 }
 
-TEST_CASE("N10: the tips of full tapers and of half-turn bends are ordinary points", "[part]") {
+TEST_CASE("N10: the tips of full tapers and the surface of half-turn bends are regular points", "[part]") {
   for (const char* shape : {"superellipsoid", "ellipsoid", "capsule"})
     for (double sign : {-1.0, 1.0}) {
       const std::unique_ptr<Part> part = make_part("part", shape, {"taper"}, 1000);
@@ -438,7 +439,7 @@ TEST_CASE("N10: the tips of full tapers and of half-turn bends are ordinary poin
     }
 }
 
-TEST_CASE("the gauge has no slope at the centre of a body", "[part]") {
+TEST_CASE("the gradient of the inside-outside function is zero at the centre of a part", "[part]") {
   for (const auto& face : all_shapes()) {
     if (face->mesh() == MeshPattern::torus) continue;
     const std::unique_ptr<Part> part = make_part("part", face->name(), {}, 1000);

@@ -1,5 +1,5 @@
-// Parts whose material points move in straight lines with their dynamic parameters: moments taken once tell
-// what the sums over mass points do, and J is never evaluated.
+// Parts whose material points are linear in the dynamic parameters: precomputed moments replace the sums over
+// mass points, and J is not evaluated.
 #include "catch.h"
 
 #include <string>
@@ -17,9 +17,9 @@ using test::Draws;
 
 namespace {
 
-/// Its lengths are dynamic, all of them or the last alone.
-std::unique_ptr<Part> with_lengths(const std::string& shape, bool all,
-                                   const std::vector<std::string>& links = {}) {
+/// Returns a part with dynamic lengths, all of them or only the last.
+std::unique_ptr<Part> make_with_dynamic_lengths(const std::string& shape, bool all,
+                                                const std::vector<std::string>& links = {}) {
   auto part = make_part("part", shape, links, 700);
   std::vector<std::string> lengths;
   for (int i = 0; i < part->parameters().n_shape(); ++i)
@@ -29,20 +29,21 @@ std::unique_ptr<Part> with_lengths(const std::string& shape, bool all,
   part->make_dynamic(lengths);
   return part;
 }
-bool same(const MatX<double>& a, const MatX<double>& b) {
+bool nearly_equal(const MatX<double>& a, const MatX<double>& b) {
   return (a - b).lpNorm<Eigen::Infinity>() <= 1e-13 * b.lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace
 
 TEST_CASE(
-    "the inertia of every shape that its lengths change is that of its mass points, J is not evaluated") {
+    "the inertia of parts with dynamic lengths agrees with that of their mass points, and J is not "
+    "evaluated") {
   Draws draws(5);
   for (const std::string shape : {"sphere", "ellipsoid", "box", "cylinder", "cone", "capsule",
                                   "superellipsoid", "superellipsoid_radial", "supertoroid"})
     for (const bool all : {true, false}) {
       CAPTURE(shape, all);
-      auto part = with_lengths(shape, all);
+      auto part = make_with_dynamic_lengths(shape, all);
       REQUIRE(part->linear());
       part->prepare();
       for (int trial = 0; trial < 4; ++trial) {
@@ -53,21 +54,21 @@ TEST_CASE(
         Counters counters, unused;
         part->evaluate_inertia(state.q_s, state.q_s_dot, state.omega, moments, counters);
         sum_inertia(*part, part->mass_points(), state.q_s, state.q_s_dot, state.omega, sums, unused);
-        CHECK(same(moments.M, sums.M));
+        CHECK(nearly_equal(moments.M, sums.M));
         CHECK(moments.M == moments.M.transpose());
-        CHECK(same(moments.g_q, sums.g_q));
+        CHECK(nearly_equal(moments.g_q, sums.g_q));
         CHECK((moments.moment - sums.moment).norm() < 1e-13 * sums.mass);
         CHECK(moments.mass == Approx(sums.mass).epsilon(1e-13));
         CHECK(counters.mass_matrices == 1);
         CHECK(counters.inertial_forces == 1);
         CHECK(counters.jacobian_points == 0);
         CHECK(counters.rate_points == 0);
-        // Derivatives by q_s, against differences.
+        // Derivatives with respect to q_s, against finite differences.
         VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>();
         for (Eigen::Index k = 0; k < q_s.size(); ++k) q_s[k].d[0] = 1;
         Inertia<Dual<1>> dual;
-        part->evaluate_inertia(q_s, VecMax<Dual<1>>(state.q_s_dot.cast<Dual<1>>()), state.omega.cast<Dual<1>>(), dual,
-                      counters);
+        part->evaluate_inertia(q_s, VecMax<Dual<1>>(state.q_s_dot.cast<Dual<1>>()),
+                               state.omega.cast<Dual<1>>(), dual, counters);
         const double step = 1e-5;
         Inertia<double> above, below;
         part->evaluate_inertia(state.q_s.array() + step, state.q_s_dot, state.omega, above, unused);
@@ -86,16 +87,15 @@ TEST_CASE(
     }
 }
 
-TEST_CASE(
-    "links that act, exponents and ratios that move make no linear part, links frozen as the identity do") {
-  CHECK(with_lengths("ellipsoid", true, {"taper"})->linear());
-  auto bends = with_lengths("box", true, {"bend"});
+TEST_CASE("active links and dynamic exponents or ratios make a part nonlinear, identity links do not") {
+  CHECK(make_with_dynamic_lengths("ellipsoid", true, {"taper"})->linear());
+  auto bends = make_with_dynamic_lengths("box", true, {"bend"});
   bends->rest({{"bend.angle", 0.3}});
   CHECK_FALSE(bends->linear());
-  auto squares = with_lengths("superellipsoid", true);
+  auto squares = make_with_dynamic_lengths("superellipsoid", true);
   squares->make_dynamic({"eps1"});
   CHECK_FALSE(squares->linear());
-  auto ring = with_lengths("supertoroid", true);
+  auto ring = make_with_dynamic_lengths("supertoroid", true);
   ring->make_dynamic({"a4"});
   CHECK_FALSE(ring->linear());
   CHECK_FALSE(make_part("rigid", "box", {}, 1000)->linear());

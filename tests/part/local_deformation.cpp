@@ -1,4 +1,4 @@
-// Meshes of local deformation: masses and moments, points among the nodes, the parameter rectangle.
+// Meshes of local deformation: masses and moments, points between nodes, the parameter rectangle.
 #include "catch.h"
 
 #include <pliant/deform/all_deforms.h>
@@ -55,7 +55,7 @@ TEST_CASE("nodes of every shape have the mass, the centre and the inertia of the
     }
 }
 
-TEST_CASE("weights of a material point make up its place at rest", "[local]") {
+TEST_CASE("weights of a material point give its position at rest", "[local]") {
   for (const Kind kind : {Kind{true, 1}, Kind{false, 1}, Kind{false, 2}}) {
     const auto part = soft("superellipsoid", kind);
     const LocalDeformation& local = *part->local();
@@ -72,14 +72,14 @@ TEST_CASE("weights of a material point make up its place at rest", "[local]") {
       }
       CHECK(sum == Approx(1).epsilon(1e-12));
       const Vec3<double> X = part->s({m}, part->parameters().rest()).col(0);
-      // A shell of flat triangles is as near to the point as its mesh is fine.
+      // For a shell of flat triangles the accuracy is that of the mesh.
       CHECK((x - X).norm() <= (kind.shell ? 0.05 : 1e-10) * part->size());
     }
     if (kind.shell) CHECK(local.weights(*part, material_at(0, 0, 0.5)).node.empty());
   }
 }
 
-TEST_CASE("nodes of thin parts have their moments, each in its own measure", "[local]") {
+TEST_CASE("nodes of thin parts have the correct moments, relative to each dimension", "[local]") {
   for (const bool shell : {true, false}) {
     const auto part = make_part("thin", "ellipsoid", {}, 3);
     if (shell) part->make_shell();
@@ -97,7 +97,7 @@ TEST_CASE("nodes of thin parts have their moments, each in its own measure", "[l
   }
 }
 
-TEST_CASE("what a mesh cannot carry is refused", "[local]") {
+TEST_CASE("a part whose mesh would be degenerate is refused", "[local]") {
   const auto part = make_part("thread", "ellipsoid", {}, 3);
   part->make_shell().rest({{"a1", 1}, {"a2", 1e-9}, {"a3", 1e-9}});
   LocalSettings settings;

@@ -1,5 +1,4 @@
-// Mass, moments and inertial forces of parts (design 1.3, physics 1.3 and 1.6): closed forms, and the power
-// identity.
+// Mass, moments and inertial forces of parts: closed forms, and the power identity of M and g_q.
 #include "catch.h"
 
 #include <cmath>
@@ -46,7 +45,7 @@ Inertia<double> at(const Part& part, const test::RandomState& state) {
 
 }  // namespace
 
-TEST_CASE("the moment table of superellipsoids with unit axes", "[mass]") {
+TEST_CASE("moments of superellipsoids with unit axes agree with tabulated values", "[mass]") {
   struct Row {
     double eps1, eps2, volume, xx, zz, half_unit;
   };
@@ -63,7 +62,7 @@ TEST_CASE("the moment table of superellipsoids with unit axes", "[mass]") {
     }
 }
 
-TEST_CASE("volume and second moments are those of the Beta functions", "[mass]") {
+TEST_CASE("volume and second moments agree with the Beta functions", "[mass]") {
   Draws draws(1);
   for (int trial = 0; trial < 60; ++trial) {
     static constexpr double exponents[] = {0.02, 0.05, 0.1, 0.3, 0.5, 0.77, 1, 1.3, 1.7, 2, 3, 5};
@@ -87,7 +86,7 @@ TEST_CASE("volume and second moments are those of the Beta functions", "[mass]")
   }
 }
 
-TEST_CASE("scales: M_ss of the semi-axes", "[mass]") {
+TEST_CASE("scales: M_ss of the semi-axes agrees with closed forms", "[mass]") {
   for (double eps : {0.1, 1.0, 1.9}) {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {}, 1);
     part->rest({{"a1", 1.3}, {"a2", 0.7}, {"a3", 0.9}, {"eps1", eps}, {"eps2", eps}});
@@ -106,9 +105,9 @@ TEST_CASE("scales: M_ss of the semi-axes", "[mass]") {
   }
 }
 
-TEST_CASE("exponents: the logarithmic moments are digamma functions", "[mass][long]") {
-  // Mean of ln|cos u| weighted by x^2: (psi(2 eps1) - psi(5 eps1 / 2)) / 2, physics 1.3; for v: (psi(3/2
-  // eps2) - psi(2 eps2)) / 2.
+TEST_CASE("exponents: the logarithmic moments agree with digamma functions", "[mass][long]") {
+  // Mean of ln|cos u| weighted by x^2: (psi(2 eps1) - psi(5 eps1 / 2)) / 2; for v: (psi(3/2 eps2) - psi(2
+  // eps2)) / 2.
   for (double eps : {0.4, 1.0, 1.6}) {
     const std::unique_ptr<Part> part = make_part("part", "superellipsoid", {}, 1);
     part->rest({{"eps1", eps}, {"eps2", 0.8}});
@@ -121,8 +120,8 @@ TEST_CASE("exponents: the logarithmic moments are digamma functions", "[mass][lo
     const double now = part->rest_inertia().M(6, 7);
     INFO("eps1 " << eps << " points " << part->mass_points().n_points);
     CHECK(std::abs(now / (xx * mean) - 1) <= 1e-12L);
-    // M_eps1,eps1 = sum over the coordinates of the mean of squares of logarithms: second derivatives of
-    // Beta.
+    // M_eps1,eps1 is the sum over the coordinates of the mean squared logarithm: second derivatives of the
+    // Beta function.
     auto log_square = [&](long double p, long double q) {  // of ln|cos u|, density cos^(2p-1) sin^(2q-1)
       const long double first = (test::digamma(p) - test::digamma(p + q)) / 2;
       const long double h = 1e-3L;
@@ -138,7 +137,7 @@ TEST_CASE("exponents: the logarithmic moments are digamma functions", "[mass][lo
   }
 }
 
-TEST_CASE("volumes of the other primitives", "[mass]") {
+TEST_CASE("volumes of the other shapes", "[mass]") {
   CHECK(solid(*rigid("ellipsoid", {{"a1", 2}, {"a2", 3}, {"a3", 0.5}})).mass ==
         Approx(4 * kPi).epsilon(1e-14));
   CHECK(solid(*rigid("sphere", {{"r", 2}})).mass == Approx(32 * kPi / 3).epsilon(1e-14));
@@ -148,7 +147,7 @@ TEST_CASE("volumes of the other primitives", "[mass]") {
   for (double t : {-1.0, -0.4, 0.0, 0.9})
     CHECK(solid(*rigid("cone", {{"a1", 2}, {"a2", 3}, {"a3", 0.5}, {"t", t}})).mass ==
           Approx(6 * kPi * (1 + t * t / 3)).epsilon(1e-14));
-  // A cone's centre of mass is at a quarter of its height.
+  // The centre of mass of a cone is at a quarter of its height.
   CHECK(solid(*rigid("cone", {{"a3", 2}})).centre[2] == Approx(-1).epsilon(1e-13));
   CHECK(solid(*rigid("capsule", {{"r", 0.3}, {"l", 2}})).mass ==
         Approx(kPi * 0.09 * 2 + 4 * kPi / 3 * 0.027).epsilon(1e-14));
@@ -181,7 +180,7 @@ TEST_CASE("areas of shells", "[mass]") {
         Approx(2 * kPi * 0.3 * 2 + 4 * kPi * 0.09).epsilon(1e-13));
   CHECK(solid(*rigid("supertoroid", {{"a1", 0.5}, {"a2", 0.5}, {"a3", 0.5}, {"a4", 4}}, {}, true)).mass ==
         Approx(4 * kPi * kPi * 2 * 0.5).epsilon(1e-13));
-  // A cone with its tip: side pi r s, and the base.
+  // A cone with its tip: lateral area pi r s, and the base.
   CHECK(solid(*rigid("cone", {}, {}, true)).mass ==
         Approx(kPi * 2 * std::sqrt(8.0) + kPi * 4).epsilon(1e-13));
   // An octahedron of unit axes: eight triangles of side sqrt 2.
@@ -191,14 +190,14 @@ TEST_CASE("areas of shells", "[mass]") {
   const double e = std::sqrt(0.75);
   CHECK(solid(*rigid("ellipsoid", {{"a1", 2}, {"a2", 2}}, {}, true)).mass ==
         Approx(8 * kPi * (1 + 0.25 / e * std::atanh(e))).epsilon(1e-13));
-  // Radial and trigonometric map: the same surface.
+  // The radial and the trigonometric map describe one surface.
   CHECK(
       solid(*rigid("superellipsoid_radial", {{"eps1", 0.3}, {"eps2", 1.7}}, {}, true)).mass ==
       Approx(solid(*rigid("superellipsoid", {{"eps1", 0.3}, {"eps2", 1.7}}, {}, true)).mass).epsilon(1e-12));
 }
 
 TEST_CASE("volumes and centres of deformed solids", "[mass]") {
-  // Taper: V (1 + tx ty <zeta^2>); twist, shear and bend_offset keep the volume.
+  // Taper: V (1 + tx ty <zeta^2>); twist, shear and bend_offset conserve the volume.
   for (double eps : {0.1, 0.5, 1.0, 2.0, 5.0}) {
     const long double a[3] = {1, 1, 1};
     const long double V = test::moment(a, eps, eps, 0, 0, 0), zz = test::moment(a, eps, eps, 0, 0, 2) / V;
@@ -217,18 +216,18 @@ TEST_CASE("volumes and centres of deformed solids", "[mass]") {
   }
   CHECK(solid(*rigid("ellipsoid", {{"taper.tx", 1}, {"taper.ty", 1}}, {"taper"})).mass ==
         Approx(4 * kPi / 3 * 1.2).epsilon(1e-13));
-  // The offset of a bend of the paper's family moves the centre of mass by 3 b1 / pi^2 (physics 0.1, item 5).
+  // bend_offset moves the centre of mass of an ellipsoid by 3 b1 / pi^2.
   const Measured offset = solid(*rigid("ellipsoid", {{"bend_offset.b1", 0.4}}, {"bend_offset"}));
   CHECK(offset.centre[0] == Approx(3 * 0.4 / (kPi * kPi)).epsilon(1e-12));
   CHECK(offset.mass == Approx(4 * kPi / 3).epsilon(1e-13));
-  // A bend keeps the volume of a symmetric section (Pappus), and its direction only turns it.
+  // A bend conserves the volume of a symmetric section (Pappus), and its direction only rotates it.
   const Part::Named slim{{"a1", 0.3}, {"a2", 0.2}, {"bend.angle", 1.5}};
   const Measured bent = solid(*rigid("cylinder", slim, {"bend"}));
   CHECK(bent.mass == Approx(2 * kPi * 0.06).epsilon(1e-13));
   CHECK(bent.centre[0] > 0.1);
 }
 
-TEST_CASE("mass and inertia given", "[mass]") {
+TEST_CASE("given mass and inertia are used", "[mass]") {
   std::unique_ptr<Part> part = make_part("part", "cylinder", {"taper"}, 1000);
   part->rest({{"taper.tx", 0.3}}).stiffness({{"taper.tx", 1}}).mass(7);
   part->prepare();
@@ -256,20 +255,20 @@ TEST_CASE("mass and inertia given", "[mass]") {
   CHECK_THROWS_WITH(part->prepare(), test::has_text("rigid part only"));
 }
 
-TEST_CASE("M is symmetric and positive definite, and inertial forces do the work that M's change asks for",
+TEST_CASE("M is symmetric and positive definite, and inertial forces balance the power of the change of M",
           "[mass][long]") {
   // nu^T g_q + 1/2 nu^T Mdot nu = 0 for M of the mixed frame (c_dot in the world, omega in the body). Here M
-  // is that of the body frame, in which a constant c_dot turns: v_r' = (-omega x v_c, 0, 0) adds nu^T M v_r'.
+  // is in the body frame, in which a constant c_dot rotates: v_r' = (-omega x v_c, 0, 0) adds nu^T M v_r'.
   Draws draws(2);
   for (const auto& face : all_shapes())
-    for (const std::vector<std::string>& chain : test::usual_chains())
+    for (const std::vector<std::string>& chain : test::test_chains())
       for (bool shell : {false, true}) {
         const std::unique_ptr<Part> part = make_part("part", face->name(), chain, 1000);
         if (face->mesh() == MeshPattern::torus) part->rest({{"a3", 1}});
         if (shell) part->make_shell();
-        test::free_all(*part, {"eps1", "eps2", "t", "a4"});
+        test::make_all_dynamic(*part, {"eps1", "eps2", "t", "a4"});
         if (shell && chain.size() > 2) continue;
-        // A twist after a bend needs points all over the solid: fewer if it cannot go far.
+        // A twist after a bend needs points in the whole solid: fewer if its range is small.
         if (chain.size() == 3 && chain[0] == "shear")
           for (const char* name : {"shear.sx", "shear.sy", "bend.angle", "twist.angle"})
             part->limits(name, {-0.5, 0.5});
@@ -285,7 +284,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces do the work
           const MatX<double> scaled = scale.asDiagonal() * MatX<double>(I.M) * scale.asDiagonal();
           CHECK(symmetric_eigenvalues(scaled).minCoeff() > 0);
 
-          // M along the motion, by dual numbers.
+          // Derivative of M along the motion, by dual numbers.
           VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>(), q_s_dot = state.q_s_dot.cast<Dual<1>>();
           for (Eigen::Index k = 0; k < q_s.size(); ++k) q_s[k].d[0] = state.q_s_dot[k];
           Inertia<Dual<1>> moving;
@@ -295,12 +294,12 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces do the work
           for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) M_dot(i, j) = moving.M(i, j).d[0];
           const Vec3<double> c_dot =
-              draws.vector(2);  // in the body frame, of a velocity that is constant in the world
-          VecX<double> v(n), turning = VecX<double>::Zero(n);
+              draws.vector(2);  // in the body frame; the velocity is constant in the world
+          VecX<double> v(n), frame_rate = VecX<double>::Zero(n);
           v << c_dot, state.omega, state.q_s_dot;
-          turning.head<3>() = -state.omega.cross(c_dot);
+          frame_rate.head<3>() = -state.omega.cross(c_dot);
           const double power = v.dot(VecX<double>(I.g_q)),
-                       change = 0.5 * v.dot(M_dot * v) + v.dot(MatX<double>(I.M) * turning);
+                       change = 0.5 * v.dot(M_dot * v) + v.dot(MatX<double>(I.M) * frame_rate);
           const double size = (v.cwiseAbs().array() * VecX<double>(I.g_q).cwiseAbs().array()).sum() +
                               0.5 * v.cwiseAbs().dot(M_dot.cwiseAbs() * v.cwiseAbs());
           CHECK(std::abs(power + change) <= 1e-12 * size);
@@ -310,8 +309,9 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces do the work
 
 namespace {
 
-/// Anywhere in the declared ranges of the dynamic parameters; a bend_offset up to the size of the body.
-test::RandomState anywhere(Draws& draws, const Part& part, int corner) {
+/// Returns a state within the declared ranges of the dynamic parameters; bend_offset is at most the size of
+/// the part.
+test::RandomState random_in_range(Draws& draws, const Part& part, int corner) {
   const Parameters& all = part.parameters();
   const int n = all.n_dynamic();
   test::RandomState state{VecMax<double>(n), VecMax<double>(n), draws.vector(2)};
@@ -326,13 +326,14 @@ test::RandomState anywhere(Draws& draws, const Part& part, int corner) {
   return state;
 }
 
-/// How much M and g_q change, in units of their scale, when the rule of a prepared part is doubled.
-double change_on_doubling(const Part& part, int trials) {
+/// Returns the change of M and g_q, relative to their scale, if the quadrature rule of a prepared part is
+/// doubled.
+double doubling_error(const Part& part, int trials) {
   Draws draws(3);
   const MassPoints finer = place_mass_points(part, 1);
   test::Worst worst;
   for (int trial = 0; trial < trials; ++trial) {
-    const test::RandomState state = anywhere(draws, part, trial);
+    const test::RandomState state = random_in_range(draws, part, trial);
     Inertia<double> a, b;
     Counters counters;
     sum_inertia(part, part.mass_points(), state.q_s, state.q_s_dot, state.omega, a, counters);
@@ -350,7 +351,8 @@ double change_on_doubling(const Part& part, int trials) {
 
 }  // namespace
 
-TEST_CASE("N16: doubling the rule changes nothing: frozen exponents", "[mass][long]") {
+TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only: frozen exponents",
+          "[mass][long]") {
   const std::vector<std::vector<std::string>> chains{{},       {"taper"},       {"twist"},
                                                      {"bend"}, {"bend_offset"}, {"taper", "twist", "bend"}};
   const double exponents[][2] = {{0.1, 0.1}, {0.3, 1}, {0.5, 0.5}, {1, 1},       {1.7, 0.3},
@@ -361,32 +363,34 @@ TEST_CASE("N16: doubling the rule changes nothing: frozen exponents", "[mass][lo
         const std::unique_ptr<Part> part = make_part("part", "superellipsoid", chain, 1000);
         part->rest({{"a1", 0.4}, {"a2", 0.3}, {"eps1", eps[0]}, {"eps2", eps[1]}});
         if (shell) part->make_shell();
-        test::free_all(*part, {"eps1", "eps2"});
+        test::make_all_dynamic(*part, {"eps1", "eps2"});
         part->prepare();
         INFO(test::describe(shell ? "shell" : "solid", chain)
              << " " << eps[0] << " " << eps[1] << " " << part->mass_points().rule << " "
              << part->mass_points().n_points);
-        CHECK(change_on_doubling(*part, 4) <= 1e-12);
+        CHECK(doubling_error(*part, 4) <= 1e-12);
       }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: the other shapes", "[mass][long]") {
+TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only: the other shapes",
+          "[mass][long]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain :
          std::vector<std::vector<std::string>>{{}, {"taper"}, {"twist", "shear"}, {"bend"}})
       for (bool shell : {false, true}) {
         const std::unique_ptr<Part> part = make_part("part", face->name(), chain, 1000);
-        test::free_all(*part, {"eps1", "eps2"});
+        test::make_all_dynamic(*part, {"eps1", "eps2"});
         if (shell) part->make_shell();
         part->prepare();
         INFO(test::describe(face->name(), chain)
              << (shell ? " shell " : " ") << part->mass_points().rule << " " << part->mass_points().n_points);
-        CHECK(change_on_doubling(*part, 3) <= 1e-12);
+        CHECK(doubling_error(*part, 3) <= 1e-12);
       }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: exponents as degrees of freedom, repeated links",
-          "[mass][long]") {
+TEST_CASE(
+    "N16: doubling the quadrature rule changes M and g_q to rounding only: dynamic exponents, repeated links",
+    "[mass][long]") {
   struct Case {
     const char* shape;
     std::vector<std::string> chain, dynamic;
@@ -405,18 +409,18 @@ TEST_CASE("N16: doubling the rule changes nothing: exponents as degrees of freed
       const std::unique_ptr<Part> part = make_part("part", c.shape, c.chain, 1000);
       if (shell) part->make_shell();
       part->make_dynamic(c.dynamic);
-      if (part->parameters().find("bend.angle") >= 0)  // as far as the body does not turn inside out
+      if (part->parameters().find("bend.angle") >= 0)  // limited so that the part is not inverted
         part->rest({{"a1", 0.2}, {"a2", 0.2}}).limits("bend.angle", {-2, 2});
       part->prepare();
       INFO(test::describe(c.shape, c.chain)
            << " " << part->parameters().n_dynamic() << (shell ? " shell " : " solid ")
            << part->mass_points().rule << " " << part->mass_points().n_points);
       CHECK(part->mass_points().unsettled == 0);
-      CHECK(change_on_doubling(*part, 6) <= 1e-12);
+      CHECK(doubling_error(*part, 6) <= 1e-12);
     }
 }
 
-TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degree of freedom",
+TEST_CASE("N16: doubling the quadrature rule changes M and g_q to rounding only: the first exponent dynamic",
           "[mass][long]") {
   for (bool shell : {false, true})
     for (double eps : {0.1, 0.7, 1.9}) {
@@ -427,7 +431,7 @@ TEST_CASE("N16: doubling the rule changes nothing: the first exponent as a degre
       part->prepare();
       INFO(eps << (shell ? " shell " : " solid ") << part->mass_points().rule << " "
                << part->mass_points().n_points);
-      CHECK(change_on_doubling(*part, 6) <= 1e-12);
+      CHECK(doubling_error(*part, 6) <= 1e-12);
     }
 }
 

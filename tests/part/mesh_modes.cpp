@@ -1,4 +1,4 @@
-// The lowest modes of a mesh by either sparse factorisation.
+// The lowest modes of a mesh with either sparse factorisation.
 #include <pliant/part/local/local_laws.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/sphere.h>
@@ -12,7 +12,7 @@ using namespace pliant;
 
 namespace {
 
-/// omega^2 of the modes of a ball of curved elements, whose stiffness is factored by make.
+/// Returns omega^2 of the modes of a ball of curved elements; `make` creates the factorisation.
 VecX<double> frequencies(MakeSparseFactor make) {
   LocalSettings settings;
   settings.basis = LocalSettings::Basis::modes;
@@ -29,7 +29,7 @@ VecX<double> frequencies(MakeSparseFactor make) {
 
 }  // namespace
 
-TEST_CASE("modes of a mesh are the same by CHOLMOD and by Eigen") {
+TEST_CASE("modes of a mesh by CHOLMOD and by Eigen agree") {
   int made = 0;
   const VecX<double> by_eigen = frequencies(make_eigen_factor);
   const VecX<double> by_cholmod = frequencies([&] {
@@ -38,7 +38,7 @@ TEST_CASE("modes of a mesh are the same by CHOLMOD and by Eigen") {
   });
   CHECK(made == 1);
   REQUIRE(by_eigen.size() == 12);
-  // Their errors are those of the eigensolver.
+  // The differences are errors of the eigensolver.
   CHECK((by_cholmod - by_eigen).lpNorm<Eigen::Infinity>() <= 1e-10 * by_eigen.maxCoeff());
 }
 

@@ -1,4 +1,4 @@
-// Parts at random values of all their parameters.
+// Random states of parts, in all their parameters.
 #pragma once
 
 #include <memory>
@@ -12,15 +12,15 @@
 
 namespace pliant::test {
 
-/// Where a parameter of a part is drawn from: its range as a degree of freedom, lengths from half to twice
-/// their rest value, and no further than a body of unit size has use for.
+/// Returns the range of random values of a parameter: its dynamic range; lengths from half to twice their
+/// rest value; bounded for a body of unit size.
 inline Range range_of(const Parameter& p) {
   if (p.spec->relative) return {0.5 * p.rest_value(), 2 * p.rest_value()};
   const double reach = p.spec->quantity == Quantity::angle ? kInfinity : std::max(2.0, 2 * p.rest_value());
   return {std::max(p.limits.min, -reach), std::min(p.limits.max, reach)};
 }
 
-/// Within the range, or at one of its ends.
+/// Returns a random value within the range, or one of its ends.
 inline double draw_value(Draws& draws, const Parameter& p) {
   const Range range = range_of(p);
   return draws.uniform(range.min, range.max);
@@ -35,7 +35,7 @@ struct RandomState {
   Vec3<double> omega;
 };
 
-/// Values by value(draws, parameter), rates and a turn.
+/// Returns a state with values from value(draws, parameter), random rates and a random angular velocity.
 template <class F>
 RandomState make_state(Draws& draws, const Part& part, F&& value) {
   const int n = part.parameters().n_dynamic();
@@ -48,7 +48,7 @@ RandomState make_state(Draws& draws, const Part& part, F&& value) {
   return state;
 }
 
-/// A state anywhere in the ranges at which the part does not fold over.
+/// Returns a random state within the ranges at which the part does not fold over.
 inline RandomState draw_state(Draws& draws, const Part& part) {
   for (int trial = 0; trial < 10000; ++trial) {
     RandomState state = make_state(draws, part, draw_value);
@@ -56,13 +56,13 @@ inline RandomState draw_state(Draws& draws, const Part& part) {
   }
   throw std::runtime_error("no state without folds found");
 }
-/// A state with every parameter at an end of its range, folded or not.
+/// Returns a state with every parameter at an end of its range; the part may fold over.
 inline RandomState draw_end_state(Draws& draws, const Part& part) {
   return make_state(draws, part, draw_end);
 }
 
-/// Every parameter but those called in except becomes a degree of freedom.
-inline void free_all(Part& part, const std::vector<std::string>& except = {}) {
+/// Makes every parameter dynamic except those named in `except`.
+inline void make_all_dynamic(Part& part, const std::vector<std::string>& except = {}) {
   std::vector<std::string> names;
   for (int i = 0; i < part.parameters().size(); ++i) {
     const std::string& name = part.parameters()[i].name;
@@ -75,8 +75,8 @@ inline ParameterValues<double> values_of(const Part& part, const RandomState& st
   return part.parameters().expand<double>(state.q_s, state.q_s_dot);
 }
 
-/// Chains worth trying on every shape.
-inline const std::vector<std::vector<std::string>>& usual_chains() {
+/// Chains of deformations that are tested with every shape.
+inline const std::vector<std::vector<std::string>>& test_chains() {
   static const std::vector<std::vector<std::string>> chains{{},
                                                             {"taper"},
                                                             {"twist", "shear"},

@@ -1,5 +1,5 @@
-// A part evaluated a second time, in long double and by differences: the formulas of its shape and its links
-// are looked up by name, and nothing of the engine's derivatives, batches or sums is used.
+// An independent evaluation of a part, in long double and by finite differences. The formulas of its shape
+// and its links are found by name; derivatives, batches and sums of the engine are not used.
 #pragma once
 
 #include <cmath>
@@ -52,7 +52,7 @@ void link_of(std::tuple<Links...>*, const std::string& name, const Long*& b, Vec
 }
 }  // namespace detail
 
-/// s at a material point, all parameters given in order.
+/// Returns s at a material point; `parameters` are all parameters in order.
 inline Vec3<Long> reference_point(const Part& part, const Material<Long>& m,
                                   const std::vector<Long>& parameters) {
   const Long* b = parameters.data();
@@ -64,7 +64,7 @@ inline Vec3<Long> reference_point(const Part& part, const Material<Long>& m,
   return s;
 }
 
-/// What the engine computes of a material point.
+/// Quantities that the engine computes for a material point.
 struct ReferencePoint {
   Vec3<double> s, s1, s2;
   Eigen::Matrix3Xd J;
@@ -72,7 +72,7 @@ struct ReferencePoint {
 
 class Reference {
  public:
-  /// A part at values q_s and rates of its dynamic parameters.
+  /// References a part at values q_s and rates of its dynamic parameters.
   Reference(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot)
       : part_(part), q_s_(q_s), q_s_dot_(q_s_dot) {
     const ParameterValues<double> rest = part.parameters().rest();

@@ -1,5 +1,4 @@
-// Solid meshes of parts: closed, conforming, bounded by the surface mesh, without slivers, of the right
-// volume.
+// Solid meshes of parts: conforming, bounded by the surface mesh, without slivers, with the correct volume.
 #include "catch.h"
 
 #include <cmath>
@@ -25,18 +24,18 @@ using Order = Solid::Order;
 namespace {
 
 using Triangle = std::array<int, 3>;
-/// The triangle from its least node, turned the same way.
-Triangle turned(Triangle t) {
+/// Returns the triangle with its smallest node first, in the given orientation.
+Triangle smallest_first(Triangle t) {
   while (t[0] > t[1] || t[0] > t[2]) t = {t[1], t[2], t[0]};
   return t;
 }
 std::set<Triangle> triangle_set(const Eigen::MatrixXi& triangles) {
   std::set<Triangle> all;
   for (Eigen::Index t = 0; t < triangles.cols(); ++t)
-    all.insert(turned({triangles(0, t), triangles(1, t), triangles(2, t)}));
+    all.insert(smallest_first({triangles(0, t), triangles(1, t), triangles(2, t)}));
   return all;
 }
-/// Faces of the elements, seen from outside, that are not also the other side of another.
+/// Returns the faces of the elements, oriented outwards, that are not shared with another element.
 std::set<Triangle> open_faces(const Eigen::MatrixXi& elements, bool& conforming) {
   constexpr std::array<Triangle, 4> faces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
   std::set<Triangle> all;
@@ -44,18 +43,19 @@ std::set<Triangle> open_faces(const Eigen::MatrixXi& elements, bool& conforming)
   for (Eigen::Index t = 0; t < elements.cols(); ++t)
     for (const Triangle& f : faces)
       conforming =
-          all.insert(turned({elements(f[0], t), elements(f[1], t), elements(f[2], t)})).second && conforming;
+          all.insert(smallest_first({elements(f[0], t), elements(f[1], t), elements(f[2], t)})).second &&
+          conforming;
   std::set<Triangle> open;
   for (const Triangle& f : all)
-    if (all.count(turned({f[0], f[2], f[1]})) == 0) open.insert(f);
+    if (all.count(smallest_first({f[0], f[2], f[1]})) == 0) open.insert(f);
   return open;
 }
 
 struct Geometry {
-  double volume = 0, least_quality = kInfinity, least_jacobian = kInfinity;
+  double volume = 0, min_quality = kInfinity, min_jacobian = kInfinity;
 };
-/// Quality: 12 (3 V)^(2/3) over the sum of the squares of the six edges; 1 for a regular tetrahedron.
-/// Jacobian: least over mean of an element.
+/// Quality: 12 (3 V)^(2/3) over the sum of the squared edges; 1 for a regular tetrahedron. Jacobian: minimum
+/// over mean of an element.
 Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
   Geometry g;
   for (Eigen::Index t = 0; t < solid.elements().cols(); ++t) {
@@ -64,22 +64,22 @@ Geometry geometry(const Solid& solid, const Eigen::Matrix3Xd& s) {
       x[static_cast<std::size_t>(k)] = s.col(solid.elements()(k, t));
     const double V =
         LinearTetrahedron::gradient<double>(LinearTetrahedron::rule[0], x.data()).determinant() / 6;
-    double squares = 0, curved = 0, least = kInfinity;
+    double squares = 0, curved = 0, min_J = kInfinity;
     for (const auto& [a, b] : kTetrahedronEdges) squares += (x[a] - x[b]).squaredNorm();
-    g.least_quality = std::min(g.least_quality, V > 0 ? 12 * std::cbrt(9 * V * V) / squares : 0.0);
+    g.min_quality = std::min(g.min_quality, V > 0 ? 12 * std::cbrt(9 * V * V) / squares : 0.0);
     if (solid.elements().rows() == 10)
       for (const TetrahedronPoint& at : kTetrahedronMassRule) {
         const double J = QuadraticTetrahedron::gradient<double>(at, x.data()).determinant();
         curved += at.weight * J;
-        least = std::min(least, J);
+        min_J = std::min(min_J, J);
       }
     g.volume += solid.elements().rows() == 10 ? curved : V;
-    g.least_jacobian = std::min(g.least_jacobian, least / (6 * curved));
+    g.min_jacobian = std::min(g.min_jacobian, min_J / (6 * curved));
   }
   return g;
 }
 
-/// A part with its chain at moderate values of rest.
+/// Returns a part with moderate rest values of its chain.
 std::unique_ptr<Part> moderate_part(const std::string& shape, const std::vector<std::string>& chain) {
   std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
   Draws draws(11);
@@ -100,14 +100,14 @@ Eigen::Matrix3Xd rest_positions(const Part& part, const Solid& solid) {
 }
 double quality(const Part& part, int resolution) {
   const Solid solid(part, resolution);
-  return geometry(solid, rest_positions(part, solid)).least_quality;
+  return geometry(solid, rest_positions(part, solid)).min_quality;
 }
 
 }  // namespace
 
 TEST_CASE("solid meshes conform, and their boundary is the surface mesh", "[solid]") {
   for (const auto& face : all_shapes())
-    for (const std::vector<std::string>& chain : test::usual_chains())
+    for (const std::vector<std::string>& chain : test::test_chains())
       for (int resolution : {1, 2, 3, 6}) {
         const std::unique_ptr<Part> part = moderate_part(face->name(), chain);
         INFO(test::describe(face->name(), chain) << " " << resolution);
@@ -124,7 +124,7 @@ TEST_CASE("solid meshes conform, and their boundary is the surface mesh", "[soli
         CHECK(s.leftCols(solid.n_surface()) == mesh.x);
         const Geometry g = geometry(solid, s);
         CHECK(g.volume == Approx(enclosed_volume(mesh)).epsilon(1e-12));
-        CHECK(g.least_quality > 0.02);
+        CHECK(g.min_quality > 0.02);
         CHECK(solid.elements().minCoeff() == 0);
         CHECK(solid.elements().maxCoeff() == solid.n_nodes() - 1);
         if (face->mesh() == MeshPattern::ball) {
@@ -135,7 +135,7 @@ TEST_CASE("solid meshes conform, and their boundary is the surface mesh", "[soli
       }
 }
 
-TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[solid][long]") {
+TEST_CASE("solid meshes have no slivers, also at the centre and at tips", "[solid][long]") {
   // A cell of the cubic lattice itself has 0.756.
   for (int resolution : {1, 2, 3, 8, 12}) {
     INFO(resolution);
@@ -157,18 +157,18 @@ TEST_CASE("solid meshes have no slivers, at the centre and the tip neither", "[s
   }
 }
 
-TEST_CASE("the surface of a cone with a tip has no triangles without an area", "[solid]") {
+TEST_CASE("the surface of a cone with a tip has no degenerate triangles", "[solid]") {
   for (double t : {-1.0, 1.0}) {
     std::unique_ptr<Part> part = make_part("part", "cone", {}, 1);
     part->rest({{"t", t}});
     const TriangleMesh mesh = Surface(*part, 6).body_mesh(*part, part->parameters().rest());
-    double least = kInfinity;
+    double min_J = kInfinity;
     for (Eigen::Index i = 0; i < mesh.triangles.cols(); ++i) {
       const Vec3<double> a = mesh.x.col(mesh.triangles(0, i)), b = mesh.x.col(mesh.triangles(1, i)),
                          c = mesh.x.col(mesh.triangles(2, i));
-      least = std::min(least, (b - a).cross(c - a).norm() / 2);
+      min_J = std::min(min_J, (b - a).cross(c - a).norm() / 2);
     }
-    CHECK(least > 1e-3);
+    CHECK(min_J > 1e-3);
     part->prepare();
     CHECK(enclosed_volume(mesh) == Approx(part->total_mass()).epsilon(0.02));
   }
@@ -189,14 +189,15 @@ TEST_CASE("volumes of solid meshes converge: second order, fourth with quadratic
       if (std::abs(linear) > 1e-12)
         CHECK(std::log2(error(5, Order::linear) / linear) == Approx(2).margin(0.15));
       CHECK(std::abs(quadratic) < 2e-4);
-      // The tip of a cone has no curvature to follow.
+      // The surface of a cone is not smooth at its tip, which lowers the order.
       if (std::abs(quadratic) > 1e-12)
         CHECK(std::log2(std::abs(error(5, Order::quadratic) / quadratic)) >
               (part->shape().name() == std::string("cone") ? 2.9 : 3.5));
     }
 }
 
-TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in the shape", "[solid]") {
+TEST_CASE("nodes on edges: on the surface for boundary edges, midway in the undeformed shape inside",
+          "[solid]") {
   for (const auto& face : all_shapes())
     for (const std::vector<std::string>& chain : {std::vector<std::string>{}, {"taper", "bend"}}) {
       const std::unique_ptr<Part> part = moderate_part(face->name(), chain);
@@ -205,7 +206,7 @@ TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in th
       for (int resolution : {2, 3}) {
         const Solid solid(*part, resolution, Order::quadratic), corners(*part, resolution);
         CHECK(solid.elements().topRows<4>() == corners.elements());
-        CHECK(geometry(solid, rest_positions(*part, solid)).least_jacobian > 0.2);
+        CHECK(geometry(solid, rest_positions(*part, solid)).min_jacobian > 0.2);
         const int n = solid.n_nodes();
         // Corners, then edges: Euler's formula for a ball, 1, or a solid torus, 0.
         const auto elements = static_cast<int>(solid.elements().cols()),
@@ -217,8 +218,8 @@ TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in th
         for (Eigen::Index t = 0; t < solid.boundary().cols(); ++t)
           for (int k = 3; k < 6; ++k) on_surface.insert(solid.boundary()(k, t));
         const Eigen::Matrix3Xd s = rest_positions(*part, solid);
-        test::Worst off_surface, off_middle;
-        for (int i : on_surface) off_surface.note(std::abs(part->inside_outside(s.col(i), rest)));
+        test::Worst surface_error, middle_error;
+        for (int i : on_surface) surface_error.note(std::abs(part->inside_outside(s.col(i), rest)));
         auto e = [&](int i) {
           return part->shape().e(solid.material()[static_cast<std::size_t>(i)], rest.b.data());
         };
@@ -230,15 +231,17 @@ TEST_CASE("nodes on edges: of the boundary on the surface, inside half way in th
             const Vec3<double> middle = (e(solid.elements()(static_cast<Eigen::Index>(a), t)) +
                                          e(solid.elements()(static_cast<Eigen::Index>(b), t))) /
                                         2;
-            off_middle.note((e(node) - middle).norm());
+            middle_error.note((e(node) - middle).norm());
           }
-        CHECK(off_surface < 1e-11);
-        CHECK(off_middle < 1e-12);
+        CHECK(surface_error < 1e-11);
+        CHECK(middle_error < 1e-12);
       }
     }
 }
 
-TEST_CASE("enriched elements: those of the quadratic mesh with nodes on faces and in the middle", "[solid]") {
+TEST_CASE(
+    "enriched elements are those of the quadratic mesh with additional nodes on faces and in the middle",
+    "[solid]") {
   for (const auto& face : all_shapes()) {
     INFO(face->name());
     const std::unique_ptr<Part> part = moderate_part(face->name(), {"taper", "bend"});
@@ -247,33 +250,35 @@ TEST_CASE("enriched elements: those of the quadratic mesh with nodes on faces an
                triangles = static_cast<int>(solid.boundary().cols());
     CHECK(solid.n_nodes() == quadratic.n_nodes() + (4 * elements + triangles) / 2 + elements);
     CHECK(solid.boundary().topRows<3>() == quadratic.boundary().topRows<3>());
-    const Eigen::Matrix3Xd s = rest_positions(*part, solid), of_quadratic = rest_positions(*part, quadratic);
-    test::Worst moved, off_surface, off_middle;
+    const Eigen::Matrix3Xd s = rest_positions(*part, solid), quadratic_s = rest_positions(*part, quadratic);
+    test::Worst corner_error, surface_error, middle_error;
     double longest = 0;
     for (Eigen::Index t = 0; t < elements; ++t) {
       std::array<Vec3<double>, 15> x;
       for (Eigen::Index k = 0; k < 15; ++k) x[static_cast<std::size_t>(k)] = s.col(solid.elements()(k, t));
       for (Eigen::Index k = 0; k < 10; ++k)
-        moved.note((s.col(solid.elements()(k, t)) - of_quadratic.col(quadratic.elements()(k, t))).norm());
+        corner_error.note(
+            (s.col(solid.elements()(k, t)) - quadratic_s.col(quadratic.elements()(k, t))).norm());
       for (const auto& [a, b] : kTetrahedronEdges) longest = std::max(longest, (x[a] - x[b]).norm());
-      // Where the quadratic map has them, but for what the surface and the chain bend.
+      // The nodes are at the positions of the quadratic map, up to the curvature of the surface and the
+      // chain.
       for (int r = 0; r < 3; ++r) {
         double bubble[4], middle = 0;
         EnrichedTetrahedron::bubbles(x.data(), r, bubble, middle);
-        for (double size : bubble) off_middle.note(std::abs(size));
-        off_middle.note(std::abs(middle));
+        for (double size : bubble) middle_error.note(std::abs(size));
+        middle_error.note(std::abs(middle));
       }
     }
     for (Eigen::Index t = 0; t < triangles; ++t)
-      off_surface.note(
+      surface_error.note(
           std::abs(part->inside_outside(s.col(solid.boundary()(6, t)), part->parameters().rest())));
-    CHECK(moved <= 1e-14);
-    CHECK(off_surface <= 1e-11);
-    CHECK(off_middle <= 0.03 * longest);
+    CHECK(corner_error <= 1e-14);
+    CHECK(surface_error <= 1e-11);
+    CHECK(middle_error <= 0.03 * longest);
   }
 }
 
-TEST_CASE("solid meshes that cannot be are refused", "[solid]") {
+TEST_CASE("invalid solid meshes are refused", "[solid]") {
   const std::unique_ptr<Part> box = make_part("brick", "box", {"taper", "bend"}, 1);
   CHECK_THROWS_WITH(Solid(*box, 0), test::has_text("from 1 to 64"));
   CHECK_THROWS_WITH(Solid(*box, 65), test::has_text("'brick'"));

@@ -1,5 +1,4 @@
-// Surface meshes of parts: closed, without duplicates or needles, of the right volume, with the right
-// normals.
+// Surface meshes of parts: closed, without duplicates or needles, with the correct volume and normals.
 #include "catch.h"
 
 #include <cmath>
@@ -21,7 +20,7 @@ namespace {
 
 struct Topology {
   int vertices, edges, triangles;
-  bool closed;  ///< every edge runs once each way
+  bool closed;  ///< every edge occurs once in each direction
 };
 Topology topology(const Eigen::Matrix3Xi& triangles, int vertices) {
   std::map<std::pair<int, int>, int> edges;
@@ -39,7 +38,7 @@ int count_different(const Eigen::Matrix3Xd& x) {
   for (Eigen::Index i = 0; i < x.cols(); ++i) all.insert({x(0, i) + 0.0, x(1, i) + 0.0, x(2, i) + 0.0});
   return static_cast<int>(all.size());
 }
-/// How far corner normals lean away from their triangles, one minus the cosine, weighed by area.
+/// Returns the mean deviation of corner normals from their triangles, one minus the cosine, weighted by area.
 double mean_normal_error(const TriangleMesh& mesh) {
   double error = 0, areas = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
@@ -51,14 +50,14 @@ double mean_normal_error(const TriangleMesh& mesh) {
   }
   return error / areas;
 }
-double least_area(const TriangleMesh& mesh) {
-  double least = kInfinity;
+double min_area(const TriangleMesh& mesh) {
+  double min_area = kInfinity;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     const Vec3<double> a = mesh.x.col(mesh.triangles(0, t)), b = mesh.x.col(mesh.triangles(1, t)),
                        c = mesh.x.col(mesh.triangles(2, t));
-    least = std::min(least, (b - a).cross(c - a).norm());
+    min_area = std::min(min_area, (b - a).cross(c - a).norm());
   }
-  return least;
+  return min_area;
 }
 std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vector<std::string>& chain) {
   std::unique_ptr<Part> part = make_part("part", shape, chain, 1);
@@ -77,9 +76,9 @@ std::unique_ptr<Part> shape_with_chain(const std::string& shape, const std::vect
 
 }  // namespace
 
-TEST_CASE("surfaces are closed, of the right topology, without duplicates or needles", "[surface]") {
+TEST_CASE("surfaces are closed, of the correct topology, without duplicates or needles", "[surface]") {
   for (const auto& face : all_shapes())
-    for (const std::vector<std::string>& chain : test::usual_chains())
+    for (const std::vector<std::string>& chain : test::test_chains())
       for (int resolution : {1, 2, 3, 8}) {
         const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
         const Surface surface(*part, resolution);
@@ -94,7 +93,7 @@ TEST_CASE("surfaces are closed, of the right topology, without duplicates or nee
         CHECK(t.vertices - t.edges + t.triangles == (torus ? 0 : 2));
         CHECK(count_different(mesh.x) == t.vertices);
         const double size = mesh.x.colwise().norm().maxCoeff();
-        CHECK(least_area(mesh) > 1e-3 * size * size / (r2 * 48));
+        CHECK(min_area(mesh) > 1e-3 * size * size / (r2 * 48));
         CHECK(mesh.normals.allFinite());
         for (Eigen::Index i = 0; i < mesh.normals.cols(); ++i)
           REQUIRE(mesh.normals.col(i).norm() == Approx(1).epsilon(1e-12));
@@ -103,7 +102,8 @@ TEST_CASE("surfaces are closed, of the right topology, without duplicates or nee
       }
 }
 
-TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an area", "[surface][long]") {
+TEST_CASE("N01: exponents of 0.1 and other extremes: closed surfaces, and no degenerate triangles",
+          "[surface][long]") {
   for (const char* shape : {"superellipsoid", "superellipsoid_radial", "supertoroid"})
     for (double eps : {0.02, 0.1, 0.3, 1.9, 3.0, 5.0}) {
       const std::unique_ptr<Part> part = make_part("part", shape, {}, 1);
@@ -113,7 +113,7 @@ TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an are
       INFO(shape << " " << eps);
       CHECK(topology(mesh.triangles, static_cast<int>(mesh.x.cols())).closed);
       CHECK(count_different(mesh.x) == mesh.x.cols());
-      CHECK(least_area(mesh) > 0);
+      CHECK(min_area(mesh) > 0);
       CHECK(mesh.normals.allFinite());
       part->prepare();
       auto error = [&](int resolution) {
@@ -121,7 +121,7 @@ TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an are
                    part->total_mass() -
                1;
       };
-      // Thin spikes at 3 and 5 take many triangles; thin rims at 0.02 lie between two of them.
+      // Thin spikes at 3 and 5 need many triangles; thin rims at 0.02 are between two of them.
       CHECK(std::abs(error(32)) < (eps > 3 ? 0.13 : eps > 2 ? 0.01 : 1e-3));
       CHECK(std::abs(error(32)) < 0.5 * std::abs(error(16)));
     }
@@ -129,7 +129,7 @@ TEST_CASE("N01: squareness 0.1 and beyond: closed, and every triangle has an are
 
 TEST_CASE("the enclosed volume is positive and converges at second order", "[surface][long]") {
   for (const auto& face : all_shapes())
-    for (const std::vector<std::string>& chain : test::usual_chains()) {
+    for (const std::vector<std::string>& chain : test::test_chains()) {
       const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
       part->prepare();
       const double exact = part->total_mass();
@@ -140,14 +140,14 @@ TEST_CASE("the enclosed volume is positive and converges at second order", "[sur
       };
       const double coarse = error(16), fine = error(32);
       INFO(test::describe(face->name(), chain) << " " << coarse << " " << fine);
-      CHECK(std::abs(4 * fine - coarse) / 3 < 2e-3);  // what is left without the second-order error
+      CHECK(std::abs(4 * fine - coarse) / 3 < 2e-3);  // the error after elimination of the second-order term
       if (std::abs(coarse) > 1e-13) CHECK(std::abs(fine / coarse) == Approx(0.25).margin(0.03));
     }
 }
 
 TEST_CASE("vertex normals are those of the part, and agree with the triangles around", "[surface][long]") {
   for (const auto& face : all_shapes())
-    for (const std::vector<std::string>& chain : test::usual_chains()) {
+    for (const std::vector<std::string>& chain : test::test_chains()) {
       const std::unique_ptr<Part> part = shape_with_chain(face->name(), chain);
       const ParameterValues<double> rest = part->parameters().rest();
       const Surface surface(*part, 16);
@@ -183,7 +183,7 @@ TEST_CASE("every corner of a box has the normal of its face", "[surface]") {
   }
 }
 
-TEST_CASE("the mesh follows the parameters and the frame", "[surface]") {
+TEST_CASE("the mesh depends on the parameters and the frame", "[surface]") {
   const std::unique_ptr<Part> part = make_part("part", "ellipsoid", {"twist"}, 1);
   part->make_dynamic({"a1", "twist.angle"});
   const Surface surface(*part, 4);
@@ -200,7 +200,7 @@ TEST_CASE("the mesh follows the parameters and the frame", "[surface]") {
   CHECK(world.triangles == body.triangles);
 }
 
-TEST_CASE("resolutions that make no sense are refused", "[surface]") {
+TEST_CASE("invalid resolutions are refused", "[surface]") {
   const std::unique_ptr<Part> part = make_part("part", "box", {}, 1);
   CHECK_THROWS_WITH(Surface(*part, 0), test::has_text("from 1 to 512"));
   CHECK_THROWS_WITH(Surface(*part, 513), test::has_text("513"));

@@ -1,4 +1,4 @@
-// A chain put together at run time gives the bits of the typed one: positions, Jacobians, rates, masses,
+// A chain assembled at run time gives bits identical to the typed chain: positions, Jacobians, rates, masses,
 // forces.
 #include "catch.h"
 
@@ -16,25 +16,25 @@ using test::Draws;
 namespace {
 
 template <class Shape, class... Links>
-void same_bits() {
+void check_identical_bits() {
   Draws draws(1);
   Primitive<Shape, Chain<Links...>> typed("part", 1000);
-  const std::unique_ptr<Part> at_run_time = make_part("part", Shape::name, {Links::name...}, 1000);
+  const std::unique_ptr<Part> run_time = make_part("part", Shape::name, {Links::name...}, 1000);
   INFO(test::describe(Shape::name, {Links::name...}));
-  REQUIRE(typed.parameters().names() == at_run_time->parameters().names());
-  // Exponents stay frozen, so that the mass points stay few.
-  for (Part* part : {static_cast<Part*>(&typed), at_run_time.get()}) {
-    test::free_all(*part, {"eps1", "eps2"});
+  REQUIRE(typed.parameters().names() == run_time->parameters().names());
+  // Exponents stay frozen, so that the mass points are few.
+  for (Part* part : {static_cast<Part*>(&typed), run_time.get()}) {
+    test::make_all_dynamic(*part, {"eps1", "eps2"});
     part->rest({{part->parameters()[0].name, part->parameters()[0].rest_value() * 0.7}});
     part->prepare();
   }
-  REQUIRE(typed.mass_points().n_points == at_run_time->mass_points().n_points);
+  REQUIRE(typed.mass_points().n_points == run_time->mass_points().n_points);
   for (int trial = 0; trial < 3; ++trial) {
     const test::RandomState state = test::draw_state(draws, typed);
     Inertia<double> a, b;
     Counters counters;
     typed.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, a, counters);
-    at_run_time->evaluate_inertia(state.q_s, state.q_s_dot, state.omega, b, counters);
+    run_time->evaluate_inertia(state.q_s, state.q_s_dot, state.omega, b, counters);
     CHECK(a.M == b.M);
     CHECK(a.g_q == b.g_q);
     CHECK(a.moment == b.moment);
@@ -44,7 +44,7 @@ void same_bits() {
     for (Eigen::Index i = 0; i < q_s.size(); ++i) moving[i].d[0] = state.q_s_dot[i];
     Inertia<Dual<1>> da, db;
     typed.evaluate_inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), da, counters);
-    at_run_time->evaluate_inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), db, counters);
+    run_time->evaluate_inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), db, counters);
     bool same = true;
     for (Eigen::Index i = 0; i < da.M.size(); ++i)
       same = same && da.M.data()[i].v == db.M.data()[i].v && da.M.data()[i].d[0] == db.M.data()[i].d[0];
@@ -55,7 +55,7 @@ void same_bits() {
     for (int i = 0; i < 7; ++i) at.push_back(draws.material(Shape::mesh));
     std::vector<PointJet<double>> ja, jb;
     typed.points(at, state.q_s, state.q_s_dot, ja, counters);
-    at_run_time->points(at, state.q_s, state.q_s_dot, jb, counters);
+    run_time->points(at, state.q_s, state.q_s_dot, jb, counters);
     for (std::size_t i = 0; i < at.size(); ++i) {
       CHECK(ja[i].p == jb[i].p);
       CHECK(ja[i].p1 == jb[i].p1);
@@ -64,26 +64,28 @@ void same_bits() {
     }
     const ParameterValues<double> values = test::values_of(typed, state);
     const Vec3<double> p = ja.back().p;
-    CHECK(typed.inside_outside(p, values) == at_run_time->inside_outside(p, values));
-    CHECK(typed.inside_outside_gradient(p, values) == at_run_time->inside_outside_gradient(p, values));
-    CHECK(typed.normal(at.back(), values) == at_run_time->normal(at.back(), values));
+    CHECK(typed.inside_outside(p, values) == run_time->inside_outside(p, values));
+    CHECK(typed.inside_outside_gradient(p, values) == run_time->inside_outside_gradient(p, values));
+    CHECK(typed.normal(at.back(), values) == run_time->normal(at.back(), values));
   }
 }
 
 }  // namespace
 
-TEMPLATE_LIST_TEST_CASE("every shape with a taper, run time and typed", "[part]", AllShapes) {
-  same_bits<TestType, Taper>();
+TEMPLATE_LIST_TEST_CASE("every shape with a taper: run-time and typed chains are bit-identical", "[part]",
+                        AllShapes) {
+  check_identical_bits<TestType, Taper>();
 }
 
-TEMPLATE_LIST_TEST_CASE("every deformation, run time and typed", "[part]", AllDeforms) {
-  same_bits<Cylinder, TestType>();
+TEMPLATE_LIST_TEST_CASE("every deformation: run-time and typed chains are bit-identical", "[part]",
+                        AllDeforms) {
+  check_identical_bits<Cylinder, TestType>();
 }
 
-TEST_CASE("longer chains and none, run time and typed", "[part]") {
-  same_bits<Superellipsoid>();
-  same_bits<Superellipsoid, Taper, Twist, Taper, Shear>();
-  same_bits<Ellipsoid, Twist, BendOffset, Bend>();
+TEST_CASE("longer and empty chains: run-time and typed chains are bit-identical", "[part]") {
+  check_identical_bits<Superellipsoid>();
+  check_identical_bits<Superellipsoid, Taper, Twist, Taper, Shear>();
+  check_identical_bits<Ellipsoid, Twist, BendOffset, Bend>();
 }
 
 }  // namespace typed_chains_test

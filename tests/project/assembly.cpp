@@ -1,4 +1,4 @@
-// Assembly before time 0: consistent starts from far apart, turned and misshaped parts.
+// Assembly of joints before time 0: consistent initial states from distant, rotated and deformed parts.
 #include "catch.h"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ using test::widest_gap;
 
 namespace {
 
-/// A random tree of ellipsoids on ball joints, its first part tied to the world, from places up to `apart`
-/// body lengths away and in any pose.
+/// Adds a random tree of ellipsoids on ball joints. Its first part is joined to the world; the parts start in
+/// any pose, up to `apart` body lengths away.
 void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) {
   Draws draws(seed);
   body.stabilization.assemble_first = true;
@@ -46,7 +46,8 @@ void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) 
 
 }  // namespace
 
-TEST_CASE("N36: assembly before time 0 from 3 to 1000 body lengths, trees of 1 to 100 joints", "[joints]") {
+TEST_CASE("N36: assembly before time 0 closes trees of 1 to 100 joints from 3 to 1000 body lengths",
+          "[joints]") {
   for (const double apart : {3, 10, 100, 1000})
     for (const int joints : {1, 4, 12, 100}) {
       MultiBody body;
@@ -61,8 +62,8 @@ TEST_CASE("N36: assembly before time 0 from 3 to 1000 body lengths, trees of 1 t
     }
 }
 
-TEST_CASE("N36: a thousand random layouts: all close", "[joints]") {
-  int most = 0;
+TEST_CASE("N36: assembly closes all joints of a thousand random layouts", "[joints]") {
+  int max_iterations = 0;
   double sum = 0;
   for (int layout = 0; layout < 1000; ++layout) {
     MultiBody body;
@@ -70,14 +71,14 @@ TEST_CASE("N36: a thousand random layouts: all close", "[joints]") {
     random_tree(body, 1 + layout % 12, apart, 1000 + static_cast<std::uint64_t>(layout));
     const Simulation simulation(body, "rk4");
     REQUIRE(widest_gap(simulation) <= 1e-10);
-    most = std::max(most, simulation.assembly().iterations);
+    max_iterations = std::max(max_iterations, simulation.assembly().iterations);
     sum += simulation.assembly().iterations;
   }
   INFO("mean iterations " << sum / 1000);
-  CHECK(most <= 100);
+  CHECK(max_iterations <= 100);
 }
 
-TEST_CASE("assembly closes loops, hinges and welds, and takes strings in", "[joints]") {
+TEST_CASE("assembly closes loops, hinges and welds, and shortens strings that are too long", "[joints]") {
   MultiBody body;
   body.stabilization.assemble_first = true;
   Draws draws(5);
@@ -109,8 +110,8 @@ TEST_CASE("assembly closes loops, hinges and welds, and takes strings in", "[joi
   CHECK(simulation.assembly().converged);
 }
 
-TEST_CASE("assembly changes parameters only as far as their stiffness says", "[joints]") {
-  // Two anchors further apart than the rod between them is long: it must stretch, the softer half more.
+TEST_CASE("assembly changes parameters in proportion to their compliance", "[joints]") {
+  // The anchors are farther apart than the two parts are long. Both parts must stretch, the soft one more.
   MultiBody body;
   body.stabilization.assemble_first = true;
   for (const char* name : {"soft", "stiff"}) {
@@ -132,10 +133,10 @@ TEST_CASE("assembly changes parameters only as far as their stiffness says", "[j
                longer_stiff = simulation.state().q[model.parts()[1].q0 + 8] - 0.5;
   CHECK(2 * (longer_soft + longer_stiff) == Approx(0.8).epsilon(1e-9));
   CHECK(longer_soft == Approx(3 * longer_stiff).epsilon(1e-5));
-  // What the joints do not hold goes to rest.
+  // A parameter that no joint constrains goes to its rest value.
   CHECK(simulation.state().q[model.parts()[0].q0 + 7] == Approx(0.1).epsilon(1e-6));
 
-  SECTION("and not at all where rigid motion suffices") {
+  SECTION("parameters do not change where rigid motion suffices") {
     MultiBody loose;
     loose.stabilization.assemble_first = true;
     Part& a = test::add(loose, "a", "ellipsoid", {"bend"}, 1000);
@@ -149,8 +150,9 @@ TEST_CASE("assembly changes parameters only as far as their stiffness says", "[j
   }
 }
 
-TEST_CASE("beads lying about are hung between posts too far apart for them: all stretch alike", "[joints]") {
-  // Straight and taut they have no force across: joints close there to second order only.
+TEST_CASE("scattered beads are joined between posts too far apart for them: all beads stretch equally",
+          "[joints]") {
+  // In a straight taut chain the joints have no transverse force, so gaps close there to second order only.
   MultiBody body;
   body.stabilization.assemble_first = true;
   Draws draws(7);
@@ -172,7 +174,7 @@ TEST_CASE("beads lying about are hung between posts too far apart for them: all 
     CHECK(simulation.state().q[m.q0 + 9] == Approx(0.32).epsilon(1e-3));
 }
 
-TEST_CASE("assembly leaves limits that it leaves, and ends when the shape has come to rest", "[joints]") {
+TEST_CASE("assembly releases limits that become inactive, and ends when the shape is at rest", "[joints]") {
   MultiBody body;
   body.stabilization.assemble_first = true;
   for (const char* name : {"left", "right"}) {
@@ -193,10 +195,10 @@ TEST_CASE("assembly leaves limits that it leaves, and ends when the shape has co
   CHECK(widest_gap(simulation) <= 1e-10);
 }
 
-TEST_CASE("assembly does no harm to what is assembled, and starts what is not from where it is near",
+TEST_CASE("assembly does not change an assembled model, and starts other models from their initial poses",
           "[joints]") {
-  MultiBody body, same;
-  for (MultiBody* b : {&body, &same}) {
+  MultiBody body, reference_body;
+  for (MultiBody* b : {&body, &reference_body}) {
     Part& a = test::add(*b, "a", "ellipsoid", {"bend"}, 1000);
     a.stiffness({{"a3", 1e3}, {"bend.angle", 10}}).initial({{"bend.angle", 0.3}});
     Part& c = test::add(*b, "c", "ellipsoid", {}, 1000);
@@ -207,7 +209,7 @@ TEST_CASE("assembly does no harm to what is assembled, and starts what is not fr
     b->ball("joint", point(a, 0.3, 1), point(c, 0, 0, 0));
   }
   body.stabilization.assemble_first = true;
-  const Simulation assembled(body, "rk4"), plain(same, "rk4");
+  const Simulation assembled(body, "rk4"), plain(reference_body, "rk4");
   CHECK(assembled.assembly().iterations == 0);
   CHECK(hash(assembled.state()) == hash(plain.state()));
 }

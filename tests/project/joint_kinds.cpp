@@ -1,4 +1,5 @@
-// What each kind of joint lets move, on rigid and on deforming parts; and joints that begin and cease to act.
+// Motions that each kind of joint leaves free, on rigid and on deforming parts; joints that switch on and
+// off.
 #include "catch.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ double gap(const Simulation& simulation, int joint = 0) {
 }  // namespace
 
 TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about the pin", "[joints]") {
-  // The body is turned against its pin, so that a ball joint would let it wobble.
+  // The part is rotated relative to its pin; on a ball joint it would wobble.
   const Vec3<double> pin = Vec3<double>(0.2, 1, 0).normalized(), g(0, 0, -9.81);
   MultiBody body;
   const Eigen::Quaterniond R = turn({1, 0.4, -0.3}, 0.9);
@@ -57,11 +58,11 @@ TEST_CASE("hinge: a door swings as the pendulum of its moment of inertia about t
   test::run(simulation, period, 2000);
   CHECK((simulation.state().q.head<3>() - c).norm() <= 1e-8);
   CHECK(gap(simulation) <= 1e-12);
-  // The pin is still the pin: omega has no other component.
+  // The pin keeps its direction: omega has no other component.
   CHECK(std::abs((simulation.model().orientation(simulation.state(), 0) * pin_body - pin).norm()) <= 1e-12);
 }
 
-TEST_CASE("the force and the torque of a hinge are those of the motion, with no torque about its pin",
+TEST_CASE("the force and the torque of a hinge follow from the motion, with no torque about its pin",
           "[joints]") {
   const Vec3<double> pin = Vec3<double>(0.2, 1, 0.5).normalized();
   MultiBody body;
@@ -81,15 +82,15 @@ TEST_CASE("the force and the torque of a hinge are those of the motion, with no 
   const Mat3<double> I = door.rest_inertia().M.bottomRightCorner<3, 3>();
   const Vec3<double> c = state.q.head<3>(), omega = state.v.segment<3>(3);
   const Vec3<double> force = m * (work.v_dot.head<3>() - body.gravity);
-  const Vec3<double> turning = I * work.v_dot.segment<3>(3) + omega.cross(I * omega);  // body frame
-  const Vec3<double> torque = simulation.model().orientation(state, 0) * turning + c.cross(force);
+  const Vec3<double> spin_torque = I * work.v_dot.segment<3>(3) + omega.cross(I * omega);  // body frame
+  const Vec3<double> torque = simulation.model().orientation(state, 0) * spin_torque + c.cross(force);
   CHECK((wrench.force - force).norm() <= 1e-11 * force.norm());
   CHECK((wrench.torque - torque).norm() <= 1e-11 * force.norm() * c.norm());
   CHECK(wrench.torque.norm() >= 1e-2 * force.norm() * c.norm());
   CHECK(std::abs(wrench.torque.dot(pin)) <= 1e-11 * force.norm() * c.norm());
 }
 
-TEST_CASE("weld: two bodies tumble as the one that they make", "[joints]") {
+TEST_CASE("weld: two bodies tumble as one composite body", "[joints]") {
   MultiBody two;
   two.gravity.setZero();
   Part& a = ellipsoid(two, "a", {0, 0, 0});
@@ -104,13 +105,13 @@ TEST_CASE("weld: two bodies tumble as the one that they make", "[joints]") {
 
   MultiBody one;
   one.gravity.setZero();
-  Part& whole = ellipsoid(one, "whole", {0, 0, 0});
+  Part& composite = ellipsoid(one, "whole", {0, 0, 0});
   const double m = a.rest_inertia().mass;
   const Mat3<double> I = a.rest_inertia().M.bottomRightCorner<3, 3>(), R = b.R0().toRotationMatrix();
   const Vec3<double> d(0.05, 0.1, -0.1);
   const Mat3<double> moved =
       R * I * R.transpose() + m * (d.squaredNorm() * Mat3<double>::Identity() - d * d.transpose());
-  whole.inertia(2 * m, I + moved, d / 2).velocity({0, 0, 0}, spin);
+  composite.inertia(2 * m, I + moved, d / 2).velocity({0, 0, 0}, spin);
   Simulation reference(one, "rk4");
 
   test::run(simulation, 3, 3000);
@@ -120,13 +121,13 @@ TEST_CASE("weld: two bodies tumble as the one that they make", "[joints]") {
   CHECK((simulation.state().v.head<6>() - reference.state().v.head<6>()).norm() <= 1e-9);
 }
 
-TEST_CASE("slider, line and plane: what they leave free falls freely", "[joints]") {
+TEST_CASE("slider, line and plane: the free directions fall freely", "[joints]") {
   const Vec3<double> d = Vec3<double>(1, 0.5, -1).normalized(), g(0, 0, -9.81);
   for (const char* type : {"slider", "line", "plane"})
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody body;
       Part& block = ellipsoid(body, "block", {0.2, 0.3, 0.4}, turn({1, 2, 0}, 0.5));
-      // A line and a plane at the centre turn nothing; a slider may hold any point.
+      // A line or a plane through the centre exerts no torque; a slider may act at any point.
       JointSetting setting{point(block, 0.3, 0.2, type == std::string("slider") ? 1 : 0), {}};
       Vec3<double> x0(0.2, 0.3, 0.4);
       block.prepare();
@@ -149,7 +150,8 @@ TEST_CASE("slider, line and plane: what they leave free falls freely", "[joints]
 }
 
 TEST_CASE(
-    "lines, planes, hinges, sliders and welds between free bodies keep momenta and energy, deforming or not",
+    "lines, planes, hinges, sliders and welds between free bodies conserve momenta and energy, deforming or "
+    "not",
     "[joints][long]") {
   for (const bool deforming : {false, true})
     for (const char* type : {"line", "plane", "hinge", "slider", "weld"}) {
@@ -158,7 +160,7 @@ TEST_CASE(
       for (const int steps : {400, 800}) {
         MultiBody body;
         Part& a = test::tumbling_solid(body, "a");
-        // At rest, so that directions are where they are at time 0.
+        // The parameters have their rest values, so that the joint's directions have their values of time 0.
         a.rest({{"a1", 0.32}, {"twist.angle", 0.6}, {"bend.angle", 0.6}, {"bend.direction", 0.3}});
         if (!deforming) {
           std::vector<std::string> names;
@@ -169,7 +171,7 @@ TEST_CASE(
         b.velocity({0.3, 0, -0.2}, {0.5, 1, -1});
         a.prepare();
         b.prepare();
-        // The joints start closed, on b's side where a's point is.
+        // The joints start closed: part b is placed so that its point coincides with the point of part a.
         JointSetting setting{point(a, 0.3, 0.2), {}};
         ParameterValues<double> values = a.parameters().rest();
         for (const int k : a.parameters().dynamic())
@@ -195,7 +197,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("hinges and welds close from any turn, half turns too", "[joints][long]") {
+TEST_CASE("hinges and welds close from any rotation, half turns included", "[joints][long]") {
   for (const char* type : {"hinge", "weld"})
     for (const double angle : {0.5, kPi / 2, kPi / 2 + 1e-12, kPi / 2 + 1e-7, 2.0, 3.0, kPi}) {
       MultiBody body;
@@ -222,7 +224,7 @@ TEST_CASE("hinges and welds close from any turn, half turns too", "[joints][long
     }
 }
 
-TEST_CASE("a small fixed part does not make a wrong turn small", "[joints]") {
+TEST_CASE("a small fixed part does not scale down an orientation error", "[joints]") {
   MultiBody body;
   body.gravity.setZero();
   Part& peg = test::add(body, "peg", "sphere", {}, 1000);
@@ -236,7 +238,7 @@ TEST_CASE("a small fixed part does not make a wrong turn small", "[joints]") {
   CHECK(gap(simulation) == Approx(0.8 * part.size()).epsilon(1e-12));
 }
 
-TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre", "[joints][long]") {
+TEST_CASE("N45: joints work at poles, sharp corners, taper tips and the centre", "[joints][long]") {
   struct Where {
     const char* shape;
     std::vector<std::pair<std::string, double>> rest;
@@ -274,7 +276,7 @@ TEST_CASE("N45: joints hold at poles, sharp corners, taper tips and the centre",
       }
 }
 
-TEST_CASE("N48: joints begin and cease to act at their times, between steps too", "[joints][long]") {
+TEST_CASE("N48: joints switch on and off at their times, also between steps", "[joints][long]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     std::vector<double> errors;
     for (const int steps : {100, 200, 400}) {
@@ -283,14 +285,14 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
       const double off = 0.5437;  // between steps
       body.ball("joint", point(bob, 0, 0, 0), world(0, 0, 0)).during(0, off);
       bob.place({0, 0, 0});
-      Part& swung = ellipsoid(body, "swung", {0.1, 0, 0});
-      body.ball("pivot", point(swung, 0, kPi), world(0, 0, 0)).during(0, off);
+      Part& pendulum = ellipsoid(body, "swung", {0.1, 0, 0});
+      body.ball("pivot", point(pendulum, 0, kPi), world(0, 0, 0)).during(0, off);
       Simulation simulation(body, method);
-      // A pendulum to its release, then a free flight: the end by the state at the release.
-      MultiBody same;
-      Part& other = ellipsoid(same, "swung", {0.1, 0, 0});
-      same.ball("pivot", point(other, 0, kPi), world(0, 0, 0));
-      Simulation reference(same, "rk4");
+      // Reference: a pendulum until its release, then free flight from the state at the release.
+      MultiBody reference_body;
+      Part& other = ellipsoid(reference_body, "swung", {0.1, 0, 0});
+      reference_body.ball("pivot", point(other, 0, kPi), world(0, 0, 0));
+      Simulation reference(reference_body, "rk4");
       test::run(reference, off, 4000);
       const double rest = 1 - off;
       const Vec3<double> c = reference.state().q.head<3>(), c_dot = reference.state().v.head<3>();
@@ -299,7 +301,7 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
       CHECK(simulation.state().joints[1] == JointMode::off);
       CHECK(simulation.time() == Approx(1).epsilon(1e-14));
       errors.push_back((simulation.state().q.segment<3>(7) - end).norm());
-      // The bob hung still, and fell when it was let go.
+      // The bob hangs at rest and falls after its release.
       if (method == std::string("rk4"))
         CHECK(simulation.state().q[2] == Approx(-9.81 / 2 * rest * rest).epsilon(1e-12));
       CHECK(simulation.state().work.norm() <= 1e-12);
@@ -307,7 +309,7 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     INFO(method << ": " << errors[0] << " " << errors[1] << " " << errors[2]);
     CHECK(test::observed_order(errors) >= (method == std::string("rk4") ? 3.8 : 0.8));
   }
-  SECTION("a joint that is added stops what moves, and books the loss") {
+  SECTION("a joint that switches on stops the relative motion, and the ledger records the loss") {
     MultiBody body;
     body.gravity.setZero();
     Part &a = ellipsoid(body, "a", {0, 0, 0}), &b = ellipsoid(body, "b", {0, 0, 0});
@@ -324,35 +326,36 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     CHECK(simulation.state().work[static_cast<int>(Work::projection)] == Approx(-m / 4).epsilon(1e-12));
     CHECK(std::abs(simulation.ledger().balance) <= 1e-12 * m);
     REQUIRE(simulation.engage_impulses().size() == 1);
-    const ImpulseOnEngage& taken = simulation.engage_impulses().front();
-    CHECK(taken.time == Approx(0.3).epsilon(1e-14));
-    CHECK(taken.joint == 0);
-    CHECK((taken.impulse.force - Vec3<double>(-m / 2, 0, 0)).norm() <= 1e-12 * m);
+    const ImpulseOnEngage& engaged = simulation.engage_impulses().front();
+    CHECK(engaged.time == Approx(0.3).epsilon(1e-14));
+    CHECK(engaged.joint == 0);
+    CHECK((engaged.impulse.force - Vec3<double>(-m / 2, 0, 0)).norm() <= 1e-12 * m);
   }
-  SECTION("a joint that is added off the centres: its impulse, and the work of it") {
-    // Two spheres that turn about their own axes meet at one point of each at 0.3 s.
+  SECTION("a joint that switches on away from the centres of mass: its impulse and its work") {
+    // Two spheres rotate about their own axes; one point of each meets the other at 0.3 s.
     const double r = 0.2, on = 0.3, m[] = {1, 0.4};
     const Vec3<double> meet(0.1, 0.2, -0.3), v[] = {{1, 0.2, 0}, {-0.3, 0, 0.1}},
                                              w[] = {{0, 0, 2}, {1, 0, 0}};
-    const double at[2][2] = {{0.3, 1}, {-0.5, 2}};  // u, v
+    const double points[2][2] = {{0.3, 1}, {-0.5, 2}};  // u, v
     MultiBody body;
     body.gravity.setZero();
     Vec3<double> arm[2];
     for (const int i : {0, 1}) {
-      const double u = at[i][0], along = at[i][1];
+      const double u = points[i][0], along = points[i][1];
       arm[i] =
           turn(w[i], on * w[i].norm()) *
           Vec3<double>(r * std::cos(u) * std::cos(along), r * std::cos(u) * std::sin(along), r * std::sin(u));
       Part& part = test::add(body, i == 0 ? "a" : "b", "sphere", {}, 1000);
       part.rest({{"r", r}}).mass(m[i]).place(meet - arm[i] - on * v[i]).velocity(v[i], w[i]);
     }
-    body.ball("catch", point(*body.find("a"), at[0][0], at[0][1]), point(*body.find("b"), at[1][0], at[1][1]))
+    body.ball("catch", point(*body.find("a"), points[0][0], points[0][1]),
+              point(*body.find("b"), points[1][0], points[1][1]))
         .during(on);
     Simulation simulation(body, "rk4");
     for (int i = 0; i < 700; ++i) simulation.step(on / 700);
     simulation.step(1e-12);
     REQUIRE(simulation.state().joints[0] == JointMode::closed);
-    // Impulse J on a: W J = -C_dot.
+    // Impulse J on part a: W J = -C_dot.
     auto cross = [](const Vec3<double>& x) {
       Mat3<double> X;
       X << 0, -x[2], x[1], x[2], 0, -x[0], -x[1], x[0], 0;
@@ -377,7 +380,7 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     CHECK(s.work[static_cast<int>(Work::projection)] == Approx(J.dot(C_dot) / 2).epsilon(1e-12));
     CHECK(std::abs(simulation.ledger().balance) <= 1e-14);
   }
-  SECTION("a run goes on from a state before the switch to the same bits") {
+  SECTION("a run resumed from a state before the switch gives identical bits") {
     auto make = [](MultiBody& body) {
       Part& bob = ellipsoid(body, "bob", {0.1, 0, 0});
       body.ball("joint", point(bob, 0, kPi), world(0, 0, 0)).during(0.1, 0.3);
@@ -385,17 +388,17 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
     MultiBody one, two;
     make(one);
     make(two);
-    Simulation whole(one, "rk4"), parts(two, "rk4");
-    State at;
+    Simulation unbroken(one, "rk4"), resumed(two, "rk4");
+    State saved;
     for (int i = 0; i < 70; ++i) {
-      whole.step(7e-3);
-      if (i == 20) at = whole.state();
+      unbroken.step(7e-3);
+      if (i == 20) saved = unbroken.state();
     }
-    parts.set_state(at);
-    for (int i = 21; i < 70; ++i) parts.step(7e-3);
-    CHECK(hash(whole.state()) == hash(parts.state()));
+    resumed.set_state(saved);
+    for (int i = 21; i < 70; ++i) resumed.step(7e-3);
+    CHECK(hash(unbroken.state()) == hash(resumed.state()));
   }
-  SECTION("switches at almost the same time, and right after the start, are not missed") {
+  SECTION("switches at almost equal times, and directly after the start, are not missed") {
     MultiBody body;
     Part& bob = ellipsoid(body, "bob", {0, 0, 0});
     body.ball("first", point(bob, 0, 0), world(0.1, 0, 0)).during(0, 0.0599999);
@@ -416,7 +419,8 @@ TEST_CASE("N48: joints begin and cease to act at their times, between steps too"
   }
 }
 
-TEST_CASE("N48: joints take up what a string that goes taut, or a rod in its place, pulls", "[joints]") {
+TEST_CASE("N48: closed joints receive their impulses when a string, or a rod in its place, becomes active",
+          "[joints]") {
   for (const bool string : {false, true}) {
     CAPTURE(string);
     MultiBody body;
@@ -424,7 +428,7 @@ TEST_CASE("N48: joints take up what a string that goes taut, or a rod in its pla
     Part& bar = body.add(make_part("bar", "ellipsoid", {}, 1000));
     bar.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}}).place({0, 0, -0.5}).velocity({1, 0, 0}, {0, -2, 0});
     body.ball("pivot", point(bar, kPi / 2, 0), world(0, 0, 0));
-    // As long as it is from there to where the end of the bar is at 0.2 s.
+    // The rope is as long as the distance from its anchor to the end of the bar at 0.2 s.
     const double turned = 2 * 0.2;
     const double length =
         (Vec3<double>(std::sin(turned), 0, -std::cos(turned)) - Vec3<double>(-0.5, 0, -1)).norm();
@@ -437,20 +441,21 @@ TEST_CASE("N48: joints take up what a string that goes taut, or a rod in its pla
     const double last = 1e-7;
     test::run(simulation, 0.2 - last, 200);
     const Vec3<double> before = simulation.ledger().momentum;
-    simulation.step(last);  // it turns freely on its pivot until then, and takes hold at the end
-    const Vec3<double> gained = simulation.ledger().momentum - before;
-    REQUIRE(gained.norm() > 1);
+    // The bar turns freely on its pivot until 0.2 s, and the rope engages at the end of this step.
+    simulation.step(last);
+    const Vec3<double> gain = simulation.ledger().momentum - before;
+    REQUIRE(gain.norm() > 1);
     REQUIRE(simulation.engage_impulses().size() == 2);
     Vec3<double> impulse = Vec3<double>::Zero();
-    for (const ImpulseOnEngage& of : simulation.engage_impulses()) {
-      CHECK(of.impulse.force.norm() > 1);
-      impulse += of.impulse.force;
+    for (const ImpulseOnEngage& engaged : simulation.engage_impulses()) {
+      CHECK(engaged.impulse.force.norm() > 1);
+      impulse += engaged.impulse.force;
     }
-    CHECK((impulse - gained).norm() <= 1e-6 * gained.norm());
+    CHECK((impulse - gain).norm() <= 1e-6 * gain.norm());
   }
 }
 
-TEST_CASE("joints within a part act on how it deforms, and not at all where it does not", "[joints]") {
+TEST_CASE("joints within a part constrain its deformation, and have no effect on rigid motion", "[joints]") {
   for (const auto solver : {JointSolver::Choice::blocks, JointSolver::Choice::augmented})
     for (const char* moving : {"a1", "a2"}) {
       INFO(moving);

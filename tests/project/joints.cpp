@@ -1,5 +1,5 @@
-// Joints in motion: closing laws of Baumgarte's equation, momenta, pendulums and chains with known solutions,
-// strings, limits under joints, orders of convergence.
+// Motion with joints: decay laws of Baumgarte's equation, momenta, pendulums and chains with known solutions,
+// strings, parameter limits under joints, orders of convergence.
 #include "catch.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using namespace pliant;
 
 namespace {
 
-/// A sphere of radius 0.2 m; a ball joint at its centre turns nothing.
+/// Adds a sphere of radius 0.2 m. A ball joint at its centre exerts no torque.
 Part& sphere(MultiBody& body, const std::string& name, const Vec3<double>& c, double density = 1000) {
   Part& part = test::add(body, name, "sphere", {}, density);
   part.rest({{"r", 0.2}}).place(c);
@@ -31,7 +31,7 @@ Point centre(const Part& part) {
   return point(part, 0, 0, 0);
 }
 
-/// Two spheres in free space whose centres a joint is to bring together; nothing turns.
+/// Two spheres in free space, with an open joint between their centres; nothing rotates.
 void open_pair(MultiBody& body) {
   body.gravity.setZero();
   Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {0.3, 0.1, -0.2}, 300);
@@ -48,7 +48,7 @@ Vec3<double> gap(const Simulation& simulation, std::size_t joint = 0) {
   return place(j.points()[0]) - place(j.points()[1]);
 }
 
-/// A hanging chain of ellipsoids 0.6 m long, joined tip to tip along x from the origin on.
+/// A hanging chain of ellipsoids 0.6 m long, joined tip to tip along x from the origin.
 void chain(MultiBody& body, int links, double turn = 0) {
   for (int i = 0; i < links; ++i) {
     const std::string name = "link" + std::to_string(i);
@@ -61,8 +61,8 @@ void chain(MultiBody& body, int links, double turn = 0) {
   }
 }
 
-/// What is taken for order p between the two finest steps.
-double least_order(int p) {
+/// Returns the lowest observed order, between the two finest steps, that is accepted for order p.
+double min_order(int p) {
   return p <= 5 ? p - 0.1 : p - 0.5;
 }
 
@@ -93,7 +93,7 @@ TEST_CASE(
     }
     INFO(method.name << ": " << errors.front() << " to " << errors.back() << " m, order "
                      << test::observed_order(errors));
-    CHECK(test::observed_order(errors) >= least_order(method.order));
+    CHECK(test::observed_order(errors) >= min_order(method.order));
   }
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("the step-consistent pair: C_n = C0 r^n (1 + n (1 - r)), to rounding a
 
 namespace {
 
-/// Whether a gap goes away under critically damped Baumgarte terms with alpha h = x.
+/// Returns whether a gap decays under critically damped Baumgarte terms with alpha h = x.
 bool decays(const char* method, double x) {
   MultiBody body;
   open_pair(body);
@@ -129,48 +129,49 @@ bool decays(const char* method, double x) {
   const double h = x / 10, open = gap(simulation).norm();
   for (int i = 0; i < 5000; ++i) {
     simulation.step(h);
-    // A gap may pass 0 at any speed.
+    // The gap may pass 0 with any rate, so the measure includes the rate.
     const Vec3<double> rate = simulation.state().v.head<3>() - simulation.state().v.segment<3>(6);
     const double size = gap(simulation).norm() + h * rate.norm();
     if (size <= 1e-6 * open) return true;
     if (!(size <= 1e6 * open)) return false;
   }
-  FAIL("neither decays nor grows");
+  FAIL("the gap neither decays nor grows");
   return false;
 }
 
 }  // namespace
 
-TEST_CASE("N34: the edges of stability of Baumgarte's equation, over alpha h from 0.01 to 4 and beyond",
+TEST_CASE("N34: the stability limits of Baumgarte's equation, for alpha h from 0.01 to 4 and above",
           "[joints][long]") {
-  // |R(-x)| = 1 of explicit methods; the linearly implicit one takes no joint implicitly. 0: no edge.
-  const std::map<std::string, double> edges{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
-                                            {"rk4", 2.785294},
-                                            {"linearly_implicit", 0.960432},
-                                            {"implicit_midpoint", 0},
-                                            {"esdirk", 0},
-                                            {"dormand_prince", 3.306568},
-                                            {"dop853", 6.393651}};
+  // Limits of the explicit methods: |R(-x)| = 1. The linearly implicit method treats joints explicitly. 0: no
+  // limit.
+  const std::map<std::string, double> stability_limits{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
+                                                       {"rk4", 2.785294},
+                                                       {"linearly_implicit", 0.960432},
+                                                       {"implicit_midpoint", 0},
+                                                       {"esdirk", 0},
+                                                       {"dormand_prince", 3.306568},
+                                                       {"dop853", 6.393651}};
   const MatX<double> K = MatX<double>::Ones(1, 1), D = 2 * K;
   for (const IntegratorInfo& info : all_integrators()) {
     const std::unique_ptr<Integrator> method = info.make();
-    const double edge = edges.at(info.name);
+    const double limit = stability_limits.at(info.name);
     std::vector<double> sweep;
     for (int k = 0; k <= 24; ++k) sweep.push_back(0.01 * std::pow(400, k / 24.0));
     sweep.insert(sweep.end(), {10, 100});
-    if (edge > 0) sweep.insert(sweep.end(), {0.99 * edge, 1.01 * edge});
+    if (limit > 0) sweep.insert(sweep.end(), {0.99 * limit, 1.01 * limit});
     for (const double x : sweep) {
-      if (edge > 0 && std::abs(x / edge - 1) < 0.0099) continue;  // within 1 %
+      if (limit > 0 && std::abs(x / limit - 1) < 0.0099) continue;  // within 1 %
       INFO(info.name << " at " << x);
-      CHECK(decays(info.name, x) == (edge == 0 || x < edge));
-      CHECK((method->growth(K, D, x) <= 1) == (edge == 0 || x < edge));
+      CHECK(decays(info.name, x) == (limit == 0 || x < limit));
+      CHECK((method->growth(K, D, x) <= 1) == (limit == 0 || x < limit));
     }
   }
 }
 
 namespace {
 
-/// Two spheres that move and turn, joined off their centres, far open.
+/// Two spheres that translate and rotate, joined away from their centres by a wide open joint.
 void open_and_turning(MultiBody& body) {
   body.gravity.setZero();
   Part &a = sphere(body, "a", {0, 0, 0}), &b = sphere(body, "b", {1, 0.5, 0.3}, 400);
@@ -181,7 +182,7 @@ void open_and_turning(MultiBody& body) {
   body.stabilization.projection = false;
 }
 
-/// C x lambda of the first joint.
+/// Returns C x lambda of the first joint.
 Vec3<double> torque(const Simulation& simulation) {
   Workspace<double> work;
   const State& s = simulation.state();
@@ -191,7 +192,8 @@ Vec3<double> torque(const Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its two forces", "[joints]") {
+TEST_CASE("N37: while a joint is open, P is conserved and dL/dt is the torque of its two forces",
+          "[joints]") {
   struct Case {
     const char* method;
     std::vector<int> steps;
@@ -204,8 +206,8 @@ TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its tw
       open_and_turning(body);
       Simulation simulation(body, c.method);
       const Vec3<double> P = simulation.ledger().momentum, L = simulation.ledger().angular_momentum;
-      // The torque integrated by Simpson's rule over pairs of steps.
-      Vec3<double> turned = Vec3<double>::Zero();
+      // The torque is integrated by Simpson's rule over pairs of steps.
+      Vec3<double> angular_impulse = Vec3<double>::Zero();
       const double h = 1.0 / steps;
       Vec3<double> start = torque(simulation);
       for (int i = 0; i < steps; i += 2) {
@@ -213,11 +215,11 @@ TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its tw
         const Vec3<double> middle = torque(simulation);
         simulation.step(h);
         const Vec3<double> end = torque(simulation);
-        turned += h / 3 * (start + 4 * middle + end);
+        angular_impulse += h / 3 * (start + 4 * middle + end);
         start = end;
       }
       CHECK((simulation.ledger().momentum - P).norm() <= 1e-13 * P.norm());
-      errors.push_back((simulation.ledger().angular_momentum - L - turned).norm() / L.norm());
+      errors.push_back((simulation.ledger().angular_momentum - L - angular_impulse).norm() / L.norm());
     }
     INFO(c.method << " " << errors.back());
     CHECK(errors.back() <= c.error);
@@ -226,7 +228,7 @@ TEST_CASE("N37: while a joint is open, P stays and dL/dt is the torque of its tw
 }
 
 TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]") {
-  // An ellipsoid hung at the tip of its long axis: l = I_O / (m r).
+  // An ellipsoid hangs from the tip of its long axis: l = I_O / (m r).
   const double r = 0.3, l = (0.09 + 0.01) / (5 * r) + r;
   for (const double degrees : {30, 60, 90, 120, 150}) {
     const double theta = degrees * kPi / 180, period = 4 * std::sqrt(l / 9.81) * test::elliptic_K(theta);
@@ -246,7 +248,7 @@ TEST_CASE("compound pendulum: exact periods from 30 to 150 degrees", "[joints]")
   }
 }
 
-TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and forces, by every method",
+TEST_CASE("orders of convergence on a chain of 8 links: coordinates, velocities and forces, for every method",
           "[joints]") {
   auto at_end = [](const char* method, int steps) {
     MultiBody body;
@@ -271,14 +273,14 @@ TEST_CASE("orders of convergence on the chain of 8: coordinates, velocities and 
     for (std::size_t i = 0; i < 3; ++i) {
       INFO(method.name << " " << names[i] << ": " << errors[i].front() << " to " << errors[i].back()
                        << ", order " << test::observed_order(errors[i]));
-      CHECK(test::observed_order(errors[i]) >= least_order(method.order));
+      CHECK(test::observed_order(errors[i]) >= min_order(method.order));
     }
   }
 }
 
 TEST_CASE("implicit methods form no matrix of a long chain where iterations without it cost less",
           "[joints]") {
-  // 200 links have more velocities than a matrix may have.
+  // 200 links have more velocities than a matrix may have rows.
   constexpr int links = 200;
   constexpr double end = 0.2;
   MultiBody same;
@@ -305,8 +307,9 @@ TEST_CASE("implicit methods form no matrix of a long chain where iterations with
   }
 }
 
-TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomial", "[joints]") {
-  // Spheres of no size hardly turn: joints at their centres, rods of 1 m between them.
+TEST_CASE("small oscillations of a chain of points: frequencies from the roots of the Laguerre polynomial",
+          "[joints]") {
+  // Spheres of negligible size hardly rotate: joints at their centres, rods of 1 m between them.
   for (const auto& [n, roots] :
        {std::pair<int, std::vector<double>>{2, {0.585786437627, 3.414213562373}},
         {3, {0.415774556783, 2.294280360279, 6.289945082937}},
@@ -320,7 +323,7 @@ TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomi
                 {before == nullptr ? world(0, 0, 0) : centre(*before), centre(mass)});
     }
     const Simulation simulation(body, "rk4");
-    // x_ddot = -A x for sideways motions, by directional derivatives at rest.
+    // x_ddot = -A x for horizontal motions, from directional derivatives at rest.
     MatX<double> A(n, n);
     for (int k = 0; k < n; ++k) {
       StateDirection along{VecX<double>::Zero(simulation.model().n_q()),
@@ -336,7 +339,7 @@ TEST_CASE("small swings of a chain of points: the roots of the Laguerre polynomi
   }
 }
 
-TEST_CASE("hung supersphere: it stretches by m g / k, and oscillates with k / 1.2 m", "[joints]") {
+TEST_CASE("hanging supersphere: it stretches by m g / k, and oscillates with k / 1.2 m", "[joints]") {
   const double k = 2000;
   MultiBody body;
   Part& ball = test::add(body, "ball", "ellipsoid", {}, 1);
@@ -352,7 +355,7 @@ TEST_CASE("hung supersphere: it stretches by m g / k, and oscillates with k / 1.
   }
 }
 
-TEST_CASE("N39: a hanging chain carries its weight", "[joints]") {
+TEST_CASE("N39: a hanging chain carries its weight: each joint force is the weight below it", "[joints]") {
   for (const double end_mass : {1.0, 1e6}) {
     MultiBody body;
     const int n = 1000;
@@ -376,7 +379,7 @@ TEST_CASE("N39: a hanging chain carries its weight", "[joints]") {
   }
 }
 
-TEST_CASE("N41: doubled and tripled joints move as single ones", "[joints]") {
+TEST_CASE("N41: doubled and tripled joints give the motion of single ones", "[joints]") {
   VecX<double> single;
   for (const int copies : {1, 2, 3}) {
     MultiBody body;
@@ -393,7 +396,7 @@ TEST_CASE("N41: doubled and tripled joints move as single ones", "[joints]") {
   }
 }
 
-TEST_CASE("N38: heavy on light and light on heavy", "[joints]") {
+TEST_CASE("N38: mass ratios of 1e6 and 1e-6 in a chain of two: gaps and tensions", "[joints]") {
   for (const double ratio : {1e-6, 1e6}) {
     MultiBody body;
     Part &a = sphere(body, "a", {0, 0, -1}), &b = sphere(body, "b", {0, 0, -2}, 1000 * ratio);
@@ -427,7 +430,7 @@ TEST_CASE("N38: heavy on light and light on heavy", "[joints]") {
   }
 }
 
-TEST_CASE("N35: a spinning rod, by Baumgarte alone and projected", "[joints]") {
+TEST_CASE("N35: a spinning rod, by Baumgarte terms alone and with projection", "[joints]") {
   const double h = 0.01, r = std::exp(-10 * h);
   struct Case {
     const char* name;
@@ -467,7 +470,7 @@ TEST_CASE("N35: a spinning rod, by Baumgarte alone and projected", "[joints]") {
     }
 }
 
-TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order", "[joints][long]") {
+TEST_CASE("N47: a point on a prescribed path follows it, at the method's order", "[joints][long]") {
   double widest = 0, balance = 0;
   auto at_end = [&](const char* method, int steps) -> VecX<double> {
     MultiBody body;
@@ -498,8 +501,8 @@ TEST_CASE("N47: a point on a prescribed path keeps to it, at the method's order"
     INFO(method.name << ": " << errors.front() << " to " << errors.back() << ", order "
                      << test::observed_order(errors) << ", of the balance " << balances.front() << " to "
                      << balances.back() << " order " << test::observed_order(balances));
-    CHECK(test::observed_order(errors) >= least_order(method.order));
-    CHECK(test::observed_order(balances) >= least_order(method.order));
+    CHECK(test::observed_order(errors) >= min_order(method.order));
+    CHECK(test::observed_order(balances) >= min_order(method.order));
     CHECK(balances.back() <= (method.order == 1 ? 2e-4 : method.order == 2 ? 1e-5 : 1e-8));
   }
 }
@@ -527,7 +530,7 @@ TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings
     CHECK(ledger.work[static_cast<int>(Work::limits)] ==
           Approx(-mass.total_mass() * 9.81 * 0.5).epsilon(method[0] == 'r' ? 1e-9 : 0.01));
   }
-  // Taut and swinging: the rod's motion.
+  // Taut and swinging: the motion is that of a rod.
   VecX<double> q[2];
   for (const bool rod : {true, false}) {
     MultiBody body;
@@ -544,7 +547,7 @@ TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings
   CHECK((q[0] - q[1]).norm() <= 1e-9);
 }
 
-TEST_CASE("N60: strings that go taut at once, and one whose ends begin in one place", "[joints]") {
+TEST_CASE("N60: strings that go taut at once, and one whose ends start at one point", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     INFO(method);
     // Both strings are taut 0.8 m below the line of their anchors.
@@ -584,9 +587,9 @@ TEST_CASE("N60: strings that go taut at once, and one whose ends begin in one pl
                     "string 'none' needs a length > 0");
 }
 
-TEST_CASE("N46: joints act through the global parameters, limits and all", "[joints]") {
-  // Two points of the world 1.2 m apart hold the tips of an ellipsoid that rests at 1 m: it stretches. Then a
-  // limit that does not let it.
+TEST_CASE("N46: joints act through the global parameters, with and without limits", "[joints]") {
+  // Two world points 1.2 m apart hold the tips of an ellipsoid whose rest length is 1 m: it stretches. In the
+  // second model a limit stops the stretch.
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -605,7 +608,7 @@ TEST_CASE("N46: joints act through the global parameters, limits and all", "[joi
     simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
     CHECK(std::abs(work.joints.lambda[2]) == Approx(1000 * 0.1 / 2).epsilon(1e-9));
 
-    // A weight hung from a soft ellipsoid pulls it down to its limit, and no further.
+    // A weight hangs from a soft ellipsoid and stretches it to its limit, and no further.
     MultiBody hanging;
     Part& soft = test::add(hanging, "soft", "ellipsoid", {}, 1000);
     soft.rest({{"a1", 0.2}, {"a2", 0.2}, {"a3", 0.5}}).stiffness({{"a3", 1000}}).limits("a3", {0.3, 0.55});
@@ -626,9 +629,8 @@ TEST_CASE("N46: joints act through the global parameters, limits and all", "[joi
   }
 }
 
-TEST_CASE("N46: a joint that only a bend lets close", "[joints][long]") {
-  // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two points of the world hold them at
-  // 0.9 m.
+TEST_CASE("N46: a joint that can close only by bending the part", "[joints][long]") {
+  // The tips of an ellipsoid of 1 m, bent by b, are sin(b) / b apart; two world points hold them 0.9 m apart.
   double b = 0.8;
   for (int i = 0; i < 50; ++i) b -= (std::sin(b) / b - 0.9) / ((b * std::cos(b) - std::sin(b)) / (b * b));
   const double k = 50, rest = 0.4, push = k * (b - rest) * b * b / (std::sin(b) - b * std::cos(b));
@@ -657,7 +659,7 @@ TEST_CASE("N46: a joint that only a bend lets close", "[joints][long]") {
   }
 }
 
-TEST_CASE("N46: lambda C_q v is the power that joints give a part that stretches and bends", "[joints]") {
+TEST_CASE("N46: lambda C_q v is the power of the joints on a part that stretches and bends", "[joints]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"bend"}, 1000);
   part.rest({{"a1", 0.1}, {"a2", 0.1}, {"a3", 0.5}, {"bend.angle", 0.4}})
@@ -671,26 +673,27 @@ TEST_CASE("N46: lambda C_q v is the power that joints give a part that stretches
     simulation.step(2e-3);
     const State& s = simulation.state();
     closing = closing || s.joints[0] == JointMode::closing;
-    Workspace<double> held, free;
-    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, held);
+    Workspace<double> with_joints, without_joints;
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, s, with_joints);
     State loose = s;
     loose.joints.assign(2, JointMode::off);
-    simulation.dynamics().accelerations(s.time(), s.q, s.v, loose, free);
-    const PartWorkspace<double>& w = held.parts[0];
-    const double given = (mass_matrix(w) * (w.a_r - free.parts[0].a_r)).dot(w.v_r);
-    // C_q v is C_dot without the motion of the hand.
-    VecX<double> rates = held.joints.C_dot;
+    simulation.dynamics().accelerations(s.time(), s.q, s.v, loose, without_joints);
+    const PartWorkspace<double>& w = with_joints.parts[0];
+    const double power = (mass_matrix(w) * (w.a_r - without_joints.parts[0].a_r)).dot(w.v_r);
+    // C_q v is C_dot without the motion of the anchor.
+    VecX<double> rates = with_joints.joints.C_dot;
     rates.head<3>() -= Vec3<double>(0.5 * std::cos(5 * s.time()), 0, 0.7 * std::cos(7 * s.time()));
-    const VecX<double>& lambda = held.joints.lambda;
+    const VecX<double>& lambda = with_joints.joints.lambda;
     REQUIRE(lambda.norm() > 1);
-    REQUIRE(std::abs(given - lambda.dot(rates)) <= 1e-11 * lambda.norm() * s.v.norm());
+    REQUIRE(std::abs(power - lambda.dot(rates)) <= 1e-11 * lambda.norm() * s.v.norm());
   }
   CHECK(closing);
   CHECK(simulation.state().joints[0] == JointMode::closed);
   CHECK(simulation.state().v.tail<2>().norm() > 1e-3);
 }
 
-TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "[joints]") {
+TEST_CASE("N36: joints closing in time from far apart stay below the speed cap, close and stay closed",
+          "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double apart : {3, 10, 100}) {
       MultiBody body;
@@ -716,7 +719,7 @@ TEST_CASE("N36: assembly in time from far apart stays slow, closes and holds", "
     }
 }
 
-TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever they spin up to",
+TEST_CASE("N36: ellipsoids assemble in time from any place and pose, with bounded speed and spin",
           "[joints][long]") {
   const char* method = GENERATE("rk4", "semi_implicit_euler");
   const int joints = GENERATE(1, 4, 12);
@@ -733,11 +736,12 @@ TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever th
       part.place(apart * draws.vector(1), Eigen::Quaterniond(draws.uniform(0.1, 1), draws.uniform(-1, 1),
                                                              draws.uniform(-1, 1), draws.uniform(-1, 1))
                                               .normalized());
-      auto any = [&](Part& of) { return point(of, draws.uniform(-1.5, 1.5), draws.uniform(-3, 3)); };
-      const Point from = any(part);
-      body.ball("joint" + std::to_string(i),
-                i == 0 ? world(0, 0, 0) : any(*parts[static_cast<std::size_t>(draws.integer(0, i - 1))]),
-                from);
+      auto random_point = [&](Part& on) { return point(on, draws.uniform(-1.5, 1.5), draws.uniform(-3, 3)); };
+      const Point from = random_point(part);
+      body.ball(
+          "joint" + std::to_string(i),
+          i == 0 ? world(0, 0, 0) : random_point(*parts[static_cast<std::size_t>(draws.integer(0, i - 1))]),
+          from);
       parts.push_back(&part);
     }
     Simulation simulation(body, method);
@@ -746,25 +750,25 @@ TEST_CASE("N36: ellipsoids assemble in time from any place and pose, whatever th
       return std::all_of(simulation.state().joints.begin(), simulation.state().joints.end(),
                          [](JointMode mode) { return mode == JointMode::closed; });
     };
-    double most_turn = 0, most_speed = 0;
+    double max_turn = 0, max_speed = 0;
     while (simulation.time() < 60 && !all_closed()) {
       simulation.step(h);
       for (int i = 0; i < joints; ++i) {
-        most_speed = std::max(most_speed, simulation.state().v.segment<3>(6 * i).norm());
-        most_turn = std::max(most_turn, h * simulation.state().v.segment<3>(6 * i + 3).norm());
+        max_speed = std::max(max_speed, simulation.state().v.segment<3>(6 * i).norm());
+        max_turn = std::max(max_turn, h * simulation.state().v.segment<3>(6 * i + 3).norm());
       }
     }
     CHECK(all_closed());
-    CHECK(most_turn <= 1);
+    CHECK(max_turn <= 1);
     const double cap = 0.1 * body.stabilization.rate * body.stabilization.speed;
-    CHECK(most_speed <= 20 * cap * joints);
+    CHECK(max_speed <= 20 * cap * joints);
     double widest = 0;
     for (int j = 0; j < joints; ++j) widest = std::max(widest, gap(simulation, j).norm());
     CHECK(widest <= 1e-10 * 0.1);
   }
 }
 
-TEST_CASE("joints to a fixed part hold as joints to the world do", "[joints]") {
+TEST_CASE("joints to a fixed part act as joints to the world do", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     VecX<double> q[2];
     for (const bool fixed : {false, true}) {
@@ -786,7 +790,8 @@ TEST_CASE("joints to a fixed part hold as joints to the world do", "[joints]") {
   }
 }
 
-TEST_CASE("a slack string stays slack at time 0, and at rest counts no impulses when taut", "[joints]") {
+TEST_CASE("a slack string stays slack at time 0, and when it is taut at rest no impulses are counted",
+          "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     Part& mass = sphere(body, "mass", {0, 0, -0.95});
@@ -801,7 +806,7 @@ TEST_CASE("a slack string stays slack at time 0, and at rest counts no impulses 
   }
 }
 
-TEST_CASE("without projection a string that was too long closes, and does nothing once it is slack",
+TEST_CASE("without projection a string that was too long closes, and has no effect once it is slack",
           "[joints]") {
   MultiBody body;
   body.gravity.setZero();
@@ -823,7 +828,7 @@ TEST_CASE("without projection a string that was too long closes, and does nothin
   CHECK(gap(simulation).norm() <= 1 + 1e-3);
 }
 
-TEST_CASE("what closing joints drive stops at a limit", "[joints]") {
+TEST_CASE("a parameter that closing joints stretch stops at its limit", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     body.gravity.setZero();
@@ -840,11 +845,12 @@ TEST_CASE("what closing joints drive stops at a limit", "[joints]") {
     CHECK(simulation.state().q[7] == Approx(0.55).epsilon(1e-6));
     CHECK(simulation.state().v.norm() <= 1e-3);
     CHECK(simulation.state().joints[0] == JointMode::closing);
-    CHECK(std::abs(simulation.ledger().balance) <= (method[0] == 'r' ? 0.005 : 0.5));  // of 1.25 J at stake
+    // 1.25 J are exchanged.
+    CHECK(std::abs(simulation.ledger().balance) <= (method[0] == 'r' ? 0.005 : 0.5));
   }
 }
 
-TEST_CASE("islands do not know of each other: alone and beside others the same bits", "[joints]") {
+TEST_CASE("islands are independent: alone and beside others they give identical bits", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     VecX<double> q;
     for (const bool others : {false, true}) {
@@ -869,7 +875,7 @@ TEST_CASE("islands do not know of each other: alone and beside others the same b
   }
 }
 
-TEST_CASE("closing books its work: the balance does not jump", "[joints]") {
+TEST_CASE("the work of closing joints is recorded: the balance does not jump", "[joints]") {
   MultiBody body;
   Part& mass = sphere(body, "mass", {0.2, 0, -1.1});
   body.ball("pin", world(0, 0, 0), point(mass, kPi / 2, 0));
@@ -893,7 +899,7 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
     body.ball("else", point(mass, 0, 0), centre(sphere(body, "other", {0.2, 0, 0})));
     try {
       const Simulation simulation(body, method);
-      FAIL("not refused");
+      FAIL("the model was not refused");
     } catch (const UnsatisfiableModel& failure) {
       const std::string what = failure.what();
       CHECK(what.find("'here'") != std::string::npos);
@@ -904,7 +910,7 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
-/// Every method with fixed steps, and those that are held to a tolerance.
+/// Every method with fixed steps, and the methods with error control.
 const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"semi_implicit_euler", 0},
                                                               {"linearly_implicit", 0},
@@ -917,7 +923,7 @@ const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"esdirk", 1e-6},
                                                               {"auto", 1e-6}};
 
-TEST_CASE("N42: joints that contradict each other from afar stop the run, projected or not",
+TEST_CASE("N42: contradictory joints that start far open stop the run, with and without projection",
           "[joints][long]") {
   for (const auto& [method, tolerance] : kMethods)
     for (const bool projected : {true, false})
@@ -932,7 +938,7 @@ TEST_CASE("N42: joints that contradict each other from afar stop the run, projec
         Simulation simulation(body, method, 1, tolerance);
         try {
           for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
-          FAIL_CHECK("went on");
+          FAIL_CHECK("the run did not stop");
         } catch (const UnsatisfiableModel& failure) {
           const std::string what = failure.what();
           CHECK(what.find("'here'") != std::string::npos);
@@ -944,7 +950,7 @@ TEST_CASE("N42: joints that contradict each other from afar stop the run, projec
       }
 }
 
-TEST_CASE("N42: a string too short to reach between what holds its ends stops the run", "[joints]") {
+TEST_CASE("N42: a string too short for the distance between its fixed ends stops the run", "[joints]") {
   for (const auto& [method, tolerance] : kMethods) {
     MultiBody body;
     Part& mass = sphere(body, "mass", {0, 0, 0});
@@ -954,7 +960,7 @@ TEST_CASE("N42: a string too short to reach between what holds its ends stops th
     Simulation simulation(body, method, 1, tolerance);
     try {
       for (int i = 0; i < 5000; ++i) simulation.step(1e-3);
-      FAIL("went on");
+      FAIL("the run did not stop");
     } catch (const UnsatisfiableModel& failure) {
       const std::string what = failure.what();
       INFO(what);
@@ -965,7 +971,8 @@ TEST_CASE("N42: a string too short to reach between what holds its ends stops th
   }
 }
 
-TEST_CASE("N42: an arm that is drawn beyond its reach stops the run, and names what draws it", "[joints]") {
+TEST_CASE("N42: an arm pulled beyond its reach stops the run, and the message names the moving anchor",
+          "[joints]") {
   for (const auto& [method, tolerance] : kMethods) {
     MultiBody body;
     const Point shoulder = world(0, 0, 0),
@@ -983,7 +990,7 @@ TEST_CASE("N42: an arm that is drawn beyond its reach stops the run, and names w
     INFO(method << " " << tolerance);
     try {
       for (int i = 0; i < 2000; ++i) simulation.step(1e-3);
-      FAIL_CHECK("went on");
+      FAIL_CHECK("the run did not stop");
     } catch (const UnsatisfiableModel& failure) {
       CHECK_THAT(failure.what(), test::has_text("'hand'"));
       CHECK(simulation.time() == Approx(0.8).margin(0.01));
@@ -991,7 +998,7 @@ TEST_CASE("N42: an arm that is drawn beyond its reach stops the run, and names w
   }
 }
 
-TEST_CASE("N42: strings too short that pull against each other stop the run", "[joints]") {
+TEST_CASE("N42: strings that are too short and pull against each other stop the run", "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double aside : {0.0, 1e-3, 0.1}) {
       MultiBody body;
@@ -1005,7 +1012,7 @@ TEST_CASE("N42: strings too short that pull against each other stop the run", "[
           simulation.step(1e-3);
           farthest = std::max(farthest, simulation.state().q.head<3>().norm());
         }
-        FAIL("went on");
+        FAIL("the run did not stop");
       } catch (const UnsatisfiableModel& failure) {
         const std::string what = failure.what();
         INFO(what);
@@ -1016,7 +1023,7 @@ TEST_CASE("N42: strings too short that pull against each other stop the run", "[
     }
 }
 
-TEST_CASE("a step that throws joints far open is told to be too long, not the joints to contradict",
+TEST_CASE("a step that opens joints widely is reported as too long, not as contradictory joints",
           "[joints]") {
   MultiBody body;
   const Part* before = nullptr;
@@ -1030,20 +1037,20 @@ TEST_CASE("a step that throws joints far open is told to be too long, not the jo
   Simulation simulation(body, "rk4");
   try {
     for (int i = 0; i < 100; ++i) simulation.step(0.3);
-    FAIL("went on");
+    FAIL("the run did not stop");
   } catch (const NumericalFailure& failure) {
     CHECK(std::string(failure.what()).find("too long") != std::string::npos);
   }
 }
 
-TEST_CASE("what is not a number in a joint is named", "[joints]") {
+TEST_CASE("a joint quantity that is not finite is named", "[joints]") {
   MultiBody body;
   Part& mass = sphere(body, "mass", {0, 0, 0});
   body.ball("hand", world({TimeFunction::formula("sqrt(0.01 - t)"), 0, 0}), centre(mass));
   Simulation simulation(body, "rk4");
   try {
     for (int i = 0; i < 100; ++i) simulation.step(1e-3);
-    FAIL("went on");
+    FAIL("the run did not stop");
   } catch (const NumericalFailure& failure) {
     CHECK(std::string(failure.what()).find("the anchor of ball 'hand'") != std::string::npos);
   }

@@ -1,5 +1,5 @@
-// Limits of parameters as one-sided constraints (design 1.3): never passed, rested upon, left again, with
-// their work in the ledger (N04).
+// Limits of parameters as one-sided constraints: a parameter never passes its limit, can rest at it and leave
+// it again, and the ledger records the work.
 #include "catch.h"
 
 #include "motion.h"
@@ -13,7 +13,7 @@ namespace {
 
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 
-/// Steps and checks at each that every parameter is within its limits, exactly.
+/// Steps the simulation and checks after each step that every parameter is exactly within its limits.
 void run_within(Simulation& simulation, double end, int steps) {
   for (int i = 0; i < steps; ++i) {
     simulation.step(end / steps);
@@ -30,8 +30,9 @@ void run_within(Simulation& simulation, double end, int steps) {
 
 }  // namespace
 
-TEST_CASE("a parameter thrown against its limit stops there, and loses the energy the ledger says",
-          "[limits]") {
+TEST_CASE(
+    "a parameter that hits its limit at speed stops there, and loses the energy that the ledger records",
+    "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -51,13 +52,14 @@ TEST_CASE("a parameter thrown against its limit stops there, and loses the energ
   }
 }
 
-TEST_CASE("pressed by a force it rests; pulled back it leaves", "[limits]") {
+TEST_CASE("a parameter pressed by a force rests at its limit, and leaves it when the force reverses",
+          "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
     Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
     part.mass(5).make_dynamic({"a3"}).limits("a3", {0.5, 1.5}).place({0, 0, 0});
-    // Both poles pulled outwards, later inwards.
+    // Forces pull both poles outwards, later inwards.
     const TimeFunction pull = test::wave(0, 20, 2);
     const TimeFunction push = test::wave(0, -20, 2);
     body.force("top", point(part, material_at(kPi / 2, 0)), TimeVector(0, 0, pull));
@@ -67,7 +69,7 @@ TEST_CASE("pressed by a force it rests; pulled back it leaves", "[limits]") {
     INFO(method);
     CHECK(simulation.state().q[7] == 1.5);
     CHECK(simulation.state().at_limit[0] == 1);
-    // The pull turns at pi / 2 s.
+    // The force changes its sign at pi / 2 s.
     run_within(simulation, kPi / 2 - 1 - 0.01, 500);
     CHECK(simulation.state().q[7] == 1.5);
     CHECK(simulation.state().v[6] == 0);
@@ -84,7 +86,7 @@ TEST_CASE("pressed by a force it rests; pulled back it leaves", "[limits]") {
   }
 }
 
-TEST_CASE("gravity and a spring press a hung body onto its limit", "[limits]") {
+TEST_CASE("gravity and a spring press the parameter of a hanging body onto its limit", "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
@@ -116,8 +118,7 @@ TEST_CASE("N04: exponents pulled beyond their range stay in it", "[limits][long]
   }
 }
 
-TEST_CASE("N06: an axis pushed through zero stops at its limit, and the body is never turned inside out",
-          "[limits]") {
+TEST_CASE("N06: an axis pushed through zero stops at its limit, and the body is never inverted", "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -150,7 +151,7 @@ TEST_CASE("several limits at once, coupled by the mass matrix", "[limits]") {
                        {"shear.sx", 1},
                        {"shear.sy", -2}});
     part.velocity({0.3, 0, 0}, {2, -1, 3});
-    // Outwards along the line between two opposite points: it stretches and shears, and hardly turns.
+    // Outwards along the line between two opposite points: the part stretches and shears, and hardly rotates.
     const Vec3<double> push =
         8000 * part.s({material_at(0.4, 0.5)}, part.parameters().rest()).col(0).normalized();
     body.force("push", point(part, 0.4, 0.5), TimeVector(push), Frame::body);
@@ -167,13 +168,14 @@ TEST_CASE("several limits at once, coupled by the mass matrix", "[limits]") {
                                  << ledger.momentum.transpose());
     CHECK(std::abs(ledger.balance) <=
           (std::string(method) == "rk4" ? 1e-9 : 5e-3) * ledger.work.cwiseAbs().sum());
-    CHECK(simulation.step_counters().limit_impulses < 400);  // they come to rest, and are pressed
-    // Limits push inside the body: the two forces cancel, so P stays.
+    CHECK(simulation.step_counters().limit_impulses < 400);  // the parameters come to rest at their limits
+    // Limits act inside the body: the two forces cancel, so P is conserved.
     CHECK((ledger.momentum - P).norm() <= (std::string(method) == "rk4" ? 1e-6 : 2e-2) * P.norm());
   }
 }
 
-TEST_CASE("starting at a limit, moving outwards, is caught in the first step", "[limits]") {
+TEST_CASE("a parameter that starts at its limit and moves outwards is stopped in the first step",
+          "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -193,7 +195,7 @@ TEST_CASE("starting at a limit, moving outwards, is caught in the first step", "
   }
 }
 
-TEST_CASE("limits leave the motion alone that stays clear of them, bit for bit", "[limits]") {
+TEST_CASE("limits that a motion does not reach do not change its bits", "[limits]") {
   for (const char* method : kMethods) {
     VecX<double> q[2];
     for (int wide = 0; wide < 2; ++wide) {
@@ -216,7 +218,7 @@ TEST_CASE("rest and initial values outside the limits are refused", "[limits]") 
                     test::has_text("initial value 1.5 of taper.tx is outside its limits [-1, 1]"));
 }
 
-TEST_CASE("limits are judged at the rest value, whichever is given first", "[limits]") {
+TEST_CASE("limits are checked at the rest value, in either order of the calls", "[limits]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
   part.make_dynamic({"a1"}).limits("a1", {0.002, 900}).rest({{"a1", 5}});
@@ -225,7 +227,7 @@ TEST_CASE("limits are judged at the rest value, whichever is given first", "[lim
   CHECK_NOTHROW(Model(body));
 }
 
-TEST_CASE("jvp holds the pressed parameters", "[limits]") {
+TEST_CASE("jvp keeps parameters at active limits fixed", "[limits]") {
   MultiBody body;
   Part& part = test::add(body, "part", "ellipsoid", {"taper"}, 1000);
   part.rest({{"a1", 0.5}})
@@ -240,7 +242,7 @@ TEST_CASE("jvp holds the pressed parameters", "[limits]") {
   REQUIRE(work.v_dot[7] == Approx(0).margin(1e-12));
   const VecX<double> dq = VecX<double>::Constant(state.q.size(), 0.01);
   VecX<double> dv = VecX<double>::Constant(state.v.size(), 0.1);
-  dv[7] = 0;  // at rest, or it would not be pressed
+  dv[7] = 0;  // zero, as the parameter would otherwise leave its limit
   const VecX<double> d = simulation.dynamics().jvp(state, {dq, dv});
   CHECK(std::abs(d[7]) <= 1e-12 * d.norm());
   Workspace<double> more;

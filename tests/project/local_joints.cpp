@@ -1,4 +1,4 @@
-// Joints, springs and limits of parts whose nodes deform locally.
+// Joints, springs and limits of parts with local deformation.
 #include "catch.h"
 
 #include <pliant/body/joints/all_joints.h>
@@ -21,14 +21,15 @@ Part& balloon(MultiBody& body, const std::string& name, const Vec3<double>& at, 
   part.make_shell().rest({{"a1", 0.5}, {"a2", 0.4}, {"a3", 0.6}}).place(at);
   if (soft) part.stiffness({{"a1", 500}, {"a2", 500}, {"a3", 400}});
   LocalSettings settings = test::net(3, 60);
-  settings.velocity = test::rush;
+  settings.velocity = test::sample_velocity;
   part.deform_locally(settings);
   return part;
 }
 
 }  // namespace
 
-TEST_CASE("soft shells hung from each other: joints hold, and the order is kept", "[local][joints][long]") {
+TEST_CASE("soft shells that hang from each other: joints stay closed, and the order is kept",
+          "[local][joints][long]") {
   for (const bool soft : {false, true}) {
     std::vector<double> energy;
     for (const int steps : {100, 200, 400}) {
@@ -51,7 +52,7 @@ TEST_CASE("soft shells hung from each other: joints hold, and the order is kept"
   }
 }
 
-TEST_CASE("soft shells on joints: the augmented matrix and the blocks agree", "[local][joints]") {
+TEST_CASE("soft shells on joints: the augmented matrix and the block solver agree", "[local][joints]") {
   std::vector<VecX<double>> accelerations;
   for (const auto solver : {JointSolver::Choice::blocks, JointSolver::Choice::augmented}) {
     MultiBody body;
@@ -70,7 +71,7 @@ TEST_CASE("soft shells on joints: the augmented matrix and the blocks agree", "[
   CHECK((accelerations[0] - accelerations[1]).norm() <= 1e-9 * accelerations[0].norm());
 }
 
-TEST_CASE("a parameter of a soft shell that meets its limit: P and L stay, no energy comes in",
+TEST_CASE("a parameter of a soft shell reaches its limit: P and L are conserved, and no energy is added",
           "[local][limits][long]") {
   MultiBody body;
   body.gravity.setZero();
@@ -87,14 +88,14 @@ TEST_CASE("a parameter of a soft shell that meets its limit: P and L stay, no en
     const Ledger end = simulation.ledger();
     CHECK(simulation.step_counters().limit_impulses > 0);
     CHECK(end.energy() < energy);
-    // Semi-implicit Euler keeps P and L of turning parts to its order only.
+    // Semi-implicit Euler conserves P and L of rotating parts to its order only.
     const double rounding = std::string(method) == "rk4" ? 1e-8 : 2e-3;
     CHECK((end.momentum - start.momentum).norm() <= rounding * start.momentum.norm());
     CHECK((end.angular_momentum - start.angular_momentum).norm() <= rounding * start.angular_momentum.norm());
   }
 }
 
-TEST_CASE("a soft shell on a string: it goes taut, and the gap stays closed", "[local][joints]") {
+TEST_CASE("a soft shell on a string: the string goes taut, and the gap stays closed", "[local][joints]") {
   MultiBody body;
   Part& part = balloon(body, "ball", {0.4, 0, -0.4}, false);
   body.join("cord", String{0.6}, {world(0, 0, 0), point(part, kPi / 2, 0)});
@@ -108,7 +109,7 @@ TEST_CASE("a soft shell on a string: it goes taut, and the gap stays closed", "[
   CHECK(taut);
 }
 
-TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a hand that moves its joint",
+TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a moving anchor of its joint",
           "[local][joints][long]") {
   std::vector<double> balance;
   for (const int steps : {100, 200, 400}) {
@@ -120,7 +121,7 @@ TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a hand
         .damping(0.3, 1e-3, 0.2);
     part.stiffness({{"a1", 500}, {"a2", 500}, {"a3", 400}});
     LocalSettings settings = test::net(3, 60);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     settings.alpha = 0.4;
     settings.beta = 2e-3;
     part.deform_locally(settings);
@@ -142,7 +143,7 @@ TEST_CASE("the ledger of a soft shell: damping, drag, a damped spring and a hand
   CHECK(balance.back() <= 1e-4);
 }
 
-TEST_CASE("a soft shell at a step that is too long: the part is named, and the step", "[local]") {
+TEST_CASE("a soft shell with a step that is too long: the message names the part and the step", "[local]") {
   MultiBody body;
   balloon(body, "ball", {0, 0, 0}, false);
   Simulation simulation(body, "rk4");
@@ -157,7 +158,7 @@ TEST_CASE("a soft shell at a step that is too long: the part is named, and the s
   CHECK_THAT(what, test::has_text("'ball'") || test::has_text("ball."));
 }
 
-TEST_CASE("a rubber balloon whose pressure no stretch can hold: it is told that it burst", "[local]") {
+TEST_CASE("a rubber balloon with a pressure that no stretch can balance is reported as burst", "[local]") {
   MultiBody body;
   body.gravity.setZero();
   auto& part = body.add<Primitive<Sphere>>("balloon", 1);
@@ -178,7 +179,7 @@ TEST_CASE("a rubber balloon whose pressure no stretch can hold: it is told that 
   CHECK_THAT(what, test::has_text("no balance"));
 }
 
-TEST_CASE("an element that is inside out at time 0 fails with the name of its part", "[local]") {
+TEST_CASE("an element that is inverted at time 0 stops the run with the name of its part", "[local]") {
   MultiBody body;
   auto& part = body.add<Primitive<Sphere>>("jelly", 1000);
   LocalSettings settings;
@@ -192,7 +193,7 @@ TEST_CASE("an element that is inside out at time 0 fails with the name of its pa
   CHECK_THROWS_WITH(Simulation(body), test::has_text("part 'jelly'"));
 }
 
-TEST_CASE("the points of a hinge on a shell are of its surface, which moves", "[local][joints]") {
+TEST_CASE("the points of a hinge on a shell move with its surface", "[local][joints]") {
   MultiBody body;
   Part& part = balloon(body, "balloon", {0, 0, 0}, false);
   for (const double w : {0.4, 1.0})
@@ -203,7 +204,7 @@ TEST_CASE("the points of a hinge on a shell are of its surface, which moves", "[
   for (const Point& at : frame.points) CHECK(!part.local()->weights(part, at.material).node.empty());
 }
 
-TEST_CASE("assembly before time 0 by both solvers, with soft shells and without", "[local][assembly]") {
+TEST_CASE("assembly before time 0 by both solvers, with and without soft shells", "[local][assembly]") {
   for (const bool local : {false, true}) {
     std::vector<VecX<double>> places;
     for (const auto solver : {JointSolver::Choice::blocks, JointSolver::Choice::augmented}) {

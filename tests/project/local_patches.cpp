@@ -1,4 +1,4 @@
-// What acts over a patch of nodes: it does not depend on the mesh, its torque is right, its joints close.
+// Forces and joints on a patch of nodes: independence of the mesh, the correct torque, and closed joints.
 #include "catch.h"
 
 #include <Eigen/Geometry>
@@ -29,7 +29,7 @@ LocalSettings soft(int resolution, bool shell, int order = 1) {
   return settings;
 }
 
-/// How far opposite poles of a free ball go apart under a pull of 1 N at each.
+/// Returns how far opposite poles of a free ball move apart under a pull of 1 N at each.
 double stretch(int resolution, double patch) {
   Primitive<Sphere> ball("ball", 1000);
   ball.deform_locally(soft(resolution, false));
@@ -38,30 +38,32 @@ double stretch(int resolution, double patch) {
   const Eigen::Index n = local.n_nodes();
   std::vector<Eigen::Triplet<double>> entries;
   local.energies()[0]->add_stiffness(VecX<double>::Zero(3 * n), entries);
-  // A trace of inertia holds what is free to move; the pull does not ask for it.
+  // A small multiple of the mass matrix fixes the rigid motions; the pull does no work on them.
   for (Eigen::Index k = 0; k < 3 * n; ++k) entries.emplace_back(k, k, 1e-6 * local.inertia()[k]);
   Eigen::SparseMatrix<double> K(3 * n, 3 * n);
   K.setFromTriplets(entries.begin(), entries.end());
   VecX<double> f = VecX<double>::Zero(3 * n);
   for (const double side : {-1.0, 1.0}) {
     const Material<double> pole = material_at(side * kPi / 2, 0);
-    const NodeWeights at =
+    const NodeWeights weights =
         patch > 0 ? patch_weights(ball, local.mesh(), pole, patch) : local.weights(ball, pole);
-    for (std::size_t i = 0; i < at.node.size(); ++i) f[2 * n + at.node[i]] += side * at.weight[i];
+    for (std::size_t i = 0; i < weights.node.size(); ++i)
+      f[2 * n + weights.node[i]] += side * weights.weight[i];
   }
   return f.dot(Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(K).solve(f));
 }
 
 }  // namespace
 
-TEST_CASE("a pull over a patch does not depend on the mesh, one at a point grows without bound",
-          "[local][patch][long]") {
+TEST_CASE(
+    "the displacement under a pull on a patch does not depend on the mesh; at a point it grows without bound",
+    "[local][patch][long]") {
   const double coarse = stretch(4, kPatch), middle = stretch(6, kPatch), fine = stretch(9, kPatch);
   const double point_coarse = stretch(4, 0), point_middle = stretch(6, 0), point_fine = stretch(9, 0);
   CAPTURE(coarse, middle, fine, point_coarse, point_middle, point_fine);
   CHECK(std::abs(middle - coarse) < 0.02 * fine);
   CHECK(std::abs(fine - middle) < 0.02 * fine);
-  // As 1 / h.
+  // The growth is like 1 / h.
   CHECK(point_middle / point_coarse > 1.3);
   CHECK(point_fine / point_middle > 1.3);
 }
@@ -85,27 +87,27 @@ TEST_CASE("a patch reproduces its point at rest, on the surface and inside", "[l
     for (int trial = 0; trial < 20; ++trial) {
       Material<double> m = draws.material(MeshPattern::ball);
       if (kind.shell || trial % 2 == 0) m.w = 1;
-      const NodeWeights at = patch_weights(*part, mesh, m, 0.7);
+      const NodeWeights weights = patch_weights(*part, mesh, m, 0.7);
       const Vec3<double> x = part->s({m}, part->parameters().rest()).col(0);
       double sum = 0, size = 0;
       Vec3<double> mean = Vec3<double>::Zero();
-      for (std::size_t i = 0; i < at.node.size(); ++i) {
-        sum += at.weight[i];
-        size += std::abs(at.weight[i]);
-        mean += at.weight[i] * mesh.X.row(at.node[i]).transpose();
+      for (std::size_t i = 0; i < weights.node.size(); ++i) {
+        sum += weights.weight[i];
+        size += std::abs(weights.weight[i]);
+        mean += weights.weight[i] * mesh.X.row(weights.node[i]).transpose();
       }
-      CHECK(at.node.size() > 8);
+      CHECK(weights.node.size() > 8);
       CHECK(size <= 4);
       CHECK(sum == Approx(1).epsilon(1e-12));
       CHECK((mean - x).norm() <= 1e-9);
     }
-    // Nothing but its element is within a radius that no edge of the mesh fits in.
+    // A radius smaller than all edges of the mesh selects only the element of the point.
     const Material<double> m = material_at(0.3, 0.4);
     CHECK(patch_weights(*part, mesh, m, 1e-3) == part->local()->weights(*part, m));
   }
 }
 
-TEST_CASE("a force over a patch turns the part as one at its point", "[local][patch][motion]") {
+TEST_CASE("a force on a patch rotates the part as a force at its point does", "[local][patch][motion]") {
   for (const bool shell : {false, true}) {
     MultiBody body;
     body.gravity.setZero();
@@ -126,7 +128,7 @@ TEST_CASE("a force over a patch turns the part as one at its point", "[local][pa
   }
 }
 
-TEST_CASE("a joint holds the mean of its patch", "[local][patch][motion]") {
+TEST_CASE("a joint constrains the mean of its patch", "[local][patch][motion]") {
   for (const bool shell : {false, true}) {
     MultiBody body;
     auto& ball = body.add<Primitive<Ellipsoid>>("ball", shell ? 30.0 : 300.0);
@@ -152,7 +154,7 @@ TEST_CASE("a joint holds the mean of its patch", "[local][patch][motion]") {
   }
 }
 
-TEST_CASE("patches where there are no nodes are refused", "[local][patch]") {
+TEST_CASE("patches on parts without nodes are refused", "[local][patch]") {
   MultiBody body;
   auto& stone = body.add<Primitive<Sphere>>("stone", 1000);
   body.force("push", point(stone, material_at(0, 0), 0.1), TimeVector(Vec3<double>(1, 0, 0)));

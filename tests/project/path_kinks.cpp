@@ -1,4 +1,4 @@
-// Hands that move ends of joints by paths whose rates jump: the impulse that takes, and its work.
+// Moving anchors whose velocity jumps: the impulse of the jump, and its work.
 #include "catch.h"
 
 #include <sstream>
@@ -17,25 +17,26 @@ namespace {
 
 constexpr int kAnchors = static_cast<int>(Work::anchors);
 
-/// An ellipsoid of half axes 0.3, 0.1, 0.1 held at the end of its long axis, which is along x, by a hand that
-/// is at the origin.
-Part& held(MultiBody& body, const TimeVector& path) {
+/// An ellipsoid with half axes 0.3, 0.1, 0.1 and its long axis along x. A ball joint holds the end of this
+/// axis at a moving anchor that starts at the origin.
+Part& driven_ellipsoid(MultiBody& body, const TimeVector& path) {
   Part& part = test::add(body, "held", "ellipsoid", {}, 1000);
   part.rest({{"a1", 0.3}, {"a2", 0.1}, {"a3", 0.1}}).place({0.3, 0, 0});
   body.ball("hand", point(part, 0, kPi), world(path));
   return part;
 }
 
-/// Along z, from a time on at a speed, and with lasts > 0 for so long.
-TimeVector lift(double start, double speed, double lasts = 0) {
-  if (lasts > 0) return {0, 0, TimeFunction::key_frames({start, start + lasts}, {0, lasts * speed})};
+/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if that is
+/// positive.
+TimeVector lift(double start, double speed, double duration = 0) {
+  if (duration > 0) return {0, 0, TimeFunction::key_frames({start, start + duration}, {0, duration * speed})};
   std::ostringstream text;
   text.precision(17);
   text << speed << " * max(t - " << start << ", 0)";
   return {0, 0, TimeFunction::formula(text.str())};
 }
 
-void go(Simulation& simulation, double end, double step) {
+void advance_to(Simulation& simulation, double end, double step) {
   if (simulation.tolerance() > 0)
     while (simulation.time() < end) simulation.step_up_to(end);
   else
@@ -44,7 +45,8 @@ void go(Simulation& simulation, double end, double step) {
 
 }  // namespace
 
-TEST_CASE("a hand that moves off at once gives an impulse, and the work of it is booked", "[joints]") {
+TEST_CASE("an anchor that starts to move at once gives an impulse, and the ledger records its work",
+          "[joints]") {
   const double m = 1000 * 4. / 3 * kPi * 0.3 * 0.1 * 0.1, I = m / 5 * (0.09 + 0.01), speed = 0.8;
   const double push = speed / (1 / m + 0.09 / I);
   struct Case {
@@ -59,14 +61,14 @@ TEST_CASE("a hand that moves off at once gives an impulse, and the work of it is
                                           {"esdirk", 1e-9},
                                           {kAutomatic, 1e-9}})
     for (const double start : {0.2, 0.20371, 0.2 + 3e-17, 1. / 3}) {
-      for (const double lasts : {0., 1.}) {
-        INFO(method << ", at " << start << " for " << lasts);
+      for (const double duration : {0., 1.}) {
+        INFO(method << ", at " << start << " for " << duration);
         MultiBody body;
         body.gravity.setZero();
-        held(body, lift(start, speed, lasts));
+        driven_ellipsoid(body, lift(start, speed, duration));
         Simulation simulation(body, method, 1, tolerance);
-        go(simulation, 0.2, 1e-3);
-        go(simulation, tolerance > 0 ? 0.34 : 0.14, 1e-3);
+        advance_to(simulation, 0.2, 1e-3);
+        advance_to(simulation, tolerance > 0 ? 0.34 : 0.14, 1e-3);
         REQUIRE(simulation.engage_impulses().size() == 1);
         const ImpulseOnEngage& impulse = simulation.engage_impulses().front();
         CHECK(impulse.of_path);
@@ -81,8 +83,8 @@ TEST_CASE("a hand that moves off at once gives an impulse, and the work of it is
     }
 }
 
-TEST_CASE("hands that move off and stop keep the balance to the error of the method", "[joints]") {
-  // Under gravity, so that all goes on between the kinks.
+TEST_CASE("anchors that start and stop at once keep the balance to the error of the method", "[joints]") {
+  // Gravity acts, so that the parts also move between the kinks.
   auto balance = [](const char* method, double step, double tolerance, auto&& make) {
     MultiBody body;
     make(body);
@@ -102,10 +104,10 @@ TEST_CASE("hands that move off and stop keep the balance to the error of the met
     CHECK_FALSE(simulation.engage_impulses().empty());
     return worst;
   };
-  auto by_hand = [](MultiBody& body) { held(body, lift(0.2, 0.8, 0.6)); };
+  auto by_hand = [](MultiBody& body) { driven_ellipsoid(body, lift(0.2, 0.8, 0.6)); };
   auto to_and_fro = [](MultiBody& body) {
-    held(body, {0, TimeFunction::formula("0.1 * abs(sin(7 * t))"),
-                TimeFunction::formula("0.3 * abs(t - 0.4) - 0.12")});
+    driven_ellipsoid(body, {0, TimeFunction::formula("0.1 * abs(sin(7 * t))"),
+                            TimeFunction::formula("0.3 * abs(t - 0.4) - 0.12")});
   };
   auto on_a_carrier = [](MultiBody& body) {
     Part& carrier = test::add(body, "carrier", "box", {}, 1000);
@@ -140,7 +142,7 @@ TEST_CASE("hands that move off and stop keep the balance to the error of the met
   }
 }
 
-TEST_CASE("a taut string that is drawn at once books the work of the hand", "[joints]") {
+TEST_CASE("the ledger records the work of an anchor that pulls a taut string at once", "[joints]") {
   MultiBody body;
   Part& bob = test::add(body, "bob", "sphere", {}, 1000);
   bob.rest({{"r", 0.1}}).place({0, 0, -1});
@@ -154,14 +156,16 @@ TEST_CASE("a taut string that is drawn at once books the work of the hand", "[jo
   CHECK(std::abs(simulation.ledger().balance) <= 1e-9);
 }
 
-TEST_CASE("a path that jumps in place is named when its joint holds", "[joints]") {
+TEST_CASE(
+    "a path with a position jump stops the run while its joint is closed, and the message names the joint",
+    "[joints]") {
   for (const double tolerance : {0., 1e-6}) {
     MultiBody body;
-    held(body, {0, 0, TimeFunction::formula("0.01 * step(t - 0.5)")});
+    driven_ellipsoid(body, {0, 0, TimeFunction::formula("0.01 * step(t - 0.5)")});
     Simulation simulation(body, tolerance > 0 ? "dop853" : "rk4", 1, tolerance);
     try {
-      go(simulation, 1, 1e-3);
-      FAIL("it went on");
+      advance_to(simulation, 1, 1e-3);
+      FAIL("the run did not stop");
     } catch (const UnsatisfiableModel& failure) {
       CHECK_THAT(failure.what(),
                  test::has_text("at t = 0.5 s ball 'hand' would be torn open: the path of its end jumps"));
@@ -170,23 +174,23 @@ TEST_CASE("a path that jumps in place is named when its joint holds", "[joints]"
   }
 }
 
-TEST_CASE("a run goes on from a state at a kink to the same bits", "[joints]") {
+TEST_CASE("a run resumed from a state at a kink gives identical bits", "[joints]") {
   MultiBody one, two;
-  held(one, lift(0.2, 0.8, 0.3));
-  held(two, lift(0.2, 0.8, 0.3));
-  Simulation whole(one, "rk4"), parts(two, "rk4");
-  for (int i = 0; i < 20; ++i) whole.step(0.01);
-  parts.set_state(whole.state());
+  driven_ellipsoid(one, lift(0.2, 0.8, 0.3));
+  driven_ellipsoid(two, lift(0.2, 0.8, 0.3));
+  Simulation unbroken(one, "rk4"), resumed(two, "rk4");
+  for (int i = 0; i < 20; ++i) unbroken.step(0.01);
+  resumed.set_state(unbroken.state());
   for (int i = 0; i < 50; ++i) {
-    whole.step(0.01);
-    parts.step(0.01);
+    unbroken.step(0.01);
+    resumed.step(0.01);
   }
-  CHECK(hash(whole.state()) == hash(parts.state()));
+  CHECK(hash(unbroken.state()) == hash(resumed.state()));
 }
 
-TEST_CASE("impulses of what did not happen are not kept", "[joints]") {
+TEST_CASE("impulses of rejected steps are not kept", "[joints]") {
   MultiBody body;
-  held(body, lift(0.2, 0.8, 0.3));
+  driven_ellipsoid(body, lift(0.2, 0.8, 0.3));
   Simulation simulation(body, "rk4");
   const State start = simulation.state();
   test::run(simulation, 1, 100);
@@ -195,9 +199,9 @@ TEST_CASE("impulses of what did not happen are not kept", "[joints]") {
   CHECK(simulation.engage_impulses().empty());
   test::run(simulation, 0.3, 30);
   CHECK(simulation.engage_impulses().size() == 1);
-  // A step that fails where the path jumps has met a kink before.
+  // A step that fails where the path jumps has passed a kink before the jump.
   MultiBody torn;
-  held(torn, {0, 0, TimeFunction::formula("0.8 * max(t - 0.49, 0) + 0.2 * step(t - 0.5)")});
+  driven_ellipsoid(torn, {0, 0, TimeFunction::formula("0.8 * max(t - 0.49, 0) + 0.2 * step(t - 0.5)")});
   Simulation fails(torn, "rk4");
   for (int i = 0; i < 24; ++i) fails.step(0.02);
   CHECK_THROWS_AS(fails.step(0.03), UnsatisfiableModel);

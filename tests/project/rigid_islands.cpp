@@ -1,4 +1,4 @@
-// Rigid parts on ball joints: their own evaluation and closing of joints against the general ones.
+// Rigid parts on ball joints: their specialised evaluation and joint projection against the general ones.
 #include "catch.h"
 
 #include <pliant/body/constraint/rigid_island.h>
@@ -15,22 +15,22 @@ using test::Draws;
 
 namespace {
 
-/// n frozen, tapered boxes, whose centres of mass are not at their origins, of which each hangs at one before
-/// it, the first at the world and one at a fixed post; loops > 0: so many joints more, between parts where
-/// they are; and the first joint once more.
-void hang(MultiBody& body, int n, int loops, std::uint64_t seed) {
+/// Adds n frozen, tapered boxes whose centres of mass are not at their origins. Each hangs from an earlier
+/// one, the first from the world. With loops > 0 a bar closes a loop to the world, and the first joint is
+/// doubled.
+void add_hanging_boxes(MultiBody& body, int n, int loops, std::uint64_t seed) {
   Draws draws(seed);
-  auto any = [&](const Part& part) {
+  auto random_point = [&](const Part& part) {
     return point(part, draws.uniform(-1, 1), draws.uniform(-3, 3), draws.uniform(0.2, 1));
   };
-  auto place = [](const Part& part, const Point& at) {
+  auto position = [](const Part& part, const Point& at) {
     return Vec3<double>(part.c0() + part.R0() * part.s({at.material}, part.parameters().rest()).col(0));
   };
   std::vector<Part*> parts;
-  auto tie = [&](Part& part, const Part& to) {
-    // The other end is where this one is, on the other part's inside or out: both are points of the world.
-    const Point a = any(part), b = any(to);
-    part.place(part.c0() + place(to, b) - place(part, a), part.R0());
+  auto join_closed = [&](Part& part, const Part& to) {
+    // The point may be inside or outside the other part.
+    const Point a = random_point(part), b = random_point(to);
+    part.place(part.c0() + position(to, b) - position(part, a), part.R0());
     body.ball("joint" + std::to_string(body.joints().size()), a, b);
   };
   for (int i = 0; i < n; ++i) {
@@ -43,30 +43,30 @@ void hang(MultiBody& body, int n, int loops, std::uint64_t seed) {
                                                    draws.uniform(-1, 1), draws.uniform(-1, 1))
                                     .normalized());
     if (i == 0) {
-      const Point at = any(part);
-      const Vec3<double> x = place(part, at);
+      const Point at = random_point(part);
+      const Vec3<double> x = position(part, at);
       body.ball("hook", at, world(x[0], x[1], x[2]));
       if (loops > 0) body.ball("hook again", at, world(x[0], x[1], x[2]));
     } else {
-      tie(part, *parts[static_cast<std::size_t>(draws.integer(0, i - 1))]);
+      join_closed(part, *parts[static_cast<std::size_t>(draws.integer(0, i - 1))]);
     }
     parts.push_back(&part);
   }
   Part& post = test::add(body, "post", "sphere", {}, 1000);
   post.place({0.2, 0.1, -1}).fix();
   if (n > 1) {
-    // A loop closes by a bar of its own, which turns until it fits.
+    // A bar closes the loop; it is placed so that it fits.
     Part& last = *parts.back();
-    const Point end = any(last);
-    const Vec3<double> x = place(last, end);
+    const Point end = random_point(last);
+    const Vec3<double> x = position(last, end);
     Part& bar = test::add(body, "bar", "box", {}, 800);
     bar.rest({{"a1", 0.4}, {"a2", 0.05}, {"a3", 0.05}});
     const Point near = point(bar, 0, kPi), far = point(bar, 0, 0);
     bar.place(x);
-    bar.place(x + x - place(bar, near), bar.R0());
+    bar.place(x + x - position(bar, near), bar.R0());
     body.ball("to the bar", end, near);
     if (loops > 0) {
-      const Vec3<double> y = place(bar, far);
+      const Vec3<double> y = position(bar, far);
       body.ball("to the world", far, world(y[0], y[1], y[2]));
     }
   }
@@ -81,31 +81,32 @@ double gap(const Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("rigid parts on ball joints move as the general evaluation says", "[rigid_islands]") {
+TEST_CASE("rigid parts on ball joints move as by the general evaluation", "[rigid_islands]") {
   const int n = GENERATE(1, 2, 3, 4, 5, 9, 18), loops = GENERATE(0, 1);
   MultiBody body;
-  hang(body, n, loops, static_cast<std::uint64_t>(10 * n + loops));
+  add_hanging_boxes(body, n, loops, static_cast<std::uint64_t>(10 * n + loops));
   Simulation simulation(body, "rk4");
   const Model& model = simulation.model();
   REQUIRE(model.rigid_islands().size() == 1);
   for (int instant = 0; instant < 4; ++instant) {
     const State& state = simulation.state();
-    Workspace<double> general, own;
+    Workspace<double> general, special;
     simulation.dynamics().accelerations(state.time(), state.q, state.v, state, general);
-    simulation.dynamics().rates(state.time(), state.q, state.v, state, own);
-    simulation.dynamics().rates(state.time(), state.q, state.v, state, own);
-    REQUIRE(own.rigid[0].used);
-    CHECK((own.v_dot - general.v_dot).norm() <= 1e-11 * general.v_dot.norm());
-    CHECK((own.power - general.power).norm() == 0);
+    simulation.dynamics().rates(state.time(), state.q, state.v, state, special);
+    simulation.dynamics().rates(state.time(), state.q, state.v, state, special);
+    REQUIRE(special.rigid[0].used);
+    CHECK((special.v_dot - general.v_dot).norm() <= 1e-11 * general.v_dot.norm());
+    CHECK((special.power - general.power).norm() == 0);
     const double before = gap(simulation);
     for (int i = 0; i < 10; ++i) simulation.step(0.005);
     CHECK(gap(simulation) <= std::max(before, 1e-12));
   }
 }
 
-TEST_CASE("loads and other parts beside them change nothing of how rigid islands move", "[rigid_islands]") {
+TEST_CASE("loads and other parts beside rigid islands do not change how the islands are evaluated",
+          "[rigid_islands]") {
   MultiBody body;
-  hang(body, 6, 0, 7);
+  add_hanging_boxes(body, 6, 0, 7);
   Part& free = test::add(body, "free", "box", {"taper"}, 900);
   free.rest({{"taper.tx", 0.4}}).place({4, 0, 0}).velocity({0, 1, 0}, {1, 2, 3});
   Part& soft = test::add(body, "soft", "sphere", {}, 500);
@@ -121,19 +122,19 @@ TEST_CASE("loads and other parts beside them change nothing of how rigid islands
   for (int i = 0; i < 5; ++i) {
     simulation.step(0.01);
     const State& state = simulation.state();
-    Workspace<double> general, own;
+    Workspace<double> general, special;
     simulation.dynamics().accelerations(state.time(), state.q, state.v, state, general);
-    simulation.dynamics().rates(state.time(), state.q, state.v, state, own);
-    simulation.dynamics().rates(state.time(), state.q, state.v, state, own);
-    CHECK((own.v_dot - general.v_dot).norm() <= 1e-11 * general.v_dot.norm());
-    CHECK((own.power - general.power).norm() <= 1e-12 * general.power.norm());
+    simulation.dynamics().rates(state.time(), state.q, state.v, state, special);
+    simulation.dynamics().rates(state.time(), state.q, state.v, state, special);
+    CHECK((special.v_dot - general.v_dot).norm() <= 1e-11 * general.v_dot.norm());
+    CHECK((special.power - general.power).norm() <= 1e-12 * general.power.norm());
   }
 }
 
-TEST_CASE("joints of rigid parts close from near, and are left to the general way from far",
+TEST_CASE("joints of rigid parts are projected from small gaps, and the general method projects large gaps",
           "[rigid_islands]") {
   MultiBody body;
-  hang(body, 6, 0, 3);
+  add_hanging_boxes(body, 6, 0, 3);
   Simulation simulation(body, "rk4");
   simulation.step(0.01);
   const State& state = simulation.state();
@@ -143,13 +144,13 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
   simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
   simulation.dynamics().rates(state.time(), state.q, state.v, state, work);
   Draws draws(5);
-  auto shaken = [&](double size) {
+  auto perturbed = [&](double size) {
     State to = state;
     for (Eigen::Index i = 0; i < to.q.size(); ++i) to.q[i] += size * draws.uniform(-1, 1);
     for (Eigen::Index i = 0; i < to.v.size(); ++i) to.v[i] += size * draws.uniform(-1, 1);
     return to;
   };
-  State near = shaken(1e-6);
+  State near = perturbed(1e-6);
   REQUIRE(
       rigid.close(island, {1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], near.q, near.v));
   double widest = 0;
@@ -159,7 +160,7 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
   simulation.dynamics().accelerations(state.time(), near.q, near.v, near, work);
   CHECK(work.joints.C_dot.lpNorm<Eigen::Infinity>() <= 1e-12);
 
-  const State far = shaken(0.5);
+  const State far = perturbed(0.5);
   State kept = far;
   CHECK_FALSE(
       rigid.close(island, {1e-13, 4e-15, 10}, work.joints.W_c[0].blocks(), work.rigid[0], kept.q, kept.v));
@@ -167,28 +168,29 @@ TEST_CASE("joints of rigid parts close from near, and are left to the general wa
   CHECK(kept.v == far.v);
 }
 
-TEST_CASE("semi-implicit Euler closes joints of rigid parts at the end of its step as the general way does",
-          "[rigid_islands]") {
+TEST_CASE(
+    "semi-implicit Euler projects joints of rigid parts at the end of its step as the general method does",
+    "[rigid_islands]") {
   const int n = GENERATE(1, 6, 13);
-  const auto after = [&](bool own) {
+  const auto after = [&](bool special) {
     MultiBody body;
-    hang(body, n, 0, static_cast<std::uint64_t>(n));
-    // A string that stays slack leaves the island to the general way.
-    if (!own)
+    add_hanging_boxes(body, n, 0, static_cast<std::uint64_t>(n));
+    // A string that stays slack makes the general method evaluate the island.
+    if (!special)
       body.join("slack", String{100},
                 {point(*body.parts().front(), 0, 0), point(*body.parts().back(), 0, 0)});
     Simulation simulation(body, "semi_implicit_euler");
-    REQUIRE(simulation.model().rigid_islands().size() == (own ? 1 : 0));
+    REQUIRE(simulation.model().rigid_islands().size() == (special ? 1 : 0));
     for (int i = 0; i < 200; ++i) simulation.step(0.002);
     CHECK(gap(simulation) <= 1e-12);
     return simulation.state();
   };
-  const State own = after(true), general = after(false);
-  CHECK((own.q - general.q).norm() <= 1e-9 * general.q.norm());
-  CHECK((own.v - general.v).norm() <= 1e-9 * general.v.norm());
+  const State special = after(true), general = after(false);
+  CHECK((special.q - general.q).norm() <= 1e-9 * general.q.norm());
+  CHECK((special.v - general.v).norm() <= 1e-9 * general.v.norm());
 }
 
-TEST_CASE("a trial step that is not finite leaves nothing behind that stops the steps after it",
+TEST_CASE("a trial step that is not finite leaves no state behind that stops later steps",
           "[rigid_islands]") {
   for (double size = 1e130; size < 1e165; size *= 1e5) {
     MultiBody body;
@@ -199,7 +201,7 @@ TEST_CASE("a trial step that is not finite leaves nothing behind that stops the 
       body.ball("joint" + std::to_string(i), point(link, kPi / 2, 0),
                 i == 0 ? world(0, 0, 0) : point(*body.parts()[static_cast<std::size_t>(i - 1)], -kPi / 2, 0));
     }
-    // Only trials of far too long steps come to where it is enormous.
+    // Only trials of far too long steps reach the region where the force is enormous.
     body.force("push", point(*body.parts()[3], -kPi / 2, 0),
                [&](double t, const Vec3<double>& x, const Vec3<double>&) {
                  double push = t > 1 ? 1000 * std::sin(50 * (t - 1)) : 0;
@@ -213,7 +215,7 @@ TEST_CASE("a trial step that is not finite leaves nothing behind that stops the 
   }
 }
 
-TEST_CASE("what is more than rigid parts on ball joints is evaluated the general way", "[rigid_islands]") {
+TEST_CASE("islands with more than rigid parts on ball joints use the general evaluation", "[rigid_islands]") {
   MultiBody body;
   Part& ball = test::add(body, "ball", "sphere", {}, 1000);
   Part& other = test::add(body, "other", "box", {}, 1000);
@@ -221,7 +223,7 @@ TEST_CASE("what is more than rigid parts on ball joints is evaluated the general
   body.ball("tie", point(ball, 0, 0), point(other, 0, 0));
   auto islands = [&] { return Model(body).rigid_islands().size(); };
   REQUIRE(islands() == 1);
-  SECTION("a parameter that moves") {
+  SECTION("a dynamic parameter") {
     ball.stiffness({{"r", 1e4}});
     CHECK(islands() == 0);
   }
@@ -237,7 +239,7 @@ TEST_CASE("what is more than rigid parts on ball joints is evaluated the general
     body.ball("carried", point(ball, 0, 0), world({test::wave(0, 1, 2), TimeFunction(0), TimeFunction(0)}));
     CHECK(islands() == 0);
   }
-  SECTION("joints that are to close, or kept closed by Baumgarte's terms alone") {
+  SECTION("joints that are closing, or kept closed by Baumgarte terms alone") {
     body.stabilization.projection = GENERATE(true, false);
     const Simulation simulation(body, "rk4");
     const State& state = simulation.state();

@@ -1,4 +1,4 @@
-// Taut strings and contacts push at the same moment.
+// Taut strings and contacts that act at the same instant.
 #include "catch.h"
 
 #include <cmath>
@@ -22,8 +22,8 @@ Part& ball(MultiBody& body, const char* name, const Vec3<double>& at) {
 Point centre(Part& part) {
   return point(part, 0, 0, 0);
 }
-/// The impulse that the first joint of a body takes up in the step of the first impact, N s, and the state
-/// after it.
+/// Returns the impulse (N s) that the first joint of a body receives in the step of the first impact; NaN if
+/// there is no impact.
 double impulse_of_impact(Simulation& simulation) {
   for (int i = 0; i < 1000; ++i) {
     simulation.step(1e-3);
@@ -34,7 +34,7 @@ double impulse_of_impact(Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("a ball on a taut string that another one falls on stays where it is", "[contact][joints]") {
+TEST_CASE("a ball on a taut string does not move when another ball falls on it", "[contact][joints]") {
   for (const char* method : {"rk4", "dormand_prince"}) {
     MultiBody body;
     body.contact.active = true;
@@ -44,7 +44,7 @@ TEST_CASE("a ball on a taut string that another one falls on stays where it is",
     Simulation simulation(body, method);
     const double impulse = impulse_of_impact(simulation);
     const double v = std::sqrt(2 * kG * 0.2);
-    // What is left of the step, the string holds both.
+    // Duration of the rest of the step, in which the string carries both balls.
     const double left = simulation.time() - v / kG;
     REQUIRE((left >= 0 && left <= 1e-3));
     CHECK(impulse == Approx(falls.total_mass() * v).epsilon(0.02));
@@ -55,7 +55,7 @@ TEST_CASE("a ball on a taut string that another one falls on stays where it is",
   }
 }
 
-TEST_CASE("a slack string takes up nothing of an impact", "[contact][joints]") {
+TEST_CASE("a slack string receives no impulse from an impact", "[contact][joints]") {
   MultiBody body;
   body.contact.active = true;
   body.gravity.setZero();
@@ -68,8 +68,10 @@ TEST_CASE("a slack string takes up nothing of an impact", "[contact][joints]") {
   CHECK(simulation.state().v[8] == Approx(-1).epsilon(1e-10));
 }
 
-TEST_CASE("a taut string of a hand that pulls passes its speed on in an impact", "[contact][joints]") {
-  // The hand and the ball that it pulls rise at 1 m/s; what they hit from below starts to rise as fast.
+TEST_CASE("a taut string with a moving anchor transmits the anchor's speed in an impact",
+          "[contact][joints]") {
+  // The anchor and the ball that it pulls rise at 1 m/s; the ball that they hit from below starts to rise at
+  // that speed.
   MultiBody body;
   body.contact.active = true;
   body.gravity.setZero();

@@ -1,4 +1,4 @@
-// The same picture from every backend and with any number of raster threads.
+// Pictures are identical for every backend and any number of raster threads.
 #include <sys/wait.h>
 
 #include <cstdio>
@@ -23,7 +23,7 @@ bool opens(const GlBackend backend) {
   return false;
 }
 
-// What the program render_digest prints with these settings in its environment.
+// Returns the output of the program render_digest with these settings in its environment.
 std::string digest(const std::string& environment, const std::string& backend) {
   const std::string command = "env " + environment + " '" PLIANT_RENDER_DIGEST "' " + backend;
   FILE* pipe = ::popen(command.c_str(), "r");
@@ -40,7 +40,7 @@ std::string digest(const std::string& environment, const std::string& backend) {
 
 }  // namespace
 
-TEST_CASE("Every backend is probed, and says why when it does not open") {
+TEST_CASE("every backend is probed, and gives a reason if it does not open") {
   const std::vector<GlProbe> probes = probe_gl_backends();
   REQUIRE(probes.size() == 3);
   for (const GlProbe& probe : probes) {
@@ -51,7 +51,7 @@ TEST_CASE("Every backend is probed, and says why when it does not open") {
   }
 }
 
-TEST_CASE("OSMesa and EGL give the same bytes, side by side in one process") {
+TEST_CASE("OSMesa and EGL give identical bytes, side by side in one process") {
   if (!opens(GlBackend::osmesa) || !opens(GlBackend::egl)) {
     WARN("not compared: needs both libosmesa6 and libegl1 with libgl1-mesa-dri");
     return;
@@ -69,7 +69,7 @@ TEST_CASE("OSMesa and EGL give the same bytes, side by side in one process") {
   CHECK(colored.rgb == b.draw(scene.picture).rgb);
 }
 
-TEST_CASE("The number of raster threads does not change a byte") {
+TEST_CASE("the number of raster threads does not change a byte") {
   for (const std::string backend : {"osmesa", "egl"}) {
     if (!opens(backend == "osmesa" ? GlBackend::osmesa : GlBackend::egl)) {
       WARN("not tested: " << backend << " does not open here");
@@ -84,7 +84,7 @@ TEST_CASE("The number of raster threads does not change a byte") {
   }
 }
 
-TEST_CASE("A renderer may be used by several threads in turn, and several renderers may exist") {
+TEST_CASE("a renderer may be used by several threads in turn, and several renderers may exist") {
   const test::Scene scene;
   Renderer a(64, 48), b(64, 48);
   const Image first = a.draw(scene.picture);

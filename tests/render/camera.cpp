@@ -1,4 +1,4 @@
-// The automatic camera holds the whole box, as large as the margin allows.
+// The automatic camera shows the whole box, as large as the margin permits.
 #include <limits>
 
 #include "catch.h"
@@ -8,7 +8,7 @@ namespace camera_test {
 
 using namespace pliant;
 
-TEST_CASE("The automatic camera frames any box") {
+TEST_CASE("the automatic camera frames any box") {
   const Eigen::AlignedBox3d boxes[] = {
       {Eigen::Vector3d(-1, -2, 0), Eigen::Vector3d(4, 1, 0.5)},
       {Eigen::Vector3d(10, 20, 5), Eigen::Vector3d(10.1, 20.1, 9)},
@@ -34,7 +34,7 @@ TEST_CASE("The automatic camera frames any box") {
     }
 }
 
-TEST_CASE("An empty box and a point are framed too, what is not finite is refused") {
+TEST_CASE("an empty box and a point are framed, too; values that are not finite are refused") {
   const Camera camera = automatic_camera({}, 1.5);
   CHECK((camera.eye - camera.target).norm() > 1);
   const Eigen::Vector3d p(3, 4, 5);

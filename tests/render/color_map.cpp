@@ -1,4 +1,4 @@
-// The colours of values: lightness rises evenly, and none of three kinds of colour blindness takes that away.
+// The colour map: its lightness increases evenly, also for three kinds of colour blindness.
 #include <pliant/render/color_map.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ double linear(double channel) {
   return channel <= 0.04045 ? channel / 12.92 : std::pow((channel + 0.055) / 1.055, 2.4);
 }
 
-// CIE 1976: L* a* b* of an sRGB colour under D65.
+// Returns L* a* b* (CIE 1976) of an sRGB colour under D65.
 Eigen::Vector3d lab(const Eigen::Vector3f& srgb) {
   const double r = linear(srgb[0]), g = linear(srgb[1]), b = linear(srgb[2]);
   const auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
@@ -29,7 +29,7 @@ Eigen::Vector3d lab(const Eigen::Vector3f& srgb) {
 
 }  // namespace
 
-TEST_CASE("lightness rises all along the colours, and evenly") {
+TEST_CASE("lightness increases evenly along the colour map") {
   constexpr int steps = 100;
   const double dark = lab(mapped_color(0))[0], light = lab(mapped_color(1))[0];
   CHECK(dark < 20);
@@ -44,7 +44,7 @@ TEST_CASE("lightness rises all along the colours, and evenly") {
   }
 }
 
-TEST_CASE("equal steps look about equally far apart") {
+TEST_CASE("equal steps have about equal colour differences") {
   constexpr int steps = 20;
   double least = 1e9, most = 0;
   for (int i = 0; i < steps; ++i) {
@@ -56,7 +56,7 @@ TEST_CASE("equal steps look about equally far apart") {
   CHECK(most < 3.5 * least);
 }
 
-TEST_CASE("levels beyond the scale have its first or last colour") {
+TEST_CASE("levels outside the scale have its first or last colour") {
   CHECK(mapped_color(-3) == mapped_color(0));
   CHECK(mapped_color(1.5) == mapped_color(1));
   for (int i = 0; i < kMapColors; ++i) {
@@ -66,7 +66,7 @@ TEST_CASE("levels beyond the scale have its first or last colour") {
   }
 }
 
-TEST_CASE("ticks are round and have the digits that they need") {
+TEST_CASE("ticks are round numbers with the necessary digits") {
   const auto labels = [](double low, double high) {
     std::string all;
     for (const Tick& tick : ticks(low, high)) {

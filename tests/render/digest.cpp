@@ -1,5 +1,5 @@
-// Draws two pictures with the backend that the argument names (osmesa or egl) and prints a hash of their
-// bytes: for tests that need an environment of their own.
+// Draws two pictures with the backend named by the argument (osmesa or egl) and prints a hash of their bytes.
+// For tests that need their own environment.
 #include <cstdint>
 #include <cstdio>
 #include <exception>

@@ -1,5 +1,5 @@
-// Pictures of a recorded motion: one camera and one ground for all frames, tracks that grow, settings of the
-// scene kept.
+// Pictures of a recorded motion: one camera and one ground for all frames, growing tracks, and the settings
+// of the scene.
 #include <pliant/render/film.h>
 
 #include "catch.h"
@@ -16,14 +16,14 @@ using namespace pliant;
 namespace {
 
 // A run of the pulled scene, and its film.
-struct Filmed {
+struct FilmedRun {
   NewFolder folder;
   std::unique_ptr<Scene> scene = pulled_scene();
   Progress silent;
   std::unique_ptr<Run> run;
   std::unique_ptr<Recording> recording;
 
-  Filmed() {
+  FilmedRun() {
     RunOptions options;
     options.folder = folder / "r";
     run = std::make_unique<Run>(*scene, options, silent);
@@ -33,24 +33,24 @@ struct Filmed {
   Film film() const { return {*scene, run->simulation().model(), *recording}; }
 };
 
-bool same(const Camera& a, const Camera& b) {
+bool equal(const Camera& a, const Camera& b) {
   return a.eye == b.eye && a.target == b.target && a.field_of_view == b.field_of_view;
 }
 
 }  // namespace
 
-TEST_CASE("camera and ground do not move, and hold the whole motion") {
-  const Filmed filmed;
+TEST_CASE("camera and ground do not move, and show the whole motion") {
+  const FilmedRun filmed;
   Film film = filmed.film();
   const Camera camera = film.camera();
   const double ground = film.at(0).ground.height;
   for (int k = 0; k <= 10; ++k) {
     const Picture& picture = film.at(0.02 * k);
-    CHECK(same(picture.camera, camera));
+    CHECK(equal(picture.camera, camera));
     CHECK(picture.ground.height == ground);
     CHECK(bounds(picture).min().z() > ground);
     CHECK(picture.bodies.size() == 4);
-    // A track, three springs, one of them held by the world, and a string that is, too.
+    // One track, three springs, one of them attached to the world, and a string that is, too.
     REQUIRE(picture.tracks.size() == 1 + 3 + 1 + 2);
     CHECK(picture.tracks[0].points.size() == static_cast<std::size_t>(k + 1));
     // Every vertex is inside the picture.
@@ -68,15 +68,15 @@ TEST_CASE("camera and ground do not move, and hold the whole motion") {
   }
 }
 
-TEST_CASE("a part of the recording later gives the same camera") {
-  const Filmed filmed;
+TEST_CASE("the camera does not depend on the time at which a film starts") {
+  const FilmedRun filmed;
   Film first = filmed.film(), second = filmed.film();
   first.at(0.2);
-  CHECK(same(first.camera(), second.camera()));
+  CHECK(equal(first.camera(), second.camera()));
 }
 
-TEST_CASE("what the scene says of camera, light and ground holds") {
-  Filmed filmed;
+TEST_CASE("the scene's settings of camera, light and ground are used") {
+  FilmedRun filmed;
   Scene& scene = *filmed.scene;
   scene.camera.eye = Vec3<double>(1, 2, 3);
   scene.camera.field_of_view = 50;
@@ -98,8 +98,8 @@ TEST_CASE("what the scene says of camera, light and ground holds") {
   CHECK(filmed.film().camera().target == Eigen::Vector3d(0, 0, 1));
 }
 
-TEST_CASE("springs are lines between their points, with a dot where the world holds them") {
-  const Filmed filmed;
+TEST_CASE("springs are lines between their points, with a dot at world points") {
+  const FilmedRun filmed;
   Film film = filmed.film();
   const Picture& picture = film.at(0.1);
   const Picture::Track &line = picture.tracks[1], &dot = picture.tracks[2];
@@ -112,8 +112,8 @@ TEST_CASE("springs are lines between their points, with a dot where the world ho
   CHECK(filmed.film().at(0.1).tracks.size() == 1);
 }
 
-TEST_CASE("the camera holds where springs hang, unless that is far away") {
-  Filmed filmed;
+TEST_CASE("the camera includes the world points of springs, unless they are far away") {
+  FilmedRun filmed;
   Scene& scene = *filmed.scene;
   scene.ground.visible = false;
   const Camera near = filmed.film().camera();
@@ -121,13 +121,13 @@ TEST_CASE("the camera holds where springs hang, unless that is far away") {
   const Camera higher = filmed.film().camera();
   CHECK(higher.target.z() > near.target.z());
   scene.body.springs()[0]->b = world(0.4, 0, 2000);
-  const Camera without = filmed.film().camera();
+  const Camera without_springs = filmed.film().camera();
   scene.show_springs = false;
-  CHECK(same(filmed.film().camera(), without));
+  CHECK(equal(filmed.film().camera(), without_springs));
 }
 
-TEST_CASE("parts that deform are coloured on one scale in all frames") {
-  const Filmed filmed;
+TEST_CASE("deforming parts are coloured on one scale in all frames") {
+  const FilmedRun filmed;
   filmed.scene->coloring = Coloring{SurfaceQuantity::displacement, {}, {}};
   Film film = filmed.film(), later = filmed.film();
   const Picture::Scale scale = *later.at(0.2).scale;
@@ -158,11 +158,11 @@ TEST_CASE("parts that deform are coloured on one scale in all frames") {
   REQUIRE(picture.bodies[1].values != nullptr);
   CHECK(picture.bodies[1].values->isZero(0));
   filmed.scene->appearance[1].visible = false;
-  CHECK_FALSE(filmed.film().at(0.1).scale);  // nothing is coloured
+  CHECK_FALSE(filmed.film().at(0.1).scale);  // no part is coloured
 }
 
-TEST_CASE("a plane is seen where it is and while it is there, if it is shown") {
-  Filmed filmed;
+TEST_CASE("a plane is visible at its position while it is active, if it is shown") {
+  FilmedRun filmed;
   Scene& scene = *filmed.scene;
   scene.width = 160;
   scene.height = 120;
@@ -186,7 +186,7 @@ TEST_CASE("a plane is seen where it is and while it is there, if it is shown") {
     scene.planes.push_back({0, 0.8, 0.6, {1, 0, 0}});
     const Image with = seen(time);
     const Camera camera = filmed.film().camera();
-    Eigen::AlignedBox2d around;  // what is seen of the rectangle, and the pixel beside it
+    Eigen::AlignedBox2d around;  // the image of the rectangle, with a margin of one pixel
     for (const double x : {-0.4, 0.4})
       for (const double z : {-0.3, 0.3})
         around.extend(test::pixel_of({1 - 10 * time + x, -1, 1.5 + z}, camera, scene.width, scene.height));
@@ -203,14 +203,14 @@ TEST_CASE("a plane is seen where it is and while it is there, if it is shown") {
           changed += change(x, y) > 60;
         else
           beside = std::max(beside, change(x, y));
-    CHECK(beside <= (there ? 4 : 0));  // the light from the ground depends a little on all that is shown
+    CHECK(beside <= (there ? 4 : 0));  // light from the ground depends slightly on everything that is shown
     CHECK((changed > 0.8 * (around.sizes().array() - 2).prod()) == there);
     if (!there) CHECK(with.rgb == without.rgb);
   }
 }
 
 TEST_CASE("a camera that looks straight down has y at the top") {
-  const Filmed filmed;
+  const FilmedRun filmed;
   filmed.scene->camera.eye = Vec3<double>(0, 0, 5);
   filmed.scene->camera.target = Vec3<double>(0, 0, 1);
   CHECK(filmed.film().camera().up == Eigen::Vector3d::UnitY());

@@ -1,4 +1,5 @@
-// OpenGL is loaded when the first renderer is made, not before. One test case, so that the process is fresh.
+// OpenGL is loaded when the first renderer is created, not earlier. One test case, so that the process is
+// new.
 #include <fstream>
 #include <string>
 
@@ -14,7 +15,8 @@ using namespace pliant;
 
 namespace {
 
-// The first mapped library whose name looks like OpenGL or what implements it, empty when there is none.
+// Returns the first mapped library whose name looks like OpenGL or an implementation of it; empty if there is
+// none.
 std::string mapped_gl_library() {
   std::ifstream maps("/proc/self/maps");
   REQUIRE(maps);
@@ -26,7 +28,7 @@ std::string mapped_gl_library() {
 
 }  // namespace
 
-TEST_CASE("No OpenGL library is in the process until a renderer is made") {
+TEST_CASE("no OpenGL library is in the process until a renderer is created") {
   const test::Scene scene;
   CHECK(!bounds(scene.picture).isEmpty());
   CHECK(mapped_gl_library() == "");

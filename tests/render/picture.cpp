@@ -1,4 +1,4 @@
-// What a picture must show: light and shade, shadows, edges, background, tracks; and what it must refuse.
+// Contents of pictures: light and shade, shadows, edges, background, tracks; and pictures that are refused.
 #include <limits>
 
 #include "catch.h"
@@ -21,7 +21,7 @@ Camera front_camera(double distance) {
   return {{0, -distance, 0}, {0, 0, 0}, {0, 0, 1}, 30};
 }
 
-Picture of(const TriangleMesh& mesh) {
+Picture picture_of(const TriangleMesh& mesh) {
   Picture picture;
   picture.bodies.push_back({&mesh, {0.7f, 0.7f, 0.7f}});
   picture.ground.shown = false;
@@ -45,15 +45,15 @@ std::string reason(Renderer& renderer, const Picture& picture) {
   return "";
 }
 
-bool holds(const std::string& text, const char* part) {
+bool contains(const std::string& text, const char* part) {
   return text.find(part) != std::string::npos;
 }
 
 }  // namespace
 
-TEST_CASE("A lit sphere is brightest towards the light and darkest away from it") {
+TEST_CASE("a lit sphere is brightest towards the light and darkest away from it") {
   const TriangleMesh ball = test::sphere({0, 0, 0}, 1);
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.lights.to_key = {1, -0.3f, 0};
   Renderer renderer(161, 121);
   const Image image = renderer.draw(picture);
@@ -64,13 +64,13 @@ TEST_CASE("A lit sphere is brightest towards the light and darkest away from it"
   CHECK(at(0.8, 0) > at(0.4, 0) + 20);
   CHECK(at(0.4, 0) > at(0, 0) + 20);
   CHECK(at(0, 0) > at(-0.6, 0) + 20);
-  CHECK(at(-0.6, 0) > 30);                // the ambient light reaches what the key light does not
-  CHECK(at(-0.6, 0.6) > at(-0.6, -0.6));  // and there is more of it from above
+  CHECK(at(-0.6, 0) > 30);                // ambient light reaches the side away from the key light
+  CHECK(at(-0.6, 0.6) > at(-0.6, -0.6));  // ambient light is stronger from above
 }
 
-TEST_CASE("A body darkens the ground along the key light, and only there") {
+TEST_CASE("a body darkens the ground along the key light, and nowhere else") {
   const TriangleMesh ball = test::sphere({0, 0, 2}, 0.5);
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.ground.shown = true;
   picture.ground.grid_color = picture.ground.color;
   picture.lights.to_key = {1, 0, 1};
@@ -88,24 +88,24 @@ TEST_CASE("A body darkens the ground along the key light, and only there") {
   CHECK(std::abs(at(with, lit) - at(without, lit)) <= 6);
 }
 
-TEST_CASE("A body casts a shadow on another body") {
+TEST_CASE("a body casts a shadow on another body") {
   const TriangleMesh low = test::sphere({0, 0, -1}, 0.8), high = test::sphere({0, 0, 1}, 0.4);
-  Picture picture = of(low);
+  Picture picture = picture_of(low);
   picture.camera = {{0, -7, 2}, {0, 0, 0}, {0, 0, 1}, 40};
   picture.lights.to_key = {0, -0.15f, 1};
   Renderer renderer(120, 120);
   const Eigen::Vector3d top(0, -0.25, -1 + std::sqrt(0.64 - 0.0625));
-  const auto seen = [&] {
+  const auto visible = [&] {
     return brightness(pixel(renderer.draw(picture), pixel_of(top, picture.camera, 120, 120)));
   };
-  const int alone = seen();
+  const int without_shadow = visible();
   picture.bodies.push_back({&high, {0.7f, 0.7f, 0.7f}});
-  CHECK(seen() < alone - 60);
+  CHECK(visible() < without_shadow - 60);
 }
 
-TEST_CASE("A body dims the ground beside its foot where the key light still arrives") {
+TEST_CASE("a body dims the ground near its contact point, also outside its shadow") {
   const TriangleMesh ball = test::sphere({0, 0, 0.52}, 0.5);
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.ground.shown = true;
   picture.ground.grid_color = picture.ground.color;
   picture.camera = {{0, 5, 3}, {0, 0, 0}, {0, 0, 1}, 40};
@@ -118,7 +118,7 @@ TEST_CASE("A body dims the ground beside its foot where the key light still arri
   CHECK(at({0.42, 0.0, 0}) < at({1.6, 0, 0}) - 8);
 }
 
-TEST_CASE("Where nothing is, the background is untouched") {
+TEST_CASE("the background is unchanged where there are no bodies") {
   Renderer renderer(90, 60);
   Picture empty;
   empty.ground.shown = false;
@@ -132,7 +132,7 @@ TEST_CASE("Where nothing is, the background is untouched") {
   }
 
   const TriangleMesh ball = test::sphere({0, 0, 0}, 0.5);
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.background = empty.background;
   const Image image = renderer.draw(picture);
   int touched = 0;
@@ -147,7 +147,7 @@ TEST_CASE("Where nothing is, the background is untouched") {
   CHECK(touched > 150);
 }
 
-TEST_CASE("Any size works, odd ones and single pixels too") {
+TEST_CASE("any size works, also odd sizes and single pixels") {
   const test::Scene scene;
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(3, 1), std::pair(1, 7), std::pair(101, 77)}) {
@@ -159,7 +159,7 @@ TEST_CASE("Any size works, odd ones and single pixels too") {
   }
 }
 
-TEST_CASE("An absurd size is refused in words") {
+TEST_CASE("a size out of range is refused with a message") {
   for (const auto& [width, height] :
        {std::pair(0, 480), std::pair(640, 0), std::pair(-5, 480), std::pair(640, -1),
         std::pair(Renderer::kMaxSide + 1, 10), std::pair(10, 2000000000)}) {
@@ -173,14 +173,14 @@ TEST_CASE("An absurd size is refused in words") {
   }
 }
 
-TEST_CASE("Corners with normals of their own keep an edge sharp") {
+TEST_CASE("corners with their own normals keep an edge sharp") {
   const TriangleMesh sharp = test::cube({0, 0, 0}, 0.7, 0.78539816339744831);
   TriangleMesh smooth = sharp;
   smooth.normals = sharp.x.colwise().normalized();
   smooth.corners = sharp.triangles;
   Renderer renderer(640, 480);
   const auto step = [&](const TriangleMesh& mesh) {
-    Picture picture = of(mesh);
+    Picture picture = picture_of(mesh);
     picture.lights.to_key = {-0.6f, -1, 0.3f};  // reaches both faces
     const Image image = renderer.draw(picture);
     const int far_left = brightness(pixel(image, 320 - 80, 240)),
@@ -194,11 +194,11 @@ TEST_CASE("Corners with normals of their own keep an edge sharp") {
   CHECK(step(smooth) < 40);
 }
 
-TEST_CASE("A plane under grazing light does not shade itself") {
+TEST_CASE("a plane under grazing light does not shade itself") {
   const TriangleMesh box = test::cube({0, 0, 0}, 0.7, 0.78539816339744831);
   Renderer renderer(320, 240);
   for (const float slant : {0.95f, 0.8f, 0.4f, 0.0f}) {
-    Picture picture = of(box);
+    Picture picture = picture_of(box);
     picture.lights.to_key = {-slant, -1, 0.2f};
     const Image image = renderer.draw(picture);
     for (int x = 165; x < 225; ++x) {
@@ -208,9 +208,9 @@ TEST_CASE("A plane under grazing light does not shade itself") {
   }
 }
 
-TEST_CASE("A track is seen over the ground and hidden behind a body") {
+TEST_CASE("a track is visible above the ground and hidden behind a body") {
   const TriangleMesh ball = test::sphere({0, 0, 0}, 0.8);
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.tracks.push_back({{{-2, 1, 0}, {2, 1, 0}}, {0.9f, 0.1f, 0.1f}, 4});
   picture.tracks.push_back({{{0, -2, 0.3}}, {0.1f, 0.9f, 0.1f}, 6});
   Renderer renderer(160, 120);
@@ -224,7 +224,7 @@ TEST_CASE("A track is seen over the ground and hidden behind a body") {
   CHECK((dot[1] > 220 && dot[0] < 40));
 }
 
-TEST_CASE("A track that passes behind the eye is cut, not turned inside out") {
+TEST_CASE("a track that passes behind the eye is clipped, not mirrored") {
   Picture picture;
   picture.ground.shown = false;
   picture.camera = front_camera(6);
@@ -238,12 +238,12 @@ TEST_CASE("A track that passes behind the eye is cut, not turned inside out") {
   for (int x = 0; x < 80; ++x) REQUIRE(pixel(image, x, 10) == pixel(blank, x, 10));
 }
 
-TEST_CASE("A frame depends on its picture alone, not on the frames before it") {
+TEST_CASE("a frame depends only on its picture, not on previous frames") {
   const test::Scene scene;
   const TriangleMesh ball = test::sphere({0, 0, 1}, 1, 9, 14);
   Renderer renderer(120, 90), fresh(120, 90);
   const Image first = renderer.draw(scene.picture);
-  renderer.draw(of(ball));
+  renderer.draw(picture_of(ball));
   Picture fewer = scene.picture;
   fewer.bodies.pop_back();
   const Image second = renderer.draw(fewer);
@@ -256,16 +256,16 @@ TEST_CASE("A frame depends on its picture alone, not on the frames before it") {
   CHECK(renderer.draw(moved.picture).rgb == fresh.draw(moved.picture).rgb);
 }
 
-TEST_CASE("Far from the world's origin a picture looks the same") {
+TEST_CASE("a picture far from the origin of the world looks equal") {
   const test::Scene near, far({4e6, -2e6, 1e5});
   Renderer renderer(160, 120);
   CHECK(mean_difference(renderer.draw(near.picture), renderer.draw(far.picture)) < 0.05);
 }
 
-TEST_CASE("Scenes of any scale look the same") {
+TEST_CASE("scenes of any scale look equal") {
   Renderer renderer(160, 120);
   const TriangleMesh unit = test::sphere({0, 0, 1}, 1);
-  Picture picture = of(unit);
+  Picture picture = picture_of(unit);
   picture.ground.shown = true;
   picture.camera = automatic_camera(bounds(picture), 4.0 / 3);
   const Image image = renderer.draw(picture);
@@ -275,11 +275,11 @@ TEST_CASE("Scenes of any scale look the same") {
     Picture scaled = picture;
     scaled.bodies[0].mesh = &mesh;
     scaled.camera = automatic_camera(bounds(scaled), 4.0 / 3);
-    CHECK(mean_difference(image, renderer.draw(scaled)) < 0.5);  // sizes of shadow texels come in steps
+    CHECK(mean_difference(image, renderer.draw(scaled)) < 0.5);  // sizes of shadow texels are discrete
   }
 }
 
-TEST_CASE("Nonsense is refused with its place, and the renderer goes on") {
+TEST_CASE("invalid pictures are refused with the place of the error, and the renderer stays usable") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), huge = std::numeric_limits<double>::infinity();
   test::Scene scene;
   const Picture good = scene.picture;
@@ -290,7 +290,7 @@ TEST_CASE("Nonsense is refused with its place, and the renderer goes on") {
     change(bad);
     const std::string text = reason(renderer, bad);
     CAPTURE(part, text);
-    CHECK(holds(text, part));
+    CHECK(contains(text, part));
     CHECK(renderer.draw(good).rgb == before.rgb);
   };
   const auto bad_mesh = [&](auto change, const char* part) {
@@ -337,18 +337,18 @@ TEST_CASE("Nonsense is refused with its place, and the renderer goes on") {
   bad_mesh([&](TriangleMesh& m) { m.normals(0, 7) = nan; }, "body 1 is not finite");
 }
 
-TEST_CASE("A body with values has the colours of the scale") {
+TEST_CASE("a body with values has the colours of the scale") {
   const TriangleMesh ball = test::sphere({0, 0, 0}, 1);
   const VecX<double> height = ball.x.row(2).transpose();
-  Picture picture = of(ball);
-  // Light from all sides alike: what is seen is the colour.
+  Picture picture = picture_of(ball);
+  // Uniform light, so that the picture shows the colour.
   picture.lights.key_strength = 0;
   picture.lights.sky = picture.lights.bounce = {1, 1, 1};
   picture.lights.ambient_strength = 0.8f;
   Renderer renderer(400, 300);
   const Image plain = renderer.draw(picture);
   picture.bodies[0].values = &height;
-  CHECK(renderer.draw(picture).rgb == plain.rgb);  // without a scale they mean nothing
+  CHECK(renderer.draw(picture).rgb == plain.rgb);  // without a scale the values are not used
   picture.scale = {"height (m)", -0.5, 0.5};
   const Image image = renderer.draw(picture);
   for (const double z : {-0.8, -0.45, -0.2, 0.0, 0.25, 0.45, 0.8}) {
@@ -356,12 +356,12 @@ TEST_CASE("A body with values has the colours of the scale") {
     const std::array<int, 3> seen = pixel(image, pixel_of(at, picture.camera, 400, 300));
     const Eigen::Vector3f asked = mapped_color(z + 0.5);
     CAPTURE(z, seen[0], seen[1], seen[2]);
-    // Channels stand in the order of those of the colour: gloss and ambient light only scale and lift them.
+    // Channels have the order of those of the colour: gloss and ambient light only scale and raise them.
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (asked[i] > asked[j] + 0.1f) CHECK(seen[i] > seen[j]);
   }
-  // Beyond the scale the colour stays.
+  // Outside the scale the colour is constant.
   const auto same = [&](double z1, double z2) {
     const auto a = pixel(image, pixel_of({0, -std::sqrt(1 - z1 * z1), z1}, picture.camera, 400, 300)),
                b = pixel(image, pixel_of({0, -std::sqrt(1 - z2 * z2), z2}, picture.camera, 400, 300));
@@ -371,17 +371,17 @@ TEST_CASE("A body with values has the colours of the scale") {
   CHECK(same(0.1, 0.3) > 40);
 }
 
-TEST_CASE("The colour bar stands at the right, with its colours, ticks and title") {
+TEST_CASE("the colour bar is at the right, with its colours, ticks and title") {
   const TriangleMesh ball = test::sphere({0, 0, 0}, 0.5);
   const VecX<double> values = VecX<double>::Zero(ball.x.cols());
-  Picture picture = of(ball);
+  Picture picture = picture_of(ball);
   picture.background.top = picture.background.bottom = {0.4f, 0.5f, 0.6f};
   Renderer renderer(640, 480);
   const Image without = renderer.draw(picture);
   picture.bodies[0].values = &values;
   picture.scale = {"strain", 0, 0.2};
   const Image with = renderer.draw(picture);
-  // The columns of the bar: those whose pixel half way up has the middle colour.
+  // The columns of the bar: those whose pixel at half height has the middle colour.
   const auto near = [](const std::array<int, 3>& p, const Eigen::Vector3f& color) {
     for (int c = 0; c < 3; ++c)
       if (std::abs(p[static_cast<std::size_t>(c)] - 255 * static_cast<double>(color[c])) > 3) return false;
@@ -401,7 +401,7 @@ TEST_CASE("The colour bar stands at the right, with its colours, ticks and title
   REQUIRE(bottom - top > 200);
   for (int y = top + 2; y < bottom - 2; ++y)
     CHECK(near(pixel(with, middle, y), mapped_color((bottom + 0.5 - y) / (bottom + 1 - top))));
-  // Dark marks of five ticks beside it, and letters above; nothing of it where it is not.
+  // Dark marks of five ticks beside the bar, and letters above it; without a scale nothing is drawn there.
   const auto dark = [&](int x, int y) { return brightness(pixel(with, x, y)) < 200; };
   int marks = 0;
   for (int y = top - 4; y < bottom + 4; ++y) marks += dark(right + 4, y) && !dark(right + 4, y - 1);
@@ -415,7 +415,7 @@ TEST_CASE("The colour bar stands at the right, with its colours, ticks and title
   CHECK(label_ink > 100);
   for (int y = 0; y < 480; ++y)
     for (int x = 420; x < 540; ++x) REQUIRE(pixel(with, x, y) == pixel(without, x, y));
-  // A picture too small for it has none.
+  // A picture that is too small has no colour bar.
   Renderer small(120, 90);
   picture.bodies[0].values = nullptr;
   const Image tiny = small.draw(picture);
@@ -423,7 +423,7 @@ TEST_CASE("The colour bar stands at the right, with its colours, ticks and title
   CHECK(tiny.rgb == small.draw(picture).rgb);
 }
 
-TEST_CASE("Bodies without triangles draw nothing") {
+TEST_CASE("bodies without triangles draw nothing") {
   const TriangleMesh none;
   test::Scene scene;
   Renderer renderer(64, 48);

@@ -1,4 +1,4 @@
-// Meshes and pictures that the tests of the renderer share.
+// Meshes and pictures for the tests of the renderer.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace pliant::test {
 
-/// A unit sphere around `centre`, scaled by radius, of 2 * columns * (rows - 1) triangles.
+/// Returns a sphere around `centre` with 2 * columns * (rows - 1) triangles.
 inline TriangleMesh sphere(const Eigen::Vector3d& centre, double radius, int rows = 24, int columns = 48) {
   constexpr double kPi = 3.14159265358979323846;
   const int rings = rows - 1, poles = rings * columns;
@@ -40,7 +40,7 @@ inline TriangleMesh sphere(const Eigen::Vector3d& centre, double radius, int row
   return mesh;
 }
 
-/// A cube of 8 vertices and 6 normals, one a face, turned by `turn` radians around z.
+/// Returns a cube with 8 vertices and 6 normals, one for each face, rotated by `turn` radians around z.
 inline TriangleMesh cube(const Eigen::Vector3d& centre, double half, double turn) {
   TriangleMesh mesh;
   mesh.x.resize(3, 8);
@@ -66,7 +66,7 @@ inline TriangleMesh cube(const Eigen::Vector3d& centre, double half, double turn
   return mesh;
 }
 
-/// Two spheres and a cube on the ground with a track: every pass of the renderer has work.
+/// Two spheres and a cube on the ground with a track: a picture that uses every pass of the renderer.
 struct Scene {
   std::vector<TriangleMesh> meshes;
   std::vector<VecX<double>> values;
@@ -85,7 +85,7 @@ struct Scene {
     picture.ground.height = origin[2];
     picture.camera = automatic_camera(bounds(picture), 4.0 / 3);
   }
-  /// The spheres coloured by the height of their vertices.
+  /// Colours the spheres by the height of their vertices.
   void color_by_height() {
     values.resize(2);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -98,7 +98,7 @@ struct Scene {
   Scene& operator=(const Scene&) = delete;
 };
 
-/// Where a picture shows a point, pixels from the left and from the top.
+/// Returns the pixel of a point, from the left and from the top.
 inline Eigen::Vector2d pixel_of(const Eigen::Vector3d& point, const Camera& camera, int width, int height) {
   const Eigen::Vector3d forward = (camera.target - camera.eye).normalized();
   const Eigen::Vector3d right = forward.cross(camera.up).normalized(), up = right.cross(forward);

@@ -1,6 +1,6 @@
-// Scenes that must be refused, each beside the text that says why: bad/NAME.json and bad/NAME.txt, which is
-// all that the exception says. When a wording is changed on purpose, PLIANT_REWRITE_GOLDENS=1 in the
-// environment of this test writes the texts anew; read what git diff then shows as a user would.
+// Scenes that must be refused, each with its expected message: bad/NAME.json and bad/NAME.txt, which is the
+// whole text of the exception. After an intended change of a message, run this test with
+// PLIANT_REWRITE_GOLDENS=1 in the environment: it rewrites the texts. Then review them with git diff.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The names of the scenes, without their endings.
+/// Returns the names of the files with this ending, without the ending.
 std::vector<std::string> bad_scenes(const std::string& ending) {
   std::vector<std::string> names;
   for (const fs::directory_entry& entry : fs::directory_iterator(PLIANT_BAD_SCENES))
@@ -46,7 +46,7 @@ std::string refusal(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("every bad scene is refused in the words of its golden text") {
+TEST_CASE("every bad scene is refused with its expected message") {
   const std::vector<std::string> names = bad_scenes(".json");
   CHECK(names.size() >= 60);
   CHECK(bad_scenes(".txt") == names);
@@ -55,10 +55,10 @@ TEST_CASE("every bad scene is refused in the words of its golden text") {
   fs::current_path(PLIANT_BAD_SCENES);  // messages name the file as it was given
   for (const std::string& name : names) {
     INFO(name);
-    const std::string said = refusal(name + ".json");
-    if (rewrite) std::ofstream(name + ".txt", std::ios::binary) << said;
-    CHECK(said == bytes_of(name + ".txt"));
-    CHECK(said.find("accepted") != 0);
+    const std::string message = refusal(name + ".json");
+    if (rewrite) std::ofstream(name + ".txt", std::ios::binary) << message;
+    CHECK(message == bytes_of(name + ".txt"));
+    CHECK(message.find("accepted") != 0);
   }
   fs::current_path(before);
 }

@@ -1,5 +1,5 @@
-// Who touches whom by the words of a scene: groups, pairs and joints, planes that come and go, parts that are
-// moved.
+// Contact rules in scene files: groups, pairs and joints, planes that appear and disappear, prescribed
+// motion.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -16,20 +16,20 @@ using pliant::Vec3;
 
 namespace {
 
-/// A scene at a time (s).
-class Run {
+/// A scene that has been run until a given time (s).
+class FinishedRun {
  public:
-  Run(const std::string& text, double until) {
+  FinishedRun(const std::string& text, double until) {
     pliant::Diagnostics diagnostics;
     scene_ = pliant::parse_scene("s.json", text, {}, diagnostics);
     CHECK(diagnostics.text().empty());
     simulation_ = std::make_unique<Simulation>(scene_->body, "rk4");
     while (simulation_->time() < until - 1e-9) simulation_->step(2e-3);
   }
-  Vec3<double> place(const std::string& part) const {
+  Vec3<double> position(const std::string& part) const {
     return simulation_->model().position(simulation_->state(), scene_->body.index(*scene_->body.find(part)));
   }
-  double height(const std::string& part) const { return place(part)[2]; }
+  double height(const std::string& part) const { return position(part)[2]; }
 
  private:
   std::unique_ptr<pliant::Scene> scene_;
@@ -40,76 +40,77 @@ std::string ball(const std::string& name, double x, double z) {
          R"json(", "shape": "sphere", "parameters": {"r": 0.1}, "position": [)json" + std::to_string(x) +
          ", 0, " + std::to_string(z) + "]}";
 }
-double fallen(double t) {
+double fall_height(double t) {
   return 0.5 * 9.81 * t * t;
 }
 
 }  // namespace
 
-TEST_CASE("groups and pairs of a scene say who touches whom", "[contact]") {
-  // Columns of two balls, the upper 0.1 m above the lower, which lies on the floor: they stack or fall into
-  // one another, or through the floor.
+TEST_CASE("groups and pairs of a scene determine the contacts", "[contact]") {
+  // Columns of two balls, the upper 0.1 m above the lower, which touches the floor. Depending on the rules
+  // they stack, overlap, or fall through the floor.
   const std::string parts = "\"parts\": [" + ball("plain", 0, 0.1) + "," + ball("plain2", 0, 0.4) + "," +
                             ball("crumb", 1, 0.1) + "," + ball("crumb2", 1, 0.4) + "," +
                             ball("ghost", 2, 0.1) + "," + ball("ghost2", 2, 0.4) + "," + ball("odd", 3, 0.1) +
                             "," + ball("crumb3", 3, 0.4) + "]";
-  const Run run("{" + parts + R"json(, "contact": {
+  const FinishedRun run("{" + parts + R"json(, "contact": {
     "planes": [{"name": "floor"}],
     "groups": {"crumbs": ["crumb", "crumb2", "crumb3"], "ghosts": ["ghost", "ghost2"], "ground": ["floor"]},
     "pairs": [{"between": ["crumbs", "crumbs"], "touch": false},
               {"between": ["ghosts", "ground"], "touch": false},
               {"between": ["ghost2", "floor"], "touch": true}]}})json",
-                0.6);
+                        0.6);
   CHECK(run.height("plain") == Approx(0.1).margin(1e-9));
   CHECK(run.height("plain2") == Approx(0.3).margin(1e-9));
   CHECK(run.height("crumb") == Approx(0.1).margin(1e-9));
   CHECK(run.height("crumb2") == Approx(0.1).margin(1e-9));
-  CHECK(run.height("ghost") == Approx(0.1 - fallen(0.6)).epsilon(1e-9));
+  CHECK(run.height("ghost") == Approx(0.1 - fall_height(0.6)).epsilon(1e-9));
   CHECK(run.height("ghost2") ==
-        Approx(0.1).margin(1e-9));  // a pair of its own counts before those of its group
+        Approx(0.1).margin(1e-9));  // a pair rule of its own parts takes precedence over rules of its group
   CHECK(run.height("odd") == Approx(0.1).margin(1e-9));
   CHECK(run.height("crumb3") == Approx(0.3).margin(1e-9));
 }
 
-TEST_CASE("parts pass through each other where a scene says so, but for pairs that are named", "[contact]") {
-  const Run run("{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 0, 0.4) + "," + ball("c", 1, 0.1) +
-                    "," + ball("d", 1, 0.4) +
-                    R"json(], "contact": {"between_parts": false, "planes": [{"name": "floor"}],
+TEST_CASE("without contact between parts only named pairs collide", "[contact]") {
+  const FinishedRun run("{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 0, 0.4) + "," +
+                            ball("c", 1, 0.1) + "," + ball("d", 1, 0.4) +
+                            R"json(], "contact": {"between_parts": false, "planes": [{"name": "floor"}],
                 "pairs": [{"between": ["c", "d"]}]}})json",
-                0.6);
+                        0.6);
   CHECK(run.height("a") == Approx(0.1).margin(1e-9));
   CHECK(run.height("b") == Approx(0.1).margin(1e-9));
   CHECK(run.height("d") == Approx(0.3).margin(1e-9));
-  const Run none("{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 0, 0.4) + "]}", 0.6);
-  CHECK(none.height("a") == Approx(0.1 - fallen(0.6)).epsilon(1e-9));
+  const FinishedRun none("{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 0, 0.4) + "]}", 0.6);
+  CHECK(none.height("a") == Approx(0.1 - fall_height(0.6)).epsilon(1e-9));
 }
 
-TEST_CASE("a pendulum swings through the post that a joint ties it to, unless a pair names both",
-          "[contact]") {
+TEST_CASE("a pendulum passes through the post of its joint, unless a pair names both", "[contact]") {
   const auto swing = [](const std::string& contact) {
-    return Run(R"json({"parts": [
+    return FinishedRun(R"json({"parts": [
       {"name": "post", "shape": "box", "parameters": {"a1": 0.05, "a2": 0.2, "a3": 0.5}, "position": [0, 0, -0.5], "fixed": true},
       {"name": "arm", "shape": "box", "parameters": {"a1": 0.02, "a2": 0.05, "a3": 0.2}, "position": [0.2, 0, 0.1],
        "orientation": {"axis": [0, 1, 0], "angle": 1.5707963267948966}}],
       "joints": [{"type": "hinge", "from": {"part": "arm", "at": {"u": -1.5707963267948966, "v": 0}},
                   "to": {"part": "post", "at": {"near": [0, 0, 0.6]}}, "axis": [0, 1, 0]}],
-      "contact": )json" +
-                   contact + "}",
-               0.6)
-        .place("arm")[0];
+      "contact": )json" + contact +
+                           "}",
+                       0.6)
+        .position("arm")[0];
   };
   CHECK(swing("{}") < -0.15);
   CHECK(swing(R"json({"pairs": [{"between": ["arm", "post"]}]})json") > 0.05);
 }
 
-TEST_CASE("planes and plates of a scene come and go, and parts of it are moved", "[contact]") {
-  const Run run("{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 5, 1) + "," + ball("c", 10, 0.6) + "," +
-                    R"json({"name": "lift", "shape": "box", "parameters": {"a1": 0.5, "a2": 0.5, "a3": 0.05},
+TEST_CASE("planes and plates of a scene appear and disappear, and a prescribed motion carries a ball",
+          "[contact]") {
+  const FinishedRun run(
+      "{\"parts\": [" + ball("a", 0, 0.1) + "," + ball("b", 5, 1) + "," + ball("c", 10, 0.6) + "," +
+          R"json({"name": "lift", "shape": "box", "parameters": {"a1": 0.5, "a2": 0.5, "a3": 0.05},
                   "motion": {"position": [10, 0, "0.45 + 0.5 * t"]}}], "contact": {
       "planes": [{"name": "trap", "off": 0.2}],
       "obstacles": [{"name": "net", "half_extents": [0.5, 0.5], "position": [5, 0, 0.2], "on": 0.3}]}})json",
-                0.6);
-  CHECK(run.height("a") == Approx(0.1 - fallen(0.4)).epsilon(1e-9));
+      0.6);
+  CHECK(run.height("a") == Approx(0.1 - fall_height(0.4)).epsilon(1e-9));
   CHECK(run.height("b") == Approx(0.3).margin(1e-9));
   CHECK(run.height("c") == Approx(0.6 + 0.5 * 0.6).margin(1e-9));
 }

@@ -1,6 +1,6 @@
-// Whatever a file holds, it gives a scene that a run can start with, a SceneError, or joints that are told
-// not to close: no other exception, no crash, no hang. The scenes of scenes/ and bad/ are spoilt in thousands
-// of ways, by bytes and by values, the same each time.
+// Any file content gives a scene that can run, a SceneError, or an UnsatisfiableModel for joints that cannot
+// close: no other exception, no crash, no hang. The scenes of scenes/ and bad/ are mutated in thousands of
+// ways, by bytes and by values, reproducibly.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -26,7 +26,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-// Sanitizers make a case thirty times as slow: they get one of sixteen cases, plain builds all of them.
+// Sanitizers make a case thirty times as slow: they run one of sixteen cases, other builds all of them.
 #ifdef PLIANT_SANITIZED
 constexpr int kEach = 16;
 #else
@@ -49,17 +49,17 @@ std::vector<Sample> samples(const fs::path& folder) {
   return all;
 }
 
-class Spoiler {
+class Mutator {
  public:
-  /// The accidents of a scene follow from its name alone: other scenes do not change them.
-  explicit Spoiler(const std::string& name) {
+  /// The random mutations of a scene depend only on its name, and not on other scenes.
+  explicit Mutator(const std::string& name) {
     std::seed_seq seed(name.begin(), name.end());
     random_.seed(seed);
   }
 
-  /// A text with one to four accidents to its bytes.
-  std::string spoil_bytes(std::string text) {
-    for (std::size_t accidents = 1 + below(4); accidents > 0; --accidents) {
+  /// Returns a text with one to four random changes of its bytes.
+  std::string mutate_bytes(std::string text) {
+    for (std::size_t changes = 1 + below(4); changes > 0; --changes) {
       const std::size_t at = below(text.size() + 1), length = std::min(below(20), text.size() - at);
       switch (below(5)) {
         case 0:
@@ -81,8 +81,8 @@ class Spoiler {
     return text;
   }
 
-  /// A document with one to three of its values replaced, its keys taken away or misspelt.
-  std::string spoil_values(Json document) {
+  /// Returns a document in which one to three values are replaced, or keys are removed or misspelt.
+  std::string mutate_values(Json document) {
     for (std::size_t changes = 1 + below(3); changes > 0; --changes) {
       std::vector<std::string> places;
       const Json flat = document.flatten();
@@ -172,7 +172,7 @@ class Spoiler {
 
 enum class Outcome { refused, ready };
 
-/// What `pliant check` does with a scene before it steps. What is no refusal goes through.
+/// Loads a scene as `pliant check` does before it steps. Other exceptions are passed on.
 Outcome load(const std::string& name, const std::string& text) {
   pliant::Diagnostics diagnostics;
   try {
@@ -184,14 +184,14 @@ Outcome load(const std::string& name, const std::string& text) {
     CHECK(error.diagnostics().errors() > 0);
     CHECK(std::string(error.what()).find(name + ":") == 0);
     return Outcome::refused;
-  } catch (const pliant::UnsatisfiableModel& failure) {  // a sound scene whose joints cannot close
+  } catch (const pliant::UnsatisfiableModel& failure) {  // a valid scene whose joints cannot close
     CHECK(std::string(failure.what()).find("cannot close") != std::string::npos);
     return Outcome::refused;
   }
 }
 
-/// Loads a spoilt scene; tells which one fails in another way.
-void try_out(const Sample& sample, const std::string& text, int* ready) {
+/// Loads a mutated scene, and reports the scene if it fails in another way.
+void load_mutated(const Sample& sample, const std::string& text, int* ready) {
   try {
     *ready += load(sample.name, text) == Outcome::ready ? 1 : 0;
   } catch (const std::exception& error) {
@@ -201,24 +201,24 @@ void try_out(const Sample& sample, const std::string& text, int* ready) {
 
 }  // namespace
 
-TEST_CASE("spoilt scenes are refused as bad scenes or are sound") {
-  struct Dose {
+TEST_CASE("mutated scenes are refused with a message or can run") {
+  struct CaseCounts {
     const char* folder;
     int by_bytes, by_values;
   };
   int cases = 0, ready = 0;
-  for (const Dose& dose : {Dose{PLIANT_SCENES, 20, 40}, Dose{PLIANT_BAD_SCENES, 8, 8}}) {
-    for (const Sample& sample : samples(dose.folder)) {
-      // Exponents as degrees of freedom take a second to prepare, and so do a hundred parts and elasticity.
+  for (const CaseCounts& counts : {CaseCounts{PLIANT_SCENES, 20, 40}, CaseCounts{PLIANT_BAD_SCENES, 8, 8}}) {
+    for (const Sample& sample : samples(counts.folder)) {
+      // Some scenes need a second to prepare: dynamic exponents, a hundred parts, elasticity.
       if (sample.name == "mould.json" || sample.name == "net.json" || sample.name == "rubber_bars.json")
         continue;
-      Spoiler spoiler(sample.name);
-      for (int i = 0; i < std::max(1, dose.by_bytes / kEach); ++i, ++cases)
-        try_out(sample, spoiler.spoil_bytes(sample.text), &ready);
+      Mutator mutator(sample.name);
+      for (int i = 0; i < std::max(1, counts.by_bytes / kEach); ++i, ++cases)
+        load_mutated(sample, mutator.mutate_bytes(sample.text), &ready);
       const Json document = Json::parse(sample.text, nullptr, false);
       if (document.is_discarded()) continue;
-      for (int i = 0; i < std::max(1, dose.by_values / kEach); ++i, ++cases)
-        try_out(sample, spoiler.spoil_values(document), &ready);
+      for (int i = 0; i < std::max(1, counts.by_values / kEach); ++i, ++cases)
+        load_mutated(sample, mutator.mutate_values(document), &ready);
     }
   }
   CHECK(cases > 3000 / kEach);

@@ -1,5 +1,5 @@
-// JSON documents: places, syntax faults in words, what is refused, --set. Tags I.. are those of the bad-input
-// catalogue.
+// JSON documents: positions of values, messages about syntax errors, refused documents, the option --set. The
+// tags I.. of test names group the kinds of bad input.
 #include <pliant/scene/json/json_document.h>
 
 #include <sys/stat.h>
@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The messages about a text; empty when it is sound.
+/// Returns the messages about a text; empty if it is valid.
 std::string faults(const std::string& text) {
   Diagnostics diagnostics;
   try {
@@ -43,7 +43,7 @@ JsonDocument sound(const std::string& text) {
   return document;
 }
 
-/// "line:column" of the value at a pointer.
+/// Returns "line:column" of the value at a pointer.
 std::string place(const JsonDocument& document, const std::string& pointer) {
   const JsonValue* value = document.at(pointer);
   REQUIRE(value != nullptr);
@@ -59,7 +59,7 @@ std::string set_faults(const std::string& text, const std::string& assignment) {
   return diagnostics.text();
 }
 
-/// A folder of its own that is gone afterwards.
+/// A temporary folder that the destructor removes.
 struct Folder {
   Folder() : path(fs::temp_directory_path() / ("pliant_json_" + std::to_string(::getpid()))) {
     fs::create_directory(path);
@@ -85,7 +85,7 @@ std::string read_fault(const std::string& path, int exit_code) {
 
 }  // namespace
 
-TEST_CASE("values keep type, order and place") {
+TEST_CASE("values keep type, order and position") {
   const JsonDocument d = sound(R"({
   "name": "arm", "//": "one", "//": "two",
   "n": [1, -2.5, 3.0, 1e3, true, false, null],
@@ -153,7 +153,7 @@ TEST_CASE("columns count characters, also inside strings with escapes") {
   CHECK(column(1) == 20);  // \n
   CHECK(column(2) == 22);  // \u00e9
   CHECK(column(3) == 22);  // its second byte
-  CHECK(column(4) == 28);  // the pair
+  CHECK(column(4) == 28);  // the surrogate pair
   CHECK(column(8) == 40);  // b
   CHECK(column(9) == 41);  // the closing quote
   CHECK(column(99) == 41);
@@ -165,7 +165,7 @@ TEST_CASE("I02 an empty file is named") {
   CHECK(faults("\xEF\xBB\xBF\n") == "s.json:1:1: error: empty; expected a JSON object\n");
 }
 
-TEST_CASE("I03 syntax faults say what to do") {
+TEST_CASE("I03 syntax errors come with the remedy") {
   CHECK(faults("{\"a\": [1, 2,]}") == "s.json:1:12: error: a comma before \"]\"; remove it\n");
   CHECK(faults("{\"a\": 1,\n}") == "s.json:1:8: error: a comma before \"}\"; remove it\n");
   CHECK(faults("{\"a\": [1, 2}") ==
@@ -201,7 +201,7 @@ TEST_CASE("I03 syntax faults say what to do") {
         "s.json:1:7: error: the text that begins here is not closed; expected '\"'\n");
 }
 
-TEST_CASE("I04 text after the document") {
+TEST_CASE("I04 text after the document is refused") {
   CHECK(faults("{}\n{}") ==
         "s.json:2:1: error: \"{\" after the end of the document; a file contains one value\n");
   CHECK(faults("{} x") ==
@@ -210,7 +210,7 @@ TEST_CASE("I04 text after the document") {
         "s.json:1:3: error: \"}\" after the end of the document; a file contains one value\n");
 }
 
-TEST_CASE("I05 numbers that are none") {
+TEST_CASE("I05 invalid numbers are refused") {
   for (const char* word :
        {"NaN", "nan", "Infinity", "-Infinity", "inf", "-inf", "1.#IND", "-1.#INF", "+inf"}) {
     CHECK(faults("{\"a\": " + std::string(word) + "}") ==
@@ -227,7 +227,7 @@ TEST_CASE("I05 numbers that are none") {
   CHECK(faults("[-]") == "s.json:1:2: error: \"-\"; expected a number\n");
 }
 
-TEST_CASE("I06 numbers too large") {
+TEST_CASE("I06 numbers that are too large are refused") {
   const std::string tail = "\"; too large for a number; expected at most 1.797e308 in magnitude\n";
   CHECK(faults("{\"a\": 1e400}") == "s.json:1:7: error: \"1e400" + tail);
   CHECK(faults("{\"a\": [0, -1e400]}") == "s.json:1:11: error: \"-1e400" + tail);
@@ -236,7 +236,7 @@ TEST_CASE("I06 numbers too large") {
   CHECK(sound("[1.7976931348623157e308]").root().array()[0].number() == 1.7976931348623157e308);
 }
 
-TEST_CASE("I07 numbers rounded to zero") {
+TEST_CASE("I07 numbers that would be rounded to zero are refused") {
   CHECK(
       faults("{\"a\": 1e-400, \"b\": [-1e-999]}") ==
       "s.json:1:7: error: /a: 1e-400; too small for a number, it would become 0; expected 0 or at least "
@@ -253,7 +253,7 @@ TEST_CASE("numbers do not depend on the locale") {
   if (locale != nullptr) std::setlocale(LC_ALL, "C");
 }
 
-TEST_CASE("I11 duplicate keys name both places") {
+TEST_CASE("I11 duplicate keys are reported with both positions") {
   CHECK(faults("{\"a\": 1,\n \"b\": {\"c\": 1, \"c\": 2, \"c\": 3},\n \"a\": 2, \"//\": 1, \"//\": 2}") ==
         "s.json:2:16: error: /b/c: key given twice; the first is at line 2, column 8\n"
         "s.json:2:24: error: /b/c: key given twice; the first is at line 2, column 8\n"
@@ -262,7 +262,7 @@ TEST_CASE("I11 duplicate keys name both places") {
         "s.json:1:17: error: /1/x~1y: key given twice; the first is at line 1, column 7\n");
 }
 
-TEST_CASE("I18 deep nesting is refused with its place") {
+TEST_CASE("I18 deep nesting is refused with its position") {
   CHECK(faults(std::string(64, '[') + std::string(64, ']')).empty());
   CHECK(faults(std::string(65, '[') + std::string(65, ']')) ==
         "s.json:1:65: error: nested deeper than 64 levels\n");
@@ -272,7 +272,7 @@ TEST_CASE("I18 deep nesting is refused with its place") {
   CHECK(faults(objects) == "s.json:1:321: error: nested deeper than 64 levels\n");
 }
 
-TEST_CASE("I19 size limits are stated before reading") {
+TEST_CASE("I19 size limits are checked before reading") {
   const Folder folder;
   const std::string path = folder.write("large.json", "{}");
   fs::resize_file(path, (std::uintmax_t{64} << 20) + 1);
@@ -283,7 +283,7 @@ TEST_CASE("I19 size limits are stated before reading") {
   CHECK(faults(many) == "s.json:1:8000002: error: more than 4000000 values; the limit of a scene\n");
 }
 
-TEST_CASE("I20 text that is no text") {
+TEST_CASE("I20 invalid text is refused") {
   CHECK(faults("{\"a\": \"b\xFF\"}") ==
         "s.json:1:9: error: byte 0xFF (offset 8) is not UTF-8; save the file in UTF-8\n");
   CHECK(faults("{\"a\":\n \"\xC3\xA4\xC0\xAF\"}") ==
@@ -309,7 +309,7 @@ TEST_CASE("I20 text that is no text") {
   CHECK(faults("[1, \xFF]") == "s.json:1:5: error: \"\\xff\"; expected a value\n");
 }
 
-TEST_CASE("I21 byte-order mark, CRLF and tabs leave columns right") {
+TEST_CASE("I21 byte-order mark, CRLF and tabs do not change columns") {
   const JsonDocument d = sound("\xEF\xBB\xBF{\"a\": 1,\r\n\t\"b\": 2,\r\n\r\n \"c\": 3}\r\n");
   CHECK(place(d, "") == "1:1");
   CHECK(place(d, "/a") == "1:7");
@@ -331,7 +331,7 @@ TEST_CASE("I22 comments are refused with a hint") {
   CHECK(faults("{} // end") == "s.json:1:4: " + hint);
 }
 
-TEST_CASE("I46 other kinds of file are named") {
+TEST_CASE("I46 other kinds of file are recognised") {
   CHECK(faults("\x1F\x8B\x08") == "s.json:1:1: error: looks like gzip; expected JSON; unpack it first\n");
   CHECK(faults("PK\x03\x04...") ==
         "s.json:1:1: error: looks like a zip archive; expected JSON; unpack it first\n");
@@ -341,7 +341,7 @@ TEST_CASE("I46 other kinds of file are named") {
   CHECK(faults("<?xml?>") == "s.json:1:1: error: looks like XML; expected JSON\n");
 }
 
-TEST_CASE("I01 files that cannot be read") {
+TEST_CASE("I01 unreadable files are reported") {
   const Folder folder;
   const std::string path = folder.write("scene.json", "{\"a\": 1}");
   Diagnostics diagnostics;
@@ -365,7 +365,7 @@ TEST_CASE("I01 files that cannot be read") {
   CHECK(read_fault((folder.path / "a\x1B[2J").string(), 3).find('\x1B') == std::string::npos);
 }
 
-TEST_CASE("the option --set replaces and adds") {
+TEST_CASE("the option --set replaces and adds values") {
   JsonDocument d = sound(R"({"parts": [{"name": "a", "n": 1}], "//": 0})");
   Diagnostics diagnostics;
   d.set("/parts/0/n=[1, 2.5]", diagnostics);
@@ -392,7 +392,7 @@ TEST_CASE("the option --set replaces and adds") {
         "--set /parts/0/rest: error: /parts/0/rest: unknown key");
 }
 
-TEST_CASE("the option --set faults are told and change nothing") {
+TEST_CASE("errors of the option --set are reported and change nothing") {
   const std::string text = R"({"parts": [{"shape": {"eps1": 1}}, {}]})";
   CHECK(set_faults(text, "/parts/0/shap/eps1=2") ==
         "--set /parts/0/shap/eps1: error: /parts/0/shap/eps1: /parts/0 has no key \"shap\"; did you mean "
@@ -424,7 +424,7 @@ TEST_CASE("the option --set faults are told and change nothing") {
         std::string::npos);
 }
 
-TEST_CASE("messages are inert and can be read by machines") {
+TEST_CASE("messages contain no control characters and can be read by machines") {
   Diagnostics all;
   all.add({"a\x1B.json", 3, 4, "/x\n", "bad \x1B[31m \xE2\x80\xAE \xFF \"q\" %n", pliant::Severity::kError});
   all.add({"a\x1B.json", 1, 9, "", "unusual", pliant::Severity::kWarning});
@@ -446,7 +446,7 @@ TEST_CASE("messages are inert and can be read by machines") {
   CHECK_NOTHROW(warnings.throw_if_errors());
 }
 
-TEST_CASE("twenty faults are printed, the rest are counted") {
+TEST_CASE("twenty errors are printed, the rest are counted") {
   Diagnostics all;
   for (int i = 5000; i > 0; --i) all.add({"f", i, 1, "", "m", pliant::Severity::kError});
   const std::string text = all.text();
@@ -456,7 +456,7 @@ TEST_CASE("twenty faults are printed, the rest are counted") {
   CHECK(all.sorted().size() == Diagnostics::kMaxStored);
 }
 
-TEST_CASE("every cut and every changed byte of a scene is read or refused") {
+TEST_CASE("every truncated or changed scene is read or refused") {
   const std::string text =
       "{\"a\": [1, -2.5e3, \"\xC3\xA9\\u00e9\\\"\", {\"b\": true, \"//\": null}], \"c\": {}, \"d\": 0}";
   CHECK(faults(text).empty());

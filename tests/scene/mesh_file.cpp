@@ -1,4 +1,4 @@
-// Meshes from files: what the formats say, and what no reader may let pass.
+// Meshes from files: the supported formats, and the errors that a reader must refuse.
 #include "catch.h"
 
 #include <cmath>
@@ -20,8 +20,8 @@ using namespace pliant;
 
 namespace {
 
-/// What is said of a file with this text, as a scene reads it.
-std::string said_of(const std::string& name, const std::string& text) {
+/// Returns the error message about a file with this text; empty if the mesh is valid.
+std::string error_of(const std::string& name, const std::string& text) {
   const NewFolder folder;
   set_bytes(folder / name, text);
   try {
@@ -46,17 +46,17 @@ std::string ply(int vertices, const std::string& faces) {
 
 }  // namespace
 
-TEST_CASE("meshes are read from every format that is named") {
-  CHECK(said_of("a.obj", obj("f 1 2 4 3\n")).empty());
-  CHECK(said_of("a.OBJ", obj("f 1 2 3\nf 3 2 4\n")).empty());
-  CHECK(said_of("a.ply", ply(4, "3 0 1 2\n3 2 1 3\n")).empty());
+TEST_CASE("meshes are read from every supported format") {
+  CHECK(error_of("a.obj", obj("f 1 2 4 3\n")).empty());
+  CHECK(error_of("a.OBJ", obj("f 1 2 3\nf 3 2 4\n")).empty());
+  CHECK(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 3\n")).empty());
   CHECK(
-      said_of("a.stl",
-              "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
-              "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
-              "endfacet\nendsolid a\n")
+      error_of("a.stl",
+               "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+               "endfacet\nfacet normal 0 0 1\nouter loop\nvertex 0 1 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
+               "endfacet\nendsolid a\n")
           .empty());
-  // Two triangles of a node that is moved up by 2 and twice as large.
+  // A glTF node with two triangles, translated by 2 and scaled by 2.
   const NewFolder folder;
   set_bytes(folder / "a.gltf",
             R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
@@ -72,38 +72,40 @@ TEST_CASE("meshes are read from every format that is named") {
   CHECK(mesh.vertices.col(mesh.triangles(2, 0)) == Vec3<double>(0, 2, 2));
 }
 
-TEST_CASE("corners of one place become one vertex, and those that are merely near do not") {
+TEST_CASE("coincident corners become one vertex, and nearly coincident ones do not") {
   const NewFolder folder;
   set_bytes(folder / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 1 1e-7\nf 1 2 3\nf 6 4 5\n");
   const MeshFile mesh = read_mesh_file(folder / "a.obj");
   const ObstacleMesh obstacle(mesh.vertices, mesh.triangles);
   CHECK(obstacle.vertices().cols() == 5);
-  // A tiny triangle stays one.
-  CHECK(said_of("tiny.obj", "v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nf 1 2 3\n").empty());
+  // A tiny triangle is not collapsed.
+  CHECK(error_of("tiny.obj", "v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nf 1 2 3\n").empty());
 }
 
-TEST_CASE("what is no sound mesh is refused with its reason") {
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\n", "0 nan 0")),
+TEST_CASE("invalid meshes are refused with the reason") {
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 4\n", "0 nan 0")),
              test::has_text("is not finite: (0, nan, 0)"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\n", "0 1e400 0")),
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 4\n", "0 1e400 0")),
              test::has_text("is not finite: (0, inf, 0)"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 9\n")), test::has_text("the file is not a mesh: "));
-  CHECK_THAT(said_of("a.ply", ply(4, "3 0 1 2\n3 2 1 7\n")), test::has_text("the file is not a mesh: "));
-  CHECK_THAT(said_of("a.ply", ply(4, "3 0 1 2\n3 2 1 -1\n")), test::has_text("the file is not a mesh: "));
-  CHECK_FALSE(said_of("a.ply", ply(6, "3 0 1 2\n3 2 1 3\n")).empty());  // it promises two vertices more
-  CHECK_THAT(said_of("a.obj", ""), test::has_text("the file is not a mesh: "));
-  CHECK_THAT(said_of("a.obj", "this is text, and nothing else\n"),
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 9\n")), test::has_text("the file is not a mesh: "));
+  CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 7\n")), test::has_text("the file is not a mesh: "));
+  CHECK_THAT(error_of("a.ply", ply(4, "3 0 1 2\n3 2 1 -1\n")), test::has_text("the file is not a mesh: "));
+  // the header announces two more vertices
+  CHECK_FALSE(error_of("a.ply", ply(6, "3 0 1 2\n3 2 1 3\n")).empty());
+  CHECK_THAT(error_of("a.obj", ""), test::has_text("the file is not a mesh: "));
+  CHECK_THAT(error_of("a.obj", "this is text, and nothing else\n"),
              test::has_text("the file is not a mesh: "));
-  CHECK_THAT(said_of("a.obj", obj("")), test::has_text("the file is not a mesh: "));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 1 1 2\n")), test::has_text("triangle 2 has no area"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nl 1 2\n")), test::has_text("a point or a line"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 2 3 4\n")), test::has_text("have opposite orientations"));
-  CHECK_THAT(said_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 2 3 1\n")),
+  CHECK_THAT(error_of("a.obj", obj("")), test::has_text("the file is not a mesh: "));
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 1 1 2\n")), test::has_text("triangle 2 has no area"));
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 4\nl 1 2\n")), test::has_text("a point or a line"));
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 2 3 4\n")), test::has_text("have opposite orientations"));
+  CHECK_THAT(error_of("a.obj", obj("f 1 2 3\nf 3 2 4\nf 2 3 1\n")),
              test::has_text("has three triangles: 0, 1 and 2"));
-  CHECK_THAT(said_of("a.fbx", "anything"), test::has_text("expected a file .obj, .ply, .stl, .gltf or .glb"));
+  CHECK_THAT(error_of("a.fbx", "anything"),
+             test::has_text("expected a file .obj, .ply, .stl, .gltf or .glb"));
 }
 
-TEST_CASE("files that cannot be read are told in the words of the file system") {
+TEST_CASE("unreadable files are reported with the error of the file system") {
   const NewFolder folder;
   set_bytes(folder / "bowl.obj", obj("f 1 2 3\n"));
   std::filesystem::create_directory(folder / "folder.obj");

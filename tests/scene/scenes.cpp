@@ -1,5 +1,5 @@
-// The scenes that come with pliant are sound, for the program and for an editor that follows the JSON Schema;
-// and the schema alone already refuses every bad scene that types, keys and ranges can tell.
+// The scenes in scenes/ are valid, for the program and for an editor with the JSON Schema. The schema alone
+// refuses every bad scene whose error concerns types, keys or ranges.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -36,20 +36,20 @@ std::vector<fs::path> scenes_in(const fs::path& folder) {
   return all;
 }
 
-/// The scene as a plain reader takes it; discarded when it is not JSON.
+/// Returns the scene as a plain JSON value; discarded if it is not JSON.
 nlohmann::json json_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return nlohmann::json::parse(file, nullptr, false);
 }
 
-const pliant::test::SchemaJudge& schema() {
-  static const pliant::test::SchemaJudge judge(pliant::schema::schema_json(pliant::scene_record()));
+const pliant::test::SchemaValidator& schema() {
+  static const pliant::test::SchemaValidator judge(pliant::schema::schema_json(pliant::scene_record()));
   return judge;
 }
 
 }  // namespace
 
-TEST_CASE("every scene that comes with pliant reads without a warning, and a run can start", "[long]") {
+TEST_CASE("every scene of the distribution reads without a warning, and can run", "[long]") {
   const std::vector<fs::path> scenes = scenes_in(PLIANT_SCENES);
   CHECK(scenes.size() >= 19);
   for (const fs::path& path : scenes) {
@@ -73,10 +73,10 @@ using pliant::material_at;
 using pliant::Simulation;
 using pliant::Vec3;
 
-/// Steps a scene to a time (s); each step leaves no more of the balance of energy than a part of the largest
-/// kinetic energy, or of 1 J.
+/// Steps a scene until a time (s). After each step the balance error must be below `max_balance` times the
+/// largest kinetic energy, or times 1 J.
 template <class AfterStep>
-void run(const char* name, double until, double books, AfterStep&& after_step) {
+void run(const char* name, double until, double max_balance, AfterStep&& after_step) {
   INFO(name);
   pliant::Diagnostics diagnostics;
   const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + name, {}, diagnostics);
@@ -86,86 +86,88 @@ void run(const char* name, double until, double books, AfterStep&& after_step) {
     simulation.step(scene->step);
     const pliant::Ledger ledger = simulation.ledger();
     largest = std::max(largest, ledger.kinetic);
-    REQUIRE(std::abs(ledger.balance) < books * std::max(largest, 1.0));
+    REQUIRE(std::abs(ledger.balance) < max_balance * std::max(largest, 1.0));
     after_step(simulation, ledger);
   }
 }
 
-/// Where a material point of the first part is.
-Vec3<double> place(const Simulation& simulation, const pliant::Material<double>& m) {
+/// Returns the world position of a material point of the first part.
+Vec3<double> world_position(const Simulation& simulation, const pliant::Material<double>& m) {
   return simulation.model().world_point(simulation.state(), 0, m);
 }
-/// How wide the first part is at a latitude.
+/// Returns the mean width of the first part at a latitude.
 double width(const Simulation& simulation, double u) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
-    sum += (place(simulation, material_at(u, kPi * i / 4)) -
-            place(simulation, material_at(u, kPi * i / 4 + kPi)))
+    sum += (world_position(simulation, material_at(u, kPi * i / 4)) -
+            world_position(simulation, material_at(u, kPi * i / 4 + kPi)))
                .norm();
   return sum / 4;
 }
 
 }  // namespace
 
-TEST_CASE("the twisting tube passes its widest twist, the soft chain stretches, and both keep their books",
+TEST_CASE("the twisting tube passes its largest twist, the soft chain stretches, and both ledgers balance",
           "[long]") {
-  double least = 0;
+  double smallest = 0;
   run("twisting_tube.json", 0.8, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
-    least = std::min(least, simulation.state().q[7]);
+    smallest = std::min(smallest, simulation.state().q[7]);
   });
-  CHECK(least < -2);  // from 2.5
+  CHECK(smallest < -2);  // it starts at 2.5
   double longest = 0;
   run("soft_chain.json", 0.7, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
     REQUIRE(simulation.model().gap(simulation.state(), 3) < 1e-12);
-    longest = std::max(
-        longest,
-        (place(simulation, material_at(kPi / 2, 0)) - place(simulation, material_at(-kPi / 2, 0))).norm());
+    longest = std::max(longest, (world_position(simulation, material_at(kPi / 2, 0)) -
+                                 world_position(simulation, material_at(-kPi / 2, 0)))
+                                    .norm());
   });
   CHECK(longest > 1.2 * 0.32);
 }
 
-TEST_CASE("the ringing sphere: its dents spring out and back, it turns, momentum and energy stay", "[long]") {
+TEST_CASE("the ringing sphere: its dents spring out and back, it rotates, momentum and energy are conserved",
+          "[long]") {
   std::optional<pliant::Ledger> start;
-  double out = 0, in = 1, least = 1, most = 0, turned = 0;
+  double out = 0, in = 1, smallest = 1, largest = 0, rotation_angle = 0;
   run("ringing_sphere.json", 0.45, 1e-3, [&](const Simulation& simulation, const pliant::Ledger& ledger) {
     if (!start) start = ledger;
     REQUIRE((ledger.momentum - start->momentum).norm() < 1e-11 * start->momentum.norm());
     REQUIRE((ledger.angular_momentum - start->angular_momentum).norm() <
             1e-9 * start->angular_momentum.norm());
     REQUIRE(std::abs(ledger.energy() - start->energy()) < 3e-4 * ledger.kinetic);
-    least = std::min(least, ledger.kinetic);
-    most = std::max(most, ledger.kinetic);
-    const double dent = (place(simulation, material_at(0, 0)) - simulation.state().q.head<3>()).norm();
+    smallest = std::min(smallest, ledger.kinetic);
+    largest = std::max(largest, ledger.kinetic);
+    const double dent =
+        (world_position(simulation, material_at(0, 0)) - simulation.state().q.head<3>()).norm();
     out = std::max(out, dent);
     if (out > 0.55) in = std::min(in, dent);
-    turned = 2 * std::acos(std::abs(simulation.state().q[3]));
+    rotation_angle = 2 * std::acos(std::abs(simulation.state().q[3]));
   });
   CHECK(out > 0.55);  // from 0.38; the radius is 0.5
   CHECK(in < 0.53);
-  CHECK(most > 1.2 * least);
-  CHECK(turned == Approx(0.45 * std::sqrt(1.2)).epsilon(0.1));
+  CHECK(largest > 1.2 * smallest);
+  CHECK(rotation_angle == Approx(0.45 * std::sqrt(1.2)).epsilon(0.1));
 }
 
-TEST_CASE("the balloon falls onto its string, is drawn out at its knot, and bulges below", "[long]") {
+TEST_CASE("the balloon falls onto its string, stretches at its knot, and bulges below", "[long]") {
   bool slack = false;
-  double drawn = 0, above = 0, below = 0;
+  double largest_stretch = 0, above = 0, below = 0;
   run("balloon.json", 0.6, 1e-4, [&](const Simulation& simulation, const pliant::Ledger&) {
-    const Vec3<double> knot = place(simulation, material_at(kPi / 2, 0));
+    const Vec3<double> knot = world_position(simulation, material_at(kPi / 2, 0));
     REQUIRE(knot.norm() <= 0.5 + 1e-12);
     slack = slack || knot.norm() < 0.4;
-    const double far = (knot - simulation.state().q.head<3>()).norm();
-    if (far <= drawn) return;
-    drawn = far;
+    const double stretch = (knot - simulation.state().q.head<3>()).norm();
+    if (stretch <= largest_stretch) return;
+    largest_stretch = stretch;
     above = width(simulation, 0.7);
     below = width(simulation, -0.7);
   });
   CHECK(slack);
-  CHECK(drawn > 2 * 0.36);
+  CHECK(largest_stretch > 2 * 0.36);
   CHECK(below > 1.05 * above);
 }
 
-TEST_CASE("the rubber bar bends to one side and to the other, and turns", "[long]") {
-  double most = 0, least = 0;
+TEST_CASE("the rubber bar bends to one side and to the other, and rotates", "[long]") {
+  double largest = 0, smallest = 0;
   Vec3<double> along = Vec3<double>::UnitZ();
   std::optional<pliant::Ledger> start;
   run("beam.json", 0.22, 5e-3, [&](const Simulation& simulation, const pliant::Ledger& ledger) {
@@ -173,36 +175,36 @@ TEST_CASE("the rubber bar bends to one side and to the other, and turns", "[long
     REQUIRE((ledger.momentum - start->momentum).norm() < 1e-11 * start->momentum.norm());
     REQUIRE((ledger.angular_momentum - start->angular_momentum).norm() <
             1e-6 * start->angular_momentum.norm());
-    const Vec3<double> top = place(simulation, material_at(kPi / 2, 0)),
-                       foot = place(simulation, material_at(-kPi / 2, 0));
-    const double sag = (place(simulation, material_at(0, 0, 0)) - (top + foot) / 2)[0];
-    most = std::max(most, sag);
-    least = std::min(least, sag);
+    const Vec3<double> top = world_position(simulation, material_at(kPi / 2, 0)),
+                       foot = world_position(simulation, material_at(-kPi / 2, 0));
+    const double sag = (world_position(simulation, material_at(0, 0, 0)) - (top + foot) / 2)[0];
+    largest = std::max(largest, sag);
+    smallest = std::min(smallest, sag);
     along = (top - foot).normalized();
   });
-  CHECK(most > 0.15);
-  CHECK(least < -0.15);
+  CHECK(largest > 0.15);
+  CHECK(smallest < -0.15);
   CHECK(along[1] > 0.4);  // from 0
   CHECK(std::abs(along[0]) < 0.01);
 }
 
-TEST_CASE("a spring pulls the membrane of a shell out, and its parameters follow", "[long]") {
-  double pulled = 0, local = 0, a1 = 0, others = 0;
+TEST_CASE("a spring pulls the membrane of a shell outwards, and its parameters adapt", "[long]") {
+  double pulled_x = 0, local = 0, a1 = 0, others = 0;
   run("soft_pull.json", 0.3, 1e-5, [&](const Simulation& simulation, const pliant::Ledger&) {
     const pliant::State& state = simulation.state();
-    const double x = place(simulation, material_at(0, 0))[0];
-    pulled = std::max(pulled, x);
+    const double x = world_position(simulation, material_at(0, 0))[0];
+    pulled_x = std::max(pulled_x, x);
     local = std::max(local, x - state.q[0] - state.q[7]);
     a1 = std::max(a1, state.q[7]);
     others = std::max({others, std::abs(state.q[8] - 0.4), std::abs(state.q[9] - 0.6)});
   });
-  CHECK(pulled > 0.8);  // from 0.4
+  CHECK(pulled_x > 0.8);  // from 0.4
   CHECK(local > 0.35);
   CHECK(a1 > 1.05 * 0.4);
   CHECK(others < 0.2 * (a1 - 0.4));
 }
 
-TEST_CASE("the density of a shell is per volume where it has a thickness, else per area") {
+TEST_CASE("the density of a shell is per volume if it has a thickness, otherwise per area") {
   const auto mass = [](const std::string& members) {
     pliant::Diagnostics diagnostics;
     const auto scene = pliant::parse_scene(
@@ -227,7 +229,7 @@ TEST_CASE("the density of a shell is per volume where it has a thickness, else p
   CHECK(mass("") == Approx(1100 * area * 0.1).epsilon(1e-12));
 }
 
-TEST_CASE("assembly tells whether shapes settled within the most iterations") {
+TEST_CASE("the assembly report states whether shapes converged within the maximum number of iterations") {
   pliant::Diagnostics diagnostics;
   const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/garland.json", {}, diagnostics);
   const pliant::AssemblyReport report = pliant::Simulation(scene->body, scene->integrator).assembly();
@@ -235,12 +237,11 @@ TEST_CASE("assembly tells whether shapes settled within the most iterations") {
   CHECK(report.converged == (report.iterations < 400));
 }
 
-TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has closed stays closed",
-          "[long]") {
+TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and closed joints stay closed", "[long]") {
   struct Case {
     const char* name;
     std::size_t joints;
-    double until;  // s; what tells of the assembled body in the scene begins about then
+    double until;  // s; the assembly is complete then
   };
   for (const Case& c : {Case{"dragonfly.json", 4, 3.3}, Case{"snowman.json", 12, 3.1}}) {
     INFO(c.name);
@@ -248,7 +249,7 @@ TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has 
     const auto scene = pliant::read_scene(std::string(PLIANT_SCENES) + "/" + c.name, {}, diagnostics);
     pliant::Simulation simulation(scene->body, scene->integrator);
     const pliant::Model& model = simulation.model();
-    std::vector<std::size_t> assembled;  // joints that act from the start
+    std::vector<std::size_t> assembled;  // joints that are active from the start
     for (std::size_t j = 0; j < model.joints().size(); ++j) {
       if (simulation.state().joints[j] == pliant::JointMode::off) continue;
       assembled.push_back(j);
@@ -273,7 +274,7 @@ TEST_CASE("N36: the dragonfly and the snowman assemble themselves, and what has 
   }
 }
 
-TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
+TEST_CASE("I59: a scene without parts, and one whose end is its start") {
   for (const char* text : {"{\"parts\": []}", "{\"parts\": [], \"time\": {\"end\": 0}}"}) {
     pliant::Diagnostics diagnostics;
     const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
@@ -285,7 +286,7 @@ TEST_CASE("I59: a scene without parts, and one that ends where it begins") {
   }
 }
 
-TEST_CASE("comments and extensions are allowed everywhere, and never read") {
+TEST_CASE("comments and extensions are allowed everywhere, and ignored") {
   const std::string text = R"json({
     "//": "a ball", "//": ["twice"], "x-editor": {"zoom": 2},
     "materials": {"//": "one", "x-m": 3, "rubber": {"density": 1100, "//": "dry"}},
@@ -302,7 +303,7 @@ TEST_CASE("comments and extensions are allowed everywhere, and never read") {
   CHECK(schema().accepts(nlohmann::json::parse(text)));
 }
 
-TEST_CASE("points by direction and by place lie there on the rest shape") {
+TEST_CASE("points given by direction or by position are there on the rest shape") {
   const std::string text = R"json({
     "parts": [{"name": "horn", "shape": "superellipsoid", "deformations": ["taper", "bend"],
                "parameters": {"a3": 2, "eps2": 0.4, "taper.tx": -0.5, "bend.angle": 1, "bend.direction": 0.3}}],
@@ -313,12 +314,12 @@ TEST_CASE("points by direction and by place lie there on the rest shape") {
   pliant::Diagnostics diagnostics;
   const auto scene = pliant::parse_scene("s.json", text, {}, diagnostics);
   CHECK(diagnostics.text().empty());
-  const auto place = [&](std::size_t i) {
+  const auto world_position = [&](std::size_t i) {
     const pliant::Point& point = scene->tracks[i].point;
     const pliant::Part& horn = *point.part;
     return pliant::Vec3<double>(horn.s({point.material}, horn.parameters().rest()).col(0));
   };
-  // A plate thinner than the ray is sampled, away from the origin.
+  // A plate thinner than the sampling of the ray, away from the origin.
   pliant::Diagnostics none;
   const auto plate = pliant::parse_scene("s.json", R"json({
     "parts": [{"name": "plate", "shape": "cylinder", "deformations": ["shear", "bend_offset"],
@@ -332,13 +333,13 @@ TEST_CASE("points by direction and by place lie there on the rest shape") {
   CHECK((found.normalized() - pliant::Vec3<double>(0.43, 0, 0.05).normalized()).norm() < 1e-12);
   const pliant::Vec3<double> direction = pliant::Vec3<double>(3, 2, 5).normalized();
   CHECK(scene->tracks[0].point.material.w == 1);
-  CHECK((place(0).normalized() - direction).norm() < 1e-12);
-  CHECK((place(1) - pliant::Vec3<double>(0.1, 0.2, 0.3)).norm() < 1e-12);
+  CHECK((world_position(0).normalized() - direction).norm() < 1e-12);
+  CHECK((world_position(1) - pliant::Vec3<double>(0.1, 0.2, 0.3)).norm() < 1e-12);
   CHECK(scene->tracks[2].point.material.w == 1);
-  CHECK((place(2) - pliant::Vec3<double>(0, 1, 0)).norm() < 0.1);
+  CHECK((world_position(2) - pliant::Vec3<double>(0, 1, 0)).norm() < 0.1);
 }
 
-TEST_CASE("what is allowed but has no effect is warned about") {
+TEST_CASE("settings without effect give a warning") {
   const auto warnings = [](const std::string& members) {
     pliant::Diagnostics diagnostics;
     pliant::parse_scene("s.json", "{\"parts\": [{\"name\": \"a\", \"shape\": \"sphere\",\n" + members + "}]}",
@@ -351,7 +352,7 @@ TEST_CASE("what is allowed but has no effect is warned about") {
   CHECK(warnings("\"fixed\": true, \"velocity\": [1, 0, 0]") ==
         "s.json:2:28: warning: /parts/0/velocity: [1, 0, 0]; it has no effect, because the part is fixed\n");
   CHECK(warnings("\"orientation\": {\"quaternion\": [0.7071, 0.7071, 0, 0]}").empty());
-  // N12: twists finer than the mesh.
+  // Twists finer than the mesh.
   const std::string twist =
       "\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 31.5}, \"resolution\": ";
   CHECK(warnings(twist + "8") ==
@@ -389,7 +390,7 @@ TEST_CASE("colouring of parts is read") {
         std::string::npos);
 }
 
-TEST_CASE("a torque against another part is read, and leaves the momenta of both") {
+TEST_CASE("a torque against another part is read, and conserves the momenta of both") {
   pliant::Diagnostics diagnostics;
   const auto scene = pliant::parse_scene("s.json", R"json({
     "gravity": [0, 0, 0],
@@ -415,7 +416,7 @@ TEST_CASE("a torque against another part is read, and leaves the momenta of both
   CHECK(end.work[static_cast<int>(pliant::Work::forces)] > 1e-2);
 }
 
-TEST_CASE("what is shown of a plane is read") {
+TEST_CASE("the appearance of a plane is read") {
   pliant::Diagnostics diagnostics;
   const auto scene = pliant::parse_scene("s.json", R"json({
     "parts": [{"name": "a", "shape": "sphere"}],
@@ -431,7 +432,7 @@ TEST_CASE("what is shown of a plane is read") {
   CHECK(scene->planes[0].color == pliant::Color{1, 0, 0});
 }
 
-TEST_CASE("whether bodies sleep is read") {
+TEST_CASE("the sleep settings are read") {
   pliant::Diagnostics diagnostics;
   const std::string start = R"json({"parts": [{"name": "a", "shape": "sphere"}], "contact": {)json";
   auto sleep_of = [&](const char* contact) {
@@ -446,9 +447,9 @@ TEST_CASE("whether bodies sleep is read") {
   CHECK(short_one->after == 0.5);
 }
 
-TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
-  // What needs more than types, keys and ranges: names and numbers that must fit others.
-  const std::vector<std::string> beyond{"anchor_not_finite",
+TEST_CASE("the JSON Schema refuses the bad scenes that a schema can refuse") {
+  // Errors that need more than types, keys and ranges: names and numbers that depend on others.
+  const std::vector<std::string> passed{"anchor_not_finite",
                                         "camera_at_its_target",
                                         "coloring_of_unknown_part",
                                         "coloring_range_falls",
@@ -547,7 +548,7 @@ TEST_CASE("the JSON Schema refuses the bad scenes that a schema can") {
     const nlohmann::json scene = json_of(path);
     if (!scene.is_discarded() && schema().accepts(scene)) accepted.push_back(path.stem().string());
   }
-  CHECK(accepted == beyond);
+  CHECK(accepted == passed);
 }
 
 }  // namespace scenes_test

@@ -1,5 +1,5 @@
-// Records of a scene: what they refuse and in which words, what readers get, and the JSON Schema that follows
-// from them, judged by an independent validator. Tags I.. are those of the bad-input catalogue.
+// Records of a scene: their checks and messages, the values for readers, and the JSON Schema generated from
+// them, checked by an independent validator. The tags I.. of test names group the kinds of bad input.
 #include <pliant/scene/schema/schema.h>
 
 #include <fstream>
@@ -27,7 +27,7 @@ using namespace pliant::schema;
 
 namespace {
 
-/// A small scene with one of each kind of type.
+/// A small scene record with one field of each kind of type.
 const Record& scene() {
   static const Record root = [] {
     const Record sphere{"sphere", "A ball.", {optional("radius", number(above(0), "m"), "Radius.", "1")}};
@@ -101,7 +101,7 @@ std::string faults(const std::string& text) {
   return diagnostics.text();
 }
 
-/// Faults of one part / spring / solver with the given members beside what is required.
+/// Return the errors of one part, spring or solver with the given members and the required ones.
 std::string part_faults(const std::string& members) {
   return faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": 1,\n" + members +
                 "}]}");
@@ -132,11 +132,11 @@ const char* const kGood = R"json({
 
 }  // namespace
 
-TEST_CASE("a good scene has no faults") {
+TEST_CASE("a valid scene has no errors") {
   CHECK(faults(kGood) == "");
 }
 
-TEST_CASE("I08 I09 I10 counts") {
+TEST_CASE("I08 I09 I10 invalid counts are refused") {
   const std::string range = "; expected an integer in [1, 1000]";
   CHECK(solver_faults("\"substeps\": 123456789012345678901234567890") ==
         "s.json:2:13: error: /solver/substeps: 123456789012345678901234567890" + range + "\n");
@@ -147,7 +147,7 @@ TEST_CASE("I08 I09 I10 counts") {
   CHECK(solver_faults("\"substeps\": 1e2").empty());
 }
 
-TEST_CASE("I12 unknown keys have their nearest name") {
+TEST_CASE("I12 unknown keys are reported with the nearest name") {
   CHECK(part_faults("\"densty\": 3") ==
         "s.json:2:1: error: /parts/0/densty: unknown key; did you mean \"density\"?\n");
   CHECK(part_faults("\"colour\": 3") ==
@@ -161,7 +161,7 @@ TEST_CASE("I12 unknown keys have their nearest name") {
             .rfind("s.json:2:1: error: /parts/0/a\\x1b[31m\\n: unknown key", 0) == 0);
 }
 
-TEST_CASE("I13 keys in the wrong place are told where they belong") {
+TEST_CASE("I13 keys in the wrong place are reported with their right place") {
   CHECK(faults("{\"parts\": [], \"density\": 3}") ==
         "s.json:1:15: error: /density: unknown key; it belongs to /parts/*\n");
   CHECK(part_faults("\"radius\": 3") ==
@@ -171,7 +171,7 @@ TEST_CASE("I13 keys in the wrong place are told where they belong") {
         "/parts/*/deformations/* of type \"twist\"\n");
 }
 
-TEST_CASE("I14 wrong types") {
+TEST_CASE("I14 wrong types are refused") {
   CHECK(part_faults("\"position\": 3") ==
         "s.json:2:13: error: /parts/0/position: 3; expected 3 numbers [x, y, z] (m)\n");
   CHECK(part_faults("\"position\": [0, \"1\", null]") ==
@@ -191,14 +191,14 @@ TEST_CASE("I14 wrong types") {
         "s.json:1:24: error: /title: \"\"; expected a text in quotes that is not empty\n");
 }
 
-TEST_CASE("I15 wrong array lengths") {
+TEST_CASE("I15 wrong array lengths are refused") {
   CHECK(part_faults("\"position\": [0, 1]") ==
         "s.json:2:13: error: /parts/0/position: [0, 1]; expected 3 numbers [x, y, z] (m)\n");
   CHECK(part_faults("\"position\": [0, 1, 2, 3]") ==
         "s.json:2:13: error: /parts/0/position: [0, 1, 2, 3]; expected 3 numbers [x, y, z] (m)\n");
 }
 
-TEST_CASE("I16 unknown choices have the list and the nearest") {
+TEST_CASE("I16 unknown choices are reported with the list and the nearest name") {
   CHECK(solver_faults("\"method\": \"rk5\"") ==
         "s.json:2:11: error: /solver/method: \"rk5\"; expected one of \"euler\", \"rk4\"; did you mean "
         "\"rk4\"?\n");
@@ -213,7 +213,7 @@ TEST_CASE("I16 unknown choices have the list and the nearest") {
         "\"twist\"\n");
 }
 
-TEST_CASE("I17 missing keys have an example") {
+TEST_CASE("I17 missing keys are reported with an example") {
   CHECK(faults("{}") ==
         "s.json:1:1: error: missing key \"parts\"; expected an array of objects with \"name\", \"shape\", "
         "for example \"parts\": []\n");
@@ -226,7 +226,7 @@ TEST_CASE("I17 missing keys have an example") {
         "{\"type\": \"sphere\"}\n");
 }
 
-TEST_CASE("I25 names") {
+TEST_CASE("I25 invalid names are refused") {
   for (const char* bad : {"\"\"", "\"a/b\"", "\"a\\nb\"", "\"a\\u001b[2J\"", "\"a\\u007f\""}) {
     INFO(bad);
     const std::string text = faults("{\"parts\": [{\"name\": " + std::string(bad) +
@@ -237,7 +237,7 @@ TEST_CASE("I25 names") {
   }
 }
 
-TEST_CASE("I28 I30 ranges") {
+TEST_CASE("I28 I30 values out of range are refused") {
   CHECK(part_faults("\"//\": 0").empty());
   for (const char* bad : {"0", "-1", "-0.0"}) {
     CHECK(faults("{\"parts\": [{\"name\": \"a\", \"shape\": {\"type\": \"sphere\"}, \"mass\": " +
@@ -249,7 +249,7 @@ TEST_CASE("I28 I30 ranges") {
         "s.json:2:42: error: /parts/0/deformations/0/tx: -1.5; expected a number in [-1, 1]\n");
 }
 
-TEST_CASE("keys that exclude each other") {
+TEST_CASE("keys that exclude each other are refused") {
   CHECK(part_faults("\"density\": 3") ==
         "s.json:2:1: error: /parts/0/density: given beside \"mass\"; expected only one of \"density\", "
         "\"mass\"\n");
@@ -257,7 +257,7 @@ TEST_CASE("keys that exclude each other") {
         "s.json:1:12: error: /parts/0: missing key; expected one of \"density\", \"mass\"\n");
 }
 
-TEST_CASE("alternatives: the type of the value chooses, and only its faults are shown") {
+TEST_CASE("alternatives: the type of the value selects one, and only its errors are shown") {
   const std::string at = "\"at\": {\"near\": [0, 0, 0]}, ";
   CHECK(spring_faults(at + "\"to\": [0, 0, 0], \"stiffness\": true") ==
         "s.json:2:58: error: /springs/0/stiffness: true; expected a number (N/m), a formula of t in quotes, "
@@ -302,7 +302,7 @@ TEST_CASE("alternatives: the type of the value chooses, and only its faults are 
         "...}\n");
 }
 
-TEST_CASE("faults in formulas point into the text") {
+TEST_CASE("errors in formulas are reported with their position in the text") {
   CHECK(
       spring_faults("\"at\": {\"near\": [0, 0, 0]}, \"to\": [0, \"2*sine(t)\", \"1 +\"]") ==
       "s.json:2:41: error: /springs/0/to/1: \"2*sine(t)\"; unknown function \"sine\"; did you mean \"sin\"?\n"
@@ -314,7 +314,7 @@ TEST_CASE("faults in formulas point into the text") {
         "s.json:2:50: error: /springs/0/to/2: \"\"; expected a formula of t in quotes\n");
 }
 
-TEST_CASE("faults of key frames") {
+TEST_CASE("errors of key frames are reported") {
   const std::string begin = "\"at\": {\"near\": [0, 0, 0]}, \"to\": [0, 0, 0], \"stiffness\": ";
   CHECK(spring_faults(begin + "{\"t\": [0, 1, 1], \"y\": [0, 1, 2]}") ==
         "s.json:2:71: error: /springs/0/stiffness/t/2: 1; expected a time later than the one before it, 1\n");
@@ -326,7 +326,7 @@ TEST_CASE("faults of key frames") {
         "2\n");
 }
 
-TEST_CASE("all faults are shown at once, in the order of the file") {
+TEST_CASE("all errors are shown at once, in the order of the file") {
   const std::string text = faults(R"({
   "parts": [
     {"name": "a", "shape": {"type": "sphere", "radius": -1}, "mas": 1, "density": 1},
@@ -344,7 +344,7 @@ TEST_CASE("all faults are shown at once, in the order of the file") {
         "s.json:6:3: error: /sprigs: unknown key; did you mean \"springs\"?\n");
 }
 
-TEST_CASE("a flood of faults is cut short") {
+TEST_CASE("a large number of errors is cut short") {
   std::string text = "{\"parts\": [], \"springs\": [";
   for (int i = 0; i < 200000; ++i) text += "{\"a\": 1},";
   text += "{}]}";
@@ -353,7 +353,7 @@ TEST_CASE("a flood of faults is cut short") {
   CHECK(shown.find("... and ") != std::string::npos);
 }
 
-TEST_CASE("faults of --set values name the option") {
+TEST_CASE("errors of --set values name the option") {
   Diagnostics diagnostics;
   JsonDocument document = JsonDocument::parse("s.json", kGood, diagnostics);
   document.set("/solver/method=rk5", diagnostics);
@@ -371,7 +371,7 @@ TEST_CASE("faults of --set values name the option") {
         "mean \"rk4\"?\n");
 }
 
-TEST_CASE("readers give values and defaults") {
+TEST_CASE("readers provide values and defaults") {
   Diagnostics diagnostics;
   const JsonDocument document = JsonDocument::parse("s.json", kGood, diagnostics);
   validate(document, scene(), diagnostics);
@@ -427,7 +427,7 @@ TEST_CASE("readers give values and defaults") {
   CHECK(Reader(bare.root(), scene()).objects("springs").empty());
 }
 
-TEST_CASE("one value can be checked against a type of its own") {
+TEST_CASE("a single value can be checked against its own type") {
   Diagnostics diagnostics;
   const JsonDocument document = JsonDocument::parse("s.json", kGood, diagnostics);
   const Record names{
@@ -438,7 +438,7 @@ TEST_CASE("one value can be checked against a type of its own") {
         "s.json:7:30: error: /parts/0/parameters/taper.tx: unknown key; expected one of \"radius\"\n");
 }
 
-TEST_CASE("key frames with end rates") {
+TEST_CASE("key frames may have end rates") {
   Diagnostics diagnostics;
   const JsonDocument d =
       JsonDocument::parse("k", "{\"t\": [0, 1], \"y\": [0, 1], \"end_rates\": [0, 0]}", diagnostics);
@@ -448,7 +448,7 @@ TEST_CASE("key frames with end rates") {
   CHECK(f.at(1).d == Approx(0).margin(1e-15));
 }
 
-TEST_CASE("bad declarations are errors of the program") {
+TEST_CASE("invalid declarations are errors of the program") {
   CHECK_THROWS_AS(optional("a", number(unbounded(), "m"), "A.", "[1,"), std::logic_error);
   CHECK_THROWS_AS(required("a", number(unbounded(), "m"), "A.", "nan"), std::logic_error);
   const Record twice{
@@ -460,14 +460,13 @@ TEST_CASE("bad declarations are errors of the program") {
 
 namespace {
 
-/// Sound by the JSON Schema.
+/// Returns whether the JSON Schema accepts the text.
 bool valid(const std::string& text) {
-  static const pliant::test::SchemaJudge judge(schema_json(scene()));
+  static const pliant::test::SchemaValidator judge(schema_json(scene()));
   return judge.accepts(nlohmann::json::parse(text));
 }
 
-/// Every property in a schema has a description, every number in it a unit and every optional one a default
-/// or words.
+/// Checks that every property in a schema has a description.
 void check_described(const nlohmann::json& node, int* properties) {
   if (node.is_object() && node.contains("properties") && node["properties"].is_object()) {
     for (const auto& [key, property] : node["properties"].items()) {

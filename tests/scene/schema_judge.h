@@ -1,4 +1,4 @@
-// A JSON Schema judged by valijson, which knows nothing of pliant.
+// A validator for a JSON Schema, by valijson, which is independent of pliant.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace pliant::test {
 
-class SchemaJudge {
+class SchemaValidator {
  public:
-  explicit SchemaJudge(const std::string& schema) : text_(nlohmann::json::parse(schema)) {
+  explicit SchemaValidator(const std::string& schema) : text_(nlohmann::json::parse(schema)) {
     valijson::SchemaParser(valijson::SchemaParser::kDraft7)
         .populateSchema(valijson::adapters::NlohmannJsonAdapter(text_), schema_);
   }

@@ -1,5 +1,5 @@
-// The scenes with contact from their beginning to their end, at their own step: at no step is a body deep in
-// another, what joints have closed stays closed through every blow, and the paper's figures do what it shows.
+// The scenes with contact, run to their end with their own step. No step has a deep overlap, closed joints
+// stay closed in every impact, and the figures of the paper show the described motion.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -33,8 +33,8 @@ namespace {
 const std::vector<std::string> kRigid{"bowl", "dominoes", "slope", "tower"}, kSoft{"balloons", "springboard"},
     kJointed{"dragonfly", "snowman"};
 
-/// Steps a scene to its end, and looks at every step how deep bodies are in each other. Returns how often a
-/// body met another after 50 ms or more in which none touched any.
+/// Runs a scene to its end, and checks the overlaps after every step. Returns how often a contact started
+/// after 50 ms or more without contact.
 template <class AfterStep>
 int run_file(const std::string& file, const std::vector<std::string>& overrides, AfterStep&& after_step) {
   CAPTURE(file);
@@ -42,23 +42,23 @@ int run_file(const std::string& file, const std::vector<std::string>& overrides,
   const auto scene = pliant::read_scene(file, overrides, diagnostics);
   Simulation simulation(scene->body, scene->integrator, 1, scene->tolerance);
   REQUIRE(simulation.contact() != nullptr);
-  int meetings = 0;
+  int contact_starts = 0;
   double last = -1;
   while (simulation.time() < scene->end - 0.5 * scene->step) {
     simulation.step(scene->step);
     CAPTURE(simulation.time());
     REQUIRE(pliant::deepest_share(simulation) <= 1e-3);
     if (!simulation.contact()->contacts().empty()) {
-      meetings += simulation.time() - last > 0.05;
+      contact_starts += simulation.time() - last > 0.05;
       last = simulation.time();
     }
     after_step(simulation);
   }
   CHECK(simulation.time() == Approx(scene->end));
-  return meetings;
+  return contact_starts;
 }
 template <class AfterStep>
-int run_to_the_end(const std::string& name, AfterStep&& after_step) {
+int run_scene(const std::string& name, AfterStep&& after_step) {
   return run_file(std::string(PLIANT_SCENES) + "/" + name + ".json", {}, std::forward<AfterStep>(after_step));
 }
 int number_of(const Simulation& simulation, const std::string& part) {
@@ -71,7 +71,7 @@ int number_of(const Simulation& simulation, const std::string& part) {
 const PartModel& model_of(const Simulation& simulation, const std::string& part) {
   return simulation.model().parts()[static_cast<std::size_t>(number_of(simulation, part))];
 }
-/// Global parameters and local displacements of a part.
+/// Returns the global parameters and local displacements of a part.
 VecX<double> deformation(const Simulation& simulation, const std::string& part) {
   const PartModel& model = model_of(simulation, part);
   return simulation.state().q.segment(model.q0 + 7, model.n_s + model.n_d());
@@ -86,19 +86,19 @@ double bend(const Simulation& simulation, const std::string& part) {
 double height(const Simulation& simulation, const std::string& part) {
   return simulation.state().q[model_of(simulation, part).q0 + 2];
 }
-/// What a number was at least and at most.
+/// The smallest and largest value of a number.
 struct Extent {
-  double least = std::numeric_limits<double>::infinity(), most = -least;
+  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
   void note(double x) {
-    least = std::min(least, x);
-    most = std::max(most, x);
+    smallest = std::min(smallest, x);
+    largest = std::max(largest, x);
   }
-  double width() const { return most - least; }
+  double width() const { return largest - smallest; }
 };
 
 }  // namespace
 
-TEST_CASE("every scene with contact is run to its end") {
+TEST_CASE("every scene with contact is in one of the lists of this file") {
   std::vector<std::string> run = kRigid, with_contact;
   for (const std::vector<std::string>& more : {kSoft, kJointed})
     run.insert(run.end(), more.begin(), more.end());
@@ -113,13 +113,12 @@ TEST_CASE("every scene with contact is run to its end") {
   CHECK(with_contact == run);
 }
 
-TEST_CASE("rigid bodies of the scenes are never deeper in each other than a thousandth of their size",
+TEST_CASE("rigid parts of the scenes never overlap by more than a thousandth of their size",
           "[contact][long]") {
-  for (const std::string& name : kRigid) CHECK(run_to_the_end(name, [](Simulation&) {}) > 0);
+  for (const std::string& name : kRigid) CHECK(run_scene(name, [](Simulation&) {}) > 0);
 }
 
-TEST_CASE("a hundred ellipsoids that pour.sh prints come down into the bowl, all of them",
-          "[contact][long]") {
+TEST_CASE("all of a hundred ellipsoids from pour.sh fall into the bowl", "[contact][long]") {
   const NewFolder place;
   const fs::path scenes = PLIANT_SCENES, file = place / "pour.json";
   fs::copy(scenes / "bowl.obj", place.path);
@@ -136,93 +135,93 @@ TEST_CASE("a hundred ellipsoids that pour.sh prints come down into the bowl, all
       out = std::max(out, c.head<2>().norm());
     }
   });
-  const double scale = std::cbrt(100 / 30.0);  // of the bowl, see pour.sh
-  CHECK(height.least > 0);
-  CHECK(height.most < 0.55 * scale);
+  const double scale = std::cbrt(100 / 30.0);  // scale of the bowl, see pour.sh
+  CHECK(height.smallest > 0);
+  CHECK(height.largest < 0.55 * scale);
   CHECK(out < 0.55 * scale);
 }
 
-TEST_CASE("balloons swing, collide, deform and come to rest, never deep in each other", "[contact][long]") {
-  constexpr double kBlow = 0.05, kLast = 12.8;  // s
-  double most_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, apart = 0;
-  VecX<double> free;  // how the one in the middle was when last none touched
-  const int meetings = run_to_the_end("balloons", [&](Simulation& simulation) {
+TEST_CASE("balloons swing, collide, deform and come to rest without deep overlaps", "[contact][long]") {
+  constexpr double kImpact = 0.05, kLast = 12.8;  // s
+  double max_kinetic = 0, kinetic = 0, fastest = 0, dent = 0, last_free = 0;
+  VecX<double> undeformed;  // deformation of the middle balloon at the last time without contact
+  const int contact_starts = run_scene("balloons", [&](Simulation& simulation) {
     const double t = simulation.time();
     const VecX<double> now = deformation(simulation, "balloon5");
     if (simulation.contact()->contacts().empty()) {
-      free = now;
-      apart = t;
-    } else if (t < apart + kBlow) {
-      dent = std::max(dent, (now - free).lpNorm<Eigen::Infinity>());
+      undeformed = now;
+      last_free = t;
+    } else if (t < last_free + kImpact) {
+      dent = std::max(dent, (now - undeformed).lpNorm<Eigen::Infinity>());
     }
     kinetic = simulation.ledger().kinetic;
-    most_kinetic = std::max(most_kinetic, kinetic);
+    max_kinetic = std::max(max_kinetic, kinetic);
     if (t < kLast) return;
     for (const PartModel& part : simulation.model().parts())
       fastest = std::max(fastest, simulation.state().v.segment<3>(part.v0).norm());
   });
-  CHECK(meetings >= 5);
-  CHECK(dent > 0.01);  // of a radius of 0.1
-  CHECK(kinetic < 1e-3 * most_kinetic);
-  CHECK(fastest < 0.025);  // throughout the last second; 1.5 m/s at first
+  CHECK(contact_starts >= 5);
+  CHECK(dent > 0.01);  // the radius is 0.1
+  CHECK(kinetic < 1e-3 * max_kinetic);
+  CHECK(fastest < 0.025);  // during the last second; 1.5 m/s at first
 }
 
-TEST_CASE("the springboard throws up the ball on its end, and all give way", "[contact][long]") {
-  Extent bends;
+TEST_CASE("the springboard throws up the ball on its end, and all parts deform", "[contact][long]") {
+  Extent bend_range;
   double start = 0, highest = 0, dent = 0;
   VecX<double> before;
-  const int meetings = run_to_the_end("springboard", [&](Simulation& simulation) {
+  const int contact_starts = run_scene("springboard", [&](Simulation& simulation) {
     if (before.size() == 0) {
       start = height(simulation, "red");
       before = deformation(simulation, "yellow");
     }
     highest = std::max(highest, height(simulation, "red"));
-    bends.note(bend(simulation, "board"));
+    bend_range.note(bend(simulation, "board"));
     dent = std::max(dent, (deformation(simulation, "yellow") - before).lpNorm<Eigen::Infinity>());
   });
-  CHECK(meetings >= 2);
+  CHECK(contact_starts >= 2);
   CHECK(highest > start + 0.25);  // twice its radius
-  CHECK(bends.width() > 0.02);
+  CHECK(bend_range.width() > 0.02);
   CHECK(dent > 0.02);
 }
 
-TEST_CASE("the dragonfly flaps its wings, which bend, and the blow bends its body", "[contact][long]") {
+TEST_CASE("the dragonfly flaps its wings, which bend, and the impact bends its body", "[contact][long]") {
   const std::vector<std::string> wings{"left_fore", "right_fore", "left_hind", "right_hind"};
-  std::vector<Extent> flaps(wings.size()), bends(wings.size());
-  Extent calm, struck;
-  double thrown = 0;
-  run_to_the_end("dragonfly", [&](Simulation& simulation) {
+  std::vector<Extent> flaps(wings.size()), bend_range(wings.size());
+  Extent before_impact, after_impact;
+  double max_speed = 0;
+  run_scene("dragonfly", [&](Simulation& simulation) {
     const double t = simulation.time();
     if (t > 5 && t < 8) {
-      calm.note(bend(simulation, "body"));
+      before_impact.note(bend(simulation, "body"));
       for (std::size_t i = 0; i < wings.size(); ++i) {
         auto turn = [&](const std::string& part) {
           return simulation.model().orientation(simulation.state(), number_of(simulation, part));
         };
-        // About the length of the body, from its side.
+        // The angle about the long axis of the body, measured from its side.
         const Eigen::Vector3d along = turn("body").conjugate() * (turn(wings[i]) * Eigen::Vector3d::UnitZ());
         flaps[i].note(std::atan2(along.x(), std::abs(along.y())));
-        bends[i].note(bend(simulation, wings[i]));
+        bend_range[i].note(bend(simulation, wings[i]));
       }
     }
-    if (t > 8) struck.note(bend(simulation, "body"));
-    if (t > 8.6) thrown = std::max(thrown, simulation.state().v[model_of(simulation, "body").v0]);
+    if (t > 8) after_impact.note(bend(simulation, "body"));
+    if (t > 8.6) max_speed = std::max(max_speed, simulation.state().v[model_of(simulation, "body").v0]);
   });
   for (std::size_t i = 0; i < wings.size(); ++i) {
     CAPTURE(wings[i]);
     CHECK(flaps[i].width() > 0.5);
-    CHECK(bends[i].width() > 0.2);
+    CHECK(bend_range[i].width() > 0.2);
   }
-  CHECK(struck.most > calm.most + 0.2);
-  CHECK(thrown > 0.5);
+  CHECK(after_impact.largest > before_impact.largest + 0.2);
+  CHECK(max_speed > 0.5);
 }
 
-TEST_CASE("joints of the dragonfly and the snowman that have closed stay closed through every blow",
+TEST_CASE("closed joints of the dragonfly and the snowman stay closed in every impact",
           "[contact][joints][long]") {
   for (const std::string& name : kJointed) {
     std::vector<JointMode> modes;
     std::vector<bool> from_start, closed;
-    const int meetings = run_to_the_end(name, [&](Simulation& simulation) {
+    const int contact_starts = run_scene(name, [&](Simulation& simulation) {
       modes = simulation.state().joints;
       closed.resize(modes.size());
       if (from_start.empty())
@@ -232,12 +231,12 @@ TEST_CASE("joints of the dragonfly and the snowman that have closed stay closed 
         if (!closed[j]) continue;
         INFO(simulation.model().joints()[j].joint->name());
         REQUIRE(modes[j] == JointMode::closed);
-        // 1e-6 of a body length is asked for; 5e-14 m has been seen.
+        // 1e-6 of a body length is required; 5e-14 m has been observed.
         REQUIRE(simulation.model().gap(simulation.state(), static_cast<int>(j)) <= 1e-12);
       }
     });
-    CAPTURE(name, meetings);
-    CHECK(meetings >= (name == "snowman" ? 6 : 1));
+    CAPTURE(name, contact_starts);
+    CHECK(contact_starts >= (name == "snowman" ? 6 : 1));
     CHECK(std::count(from_start.begin(), from_start.end(), true) >= (name == "snowman" ? 12 : 4));
     for (const JointMode mode : modes) CHECK(mode != JointMode::closing);
   }

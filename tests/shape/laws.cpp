@@ -1,4 +1,4 @@
-// What must hold for every shape of the list (design 1.1): e and its derivatives, its inverse, its gauge.
+// Laws of every shape in the list: e and its derivatives, its inverse, its gauge.
 #include "catch.h"
 
 #include <cmath>
@@ -42,7 +42,7 @@ ShapeVec<Shape, double> defaults() {
   for (int k = 0; k < shape_size<Shape>; ++k) a[k] = Shape::parameters[static_cast<std::size_t>(k)].standard;
   return a;
 }
-/// The same parameters with every exponent at eps.
+/// Returns the parameters with every exponent replaced by eps.
 template <class Shape>
 ShapeVec<Shape, double> with_exponents(ShapeVec<Shape, double> a, double eps) {
   for (int k = 0; k < shape_size<Shape>; ++k)
@@ -56,14 +56,14 @@ double size_of(const ShapeVec<Shape, double>& a) {
     size = std::max(size, Shape::template e<double>(m, a).norm());
   return size;
 }
-/// The scale on which a parameter varies, for differences.
+/// Returns the step of finite differences, from the scale of the parameter.
 Long step_of(double a) {
   return 1e-3L * std::max(std::abs(a), 0.1);
 }
 
-/// Material points that are off the poles and seams, and on them.
+/// Returns material points at the poles and seams, and elsewhere.
 template <class Shape>
-std::vector<Material<double>> some_points(Draws& draws) {
+std::vector<Material<double>> test_points(Draws& draws) {
   std::vector<Material<double>> points = test::special_points(Shape::mesh);
   for (int i = 0; i < 60; ++i) points.push_back(draws.material(Shape::mesh));
   return points;
@@ -82,7 +82,7 @@ TEMPLATE_LIST_TEST_CASE("e and its parameter derivatives agree with long double"
     const double size = size_of<Shape>(a);
     ShapeVec<Shape, double> rate;
     for (int k = 0; k < K; ++k) rate[k] = draws.uniform(-1, 1) * std::max(std::abs(a[k]), 0.1);
-    for (const Material<double>& m : some_points<Shape>(draws)) {
+    for (const Material<double>& m : test_points<Shape>(draws)) {
       const Material<Long> ml = widen(m);
       const Vec3<Long> value = Shape::template e<Long>(ml, al);
       worst_value.note((Shape::template e<double>(m, a).template cast<Long>() - value).norm() / size);
@@ -94,9 +94,9 @@ TEMPLATE_LIST_TEST_CASE("e and its parameter derivatives agree with long double"
       for (int k = 0; k < K; ++k) {
         const Vec3<Long> slope = test::first_derivative(
             [&](Long t) {
-              ShapeVec<Shape, Long> moved = al;
-              moved[k] += t;
-              return Vec3<Long>(Shape::template e<Long>(ml, moved));
+              ShapeVec<Shape, Long> shifted = al;
+              shifted[k] += t;
+              return Vec3<Long>(Shape::template e<Long>(ml, shifted));
             },
             step_of(a[k]));
         for (int r = 0; r < 3; ++r) {
@@ -125,15 +125,15 @@ TEMPLATE_LIST_TEST_CASE("e and its parameter derivatives agree with long double"
   CHECK(worst_curvature < 1e-12);
 }
 
-TEMPLATE_LIST_TEST_CASE("derivatives carried by duals are those of long double duals", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("derivatives by duals agree with those by long double duals", "[shape]", AllShapes) {
   using Shape = TestType;
   constexpr int K = shape_size<Shape>;
   Draws draws(2);
   test::Worst worst;
-  for (double eps : {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {  // outside of the dynamic range too: frozen ones
+  for (double eps : {0.02, 0.1, 0.5, 1.0, 1.9, 5.0}) {  // also frozen exponents outside the dynamic range
     const ShapeVec<Shape, double> a = with_exponents<Shape>(draw_parameters<Shape>(draws), eps);
     const double size = size_of<Shape>(a);
-    for (const Material<double>& m : some_points<Shape>(draws)) {
+    for (const Material<double>& m : test_points<Shape>(draws)) {
       using D = Dual<K>;
       using DL = Dual<K, Long>;
       Vec<D, K> a_d;
@@ -153,8 +153,8 @@ TEMPLATE_LIST_TEST_CASE("derivatives carried by duals are those of long double d
   CHECK(worst < 1e-12);
 }
 
-TEMPLATE_LIST_TEST_CASE("N01 N02 N15: poles, seams and centres give finite numbers, and close", "[shape]",
-                        AllShapes) {
+TEMPLATE_LIST_TEST_CASE("N01 N02 N15: points at poles, seams and centres are finite, and surfaces close",
+                        "[shape]", AllShapes) {
   using Shape = TestType;
   constexpr int K = shape_size<Shape>;
   for (double eps : {0.02, 0.03, 0.1, 0.3, 1.0, 2.0, 5.0}) {
@@ -175,7 +175,7 @@ TEMPLATE_LIST_TEST_CASE("N01 N02 N15: poles, seams and centres give finite numbe
         REQUIRE(std::isfinite(t[r].dd));
       }
     }
-    // Going once round comes back to the same point, to the last bit; at a pole v does not matter.
+    // A full turn returns to the start point, to the last bit; at a pole v has no effect.
     for (int i = -2; i <= 2; ++i)
       for (double w : {0.25, 1.0}) {
         const double u = i * kPi / 4;
@@ -202,20 +202,20 @@ TEST_CASE("N02: the derivative of a power at zero is its limit, zero", "[shape]"
   }
 }
 
-TEST_CASE("N02: exponents outside their range are refused with the range", "[shape]") {
+TEST_CASE("N02: exponents outside their range are refused, and the message contains the range", "[shape]") {
   for (double eps : {0.01, 1e-3, 1e-6, 0.0, -0.1, 5.1}) {
     const std::unique_ptr<Part> part = make_part("p", "superellipsoid", {}, 1000);
     CHECK_THROWS_WITH(part->rest({{"eps1", eps}}), test::has_text("[0.02, 5]"));
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the radial coordinate runs straight from the centre", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("points are linear in the radial coordinate", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(3);
   for (int trial = 0; trial < 8; ++trial) {
     const ShapeVec<Shape, double> a = draw_parameters<Shape>(draws);
     const double size = size_of<Shape>(a);
-    for (Material<double> m : some_points<Shape>(draws)) {
+    for (Material<double> m : test_points<Shape>(draws)) {
       const Vec3<double> now = Shape::template e<double>(m, a);
       const double w = m.w;
       m.w = 1;
@@ -240,9 +240,9 @@ TEMPLATE_LIST_TEST_CASE("gauge and label invert e", "[shape]", AllShapes) {
           with_exponents<Shape>(trial == 0 ? defaults<Shape>() : draw_parameters<Shape>(draws), eps);
       const ShapeFaceOf<Shape> face;
       const double size = size_of<Shape>(a);
-      for (const Material<double>& m : some_points<Shape>(draws)) {
+      for (const Material<double>& m : test_points<Shape>(draws)) {
         const Vec3<double> x = Shape::template e<double>(m, a);
-        // A gauge can be no better than the rounding of the point it is asked about.
+        // The accuracy of a gauge is limited by the rounding of its argument.
         double rounding = 0;
         for (int i = 0; i < 6; ++i) {
           const Vec3<double> off = (i < 3 ? 1e-15 : -1e-15) * size * Vec3<double>::Unit(i % 3);
@@ -261,12 +261,13 @@ TEMPLATE_LIST_TEST_CASE("gauge and label invert e", "[shape]", AllShapes) {
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with differences", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with finite differences", "[shape]", AllShapes) {
   using Shape = TestType;
-  constexpr bool own = detail::has_label<Shape>;  // else its gauge is found by iteration, in double precision
-  constexpr Long step = own ? 1e-4L : 1e-3L, settled = own ? 1e-10L : 1e-7L;
+  // otherwise the gauge is found by iteration, in double precision
+  constexpr bool has_label = detail::has_label<Shape>;
+  constexpr Long step = has_label ? 1e-4L : 1e-3L, converged = has_label ? 1e-10L : 1e-7L;
   Draws draws(5);
-  int judged = 0;
+  int n_smooth = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const ShapeVec<Shape, double> a = draw_parameters<Shape>(draws);
     const ShapeFaceOf<Shape> face;
@@ -274,26 +275,26 @@ TEMPLATE_LIST_TEST_CASE("the gauge's gradient agrees with differences", "[shape]
     const Vec3<double> x = draws.vector(0.8 * size);
     const ShapeVec<Shape, Long> al = a.template cast<Long>();
     const Vec3<double> g = face.gauge_gradient(x, a.data());
-    Vec3<Long> by_differences, by_smaller_steps;
+    Vec3<Long> differences, finer_differences;
     for (int r = 0; r < 3; ++r) {
       auto along = [&](Long t) {
-        Vec3<Long> moved = x.cast<Long>();
-        moved[r] += t;
-        if constexpr (own)
-          return Shape::template gauge<Long>(moved, al);
+        Vec3<Long> shifted = x.cast<Long>();
+        shifted[r] += t;
+        if constexpr (has_label)
+          return Shape::template gauge<Long>(shifted, al);
         else
-          return static_cast<Long>(face.gauge(moved.template cast<double>(), a.data()));
+          return static_cast<Long>(face.gauge(shifted.template cast<double>(), a.data()));
       };
-      by_differences[r] = test::first_derivative(along, step * size);
-      by_smaller_steps[r] = test::first_derivative(along, 0.5L * step * size);
+      differences[r] = test::first_derivative(along, step * size);
+      finer_differences[r] = test::first_derivative(along, 0.5L * step * size);
     }
-    // Near a kink (a rim, an edge, a coordinate plane) differences do not settle: they judge nothing there.
-    if ((by_differences - by_smaller_steps).norm() > settled * by_differences.norm()) continue;
-    ++judged;
+    // Differences do not converge near a kink (a rim, an edge, a coordinate plane); such points are skipped.
+    if ((differences - finer_differences).norm() > converged * differences.norm()) continue;
+    ++n_smooth;
     INFO(Shape::name << " a " << a.transpose() << " x " << x.transpose());
-    CHECK((g - by_differences.cast<double>()).norm() <= (own ? 1e-8 : 1e-6) * g.norm());
+    CHECK((g - differences.cast<double>()).norm() <= (has_label ? 1e-8 : 1e-6) * g.norm());
   }
-  CHECK(judged > 0.9 * 200);
+  CHECK(n_smooth > 0.9 * 200);
 }
 
 TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and on the axis", "[shape]",
@@ -310,7 +311,8 @@ TEMPLATE_LIST_TEST_CASE("the gauge and its gradient are finite at the centre and
     }
 }
 
-TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and grows along every ray", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and increases along every ray", "[shape]",
+                        AllShapes) {
   using Shape = TestType;
   Draws draws(6);
   for (double eps : {0.02, 0.1, 1.0, 5.0}) {
@@ -330,20 +332,20 @@ TEMPLATE_LIST_TEST_CASE("N05: the gauge never overflows and grows along every ra
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("half_height is the reach along z", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("half_height is the extent along z", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(7);
   for (int trial = 0; trial < 10; ++trial) {
     const ShapeVec<Shape, double> a = draw_parameters<Shape>(draws);
     const double h = Shape::template half_height<double>(a);
     double reach = 0;
-    for (const Material<double>& m : some_points<Shape>(draws))
+    for (const Material<double>& m : test_points<Shape>(draws))
       reach = std::max(reach, std::abs(Shape::template e<double>(m, a)[2]));
     CHECK(reach == Approx(h).epsilon(1e-14));
   }
 }
 
-TEMPLATE_LIST_TEST_CASE("mesh labels lie on the surface", "[shape]", AllShapes) {
+TEMPLATE_LIST_TEST_CASE("mesh labels are on the surface", "[shape]", AllShapes) {
   using Shape = TestType;
   Draws draws(8);
   for (double eps : {0.02, 0.1, 0.6, 1.0, 1.9, 5.0}) {

@@ -1,5 +1,5 @@
-// Parts whose global parameters carry an elastic material: free flight, damping, derivatives, failures, and
-// how a mesh under the same material takes over.
+// Parts whose global parameters have an elastic material: free flight, damping, derivatives, failures, and
+// the comparison with a mesh of the same material.
 #include "catch.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace pliant;
 
 namespace {
 
-/// A solid of material constants alone that tumbles with all kinds of parameters at once.
+/// A tumbling solid whose only stiffness is that of its material, with all kinds of parameters dynamic.
 Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
   body.gravity.setZero();
   Part& part = test::add(body, "rubber", "ellipsoid", {"taper", "twist", "shear", "bend"}, 1000);
@@ -32,9 +32,9 @@ Part& rubber(MultiBody& body, const std::string& law, double beta = 0) {
 }
 
 struct Drift {
-  double balance, momentum, turning, lost;
+  double balance, momentum, angular, dissipated;
 };
-Drift fly(const std::string& law, double beta, int steps) {
+Drift free_flight_drift(const std::string& law, double beta, int steps) {
   MultiBody body;
   rubber(body, law, beta);
   Simulation simulation(body, "rk4");
@@ -47,7 +47,7 @@ Drift fly(const std::string& law, double beta, int steps) {
           -end.work[static_cast<int>(Work::damping)] / start.energy()};
 }
 
-/// Twice the frequency at which a function of the state of a simulation crosses its mean, in 1/s.
+/// Returns the frequency (1/s) of the mean crossings of a function of the state.
 template <class F>
 double frequency(Simulation& simulation, double h, int periods, F&& of_state) {
   double before = of_state(simulation.state()), first = -1, last = -1;
@@ -67,27 +67,27 @@ double frequency(Simulation& simulation, double h, int periods, F&& of_state) {
 
 }  // namespace
 
-TEST_CASE("an elastic solid of seven parameters in free flight keeps energy, P and L at order 4",
+TEST_CASE("an elastic solid of seven parameters in free flight conserves energy, P and L at order 4",
           "[continuum][motion][long]") {
   for (const char* law : {"elastic", "st_venant_kirchhoff", "neo_hookean"}) {
     CAPTURE(law);
-    std::vector<double> balance, momentum, turning;
+    std::vector<double> balance, momentum, angular;
     for (const int steps : {100, 200, 400}) {
-      const Drift drift = fly(law, 0, steps);
+      const Drift drift = free_flight_drift(law, 0, steps);
       balance.push_back(drift.balance);
       momentum.push_back(drift.momentum);
-      turning.push_back(drift.turning);
-      CHECK(drift.lost == 0);
+      angular.push_back(drift.angular);
+      CHECK(drift.dissipated == 0);
     }
-    CAPTURE(balance, momentum, turning);
+    CAPTURE(balance, momentum, angular);
     CHECK(test::observed_order(balance) >= 3.9);
     CHECK(balance.back() <= 1e-4);
     CHECK(momentum.back() <= 1e-8);
-    CHECK(turning.back() <= 1e-7);
+    CHECK(angular.back() <= 1e-7);
   }
 }
 
-TEST_CASE("damping of the material takes energy, tells it all, and leaves P and L",
+TEST_CASE("damping of the material removes energy, which the ledger records, and conserves P and L",
           "[continuum][motion][long]") {
   auto end_of = [](int steps) {
     MultiBody body;
@@ -101,15 +101,15 @@ TEST_CASE("damping of the material takes energy, tells it all, and leaves P and 
   for (const int steps : {50, 100, 200}) error.push_back((end_of(steps) - exact).norm());
   CAPTURE(error);
   CHECK(test::observed_order(error) >= 3.9);
-  const Drift drift = fly("neo_hookean", 1e-3, 800);
-  CHECK(drift.lost > 0.05);
+  const Drift drift = free_flight_drift("neo_hookean", 1e-3, 800);
+  CHECK(drift.dissipated > 0.05);
   CHECK(drift.balance <= 1e-6);
   CHECK(drift.momentum <= 1e-8);
-  CHECK(drift.turning <= 1e-7);
+  CHECK(drift.angular <= 1e-7);
 }
 
-TEST_CASE("a solid that spins as it is bent feels no damping", "[continuum]") {
-  // Rates of the frame alone strain nothing.
+TEST_CASE("a solid that only spins dissipates nothing, even while it is bent", "[continuum]") {
+  // The velocities of the frame cause no strain rate.
   MultiBody body;
   Part& part = rubber(body, "neo_hookean", 0.1);
   part.initial_rate({{"a3", 0}, {"taper.tx", 0}, {"shear.sx", 0}});
@@ -120,7 +120,7 @@ TEST_CASE("a solid that spins as it is bent feels no damping", "[continuum]") {
   CHECK(work.power[static_cast<int>(Work::damping)] == 0);
 }
 
-TEST_CASE("small motion dies as beta omega^2 / 2", "[continuum][motion]") {
+TEST_CASE("small motion decays at the rate beta omega^2 / 2", "[continuum][motion]") {
   MultiBody body;
   body.gravity.setZero();
   auto& ball = body.add<Primitive<Sphere>>("ball", 1000);
@@ -135,7 +135,7 @@ TEST_CASE("small motion dies as beta omega^2 / 2", "[continuum][motion]") {
   CHECK(std::log(start / simulation.ledger().energy()) == Approx(beta * omega2 * time).epsilon(2e-2));
 }
 
-TEST_CASE("jvp of an elastic part agrees with differences", "[continuum][long]") {
+TEST_CASE("jvp of an elastic part agrees with finite differences", "[continuum][long]") {
   for (const double beta : {0.0, 3e-3}) {
     MultiBody body;
     rubber(body, "neo_hookean", beta);
@@ -163,11 +163,11 @@ TEST_CASE("jvp of an elastic part agrees with differences", "[continuum][long]")
   }
 }
 
-TEST_CASE("a solid that is turned inside out fails by name", "[continuum][failure]") {
+TEST_CASE("a solid that is inverted stops the run with its name", "[continuum][failure]") {
   MultiBody body;
   body.gravity.setZero();
   Part& part = test::add(body, "slab", "box", {"bend"}, 1000);
-  // So thick that any rule has points on the inner side of where it folds.
+  // The slab is so thick that every rule has points on the inner side of the fold.
   part.rest({{"a1", 1.5}, {"a3", 1}}).initial_rate({{"bend.angle", 60}});
   part.elasticity({"neo_hookean", 1e3, 0.3, 0});
   Simulation simulation(body, "rk4");
@@ -176,7 +176,8 @@ TEST_CASE("a solid that is turned inside out fails by name", "[continuum][failur
   CHECK(simulation.state().q.allFinite());
 }
 
-TEST_CASE("the predicted stable step of an elastic part is the measured one", "[continuum][stable][long]") {
+TEST_CASE("the predicted stable step of an elastic part agrees with the measured one",
+          "[continuum][stable][long]") {
   auto grows = [](double beta, double h) {
     MultiBody body;
     Part& part = rubber(body, "st_venant_kirchhoff", beta);
@@ -189,7 +190,7 @@ TEST_CASE("the predicted stable step of an elastic part is the measured one", "[
     try {
       for (int i = 0; i < 400; ++i) simulation.step(h * predicted);
     } catch (const NumericalFailure&) {
-      return kInfinity;  // grown until it was turned inside out
+      return kInfinity;  // the amplitude grew until the part was inverted
     }
     return simulation.ledger().energy() / start;
   };
@@ -199,28 +200,28 @@ TEST_CASE("the predicted stable step of an elastic part is the measured one", "[
   }
 }
 
-TEST_CASE("the strain of what does not move is not evaluated, and one point does for scales",
+TEST_CASE("the strain of frozen parameters is not evaluated, and scales need one point",
           "[continuum][skip]") {
   MultiBody body;
   body.gravity.setZero();
   auto& stone = body.add<Primitive<Ellipsoid>>("stone", 1000);
   stone.elasticity({"neo_hookean", 1e5, 0.3, 0});
-  Simulation still(body, "rk4");
-  still.step(1e-3);
-  CHECK(still.counters().strain_points == 0);
+  Simulation frozen_run(body, "rk4");
+  frozen_run.step(1e-3);
+  CHECK(frozen_run.counters().strain_points == 0);
   MultiBody soft;
   soft.gravity.setZero();
   soft.add<Primitive<Ellipsoid>>("ball", 1000)
       .make_dynamic({"a1", "a2", "a3"})
       .elasticity({"neo_hookean", 1e5, 0.3, 0});
-  Simulation moving(soft, "rk4");
-  moving.step(1e-3);
-  CHECK(moving.counters().strain_points == 4);  // one an evaluation
+  Simulation dynamic_run(soft, "rk4");
+  dynamic_run.step(1e-3);
+  CHECK(dynamic_run.counters().strain_points == 4);  // one for each evaluation
 }
 
 TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assembly]") {
-  // Two springs of no mass in a row: its material and the frame; a rubber ball between two points too far
-  // apart.
+  // A rubber ball between two points that are farther apart than its diameter: its material acts as a
+  // massless spring between the joints.
   MultiBody body;
   body.gravity.setZero();
   body.stabilization.assemble_first = true;
@@ -232,7 +233,7 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
   const VecX<double> q = simulation.state().q.tail(3);
   CHECK(q[0] == Approx(1.3).epsilon(1e-9));
   CHECK(q[1] == Approx(q[2]).epsilon(1e-6));
-  // At rest across: dE/da2 = 0 at this stretch.
+  // There is no transverse stress: dE/da2 = 0 at this stretch.
   VecX<double> f = VecX<double>::Zero(3);
   Counters unused;
   ball.continuum()->add_force(ball, VecMax<double>(q), VecMax<double>(VecMax<double>::Zero(3)), 0, f, unused);
@@ -240,20 +241,23 @@ TEST_CASE("assembly before time 0 stretches an elastic part", "[continuum][assem
   CHECK(q[1] < 0.95);
 }
 
-TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb's",
+TEST_CASE("with a mesh of the same material, frequencies of scales converge to those of Lamb",
           "[continuum][motion][long]") {
-  // S2 and breathing of a free solid sphere, nu_P = 0.25 (physics 8.3): by three scales 3.1623 and 5.0, exact
-  // 2.63987 and 4.44000. Excited by scales; the same by the nodes of a part whose scales are frozen.
+  // The modes S2 and breathing of a free solid sphere, nu_P = 0.25 (Lamb 1882). Exact values of omega a /
+  // c_s: 2.63987 and 4.44000; three scales alone give 3.1623 and 5.0. The scales excite the mode; in a part
+  // with frozen scales the nodes do.
   const double exact[2] = {2.63987, 4.44000}, scales[2] = {std::sqrt(10.0), 5.0};
   auto eta = [](const std::string& law, int mode, int resolution, bool dynamic) {
     MultiBody body;
     body.gravity.setZero();
     auto& ball = body.add<Primitive<Ellipsoid>>("ball", 1);
-    const Vec3<double> way = mode == 0 ? Vec3<double>(1, 1, -2) : Vec3<double>(1, 1, 1);
+    const Vec3<double> direction = mode == 0 ? Vec3<double>(1, 1, -2) : Vec3<double>(1, 1, 1);
     static constexpr double size = 1e-4;
     if (dynamic)
       ball.make_dynamic({"a1", "a2", "a3"})
-          .initial({{"a1", 1 + size * way[0]}, {"a2", 1 + size * way[1]}, {"a3", 1 + size * way[2]}});
+          .initial({{"a1", 1 + size * direction[0]},
+                    {"a2", 1 + size * direction[1]},
+                    {"a3", 1 + size * direction[2]}});
     if (resolution == 0) {
       ball.elasticity({law, 2.5, 0.25, 0});
     } else {
@@ -261,19 +265,19 @@ TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb'
       settings.resolution = resolution;
       settings.energies.push_back(local_law(law, {2.5, 0.25}));
       if (!dynamic)
-        settings.displacement = [way](const Vec3<double>& X) -> Vec3<double> {
-          return size * way.cwiseProduct(X);
+        settings.displacement = [direction](const Vec3<double>& X) -> Vec3<double> {
+          return size * direction.cwiseProduct(X);
         };
       ball.deform_locally(settings);
     }
     Simulation simulation(body, "rk4");
-    // The mean strain: of the nodes and of the shape.
+    // The mean strain, from the nodes or from the shape.
     auto strain = [&](const State& state) {
-      if (resolution == 0) return way.dot(state.q.segment<3>(7) - Vec3<double>::Ones());
+      if (resolution == 0) return direction.dot(state.q.segment<3>(7) - Vec3<double>::Ones());
       const Nodes x = simulation.model().node_positions(state, 0), &X = ball.local()->mesh().X;
       const VecX<double>& m = ball.local()->mesh().mass;
       double sum = 0;
-      for (int i = 0; i < 3; ++i) sum += way[i] * m.dot(X.col(i).cwiseProduct(x.col(i) - X.col(i)));
+      for (int i = 0; i < 3; ++i) sum += direction[i] * m.dot(X.col(i).cwiseProduct(x.col(i) - X.col(i)));
       return sum;
     };
     const double h = std::min(0.02, 0.7 * largest_stable_step(simulation));
@@ -282,13 +286,13 @@ TEST_CASE("a mesh under the same material takes the scales' frequencies to Lamb'
   for (const char* law : {"neo_hookean", "st_venant_kirchhoff"})
     for (int mode = 0; mode < 2; ++mode) {
       CAPTURE(law, mode);
-      const double alone = eta(law, mode, 0, true), coarse = eta(law, mode, 2, true),
-                   fine = eta(law, mode, 4, true), frozen = eta(law, mode, 4, false);
-      CAPTURE(alone, coarse, fine, frozen);
-      CHECK(alone == Approx(scales[mode]).epsilon(1e-3));
-      CHECK(frozen == Approx(fine).epsilon(2e-3));
+      const double without_mesh = eta(law, mode, 0, true), coarse = eta(law, mode, 2, true),
+                   fine = eta(law, mode, 4, true), by_nodes = eta(law, mode, 4, false);
+      CAPTURE(without_mesh, coarse, fine, by_nodes);
+      CHECK(without_mesh == Approx(scales[mode]).epsilon(1e-3));
+      CHECK(by_nodes == Approx(fine).epsilon(2e-3));
       CHECK(std::abs(fine - exact[mode]) < 0.4 * std::abs(coarse - exact[mode]));
-      CHECK(std::abs(fine - exact[mode]) < 0.2 * std::abs(alone - exact[mode]));
+      CHECK(std::abs(fine - exact[mode]) < 0.2 * std::abs(without_mesh - exact[mode]));
     }
 }
 

@@ -1,4 +1,4 @@
-// Motion at the ends of what scenes ask: slender bodies, long runs, steps that shrink, traps of the hardware.
+// Extreme models and runs: slender bodies, long runs, decreasing steps, floating-point traps of the hardware.
 #include "catch.h"
 
 #include <cfenv>
@@ -14,8 +14,8 @@ namespace extremes_test {
 
 using namespace pliant;
 
-TEST_CASE("N07: semi-axes a million times apart have accurate accelerations", "[extremes]") {
-  // A free spin about z widens a1 and a2 by a_i omega^2, whatever the others.
+TEST_CASE("N07: semi-axes that differ by a factor of a million have accurate accelerations", "[extremes]") {
+  // A free spin about z widens a1 and a2 by a_i omega^2, for any values of the other axes.
   for (const Vec3<double>& axes :
        {Vec3<double>(1, 1e-6, 1e-6), Vec3<double>(1e6, 1, 1), Vec3<double>(1e-6, 1, 1e6)}) {
     MultiBody body;
@@ -32,7 +32,7 @@ TEST_CASE("N07: semi-axes a million times apart have accurate accelerations", "[
     CHECK(work.v_dot[7] == Approx(9 * axes[1]).epsilon(1e-10));
     CHECK(std::abs(work.v_dot[8]) <= 1e-10 * 9 * axes[2]);
     CHECK(work.v_dot.head<6>().norm() <= 1e-10);
-    // After scaling to a unit diagonal M is as well conditioned as that of a sphere.
+    // After scaling to a unit diagonal M is as well conditioned as the matrix of a sphere.
     const MatX<double> M = work.parts[0].inertia.M;
     const VecX<double> scale = M.diagonal().cwiseSqrt().cwiseInverse();
     const MatX<double> scaled = scale.asDiagonal() * M * scale.asDiagonal();
@@ -40,7 +40,7 @@ TEST_CASE("N07: semi-axes a million times apart have accurate accelerations", "[
   }
 }
 
-TEST_CASE("N29: a damped body at rest costs no more than a moving one", "[extremes]") {
+TEST_CASE("N29: a step of a damped body at rest takes no longer than a step of a moving one", "[extremes]") {
   MultiBody body;
   body.gravity.setZero();
   Part& part = test::add(body, "part", "ellipsoid", {"taper"}, 1000);
@@ -51,24 +51,24 @@ TEST_CASE("N29: a damped body at rest costs no more than a moving one", "[extrem
   test::add(body, "rigid", "sphere", {}, 1000).velocity({1, 2, 3}, {1, 0, 0}).damping(0, 0, 0.5);
   Simulation simulation(body, "semi_implicit_euler");
   auto seconds = [&] {
-    double least = 1e300;
+    double min_seconds = 1e300;
     for (int repeat = 0; repeat < 5; ++repeat) {
       const auto start = std::chrono::steady_clock::now();
       for (int i = 0; i < 4000; ++i) simulation.step(0.01);
-      least =
-          std::min(least, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+      min_seconds = std::min(min_seconds,
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     }
-    return least;
+    return min_seconds;
   };
   const double moving = seconds();
   for (int i = 0; i < 200000; ++i) simulation.step(0.01);  // amplitudes pass through the subnormal numbers
-  const double still = seconds();
+  const double at_rest = seconds();
   CHECK(simulation.state().v.head<8>().norm() < 1e-12);
   CHECK(simulation.state().v.tail<6>().cwiseAbs().maxCoeff() < 1e-300);
-  CHECK(still < 3 * moving);  // subnormal operands cost tens of times more
+  CHECK(at_rest < 3 * moving);  // operations on subnormal numbers can be tens of times slower
 }
 
-TEST_CASE("N31: methods agree as the step shrinks, each at its order", "[extremes][long]") {
+TEST_CASE("N31: methods agree as the step decreases, each at its order", "[extremes][long]") {
   auto run = [](const char* method, int steps) {
     MultiBody body;
     Part& part = test::tumbling_solid(body);
@@ -87,8 +87,8 @@ TEST_CASE("N31: methods agree as the step shrinks, each at its order", "[extreme
 }
 
 #if defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__)
-TEST_CASE("N70: no operation of a motion is invalid, divides by zero or overflows", "[extremes]") {
-  // Parts of every shape with every deformation, resting at their special points, under everything.
+TEST_CASE("N70: no operation of a run is invalid, divides by zero or overflows", "[extremes]") {
+  // Parts of every shape with every deformation, with loads at their special points.
   for (const auto& face : all_shapes()) {
     MultiBody body;
     Part& part =

@@ -1,5 +1,5 @@
-// Runs that cannot go on, and parameters that cannot move: they say so, and nothing that is not a number is
-// kept.
+// Runs that must stop, and parameters that cannot move: the messages name the cause, and no state contains a
+// number that is not finite.
 #include "catch.h"
 
 #include <limits>
@@ -17,7 +17,7 @@ namespace {
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// value until time t, then something that is not a number.
+/// Returns `value` until time `when`, then `what`, which is not finite.
 TimeFunction broken_at(double when, double value, double what) {
   struct Broken : TimeFunction::Impl {
     double when, value, what;
@@ -32,7 +32,7 @@ TimeFunction broken_at(double when, double value, double what) {
 
 }  // namespace
 
-TEST_CASE("N24: steps that are no steps are refused", "[failure]") {
+TEST_CASE("N24: steps that are not positive and finite are refused", "[failure]") {
   MultiBody body;
   body.add<Primitive<Sphere>>("ball", 1000);
   Simulation simulation(body);
@@ -45,7 +45,7 @@ TEST_CASE("N24: steps that are no steps are refused", "[failure]") {
   CHECK_THROWS_WITH(make_integrator("euler"), has_text("there are: semi_implicit_euler, rk4"));
 }
 
-TEST_CASE("N24: an absurdly long step is finite or fails", "[failure]") {
+TEST_CASE("N24: an extremely long step gives a finite state or fails", "[failure]") {
   for (const char* method : kMethods) {
     MultiBody body;
     test::tumbling_solid(body);
@@ -62,7 +62,7 @@ TEST_CASE("N24: an absurdly long step is finite or fails", "[failure]") {
   }
 }
 
-TEST_CASE("N72: a term that is not a number is named, and the last good state kept", "[failure]") {
+TEST_CASE("N72: a term that is not finite is named, and the last good state is kept", "[failure]") {
   struct Case {
     const char* what;
     std::function<void(MultiBody&, Part&)> add;
@@ -128,7 +128,7 @@ TEST_CASE("N72: a term that is not a number is named, and the last good state ke
   }
 }
 
-TEST_CASE("a step far beyond the stable one fails, and says what would work", "[failure]") {
+TEST_CASE("a step far above the stable one fails, and the message names a stable step", "[failure]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -149,7 +149,7 @@ TEST_CASE("a step far beyond the stable one fails, and says what would work", "[
   }
 }
 
-TEST_CASE("parameters without inertia are held and named", "[failure]") {
+TEST_CASE("parameters without inertia are fixed and named", "[failure]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -167,14 +167,14 @@ TEST_CASE("parameters without inertia are held and named", "[failure]") {
     CHECK(simulation.state().q.allFinite());
     CHECK(simulation.state().v.allFinite());
     CHECK(simulation.ledger().energy() >= 0);
-    // Nothing else is disturbed: the scale goes on.
+    // Other motion is not disturbed: the scale keeps its rate.
     CHECK(simulation.state().v[6] == Approx(0.1).epsilon(1e-2));
     test::run(simulation, 0.1, 100);
     CHECK(simulation.state().q.allFinite());
   }
 }
 
-TEST_CASE("parameters without inertia of a part that deforms locally are held and named",
+TEST_CASE("parameters without inertia of a part with local deformation are fixed and named",
           "[failure][local]") {
   for (const char* method : kMethods) {
     MultiBody body;
@@ -183,7 +183,7 @@ TEST_CASE("parameters without inertia of a part that deforms locally are held an
     part.make_shell().stiffness({{"a1", 1e5}, {"bend_offset.b2", 1}});
     part.initial_rate({{"a1", 0.1}, {"bend_offset.b2", 0.3}}).velocity({0, 0, 0}, {0.2, 0.1, 0});
     LocalSettings settings = test::net(2, 1e5);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     part.deform_locally(settings);
     Simulation simulation(body, method);
     simulation.step(1e-4);
@@ -196,7 +196,7 @@ TEST_CASE("parameters without inertia of a part that deforms locally are held an
   }
 }
 
-TEST_CASE("a held parameter that is pulled stays, and the ledger balances", "[failure]") {
+TEST_CASE("a parameter without inertia stays fixed under a load, and the ledger balances", "[failure]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -213,10 +213,10 @@ TEST_CASE("a held parameter that is pulled stays, and the ledger balances", "[fa
   }
 }
 
-// A simulation's dynamics refer to its own model: it stays where it is.
+// The dynamics of a simulation refer to its own model, so that a simulation cannot be copied or moved.
 static_assert(!std::is_copy_constructible_v<Simulation> && !std::is_move_constructible_v<Simulation>);
 
-TEST_CASE("gravity that is not a number is refused before the first step", "[failure]") {
+TEST_CASE("gravity that is not finite is refused before the first step", "[failure]") {
   MultiBody body;
   body.add<Primitive<Box>>("box", 1000);
   body.gravity[1] = kNaN;

@@ -1,5 +1,5 @@
-// What must not change a motion: units, orientation, order of parts, unrelated company, threads, output,
-// features that are there but null.
+// Changes that must not affect a motion: units, orientation, order of parts, unrelated parts, threads,
+// output, features with zero effect.
 #include "catch.h"
 
 #include <cmath>
@@ -15,7 +15,8 @@ namespace {
 
 const char* const kMethods[] = {"rk4", "semi_implicit_euler"};
 
-/// Units of a scene: it is written for metres, kilograms and seconds and multiplied into others.
+/// Units of a scene. The scene is defined in metres, kilograms and seconds, and is multiplied into other
+/// units.
 struct Units {
   double length = 1, mass = 1, time = 1;
   double force() const { return mass * length / (time * time); }
@@ -24,10 +25,10 @@ struct Units {
   double energy() const { return force() * length; }
 };
 
-struct Ends {
+struct Result {
   VecX<double> q, v;
 };
-Ends run_in(const Units& u, const char* method, double offset = 0) {
+Result run_in(const Units& u, const char* method, double offset = 0) {
   MultiBody body;
   body.gravity = Vec3<double>(0.5, -1, -9.8) * (u.length / (u.time * u.time));
   Part& a = test::add(body, "a", "superellipsoid", {"taper", "twist", "bend"}, 1000 * u.density());
@@ -60,13 +61,13 @@ Ends run_in(const Units& u, const char* method, double offset = 0) {
 
 }  // namespace
 
-TEST_CASE("N62: powers of two of the units change no bit", "[invariance][long]") {
+TEST_CASE("N62: units that differ by powers of two give identical bits after scaling", "[invariance][long]") {
   for (const char* method : kMethods) {
-    const Ends plain = run_in({}, method);
+    const Result plain = run_in({}, method);
     for (const Units& u : {Units{0x1p20, 1, 1}, Units{0x1p-20, 1, 1}, Units{1, 0x1p40, 1},
                            Units{1, 0x1p-40, 1}, Units{1, 1, 0x1p10}, Units{1, 1, 0x1p-10},
                            Units{0x1p-7, 0x1p13, 0x1p5}, Units{0x1p11, 0x1p-9, 0x1p-3}}) {
-      const Ends scaled = run_in(u, method);
+      const Result scaled = run_in(u, method);
       INFO(method << " " << u.length << " " << u.mass << " " << u.time);
       bool same = true;
       for (Eigen::Index i = 0; i < plain.q.size(); ++i) {
@@ -85,22 +86,23 @@ TEST_CASE("N62: powers of two of the units change no bit", "[invariance][long]")
 
 namespace {
 
-/// A scene with one deforming part and springs, turned as a whole.
-Ends run_turned(const Eigen::Quaterniond& turn, const char* method, bool reversed = false,
-                bool company = false) {
+/// Runs a scene with one deforming part and springs, rotated as a whole.
+Result run_rotated(const Eigen::Quaterniond& rotation, const char* method, bool reversed = false,
+                   bool others = false) {
   MultiBody body;
-  body.gravity = turn * Vec3<double>(0, -1, -9);
+  body.gravity = rotation * Vec3<double>(0, -1, -9);
   auto make_a = [&] {
     Part& a = test::add(body, "a", "ellipsoid", {"taper", "twist"}, 1000);
     a.rest({{"a1", 0.3}, {"a2", 0.25}, {"a3", 0.6}});
     a.stiffness({{"a1", 4e4}, {"a3", 2e4}, {"taper.ty", 250}, {"twist.angle", 200}})
         .initial({{"twist.angle", 0.5}});
-    a.place(turn * Vec3<double>(0.1, 0.2, 0.3), turn * Eigen::Quaterniond(0.8, 0.1, -0.5, 0.2).normalized());
-    a.velocity(turn * Vec3<double>(0.3, 0, 1), {1, -2, 1.5});
+    a.place(rotation * Vec3<double>(0.1, 0.2, 0.3),
+            rotation * Eigen::Quaterniond(0.8, 0.1, -0.5, 0.2).normalized());
+    a.velocity(rotation * Vec3<double>(0.3, 0, 1), {1, -2, 1.5});
   };
   auto make_b = [&] {
     Part& b = test::add(body, "b", "box", {}, 700);
-    b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.1}}).place(turn * Vec3<double>(1.2, 0, 0), turn);
+    b.rest({{"a1", 0.2}, {"a2", 0.3}, {"a3", 0.1}}).place(rotation * Vec3<double>(1.2, 0, 0), rotation);
   };
   auto make_c = [&] {
     Part& c = test::add(body, "c", "cylinder", {"bend"}, 500);
@@ -109,18 +111,19 @@ Ends run_turned(const Eigen::Quaterniond& turn, const char* method, bool reverse
         .limits("bend.angle", {-0.1, 0.1});
     c.initial_rate({{"bend.angle", 3}}).place({9, 9, 9}).velocity({0, 0, 0}, {1, 1, 1});
   };
-  if (company && reversed) make_c();
+  if (others && reversed) make_c();
   if (reversed) make_b();
   make_a();
   if (!reversed) make_b();
-  if (company && !reversed) make_c();
+  if (others && !reversed) make_c();
   Part &a = *body.find("a"), &b = *body.find("b");
   body.spring("tie", point(a, 0.4, 0.5), point(b, 0.2, -2), 900, 10, 0.4);
-  body.spring("hold", point(b, 0, 0, 0), world(TimeVector(Vec3<double>(turn * Vec3<double>(1, 0, 1)))), 500);
-  body.torque("turn", b, TimeVector(Vec3<double>(turn * Vec3<double>(0, 3, 1))));
+  body.spring("hold", point(b, 0, 0, 0), world(TimeVector(Vec3<double>(rotation * Vec3<double>(1, 0, 1)))),
+              500);
+  body.torque("turn", b, TimeVector(Vec3<double>(rotation * Vec3<double>(0, 3, 1))));
   Simulation simulation(body, method);
   for (int i = 0; i < 200; ++i) simulation.step(2e-3);
-  Ends ends{VecX<double>(18), VecX<double>(16)};
+  Result ends{VecX<double>(18), VecX<double>(16)};
   int q = 0, v = 0;
   for (const Part* part : {&a, &b}) {
     const PartModel& m = simulation.model().parts()[static_cast<std::size_t>(body.index(*part))];
@@ -134,44 +137,45 @@ Ends run_turned(const Eigen::Quaterniond& turn, const char* method, bool reverse
 
 }  // namespace
 
-TEST_CASE("N64: a scene turned as a whole moves as before", "[invariance]") {
+TEST_CASE("N64: a rotated scene gives the rotated motion", "[invariance]") {
   for (const char* method : kMethods) {
-    const Ends plain = run_turned(Eigen::Quaterniond::Identity(), method);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond(0.3, -0.7, 0.5, 0.4).normalized();
-    const Ends turned = run_turned(turn, method);
+    const Result plain = run_rotated(Eigen::Quaterniond::Identity(), method);
+    const Eigen::Quaterniond rotation = Eigen::Quaterniond(0.3, -0.7, 0.5, 0.4).normalized();
+    const Result rotated = run_rotated(rotation, method);
     INFO(method);
     for (int at : {0, 11}) {
-      CHECK((turned.q.segment<3>(at) - turn * Vec3<double>(plain.q.segment<3>(at))).norm() <= 1e-11);
-      const auto theta = plain.q.segment<4>(at + 3), now = turned.q.segment<4>(at + 3);
-      const Eigen::Quaterniond expected = turn * Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]);
+      CHECK((rotated.q.segment<3>(at) - rotation * Vec3<double>(plain.q.segment<3>(at))).norm() <= 1e-11);
+      const auto theta = plain.q.segment<4>(at + 3), now = rotated.q.segment<4>(at + 3);
+      const Eigen::Quaterniond expected =
+          rotation * Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]);
       CHECK(std::abs(std::abs(expected.dot(Eigen::Quaterniond(now[0], now[1], now[2], now[3]))) - 1) <=
             1e-11);
     }
-    CHECK((turned.q.segment<4>(7) - plain.q.segment<4>(7)).norm() <= 1e-11);
-    CHECK((turned.v.segment<7>(3) - plain.v.segment<7>(3)).norm() <= 1e-9);
+    CHECK((rotated.q.segment<4>(7) - plain.q.segment<4>(7)).norm() <= 1e-11);
+    CHECK((rotated.v.segment<7>(3) - plain.v.segment<7>(3)).norm() <= 1e-9);
   }
 }
 
-TEST_CASE("N64: the order of parts and unrelated company change nothing", "[invariance][long]") {
+TEST_CASE("N64: the order of parts and unrelated parts do not change the motion", "[invariance][long]") {
   for (const char* method : kMethods) {
-    const Ends plain = run_turned(Eigen::Quaterniond::Identity(), method);
-    const Ends reversed = run_turned(Eigen::Quaterniond::Identity(), method, true);
+    const Result plain = run_rotated(Eigen::Quaterniond::Identity(), method);
+    const Result reversed = run_rotated(Eigen::Quaterniond::Identity(), method, true);
     CHECK((plain.q - reversed.q).norm() <= 1e-11);
     CHECK((plain.v - reversed.v).norm() <= 1e-10);
     for (bool order : {false, true}) {
-      const Ends alone = run_turned(Eigen::Quaterniond::Identity(), method, order);
-      const Ends company = run_turned(Eigen::Quaterniond::Identity(), method, order, true);
-      CHECK(alone.q == company.q);
-      CHECK(alone.v == company.v);
+      const Result alone = run_rotated(Eigen::Quaterniond::Identity(), method, order);
+      const Result with_others = run_rotated(Eigen::Quaterniond::Identity(), method, order, true);
+      CHECK(alone.q == with_others.q);
+      CHECK(alone.v == with_others.v);
     }
   }
 }
 
 TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]") {
-  // x -> -x: twist, the bend's direction, shear along x, and two components of omega and of the quaternion
-  // change.
+  // Under x -> -x these change their sign: the twist, the bend's direction, the shear along x, two components
+  // of omega and two of the quaternion.
   for (const char* method : kMethods) {
-    Ends ends[2];
+    Result results[2];
     for (int mirrored = 0; mirrored < 2; ++mirrored) {
       const double s = mirrored != 0 ? -1 : 1;
       MultiBody body;
@@ -190,22 +194,23 @@ TEST_CASE("N64: a mirrored scene moves as the mirror image", "[invariance][long]
       body.spring("hold", point(a, 0.4, mirrored != 0 ? kPi - 0.5 : 0.5), world(s * 0.4, 0, 1), 500, 3, 0.2);
       Simulation simulation(body, method);
       for (int i = 0; i < 200; ++i) simulation.step(2e-3);
-      ends[mirrored] = {simulation.state().q, simulation.state().v};
+      results[mirrored] = {simulation.state().q, simulation.state().v};
     }
-    VecX<double> sign = VecX<double>::Ones(ends[0].q.size());
+    VecX<double> sign = VecX<double>::Ones(results[0].q.size());
     for (int i : {0, 5, 6, 9, 10}) sign[i] = -1;  // c.x, quat.y, quat.z, twist, shear.sx
-    CHECK((ends[0].q.cwiseProduct(sign) - ends[1].q).norm() <= 1e-11);
+    CHECK((results[0].q.cwiseProduct(sign) - results[1].q).norm() <= 1e-11);
   }
 }
 
-TEST_CASE("N63: a scene far from the origin", "[invariance][long]") {
-  const Ends near = run_in({}, "rk4"), far = run_in({}, "rk4", 0x1p20);
+TEST_CASE("N63: a scene far from the origin agrees within 64 ulp of the offset for each step",
+          "[invariance][long]") {
+  const Result near = run_in({}, "rk4"), far = run_in({}, "rk4", 0x1p20);
   VecX<double> offset = VecX<double>::Zero(near.q.size());
   offset[0] = offset[12] = 0x1p20;
   CHECK((far.q - near.q - offset).norm() <= 64 * 200 * 0x1p20 * 2.2e-16);
 }
 
-TEST_CASE("N65: what is there but null changes nothing", "[invariance]") {
+TEST_CASE("N65: features with zero effect do not change the motion", "[invariance]") {
   auto run = [](const char* method, const std::vector<std::string>& chain, bool null_forces) {
     MultiBody body;
     Part& a = test::add(body, "a", "ellipsoid", chain, 1000);
@@ -233,9 +238,9 @@ TEST_CASE("N65: what is there but null changes nothing", "[invariance]") {
   }
 }
 
-TEST_CASE("N66: any number of threads gives the same bits", "[invariance][long]") {
+TEST_CASE("N66: any number of threads gives identical bits", "[invariance][long]") {
   for (const char* method : kMethods) {
-    std::uint64_t alone = 0;
+    std::uint64_t one_thread = 0;
     for (const int threads : {1, 2, 3, 7, 16, 64}) {
       MultiBody body;
       std::vector<Part*> parts;
@@ -249,35 +254,35 @@ TEST_CASE("N66: any number of threads gives the same bits", "[invariance][long]"
       }
       Simulation simulation(body, method, threads);
       for (int i = 0; i < 10; ++i) simulation.step(1e-3);
-      if (threads == 1) alone = hash(simulation.state());
+      if (threads == 1) one_thread = hash(simulation.state());
       INFO(method << " on " << threads);
-      CHECK(hash(simulation.state()) == alone);
+      CHECK(hash(simulation.state()) == one_thread);
     }
   }
 }
 
-TEST_CASE("N30: looking at a simulation does not steer it", "[invariance][long]") {
+TEST_CASE("N30: queries of a simulation do not change its motion", "[invariance][long]") {
   for (const char* method : kMethods) {
     VecX<double> q[2];
-    for (int look = 0; look < 2; ++look) {
+    for (int query = 0; query < 2; ++query) {
       MultiBody body;
       Part& part = test::tumbling_solid(body);
       part.limits("bend.angle", {-0.6, 0.65});
       Simulation simulation(body, method);
       for (int i = 0; i < 100; ++i) {
         simulation.step(1e-3);
-        if (look == 1) {
+        if (query == 1) {
           simulation.ledger();
           largest_stable_step(simulation);
         }
       }
-      q[look] = simulation.state().q;
+      q[query] = simulation.state().q;
     }
     CHECK(q[0] == q[1]);
   }
 }
 
-TEST_CASE("N67: going on from a copied state gives the same bits", "[invariance]") {
+TEST_CASE("N67: a run resumed from a copied state gives identical bits", "[invariance]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::tumbling_solid(body);

@@ -1,11 +1,11 @@
-// Parts whose motion is prescribed: what hangs on them, what they push, carry and turn, against moving
-// anchors and closed forms.
+// Parts with prescribed motion: joints, springs and contacts with them, against moving anchors and closed
+// forms.
 #include "catch.h"
 
 #include <cmath>
 
-#include "draws.h"
 #include <pliant/contact/contact_stepping.h>
+#include "draws.h"
 
 #include "motion.h"
 
@@ -35,13 +35,13 @@ double work(Simulation& simulation, Work kind) {
 
 }  // namespace
 
-TEST_CASE("what hangs on a part that is moved hangs as on the same moving anchor", "[motion]") {
-  // The point is 0.1 m from the origin of a frame that swings to and fro and turns.
+TEST_CASE("a load on a part with prescribed motion moves as on the equivalent moving anchor", "[motion]") {
+  // The point is 0.1 m from the origin of a frame that translates and rotates periodically.
   const TimeFunction x = wave(0, 0.2, 7), angle = wave(0.3, 1.5, 3);
   const TimeVector anchor(TimeFunction::formula("0.2 * sin(7 * t) + 0.1 * cos(0.3 + 1.5 * sin(3 * t))"),
                           TimeFunction::formula("0.1 * sin(0.3 + 1.5 * sin(3 * t))"), 1);
   for (const char* method : {"semi_implicit_euler", "rk4", "linearly_implicit"})
-    for (const bool sprung : {false, true}) {
+    for (const bool on_spring : {false, true}) {
       std::vector<std::unique_ptr<Simulation>> runs;
       MultiBody bodies[2];
       for (MultiBody& body : bodies) {
@@ -53,15 +53,15 @@ TEST_CASE("what hangs on a part that is moved hangs as on the same moving anchor
           motion.angle = angle;
           hook = point(ball(body, "hand", 0.1).prescribe(motion), 0, 0);
         }
-        if (sprung)
+        if (on_spring)
           body.spring("spring", hook, point(bob, kPi / 2, 0), 200, 3, 0.3);
         else
           body.ball("hook", point(bob, kPi / 2, 0), hook);
-        body.stabilization.assemble_first = !sprung;
+        body.stabilization.assemble_first = !on_spring;
         runs.push_back(std::make_unique<Simulation>(body, method));
         test::run(*runs.back(), 1, 1000);
       }
-      INFO(method << (sprung ? ", spring" : ", joint"));
+      INFO(method << (on_spring ? ", spring" : ", joint"));
       CHECK((runs[0]->state().q - runs[1]->state().q).lpNorm<Eigen::Infinity>() < 1e-12);
       CHECK((runs[0]->state().v - runs[1]->state().v).lpNorm<Eigen::Infinity>() < 1e-11);
       const double anchors = work(*runs[0], Work::anchors);
@@ -71,7 +71,7 @@ TEST_CASE("what hangs on a part that is moved hangs as on the same moving anchor
     }
 }
 
-TEST_CASE("a paddle at constant speed hits a ball as 1 + e says", "[motion]") {
+TEST_CASE("a paddle at constant speed hits a ball with the speed 1 + e times its own", "[motion]") {
   constexpr double kSpeed = 3;
   for (const double e : {0.0, 0.6, 1.0}) {
     MultiBody body;
@@ -84,15 +84,15 @@ TEST_CASE("a paddle at constant speed hits a ball as 1 + e says", "[motion]") {
     test::run(simulation, 1, 100);
     const double m = hit.total_mass(), v = (1 + e) * kSpeed;
     CHECK(simulation.state().v[0] == Approx(v).epsilon(1e-10));
-    const double meets = (1 - 0.15) / kSpeed;
-    CHECK(simulation.state().q[0] == Approx(v * (1 - meets)).epsilon(1e-9));
+    const double hit_time = (1 - 0.15) / kSpeed;
+    CHECK(simulation.state().q[0] == Approx(v * (1 - hit_time)).epsilon(1e-9));
     CHECK(simulation.ledger().momentum[0] == Approx(m * v).epsilon(1e-10));
     CHECK(work(simulation, Work::contact) == Approx(0.5 * m * v * v).epsilon(1e-9));
     CHECK(std::abs(simulation.ledger().balance) < 1e-9);
   }
 }
 
-TEST_CASE("a thin paddle that swings fast does not pass through a ball", "[motion][long]") {
+TEST_CASE("a thin fast paddle does not pass through a ball", "[motion][long]") {
   MultiBody body;
   body.gravity.setZero();
   body.contact.active = true;
@@ -109,7 +109,7 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
   MultiBody body;
   body.contact.active = true;
   box(body, "platform", {0.5, 0.5, 0.05}).prescribe(along({0, 0, TimeFunction::formula("t^2 - 0.05")}));
-  Part& carried = ball(body, "ball", 0.1).place({0, 0, 0.1});
+  Part& load = ball(body, "ball", 0.1).place({0, 0, 0.1});
   Simulation simulation(body, "rk4");
   const double h = 2e-3;
   double worst = 0;
@@ -119,7 +119,7 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
     worst = std::max(worst, std::abs(simulation.state().q[2] - 0.1 - t * t));
   }
   CHECK(worst < 1e-8);
-  const double m = carried.total_mass();
+  const double m = load.total_mass();
   CHECK(simulation.state().v[2] == Approx(2).epsilon(1e-3));
   Vec3<double> impulse = Vec3<double>::Zero();
   REQUIRE(!simulation.contact()->contacts().empty());
@@ -130,11 +130,11 @@ TEST_CASE("a rising platform carries a ball, and pushes it with m (g + a)", "[mo
   }
   CHECK(impulse[2] == Approx(m * (kG + 2) * h).epsilon(1e-2));
   CHECK(work(simulation, Work::contact) == Approx(m * (kG + 0.5 * 4)).epsilon(2e-3));
-  // Where it is is told of any state.
+  // The position is available for any state.
   CHECK(simulation.model().position(simulation.state(), 0)[2] == Approx(0.95));
 }
 
-TEST_CASE("a ball that rolls on a turntable goes round at 2/7 of its rate", "[motion][long]") {
+TEST_CASE("a ball that rolls on a turntable circles at 2/7 of its rate", "[motion][long]") {
   constexpr double kRate = 3, kRadius = 0.1, kTurn = 2.0 / 7 * kRate;
   std::vector<double> errors;
   for (const double h : {4e-3, 2e-3, 1e-3}) {
@@ -150,9 +150,9 @@ TEST_CASE("a ball that rolls on a turntable goes round at 2/7 of its rate", "[mo
     Simulation simulation(body, "rk4");
     test::run(simulation, 2, static_cast<int>(std::lround(2 / h)));
     const double angle = kTurn * 2;
-    const Vec3<double> there =
+    const Vec3<double> exact =
         x + Vec3<double>(0.3 / kTurn * (std::cos(angle) - 1), 0.3 / kTurn * std::sin(angle), 0);
-    errors.push_back((simulation.state().q.head<3>() - there).norm());
+    errors.push_back((simulation.state().q.head<3>() - exact).norm());
     CHECK(simulation.state().v.head<2>().norm() == Approx(0.3).epsilon(5 * h));
   }
   CAPTURE(errors[0], errors[1], errors[2]);
@@ -160,7 +160,7 @@ TEST_CASE("a ball that rolls on a turntable goes round at 2/7 of its rate", "[mo
   CHECK(test::observed_order(errors) > 1.8);
 }
 
-TEST_CASE("motion that cannot be prescribed is refused by name", "[motion]") {
+TEST_CASE("invalid prescribed motions are refused by name", "[motion]") {
   MultiBody body;
   Part& hand = ball(body, "hand", 0.1);
   PrescribedMotion motion;
@@ -180,7 +180,7 @@ TEST_CASE("motion that cannot be prescribed is refused by name", "[motion]") {
   CHECK_THROWS_WITH(Model(soft), test::has_text("prescribed motion does not deform locally"));
 }
 
-TEST_CASE("a prescribed motion that ends to be finite is told by name", "[motion]") {
+TEST_CASE("a prescribed motion that ceases to be finite stops the run by name", "[motion]") {
   MultiBody body;
   Part& hand = ball(body, "hand", 0.1).prescribe(along({TimeFunction::formula("sqrt(0.045 - t)"), 0, 0}));
   Part& bob = ball(body, "bob", 0.1).place({0, 0, -1});

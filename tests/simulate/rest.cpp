@@ -1,5 +1,5 @@
-// Rest: stacks stand for hours, dropped ones come to rest, sharp shapes lie on what is lowest, and what is
-// heavy on what is light.
+// Resting contact: stacks that stand for hours, dropped stacks that come to rest, sharp shapes on their
+// lowest points, extreme mass ratios.
 #include "catch.h"
 
 #include <algorithm>
@@ -24,23 +24,23 @@ Part& box(MultiBody& body, const std::string& name, const Vec3<double>& at, doub
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Boxes on each other, each a little beside the one below.
-void stack(MultiBody& body, int boxes, double apart = 0) {
+/// Adds a stack of boxes, each slightly displaced from the box below, with vertical gaps of `gap`.
+void stack(MultiBody& body, int boxes, double gap = 0) {
   for (int i = 0; i < boxes; ++i)
-    box(body, "box" + std::to_string(i), {0.005 * (i % 3), 0, kSize + (2 * kSize + apart) * i + apart});
+    box(body, "box" + std::to_string(i), {0.005 * (i % 3), 0, kSize + (2 * kSize + gap) * i + gap});
   floor(body);
 }
-/// Stands for a time, looked at a thousand times; the farthest that any coordinate goes.
-double creep(Simulation& simulation, double time, double h) {
+/// Runs for `time` and checks the coordinates a thousand times; returns the largest change of any coordinate.
+double max_change(Simulation& simulation, double time, double h) {
   const VecX<double> start = simulation.state().q;
   const auto steps = static_cast<int>(std::lround(time / h));
-  double farthest = 0;
+  double max = 0;
   for (int i = 1; i <= steps; ++i) {
     simulation.step(h);
     if (i % std::max(1, steps / 1000) == 0)
-      farthest = std::max(farthest, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
+      max = std::max(max, (simulation.state().q - start).lpNorm<Eigen::Infinity>());
   }
-  return farthest;
+  return max;
 }
 
 }  // namespace
@@ -50,21 +50,21 @@ TEST_CASE("N51: a stack of ten boxes stands without creep", "[contact][long]") {
     MultiBody body;
     stack(body, 10);
     Simulation simulation(body, "rk4");
-    CHECK(creep(simulation, 200 * h, h) < 1e-11 * kSize);
+    CHECK(max_change(simulation, 200 * h, h) < 1e-11 * kSize);
     CHECK(simulation.state().v.norm() < 1e-11);
     CHECK(std::abs(simulation.ledger().balance) < 1e-9);
     CHECK(simulation.step_counters().contact_fallbacks == 0);
   }
 }
 
-TEST_CASE("N51: a box on a box and a stack of ten stand for an hour, one of fifty for ten minutes",
+TEST_CASE("N51: stacks of two and ten boxes stand for an hour, a stack of fifty for ten minutes",
           "[contact][long]") {
   for (const auto& [boxes, hours] : {std::pair(2, 1.0), std::pair(10, 1.0), std::pair(50, 1.0 / 6)}) {
     CAPTURE(boxes);
     MultiBody body;
     stack(body, boxes);
     Simulation simulation(body, "rk4");
-    CHECK(creep(simulation, 3600 * hours, 3e-2) < hours * 1e-6 * kSize);
+    CHECK(max_change(simulation, 3600 * hours, 3e-2) < hours * 1e-6 * kSize);
     CHECK(simulation.state().v.norm() < 1e-9);
     CHECK(std::abs(simulation.ledger().balance) < 1e-6);
   }
@@ -79,27 +79,28 @@ TEST_CASE("N51: dropped boxes come to rest on each other", "[contact][long]") {
     test::run(simulation, 0.8, 400);
     CAPTURE(boxes);
     CHECK(simulation.state().v.norm() < 1e-12);
-    double fallen = 0;  // of all the gaps
-    for (int i = 1; i <= boxes; ++i) fallen += mass * 9.81 * 1e-4 * i;
-    CHECK(start - simulation.ledger().energy() == Approx(fallen).epsilon(2e-2));
+    double energy_loss = 0;  // energy lost in all the gaps, J
+    for (int i = 1; i <= boxes; ++i) energy_loss += mass * 9.81 * 1e-4 * i;
+    CHECK(start - simulation.ledger().energy() == Approx(energy_loss).epsilon(2e-2));
     CHECK(test::deepest_overlap(simulation) < 1e-9 * kSize);
   }
 }
 
-TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they touch", "[contact][long]") {
-  struct Way {
+TEST_CASE("N52: a sharp corner, an edge and a tip touch the plane with their lowest points",
+          "[contact][long]") {
+  struct Orientation {
     const char* name;
     Eigen::Quaterniond R;
-    bool balances;  // on a point or a line, from which rounding takes it in time
+    bool unstable;  // on a point or a line, so that rounding makes the part fall over in time
   };
-  const std::vector<Way> ways{
+  const std::vector<Orientation> orientations{
       {"face", Eigen::Quaterniond::Identity(), false},
       {"edge", Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 4, Vec3<double>::UnitX())), true},
       {"corner",
        Eigen::Quaterniond::FromTwoVectors(Vec3<double>(1, 1, 1).normalized(), Vec3<double>(0, 0, -1)), true}};
   for (const double eps : {0.02, 0.1, 0.2, 1.99, 2.0})
-    for (const Way& way : ways) {
-      // The support of |x|^(2/eps) + |y|^(2/eps) + |z|^(2/eps) = a^(2/eps) is the norm dual to that.
+    for (const Orientation& orientation : orientations) {
+      // The support function of |x|^(2/eps) + |y|^(2/eps) + |z|^(2/eps) = a^(2/eps) is the dual norm.
       auto support = [&](const Eigen::Quaterniond& R) {
         const Vec3<double> d = (R.conjugate() * Vec3<double>(0, 0, -1)).cwiseAbs();
         if (eps == 2) return kSize * d.maxCoeff();
@@ -110,18 +111,18 @@ TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they tou
       body.contact.friction = 0.6;
       Part& part = body.add(make_part("solid", "superellipsoid", {}, 1000));
       part.rest({{"a1", kSize}, {"a2", kSize}, {"a3", kSize}, {"eps1", eps}, {"eps2", eps}});
-      part.place({0, 0, support(way.R)}, way.R);
+      part.place({0, 0, support(orientation.R)}, orientation.R);
       floor(body);
       Simulation simulation(body, "rk4");
-      CAPTURE(eps, way.name);
+      CAPTURE(eps, orientation.name);
       const std::vector<Contact> contacts =
           ContactFinder(simulation.model()).find(simulation.state(), 0, 1e-3);
       REQUIRE_FALSE(contacts.empty());
-      double least = 1;
-      for (const Contact& contact : contacts) least = std::min(least, contact.gap);
-      CHECK(std::abs(least) < 1e-6 * kSize);
-      // At eps = 2 edge and corner are flat sides of an octahedron, between 1 and 2 flat enough.
-      const bool flat = eps > 1 ? std::string(way.name) != "face" : !way.balances;
+      double min_gap = 1;
+      for (const Contact& contact : contacts) min_gap = std::min(min_gap, contact.gap);
+      CHECK(std::abs(min_gap) < 1e-6 * kSize);
+      // At eps = 2 edge and corner are flat faces of an octahedron; between 1 and 2 they are nearly flat.
+      const bool flat = eps > 1 ? std::string(orientation.name) != "face" : !orientation.unstable;
       for (int i = 0; i < 250; ++i) {
         simulation.step(2e-3);
         REQUIRE(support(simulation.model().orientation(simulation.state(), 0)) - simulation.state().q[2] <
@@ -131,7 +132,8 @@ TEST_CASE("N52: a sharp corner, an edge and a tip lie on the plane that they tou
     }
 }
 
-TEST_CASE("N56: a million to one in mass, heavy on light and light on heavy", "[contact][long]") {
+TEST_CASE("N56: mass ratios of a million, heavy on light and light on heavy: penetration and rest",
+          "[contact][long]") {
   for (const double ratio : {1e-6, 1e6})
     for (const double h : {1e-3, 2e-3}) {
       MultiBody body;

@@ -1,5 +1,5 @@
-// What a scene does not need is not computed (design section 2), by the counters of the kernels; and a step
-// allocates nothing on the heap.
+// Quantities that a scene does not need are not computed, as the counters of the kernels show; and a step
+// allocates no heap memory.
 #include "catch.h"
 
 #include <cstdlib>
@@ -18,7 +18,7 @@ namespace {
 long allocations = 0;
 }  // namespace
 
-// Sanitizers have their own malloc; they count nothing.
+// Sanitizers replace malloc, so that nothing can be counted there.
 #if defined(__GLIBC__) && !defined(PLIANT_SANITIZED)
 constexpr bool kCounted = true;
 extern "C" void* __libc_malloc(std::size_t size);
@@ -27,7 +27,7 @@ extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
   return __libc_malloc(size);
 }
-// Compilers make one call of malloc and memset.
+// Compilers merge malloc and memset into calloc.
 extern "C" void* calloc(std::size_t n, std::size_t size) noexcept {
   ++allocations;
   return __libc_calloc(n, size);
@@ -45,20 +45,20 @@ Counters after_steps(Simulation& simulation, int steps) {
   return simulation.counters();
 }
 
-/// Steps take no memory once the first have sized everything.
+/// Checks that steps allocate no memory after the first two have sized all buffers.
 void check_heap(Simulation& simulation, double h) {
   simulation.step(h);
   simulation.step(h);
   const long before = allocations;
   CHECK((before > 0) == kCounted);
   for (int i = 0; i < 10; ++i) simulation.step(h);
-  const long taken = allocations - before;
-  CHECK(taken == 0);
+  const long allocated = allocations - before;
+  CHECK(allocated == 0);
 }
 
 }  // namespace
 
-TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix", "[skip]") {
+TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix is evaluated", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::add(body, "rigid", "superellipsoid", {"taper", "bend"}, 1000);
@@ -76,7 +76,7 @@ TEST_CASE("all parameters frozen: neither J nor Jdot nor a mass matrix", "[skip]
   }
 }
 
-TEST_CASE("rigid parts on ball joints: inertial forces alone, by their island", "[skip]") {
+TEST_CASE("rigid parts on ball joints: only inertial forces are evaluated, once for each part", "[skip]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
     for (int i = 0; i < 6; ++i)
@@ -96,7 +96,7 @@ TEST_CASE("rigid parts on ball joints: inertial forces alone, by their island", 
   }
 }
 
-TEST_CASE("a part that does not move has no coordinates and costs nothing", "[skip]") {
+TEST_CASE("a fixed part has no coordinates and needs no evaluation", "[skip]") {
   MultiBody body;
   test::add(body, "post", "box", {"taper"}, 1000).fix();
   Part& part = test::add(body, "ball", "sphere", {}, 1000);
@@ -109,7 +109,7 @@ TEST_CASE("a part that does not move has no coordinates and costs nothing", "[sk
   CHECK(counters.point_jets == 0);
 }
 
-TEST_CASE("at rest: no rates and no inertial forces", "[skip]") {
+TEST_CASE("at rest neither rates nor inertial forces are evaluated", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -123,8 +123,7 @@ TEST_CASE("at rest: no rates and no inertial forces", "[skip]") {
   }
 }
 
-TEST_CASE("some parameters frozen: their columns are gone, and the rule is the one for what moves",
-          "[skip]") {
+TEST_CASE("frozen parameters have no columns, and the quadrature rule fits the dynamic ones", "[skip]") {
   MultiBody body;
   Part& part = test::add(body, "part", "superellipsoid", {"taper", "twist"}, 1000);
   part.make_dynamic({"a1", "twist.angle"});
@@ -136,11 +135,11 @@ TEST_CASE("some parameters frozen: their columns are gone, and the rule is the o
   MultiBody scales;
   Part& scaled = test::add(scales, "part", "supertoroid", {}, 1000);
   scaled.make_dynamic({"a1", "a2", "a3"});
-  const Simulation of_scales(scales);
+  const Simulation scales_run(scales);
   CHECK(scaled.mass_points().n_points == 4);
 }
 
-TEST_CASE("no output, no surface; evaluations are counted", "[skip]") {
+TEST_CASE("without output no surface is evaluated; evaluations are counted", "[skip]") {
   MultiBody body;
   test::tumbling_solid(body);
   Simulation rk4(body, "rk4"), euler(body, "semi_implicit_euler");
@@ -152,7 +151,7 @@ TEST_CASE("no output, no surface; evaluations are counted", "[skip]") {
   CHECK(rk4.counters().rate_points == 40 * body.parts()[0]->mass_points().n_points);
 }
 
-TEST_CASE("a step takes nothing from the heap", "[skip]") {
+TEST_CASE("a step allocates no heap memory", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& a = test::tumbling_solid(body, "a");
@@ -171,7 +170,7 @@ TEST_CASE("a step takes nothing from the heap", "[skip]") {
   }
 }
 
-TEST_CASE("a step of parts with joints takes nothing from the heap", "[skip]") {
+TEST_CASE("a step of parts with joints allocates no heap memory", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     const Part* above = nullptr;
@@ -193,14 +192,14 @@ TEST_CASE("a step of parts with joints takes nothing from the heap", "[skip]") {
   }
 }
 
-TEST_CASE("a step of a part that deforms locally takes nothing from the heap", "[skip][local]") {
+TEST_CASE("a step of a part with local deformation allocates no heap memory", "[skip][local]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::add(body, "jelly", "ellipsoid", {}, 1000);
     LocalSettings settings;
     settings.resolution = 2;
     settings.energies = {local_law("elastic", {1e4, 0.3})};
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     settings.alpha = 0.1;
     part.velocity({0, 0, 0}, {1, 2, 3}).deform_locally(settings);
     body.spring("tie", point(part, 0.3, 1), world(0, 0, 2), 1, 0.1, 0.3);
@@ -210,18 +209,18 @@ TEST_CASE("a step of a part that deforms locally takes nothing from the heap", "
   }
 }
 
-TEST_CASE("no local deformation, no nodes; with it, J of frozen parameters is never evaluated",
+TEST_CASE("without local deformation there are no nodes; with it, J of frozen parameters is not evaluated",
           "[skip][local]") {
   for (const bool soft : {false, true}) {
     MultiBody body;
     Part& part = test::add(body, "body", "ellipsoid", {}, 1000);
     part.make_shell().velocity({0, 0, 0}, {1, 2, 3});
     LocalSettings settings = test::net(2, 1e3);
-    settings.velocity = test::rush;
+    settings.velocity = test::sample_velocity;
     if (soft) part.deform_locally(settings);
     Simulation simulation(body, "rk4");
     const Counters counters = after_steps(simulation, 10);
-    CHECK(counters.jacobian_points == 0);  // none of them is dynamic
+    CHECK(counters.jacobian_points == 0);  // no parameter is dynamic
     CHECK(counters.rate_points == 0);
     CHECK((simulation.model().parts()[0].local == nullptr) == !soft);
     CHECK((counters.mass_matrices == 0) == !soft);
@@ -229,7 +228,7 @@ TEST_CASE("no local deformation, no nodes; with it, J of frozen parameters is ne
   }
 }
 
-TEST_CASE("a frame that keeps to its reference conditions is not looked for after a step",
+TEST_CASE("reference conditions that are satisfied need no further evaluation after a step",
           "[skip][local][long]") {
   for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit"})
     for (const bool soft : {false, true}) {
@@ -240,24 +239,24 @@ TEST_CASE("a frame that keeps to its reference conditions is not looked for afte
       LocalSettings settings;
       settings.resolution = 2;
       settings.energies = {local_law("elastic", {1e4, 0.3})};
-      settings.velocity = test::rush;
+      settings.velocity = test::sample_velocity;
       part.velocity({0, 0, 0}, {1, 2, 3}).deform_locally(settings);
       Simulation simulation(body, method);
       const double steps = 1000, masses = static_cast<double>(after_steps(simulation, 1000).mass_matrices),
                    evaluations = static_cast<double>(simulation.step_counters().evaluations);
       if (soft)
-        CHECK(masses >= evaluations + steps);  // W moves with the parameters
+        CHECK(masses >= evaluations + steps);  // W depends on the parameters
       else
         CHECK(masses <= evaluations + 0.02 * steps);
     }
 }
 
-TEST_CASE("a held parameter takes nothing from the heap", "[skip]") {
+TEST_CASE("a step with a parameter without inertia allocates no heap memory", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::add(body, "part", "box", {"bend"}, 1000);
     part.make_dynamic({"bend.direction"})
-        .velocity({0, 0, 0}, {1, 2, 3});  // no bend: its direction moves nothing
+        .velocity({0, 0, 0}, {1, 2, 3});  // without a bend, its direction has no effect
     Simulation simulation(body, method);
     INFO(method);
     check_heap(simulation, 1e-3);
@@ -265,7 +264,7 @@ TEST_CASE("a held parameter takes nothing from the heap", "[skip]") {
   }
 }
 
-TEST_CASE("a parameter resting on its limit takes nothing from the heap", "[skip]") {
+TEST_CASE("a step with a parameter at its limit allocates no heap memory", "[skip]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();

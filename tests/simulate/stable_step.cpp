@@ -1,4 +1,4 @@
-// The predicted largest stable step against the measured one (N20, stress.md 1.1).
+// The predicted largest stable step against the measured one.
 #include "catch.h"
 
 #include <chrono>
@@ -16,7 +16,7 @@ namespace {
 
 using Build = std::function<void(MultiBody&)>;
 
-/// Whether the motion about the state stays bounded for steps of h.
+/// Returns whether the motion about the initial state stays bounded in steps of h.
 bool bounded(const Build& build, const char* method, double h) {
   MultiBody body;
   body.gravity.setZero();
@@ -46,15 +46,15 @@ void check_limit(const std::string& what, const Build& build) {
   }
 }
 
-/// A scale of a solid with stiffness, and damping by alpha and beta; small enough a motion that no limit is
-/// met.
+/// A solid with one elastic scale, with damping by alpha and beta. The motion is so small that it does not
+/// reach a limit.
 Build breathing(double stiffness, double alpha, double beta, double drag = 0) {
   return [=](MultiBody& body) {
     auto& part = body.add<Primitive<Ellipsoid>>("body", 1000);
     part.mass(5).stiffness({{"a3", stiffness}}).initial_rate({{"a3", 1e-9}}).damping(alpha, beta, drag);
   };
 }
-/// A ball held at its centre by a spring and damper.
+/// A ball on a spring and damper at its centre.
 Build ball(double stiffness, double damping) {
   return [=](MultiBody& body) {
     auto& part = body.add<Primitive<Sphere>>("ball", 1000);
@@ -65,8 +65,8 @@ Build ball(double stiffness, double damping) {
 
 }  // namespace
 
-TEST_CASE("N20: the closed form of semi-implicit Euler", "[stable]") {
-  // omega^2 h^2 + 2 h (nu + beta omega^2) < 4, with omega^2 = 5 k / m: x'' + (alpha + beta omega^2) x' +
+TEST_CASE("N20: the predicted step of semi-implicit Euler agrees with the closed form", "[stable]") {
+  // omega^2 h^2 + 2 h (nu + beta omega^2) < 4, with omega^2 = 5 k / m, for x'' + (alpha + beta omega^2) x' +
   // omega^2 x = 0.
   for (double k : {1.0, 1e4})
     for (double alpha : {0.0, 3.0})
@@ -80,7 +80,7 @@ TEST_CASE("N20: the closed form of semi-implicit Euler", "[stable]") {
       }
 }
 
-TEST_CASE("N20: RK4 on the imaginary and on the real axis", "[stable]") {
+TEST_CASE("N20: the predicted step of RK4 on the imaginary and on the real axis", "[stable]") {
   {
     MultiBody body;
     breathing(100, 0, 0)(body);
@@ -93,7 +93,7 @@ TEST_CASE("N20: RK4 on the imaginary and on the real axis", "[stable]") {
   }
 }
 
-TEST_CASE("N20: measured limits are the predicted ones", "[stable]") {
+TEST_CASE("N20: measured limits agree with the predicted ones", "[stable]") {
   check_limit("scale", breathing(500, 0, 0));
   check_limit("scale, alpha", breathing(500, 8, 0));
   check_limit("scale, beta", breathing(500, 0, 0.05));
@@ -103,7 +103,9 @@ TEST_CASE("N20: measured limits are the predicted ones", "[stable]") {
   check_limit("strong damper", ball(300, 400));
 }
 
-TEST_CASE("N20: two parts tied by a spring, and coupled parameters", "[stable]") {
+TEST_CASE(
+    "N20: measured limits agree with the predicted ones for two parts on a spring and for coupled parameters",
+    "[stable]") {
   check_limit("two balls", [](MultiBody& body) {
     auto& a = body.add<Primitive<Sphere>>("a", 1000);
     auto& b = body.add<Primitive<Sphere>>("b", 1000);
@@ -124,13 +126,13 @@ TEST_CASE("N20: two parts tied by a spring, and coupled parameters", "[stable]")
   });
 }
 
-TEST_CASE("nothing stiff and nothing turning: any step", "[stable]") {
+TEST_CASE("without stiffness and rotation the step is unlimited", "[stable]") {
   MultiBody body;
   body.add<Primitive<Box>>("box", 1000).velocity({1, 0, 0}, {0, 0, 0});
   CHECK(std::isinf(largest_stable_step(Simulation(body))));
 }
 
-TEST_CASE("N19: a spin allows half a radian a step", "[stable]") {
+TEST_CASE("N19: a spin limits the step to half a radian", "[stable]") {
   auto spinning = [](MultiBody& body) {
     auto& part = body.add<Primitive<Box>>("box", 1000);
     part.rest({{"a1", 0.1}, {"a2", 0.2}, {"a3", 0.3}}).velocity({0, 0, 0}, {30, 40, 120});
@@ -139,20 +141,20 @@ TEST_CASE("N19: a spin allows half a radian a step", "[stable]") {
   MultiBody body;
   spinning(body);
   CHECK(largest_stable_step(Simulation(body)) == Approx(0.5 / 130));
-  // Far beyond it semi-implicit Euler keeps |L|, and with it omega within bounds, whatever the direction.
-  MultiBody kept;
-  spinning(kept);
-  Simulation simulation(kept, "semi_implicit_euler");
+  // With far longer steps semi-implicit Euler conserves |L|, so that omega stays bounded in any direction.
+  MultiBody euler_body;
+  spinning(euler_body);
+  Simulation simulation(euler_body, "semi_implicit_euler");
   const double L = simulation.ledger().angular_momentum.norm();
   for (int i = 0; i < 2000; ++i) simulation.step(10.0 / 130);
   CHECK(simulation.ledger().angular_momentum.norm() == Approx(L).epsilon(1e-9));
-  // By others the motion is lost, and the failure says what would work.
-  MultiBody lost;
-  spinning(lost);
-  Simulation losing(lost, "rk4");
+  // Other methods lose the motion, and the failure names a stable step.
+  MultiBody rk4_body;
+  spinning(rk4_body);
+  Simulation rk4_run(rk4_body, "rk4");
   std::string message;
   try {
-    for (int i = 0; i < 2000; ++i) losing.step(10.0 / 130);
+    for (int i = 0; i < 2000; ++i) rk4_run.step(10.0 / 130);
   } catch (const NumericalFailure& failure) {
     message = failure.what();
   }
@@ -160,64 +162,66 @@ TEST_CASE("N19: a spin allows half a radian a step", "[stable]") {
   CHECK(message.find("the largest stable step here is about") != std::string::npos);
 }
 
-/// A chain of points that hangs by rods of 1 m, in a field of 1 m/s^2; the last is displaced.
-void hang(MultiBody& body, int n, double sideways = 0) {
+/// A chain of points that hangs on rods of 1 m, in a field of 1 m/s^2. The last point starts with a
+/// horizontal velocity.
+void hanging_chain(MultiBody& body, int n, double velocity = 0) {
   body.gravity = {0, 0, -1};
   const Part* above = nullptr;
   for (int i = 0; i < n; ++i) {
     auto& mass = body.add<Primitive<Sphere>>("mass" + std::to_string(i), 1000);
     mass.rest({{"r", 0.01}}).place({0, 0, -1.0 - i});
-    if (i == n - 1) mass.velocity({sideways, 0, 0}, {0, 0, 0});
+    if (i == n - 1) mass.velocity({velocity, 0, 0}, {0, 0, 0});
     body.join("rod" + std::to_string(i), Rod{1},
               {above == nullptr ? world(0, 0, 0) : point(*above, 0, 0, 0), point(mass, 0, 0, 0)});
     above = &mass;
   }
 }
 
-TEST_CASE("N20: joints under load: a hanging chain swings at the largest root of Laguerre's polynomial",
-          "[stable]") {
+TEST_CASE(
+    "N20: joints under load: the largest omega^2 of a hanging chain is a root of the Laguerre polynomial",
+    "[stable]") {
   for (const auto& [n, root] : {std::pair<int, double>{1, 1}, {2, 3.414213562373}, {5, 12.640800844276}}) {
     MultiBody body;
-    hang(body, n);
+    hanging_chain(body, n);
     INFO(n);
     CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / root)).epsilon(1e-3));
     CHECK(largest_stable_step(Simulation(body, "semi_implicit_euler")) ==
           Approx(2 / std::sqrt(root)).epsilon(1e-3));
   }
-  // What falls over has no limit of its own; what swings beside it has.
+  // An unstable equilibrium has no limit of its own; the pendulums beside it have one.
   MultiBody body;
-  hang(body, 2);
+  hanging_chain(body, 2);
   auto& top = body.add<Primitive<Sphere>>("top", 1000);
   top.rest({{"r", 0.01}}).place({5, 0, 0.01});
   body.join("rod", Rod{0.01}, {world(5, 0, 0), point(top, 0, 0, 0)});
   CHECK(largest_stable_step(Simulation(body, "rk4")) == Approx(std::sqrt(8 / 3.414213562373)).epsilon(1e-2));
 }
 
-TEST_CASE("N20: the predicted limit of a hanging chain is the measured one", "[stable]") {
+TEST_CASE("N20: the predicted limit of a hanging chain agrees with the measured one", "[stable]") {
   for (const char* method : {"semi_implicit_euler", "rk4"}) {
     MultiBody body;
-    hang(body, 5);
+    hanging_chain(body, 5);
     const double predicted = largest_stable_step(Simulation(body, method));
-    for (const double part : {0.95, 1.05}) {
-      MultiBody swaying;
-      hang(swaying, 5, 1e-9);
-      Simulation simulation(swaying, method);
+    for (const double fraction : {0.95, 1.05}) {
+      MultiBody displaced;
+      hanging_chain(displaced, 5, 1e-9);
+      Simulation simulation(displaced, method);
       double fastest = 0;
       try {
         for (int i = 0; i < 1000 && fastest < 1e-3; ++i) {
-          simulation.step(part * predicted);
+          simulation.step(fraction * predicted);
           fastest = std::max(fastest, simulation.state().v.norm());
         }
       } catch (const StepFailure&) {
         fastest = 1;
       }
-      INFO(method << " at " << part << " of " << predicted);
-      CHECK((fastest < 1e-6) == (part < 1));
+      INFO(method << " at " << fraction << " of " << predicted);
+      CHECK((fastest < 1e-6) == (fraction < 1));
     }
   }
 }
 
-TEST_CASE("N20: Baumgarte's terms, where a gap is left to them", "[stable]") {
+TEST_CASE("N20: Baumgarte terms limit the step where a gap is not projected", "[stable]") {
   auto limit = [](const char* method, BaumgarteRule rule, bool projection) {
     MultiBody body;
     body.gravity.setZero();
@@ -233,7 +237,7 @@ TEST_CASE("N20: Baumgarte's terms, where a gap is left to them", "[stable]") {
   CHECK(std::isinf(limit("semi_implicit_euler", BaumgarteRule::step_consistent, false)));
 }
 
-TEST_CASE("long chains: bounded part by part, safely and at once", "[stable]") {
+TEST_CASE("long chains: the bound from single parts is safe and fast", "[stable]") {
   auto chain = [](int n) {
     MultiBody body;
     body.gravity.setZero();
@@ -248,13 +252,13 @@ TEST_CASE("long chains: bounded part by part, safely and at once", "[stable]") {
     }
     return largest_stable_step(Simulation(body));
   };
-  const double together = chain(20), one_by_one = chain(21);  // 120 velocities are taken together, not more
+  const double together = chain(20), one_by_one = chain(21);  // up to 120 velocities are analysed together
   CHECK(one_by_one <= together);
   CHECK(one_by_one >= 0.5 * together);
   const auto start = std::chrono::steady_clock::now();
   CHECK(chain(1000) == Approx(one_by_one));
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  CHECK(taken.count() < 10);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  CHECK(elapsed.count() < 10);
 }
 
 }  // namespace stable_step_test

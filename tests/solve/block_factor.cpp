@@ -1,4 +1,4 @@
-// The block factorisation against dense algebra: random patterns, sizes, orders; rows that depend on others;
+// The block factorisation against dense algebra: random patterns, sizes and orders; redundant rows;
 // derivatives.
 #include "catch.h"
 
@@ -77,11 +77,12 @@ VecX<double> random(Draws& draws, Eigen::Index n) {
 
 }  // namespace
 
-TEST_CASE("block factor: solves what dense algebra solves, in any order", "[block_factor]") {
+TEST_CASE("block factor: solutions agree with dense algebra, in any order", "[block_factor]") {
   Draws draws(1);
   for (int trial = 0; trial < 200; ++trial) {
     const bool chain = trial % 3 == 0;
-    const int more_edges = chain ? 0 : draws.integer(0, trial % 3 == 1 ? 15 : 300);  // so many fill it
+    // many edges fill the matrix
+    const int more_edges = chain ? 0 : draws.integer(0, trial % 3 == 1 ? 15 : 300);
     const Sample sample(draws, draws.integer(1, 20), more_edges, chain);
     const VecX<double> b = random(draws, sample.A.rows()), expected = sample.A.ldlt().solve(b);
     for (const NodeOrder order : {minimum_degree_order, cardinality_order, given_order}) {
@@ -97,7 +98,7 @@ TEST_CASE("block factor: solves what dense algebra solves, in any order", "[bloc
   }
 }
 
-TEST_CASE("block factor: a chain and a tree fill nothing in", "[block_factor]") {
+TEST_CASE("block factor: a chain and a tree have no fill-in", "[block_factor]") {
   Draws draws(2);
   for (const bool chain : {true, false}) {
     const Sample sample(draws, 200, 0, chain);
@@ -110,8 +111,7 @@ TEST_CASE("block factor: a chain and a tree fill nothing in", "[block_factor]") 
   }
 }
 
-TEST_CASE("block factor: dense from where nothing is zero any more, where that is worth it",
-          "[block_factor]") {
+TEST_CASE("block factor: the remaining full block is dense if that is faster", "[block_factor]") {
   auto all_pairs = [](int first, int last) {
     std::vector<std::pair<int, int>> edges;
     for (int v = first; v < last; ++v)
@@ -127,7 +127,7 @@ TEST_CASE("block factor: dense from where nothing is zero any more, where that i
   CHECK(all.first_dense() == 0);
   CHECK(all.dense_rows().size() == 27);
   CHECK(all.updates().empty());
-  // A chain that leads to a star: blocks, then dense.
+  // A chain that ends in a fully connected block: blocks, then dense.
   std::vector<std::pair<int, int>> both = all_pairs(91, 100);
   both.insert(both.end(), links.begin(), links.end());
   const BlockPattern last(chain, both, given_order);
@@ -135,21 +135,21 @@ TEST_CASE("block factor: dense from where nothing is zero any more, where that i
   CHECK(last.dense_rows().front() == 3 * 91);
 }
 
-TEST_CASE("block factor: rows that depend on others are held, and the rest is solved without them",
+TEST_CASE("block factor: redundant rows get zero solutions, and the remaining rows are solved",
           "[block_factor]") {
   Draws draws(3);
   for (int trial = 0; trial < 100; ++trial) {
     Sample sample(draws, draws.integer(2, 12), draws.integer(0, 5), false);
-    // A row becomes the same as another: the matrix loses a rank and the system stays solvable.
+    // A row is replaced by a copy of another: the rank falls by one and the system stays solvable.
     const auto n = static_cast<int>(sample.A.rows());
-    const int same = draws.integer(0, n - 1);
-    int as = draws.integer(0, n - 2);
-    if (as >= same) ++as;
-    // All pairs are neighbours, so that the pattern holds the copy.
+    const int copy = draws.integer(0, n - 1);
+    int original = draws.integer(0, n - 2);
+    if (original >= copy) ++original;
+    // All pairs are neighbours, so that the pattern contains the copy.
     for (int u = 0; u < static_cast<int>(sample.sizes.size()); ++u)
       for (int v = 0; v < u; ++v) sample.edges.emplace_back(u, v);
-    sample.A.row(same) = sample.A.row(as);
-    sample.A.col(same) = sample.A.col(as);
+    sample.A.row(copy) = sample.A.row(original);
+    sample.A.col(copy) = sample.A.col(original);
     const VecX<double> b = sample.A * random(draws, n);
     const BlockPattern pattern(cheapest_elimination(sample.sizes, sample.edges, minimum_degree_order));
     BlockFactor<double> factor;
@@ -158,7 +158,7 @@ TEST_CASE("block factor: rows that depend on others are held, and the rest is so
     VecX<double> x = b;
     factor.solve(x);
     CHECK(factor.rank() == n - 1);
-    CHECK((factor.held(same) || factor.held(as)));
+    CHECK((factor.held(copy) || factor.held(original)));
     CHECK((sample.A * x - b).norm() <= 1e-9 * b.norm());
   }
 }
@@ -166,7 +166,7 @@ TEST_CASE("block factor: rows that depend on others are held, and the rest is so
 TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
   Draws draws(4);
   for (int trial = 0; trial < 30; ++trial) {
-    const int more_edges = trial % 3 == 0 ? 200 : draws.integer(0, 5);  // so many fill it
+    const int more_edges = trial % 3 == 0 ? 200 : draws.integer(0, 5);  // many edges fill the matrix
     const Sample sample(draws, draws.integer(1, 10), more_edges, trial % 2 == 0);
     const auto n = sample.A.rows();
     const VecX<double> b = random(draws, n), db = random(draws, n);
@@ -196,7 +196,7 @@ TEST_CASE("block factor: derivatives of the solution", "[block_factor]") {
   }
 }
 
-TEST_CASE("what is left of entries that cancel is measured by these") {
+TEST_CASE("cancellation in a pivot is measured relative to the cancelling entries") {
   const BlockPattern pattern({1, 1}, {}, given_order);
   for (const bool measured : {false, true}) {
     BlockFactor<double> factor;

@@ -1,4 +1,4 @@
-// The complementarity core against enumeration of all sets of tight rows.
+// The complementarity solver against enumeration of all active sets.
 #include "catch.h"
 
 #include <cmath>
@@ -17,20 +17,20 @@ using test::Draws;
 
 namespace {
 
-/// Impulses of the tight sets tried one after the other; empty when none fits.
+/// Returns the impulses of the first valid active set; empty if none is valid.
 VecX<double> by_enumeration(const MatX<double>& W, const VecX<double>& b) {
   const Eigen::Index n = b.size();
   const double scale = b.cwiseAbs().maxCoeff();
   for (int set = 0; set < 1 << n; ++set) {
-    std::vector<Eigen::Index> tight;
+    std::vector<Eigen::Index> active;
     for (Eigen::Index i = 0; i < n; ++i)
-      if ((set >> i & 1) != 0) tight.push_back(i);
+      if ((set >> i & 1) != 0) active.push_back(i);
     VecX<double> lambda = VecX<double>::Zero(n);
-    if (!tight.empty()) {
-      const MatX<double> block = W(tight, tight);
-      const VecX<double> x = block.completeOrthogonalDecomposition().solve(-b(tight));
-      if ((block * x + b(tight)).norm() > 1e-10 * scale) continue;
-      lambda(tight) = x;
+    if (!active.empty()) {
+      const MatX<double> block = W(active, active);
+      const VecX<double> x = block.completeOrthogonalDecomposition().solve(-b(active));
+      if ((block * x + b(active)).norm() > 1e-10 * scale) continue;
+      lambda(active) = x;
     }
     const VecX<double> slack = W * lambda + b;
     if ((lambda.array() * W.diagonal().array()).minCoeff() >= -1e-10 * scale &&
@@ -51,7 +51,7 @@ VecX<double> random_vector(Draws& draws, int n) {
 
 }  // namespace
 
-TEST_CASE("random positive definite problems are solved as enumeration solves them", "[solve]") {
+TEST_CASE("random positive definite problems: impulses agree with enumeration", "[solve]") {
   Draws draws(1);
   for (int trial = 0; trial < 400; ++trial) {
     const int n = 1 + trial % 8;
@@ -66,14 +66,15 @@ TEST_CASE("random positive definite problems are solved as enumeration solves th
   }
 }
 
-TEST_CASE("rank-deficient problems: the same velocities as enumeration, impulses that push only", "[solve]") {
+TEST_CASE("rank-deficient problems: velocities agree with enumeration, impulses are not negative",
+          "[solve]") {
   Draws draws(2);
   for (int trial = 0; trial < 600; ++trial) {
     const int n = 2 + trial % 6, rank = 1 + trial % (n - 1);
     MatX<double> C = random_matrix(draws, n, rank);
-    if (trial % 3 == 0) C.row(n - 1) = C.row(0);  // the same row twice
+    if (trial % 3 == 0) C.row(n - 1) = C.row(0);  // two equal rows
     const MatX<double> W = C * C.transpose();
-    const VecX<double> b = C * random_vector(draws, rank);  // rows that can be met
+    const VecX<double> b = C * random_vector(draws, rank);  // a solvable right-hand side
     const ComplementarityResult<> result = solve_complementarity(W, b);
     INFO("n " << n << " rank " << rank << " pivots " << result.pivots << "\nW\n"
               << W << "\nb " << b.transpose());
@@ -84,7 +85,7 @@ TEST_CASE("rank-deficient problems: the same velocities as enumeration, impulses
   }
 }
 
-TEST_CASE("scale does not matter", "[solve]") {
+TEST_CASE("results scale exactly with powers of two", "[solve]") {
   Draws draws(3);
   for (double scale : {0x1p-200, 0x1p-20, 0x1p20, 0x1p200}) {
     const MatX<double> C = random_matrix(draws, 5, 7);
@@ -96,14 +97,14 @@ TEST_CASE("scale does not matter", "[solve]") {
   }
 }
 
-TEST_CASE("nothing to do and nothing at all", "[solve]") {
+TEST_CASE("problems without impulses and empty problems", "[solve]") {
   const MatX<double> I = MatX<double>::Identity(3, 3);
   CHECK(solve_complementarity(I, VecX<double>(VecX<double>::Ones(3))).lambda.norm() == 0);
   CHECK(solve_complementarity(I, VecX<double>(VecX<double>::Zero(3))).lambda.norm() == 0);
   CHECK(solve_complementarity(MatX<double>(0, 0), VecX<double>(0)).lambda.size() == 0);
 }
 
-TEST_CASE("without the heap: the same impulses", "[solve]") {
+TEST_CASE("bounded storage without the heap gives equal impulses", "[solve]") {
   Draws draws(4);
   for (int trial = 0; trial < 50; ++trial) {
     const int n = 1 + trial % 8;

@@ -1,4 +1,4 @@
-// Coulomb's law at one contact: its conditions, over random responses, slow and fast, sticking and sliding.
+// Coulomb's law at one contact: its conditions, for random response matrices, sticking and sliding.
 #include "catch.h"
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace coulomb_test {
 using namespace pliant;
 using test::Draws;
 
-TEST_CASE("the impulse of a contact meets Coulomb's law", "[coulomb]") {
+TEST_CASE("the impulse of a contact obeys Coulomb's law", "[coulomb]") {
   Draws draws(3);
   int lifted = 0, stuck = 0, slid = 0;
   for (int trial = 0; trial < 20000; ++trial) {
@@ -24,7 +24,7 @@ TEST_CASE("the impulse of a contact meets Coulomb's law", "[coulomb]") {
     const double mu = trial % 5 == 0 ? 0 : draws.uniform(0, 1.5);
     const Vec3<double> p = solve_coulomb(W, b, mu), u = W * p + b;
     const Eigen::Vector2d pull = p.tail<2>(), slip = u.tail<2>();
-    // Rounding of u, and of where the impulse is on its cone.
+    // Rounding errors of u, and of the position of the impulse on its cone.
     const double tiny = 1e-13 * (b.norm() + W.norm() * p.norm()), small = 1e-12 * p.norm();
     REQUIRE(p[0] >= 0);
     REQUIRE(u[0] >= -tiny);
@@ -46,7 +46,7 @@ TEST_CASE("the impulse of a contact meets Coulomb's law", "[coulomb]") {
   CHECK(slid > 1000);
 }
 
-TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and slides beyond", "[coulomb]") {
+TEST_CASE("a block pushed along a plane sticks up to mu times its weight, and slides above", "[coulomb]") {
   const Mat3<double> W = Mat3<double>::Identity() / 2;  // of a point of 2 kg
   for (const double along : {0.3, 0.7}) {
     const Vec3<double> p = solve_coulomb(W, {-1, along, 0}, 0.5);

@@ -1,5 +1,5 @@
-// Impulses of many contacts at once, of movers that are plain masses: Coulomb's law at each of them, by the
-// velocities that come out; momentum; where the search begins.
+// Impulses of many simultaneous contacts between simple masses: Coulomb's law at each contact, checked with
+// the resulting velocities; momentum; warm starts.
 #include "catch.h"
 
 #include <cmath>
@@ -17,16 +17,16 @@ using test::Draws;
 
 namespace {
 
-/// Masses in a line, each of which meets the next in several contacts with normals near the line, the first a
-/// wall besides.
-struct Row {
+/// Masses in a line. Each has several contacts with the next one, with normals near the line; the first also
+/// has contacts with a wall.
+struct LineOfMasses {
   CoulombSystem system;
   std::vector<double> mass;
   VecX<double> x;
   double mu;
 
-  /// size: of each mover, 3 for points, 6 for bodies of unit inertia pushed off their centres.
-  Row(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
+  /// `size` of each mover: 3 for points, 6 for bodies of unit inertia with contacts away from their centres.
+  LineOfMasses(int movers, int size, int contacts, double friction, Draws& draws) : mu(friction) {
     for (int i = 0; i < movers; ++i) {
       system.add_mover(size);
       mass.push_back(std::pow(10, draws.uniform(-1, 1)));
@@ -65,57 +65,57 @@ struct Row {
     return Y;
   }
 
-  /// What is missed at the worst contact, of the conditions on velocities.
-  double worst() const {
-    double worst = 0;
+  /// Returns the largest violation of the velocity conditions of all contacts.
+  double max_violation() const {
+    double max_violation = 0;
     for (int k = 0; k < system.size(); ++k) {
       const Vec3<double>&p = system.impulse(k), u = system.velocity(k, x);
       const Eigen::Vector2d pull = p.tail<2>(), slip = u.tail<2>();
       REQUIRE(p[0] >= -1e-9);
       REQUIRE(pull.norm() <= mu * p[0] + 1e-6);
-      worst = std::max(worst, -u[0]);
-      if (p[0] > 1e-5) worst = std::max(worst, u[0]);
-      if (pull.norm() < mu * p[0] - 1e-5) worst = std::max(worst, slip.norm());
+      max_violation = std::max(max_violation, -u[0]);
+      if (p[0] > 1e-5) max_violation = std::max(max_violation, u[0]);
+      if (pull.norm() < mu * p[0] - 1e-5) max_violation = std::max(max_violation, slip.norm());
     }
-    return worst;
+    return max_violation;
   }
 };
 
 }  // namespace
 
-TEST_CASE("impulses of many contacts meet Coulomb's law at each", "[coulomb]") {
+TEST_CASE("impulses of many contacts obey Coulomb's law at each contact", "[coulomb]") {
   Draws draws(7);
   for (const double mu : {0.0, 0.3, 0.8})
     for (int trial = 0; trial < 20; ++trial) {
-      Row line(1 + trial % 7, 6, 2, mu, draws);
+      LineOfMasses line(1 + trial % 7, 6, 2, mu, draws);
       const CoulombResult result = line.system.solve(line.x);
       CHECK(result.residual < 1e-10);
       CHECK(result.fallbacks == 0);
-      CHECK(line.worst() < 1e-8);
+      CHECK(line.max_violation() < 1e-8);
     }
 }
 
-TEST_CASE("impulses on points meet Coulomb's law", "[coulomb]") {
+TEST_CASE("impulses on points obey Coulomb's law", "[coulomb]") {
   Draws draws(8);
   for (int trial = 0; trial < 20; ++trial) {
-    Row line(10, 3, 1, 0.5, draws);
+    LineOfMasses line(10, 3, 1, 0.5, draws);
     const CoulombResult result = line.system.solve(line.x);
     CHECK(result.residual < 1e-5);
-    CHECK(line.worst() < 1e-4);
+    CHECK(line.max_violation() < 1e-4);
   }
 }
 
-TEST_CASE("points that more contacts push than they can move are stopped exactly", "[coulomb]") {
+TEST_CASE("points with more contacts than degrees of freedom are stopped exactly", "[coulomb]") {
   Draws draws(11);
   for (int trial = 0; trial < 20; ++trial) {
-    Row line(2 + trial % 9, 3, 5, 0.4, draws);
+    LineOfMasses line(2 + trial % 9, 3, 5, 0.4, draws);
     const CoulombResult result = line.system.solve(line.x);
     CHECK(result.residual < 1e-5);
     CHECK(result.fallbacks == 0);
   }
 }
 
-TEST_CASE("a side that nothing can push is no part of what is solved", "[coulomb]") {
+TEST_CASE("a side without response to impulses is not part of the system", "[coulomb]") {
   CoulombSystem system;
   const int point = system.add_mover(3), carried = system.add_mover(6), loose = system.add_mover(3);
   for (const int other : {carried, loose}) {
@@ -133,9 +133,9 @@ TEST_CASE("a side that nothing can push is no part of what is solved", "[coulomb
   CHECK(x[9] == 3);
 }
 
-TEST_CASE("velocities after are those before and what the impulses change", "[coulomb]") {
+TEST_CASE("final velocities are the initial ones plus the changes by the impulses", "[coulomb]") {
   Draws draws(9);
-  Row line(12, 3, 2, 0.5, draws);
+  LineOfMasses line(12, 3, 2, 0.5, draws);
   const VecX<double> before = line.x;
   line.system.solve(line.x);
   VecX<double> x = before;
@@ -144,25 +144,25 @@ TEST_CASE("velocities after are those before and what the impulses change", "[co
   CHECK((x - before).norm() > 1);
 }
 
-TEST_CASE("movers that nothing ties together do not change each other's impulses", "[coulomb]") {
-  Draws one(10), same(10);
-  Row alone(4, 6, 2, 0.5, one), two(4, 6, 2, 0.5, same);
-  const int far = two.system.add_mover(3);
-  two.mass.push_back(1);
-  two.system.add_contact(0.5);
-  two.system.add_side(far, 0, 3) = Mat3<double>::Identity();
-  two.system.add_push(far) = Mat3<double>::Identity();
-  two.x.conservativeResize(two.x.size() + 3);
-  two.x.tail<3>() << -1, 0.2, 0;
-  alone.system.solve(alone.x);
-  two.system.solve(two.x);
-  CHECK(two.x.head(alone.x.size()) == alone.x);
-  CHECK(two.x.tail<3>().norm() < 1e-11);
+TEST_CASE("unconnected movers do not affect each other's impulses", "[coulomb]") {
+  Draws one(10), copy(10);
+  LineOfMasses single(4, 6, 2, 0.5, one), both(4, 6, 2, 0.5, copy);
+  const int separate = both.system.add_mover(3);
+  both.mass.push_back(1);
+  both.system.add_contact(0.5);
+  both.system.add_side(separate, 0, 3) = Mat3<double>::Identity();
+  both.system.add_push(separate) = Mat3<double>::Identity();
+  both.x.conservativeResize(both.x.size() + 3);
+  both.x.tail<3>() << -1, 0.2, 0;
+  single.system.solve(single.x);
+  both.system.solve(both.x);
+  CHECK(both.x.head(single.x.size()) == single.x);
+  CHECK(both.x.tail<3>().norm() < 1e-11);
 }
 
-TEST_CASE("a search that begins at the solution ends there at once", "[coulomb]") {
-  Draws draws(11), same(11);
-  Row line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, same);
+TEST_CASE("a warm start at the solution needs no further iteration", "[coulomb]") {
+  Draws draws(11), copy(11);
+  LineOfMasses line(8, 6, 2, 0.5, draws), again(8, 6, 2, 0.5, copy);
   const CoulombResult first = line.system.solve(line.x);
   CHECK(first.sweeps > 10);
   for (int k = 0; k < line.system.size(); ++k) again.system.impulse(k) = line.system.impulse(k);
@@ -172,10 +172,10 @@ TEST_CASE("a search that begins at the solution ends there at once", "[coulomb]"
   CHECK((again.x - line.x).norm() < 1e-10);
 }
 
-TEST_CASE("what contacts do not see of a mover is pushed all the same", "[coulomb]") {
-  // Of two large movers contacts see some velocities here and there.
+TEST_CASE("impulses also change velocities that no contact uses", "[coulomb]") {
+  // The contacts use only some velocities of two large movers.
   constexpr int kSize = 30;
-  const std::vector<Eigen::Index> seen{2, 3, 4, 11, 20, 21};
+  const std::vector<Eigen::Index> used{2, 3, 4, 11, 20, 21};
   Draws draws(5);
   auto filled = [&](int rows, int columns) {
     MatX<double> matrix(rows, columns);
@@ -184,47 +184,47 @@ TEST_CASE("what contacts do not see of a mover is pushed all the same", "[coulom
   };
   const MatX<double> root = filled(kSize, kSize),
                      inverse_mass = root * root.transpose() / kSize + MatX<double>::Identity(kSize, kSize);
-  CoulombSystem all, part;
+  CoulombSystem full, reduced;
   for (int i = 0; i < 2; ++i) {
-    all.add_mover(kSize);
-    part.add_mover(6);
+    full.add_mover(kSize);
+    reduced.add_mover(6);
   }
-  VecX<double> x = filled(2 * kSize, 1), x_part(12);
+  VecX<double> x = filled(2 * kSize, 1), x_reduced(12);
   for (int contact = 0; contact < 12; ++contact) {
     const int movers = contact < 3 ? 1 : 2;
-    all.add_contact(0.5);
-    part.add_contact(0.5);
+    full.add_contact(0.5);
+    reduced.add_contact(0.5);
     for (int i = 0; i < movers; ++i) {
       MatX<double> J = MatX<double>::Zero(3, kSize);
-      J(Eigen::all, seen) = filled(3, 6);
-      all.add_side(i, 2, 3) = J.middleCols(2, 3);
-      all.add_side(i, 11, 1) = J.col(11);
-      all.add_side(i, 20, 2) = J.middleCols(20, 2);
-      part.add_side(i, 0, 6) = J(Eigen::all, seen);
+      J(Eigen::all, used) = filled(3, 6);
+      full.add_side(i, 2, 3) = J.middleCols(2, 3);
+      full.add_side(i, 11, 1) = J.col(11);
+      full.add_side(i, 20, 2) = J.middleCols(20, 2);
+      reduced.add_side(i, 0, 6) = J(Eigen::all, used);
       const MatX<double> Y = inverse_mass * J.transpose();
-      all.add_push(i) = Y;
-      part.add_push(i) = Y(seen, Eigen::all);
+      full.add_push(i) = Y;
+      reduced.add_push(i) = Y(used, Eigen::all);
     }
   }
   const VecX<double> before = x;
-  x_part << before.head(kSize)(seen), before.tail(kSize)(seen);
-  CHECK(all.solve(x).residual < 1e-10);
-  CHECK(part.solve(x_part).residual < 1e-10);
-  VecX<double> moved = before;
-  for (int k = 0; k < all.size(); ++k) {
-    CHECK((all.impulse(k) - part.impulse(k)).norm() < 1e-10);
-    CHECK((all.velocity(k, x) - part.velocity(k, x_part)).norm() < 1e-10);
-    all.add_change(k, 1, moved);
+  x_reduced << before.head(kSize)(used), before.tail(kSize)(used);
+  CHECK(full.solve(x).residual < 1e-10);
+  CHECK(reduced.solve(x_reduced).residual < 1e-10);
+  VecX<double> changed = before;
+  for (int k = 0; k < full.size(); ++k) {
+    CHECK((full.impulse(k) - reduced.impulse(k)).norm() < 1e-10);
+    CHECK((full.velocity(k, x) - reduced.velocity(k, x_reduced)).norm() < 1e-10);
+    full.add_change(k, 1, changed);
   }
-  CHECK((moved - x).norm() < 1e-12);
+  CHECK((changed - x).norm() < 1e-12);
   CHECK((x - before).tail(kSize)[0] != 0);
-  CHECK((x.head(kSize)(seen) - x_part.head(6)).norm() < 1e-10);
-  CHECK((x.tail(kSize)(seen) - x_part.tail(6)).norm() < 1e-10);
+  CHECK((x.head(kSize)(used) - x_reduced.head(6)).norm() < 1e-10);
+  CHECK((x.tail(kSize)(used) - x_reduced.tail(6)).norm() < 1e-10);
 }
 
-TEST_CASE("contacts that hardly differ end a search that stalls", "[coulomb]") {
-  // A body falls on four points, and on one of them again, a micrometre off and by a rate a little different,
-  // which only a huge impulse would level.
+TEST_CASE("nearly equal contacts end an iteration that stalls", "[coulomb]") {
+  // A body falls on four points. A fifth contact is a micrometre from one of them, with a slightly different
+  // approach rate that only a huge impulse could equalise.
   CoulombSystem system;
   system.add_mover(6);
   for (int k = 0; k < 5; ++k) {
@@ -247,7 +247,7 @@ TEST_CASE("contacts that hardly differ end a search that stalls", "[coulomb]") {
   CHECK(std::abs(x[0]) < 1e-7);
 }
 
-TEST_CASE("what cannot be stopped shows in the residual", "[coulomb]") {
+TEST_CASE("a motion that no impulse can stop is reported in the residual", "[coulomb]") {
   CoulombSystem system;
   system.add_mover(3);
   system.add_contact(0.5);

@@ -26,7 +26,7 @@ MatX<double> mass_matrix(Draws& draws, int n) {
 
 }  // namespace
 
-TEST_CASE("a mass matrix is solved, in one column and in three") {
+TEST_CASE("systems with a mass matrix are solved, for one column and for three") {
   Draws draws(5);
   for (int n = 1; n <= 12; ++n) {
     const MatX<double> A = mass_matrix(draws, n);
@@ -48,11 +48,11 @@ TEST_CASE("a mass matrix is solved, in one column and in three") {
   }
 }
 
-TEST_CASE("coordinates without inertia are held, and the rest is solved as if they were not there") {
+TEST_CASE("coordinates without inertia get zero solutions, and the others are solved without them") {
   Draws draws(6);
   const int n = 9;
   MatX<double> A = mass_matrix(draws, n);
-  // 4 moves as 2 and 3 together do; 7 has no mass.
+  // Row 4 is the sum of rows 2 and 3; coordinate 7 has no mass.
   A.row(4) = A.row(2) + A.row(3);
   A.col(4) = A.col(2) + A.col(3);
   A.row(7).setZero();
@@ -62,15 +62,15 @@ TEST_CASE("coordinates without inertia are held, and the rest is solved as if th
   CHECK(factor.any_held());
   for (int i = 0; i < n; ++i) CHECK(factor.held(i) == (i == 4 || i == 7));
   const std::vector<int> free{0, 1, 2, 3, 5, 6, 8};
-  MatX<double> of_free(7, 7);
+  MatX<double> free_block(7, 7);
   VecX<double> x(n), b(7);
   for (int i = 0; i < n; ++i) x[i] = draws.uniform(-1, 1);
   for (int i = 0; i < 7; ++i) {
     b[i] = x[free[static_cast<std::size_t>(i)]];
     for (int k = 0; k < 7; ++k)
-      of_free(i, k) = A(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(k)]);
+      free_block(i, k) = A(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(k)]);
   }
-  const VecX<double> expected = of_free.llt().solve(b);
+  const VecX<double> expected = free_block.llt().solve(b);
   factor.solve(x);
   CHECK(x[4] == 0);
   CHECK(x[7] == 0);
@@ -78,7 +78,7 @@ TEST_CASE("coordinates without inertia are held, and the rest is solved as if th
     CHECK(x[free[static_cast<std::size_t>(i)]] == Approx(expected[i]).epsilon(1e-11).margin(1e-12));
 }
 
-TEST_CASE("what is not a number is not held, so that it is found") {
+TEST_CASE("a pivot that is not a number is not treated as singular, so that it is detected") {
   MatX<double> A = MatX<double>::Identity(3, 3);
   A(1, 1) = std::nan("");
   SymmetricFactor<double> factor;
@@ -89,7 +89,7 @@ TEST_CASE("what is not a number is not held, so that it is found") {
   CHECK(std::isnan(x[1]));
 }
 
-TEST_CASE("a derivative of the solution") {
+TEST_CASE("the derivative of the solution is exact") {
   Draws draws(7);
   const int n = 6;
   const MatX<double> A = mass_matrix(draws, n), dA = mass_matrix(draws, n);

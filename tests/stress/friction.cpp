@@ -1,5 +1,5 @@
-// The work of friction in the ledger: that of sliding blocks, of balls that come to roll, of belts that
-// carry; none where nothing slides.
+// The work of friction in the ledger: sliding blocks, balls that start to roll, conveyor belts; zero work
+// without sliding.
 #include "catch.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kG = 9.81, kMu = 0.4;
 
-constexpr double kTilt = 0.6;  // of a slope, rad
+constexpr double kTilt = 0.6;  // inclination of the slope, rad
 
 double work(Simulation& simulation, Work kind) {
   return simulation.ledger().work[static_cast<int>(kind)];
@@ -31,24 +31,24 @@ void floor(MultiBody& body) {
   body.contact.friction = kMu;
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// A block that lies on a slope, downwards along x.
-Part& on_slope(MultiBody& body, double friction) {
+/// Adds a block on a slope that descends along x.
+Part& block_on_slope(MultiBody& body, double friction) {
   body.contact.friction = friction;
   const Eigen::Quaterniond R(Eigen::AngleAxisd(kTilt, Vec3<double>::UnitY()));
   const Vec3<double> n = R * Vec3<double>::UnitZ();
   body.plane("slope", Vec3<double>(0, 0, 0), n);
   return box(body, "block", {0.1, 0.1, 0.1}, 0.1 * n, R);
 }
-/// What friction has taken, and nothing else: contact has done no work, and the books balance.
-void check_taken(Simulation& simulation, double taken) {
-  CHECK(work(simulation, Work::friction) == Approx(-taken).epsilon(1e-12).margin(1e-13));
+/// Checks the work of friction, and that contact has done no work and the ledger balances.
+void check_friction(Simulation& simulation, double dissipated) {
+  CHECK(work(simulation, Work::friction) == Approx(-dissipated).epsilon(1e-12).margin(1e-13));
   CHECK(std::abs(work(simulation, Work::contact)) < 1e-11);
   CHECK(std::abs(simulation.ledger().balance) < 1e-12);
 }
 
 }  // namespace
 
-TEST_CASE("friction takes mu m g times the way that a block slides", "[contact]") {
+TEST_CASE("friction dissipates mu m g times the distance that a block slides", "[contact]") {
   for (const std::string method : {"rk4", "linearly_implicit", "semi_implicit_euler"}) {
     CAPTURE(method);
     std::vector<double> errors;
@@ -58,37 +58,38 @@ TEST_CASE("friction takes mu m g times the way that a block slides", "[contact]"
       Part& block = box(body, "block", {0.3, 0.2, 0.1}, {0, 0, 0.1}).velocity({2, 0.5, 0}, {0, 0, 0});
       Simulation simulation(body, method);
       test::run(simulation, 0.3, static_cast<int>(std::lround(0.3 / h)));
-      const double taken = kMu * block.total_mass() * kG * simulation.state().q.head<2>().norm();
-      if (method != "semi_implicit_euler") check_taken(simulation, taken);
-      errors.push_back(std::abs(work(simulation, Work::friction) / taken + 1));
-      // When it has stopped, all that it had.
+      const double dissipated = kMu * block.total_mass() * kG * simulation.state().q.head<2>().norm();
+      if (method != "semi_implicit_euler") check_friction(simulation, dissipated);
+      errors.push_back(std::abs(work(simulation, Work::friction) / dissipated + 1));
+      // After the stop, the dissipated energy is the initial kinetic energy.
       test::run(simulation, 0.5, static_cast<int>(std::lround(0.5 / h)));
       CHECK(simulation.state().v.norm() < 1e-12);
-      check_taken(simulation, 0.5 * block.total_mass() * (2 * 2 + 0.5 * 0.5));
+      check_friction(simulation, 0.5 * block.total_mass() * (2 * 2 + 0.5 * 0.5));
     }
     if (method != "semi_implicit_euler") continue;
-    // The way is that of the method.
+    // The error of the distance is that of the method.
     CHECK(test::observed_order(errors) == Approx(1).margin(0.02));
     CHECK(errors.back() < 4e-3);
   }
 }
 
-TEST_CASE("friction on a slope: of what slides, and none of what sticks", "[contact]") {
+TEST_CASE("friction on a slope dissipates energy of a sliding block, and none of a sticking block",
+          "[contact]") {
   for (const double friction : {kMu, 1.0}) {
     MultiBody body;
-    Part& block = on_slope(body, friction);
+    Part& block = block_on_slope(body, friction);
     Simulation simulation(body, "rk4");
     const Vec3<double> start = simulation.state().q.head<3>();
     test::run(simulation, 0.5, 250);
-    const double way = (simulation.state().q.head<3>() - start).norm();
-    CHECK((way > 0.2) == (friction == kMu));
+    const double distance = (simulation.state().q.head<3>() - start).norm();
+    CHECK((distance > 0.2) == (friction == kMu));
     CAPTURE(friction);
-    check_taken(simulation, friction == kMu ? kMu * block.total_mass() * kG * std::cos(kTilt) * way : 0);
+    check_friction(simulation,
+                   friction == kMu ? kMu * block.total_mass() * kG * std::cos(kTilt) * distance : 0);
   }
 }
 
-TEST_CASE("a ball that comes to roll has given a seventh of m v^2 to friction, and then gives none",
-          "[contact]") {
+TEST_CASE("a ball that starts to roll dissipates a seventh of m v^2, and no further energy", "[contact]") {
   MultiBody body;
   floor(body);
   Part& ball = body.add(make_part("ball", "sphere", {}, 1000));
@@ -96,12 +97,12 @@ TEST_CASE("a ball that comes to roll has given a seventh of m v^2 to friction, a
   Simulation simulation(body, "rk4");
   for (const double until : {0.4, 0.8}) {
     test::run(simulation, until - simulation.time(), 200);
-    check_taken(simulation, ball.total_mass() / 7);
+    check_friction(simulation, ball.total_mass() / 7);
   }
 }
 
-TEST_CASE("friction between parts takes what their speeds against each other lose", "[contact]") {
-  SECTION("both are free") {
+TEST_CASE("friction between parts dissipates the energy of their relative motion", "[contact]") {
+  SECTION("both parts are free") {
     MultiBody body;
     floor(body);
     body.contact.pairs = {{"lower", "floor", true, 0.0, {}}};
@@ -112,9 +113,9 @@ TEST_CASE("friction between parts takes what their speeds against each other los
     const double m = upper.total_mass(), M = lower.total_mass();
     CHECK(simulation.state().v[0] == Approx(1.5 * m / (m + M)).epsilon(1e-12));
     CHECK(simulation.state().v[6] == Approx(1.5 * m / (m + M)).epsilon(1e-12));
-    check_taken(simulation, 0.5 * m * M / (m + M) * 1.5 * 1.5);
+    check_friction(simulation, 0.5 * m * M / (m + M) * 1.5 * 1.5);
   }
-  SECTION("a belt carries a load: of what it does, half goes into the load") {
+  SECTION("a belt accelerates a load: half of its work is kinetic energy of the load") {
     MultiBody body;
     body.contact.active = true;
     body.contact.friction = kMu;
@@ -131,28 +132,28 @@ TEST_CASE("friction between parts takes what their speeds against each other los
   }
 }
 
-TEST_CASE("forces and torques that press a body on a floor do no work on it, and none is booked",
+TEST_CASE("forces and torques that press a part onto a floor do no work, and the ledger records none",
           "[contact]") {
   for (const char* method :
        {"rk4", "semi_implicit_euler", "linearly_implicit", "implicit_midpoint", "dop853"})
-    for (const bool moves : {false, true}) {
-      CAPTURE(method, moves);
+    for (const bool moving : {false, true}) {
+      CAPTURE(method, moving);
       MultiBody body;
       floor(body);
       Part& block = box(body, "block", {0.1, 0.12, 0.1}, {0, 0, 0.1});
-      if (moves) block.velocity({0.8, 0, 0}, {0, 0, 0});
+      if (moving) block.velocity({0.8, 0, 0}, {0, 0, 0});
       body.force("pressed", point(block, 0, 0, 0), Vec3<double>(0, 0, -94.2));
       body.torque("turned", block, Vec3<double>(0.3, 0.2, 0));
       Simulation simulation(body, method);
       test::run(simulation, 0.3, 300);
-      // 94 N times 1e-10 of what counts as resting has been seen, of 3 J.
+      // About 94 N times 1e-10 of the rest tolerance has been observed; 3 J are dissipated.
       CHECK(std::abs(work(simulation, Work::forces)) < 1e-7);
       CHECK(std::abs(work(simulation, Work::contact)) < 1e-7);
       CHECK(std::abs(simulation.ledger().balance) < 1e-9);
     }
 }
 
-TEST_CASE("a force that pulls a block over a floor does its work along the way that the block goes",
+TEST_CASE("a force that pulls a block over a floor does work along the displacement of the block",
           "[contact]") {
   MultiBody body;
   floor(body);
@@ -162,11 +163,11 @@ TEST_CASE("a force that pulls a block over a floor does its work along the way t
   body.force("pull", point(block, 0, 0, 0), Vec3<double>(pull, 0, -30));
   Simulation simulation(body, "rk4");
   test::run(simulation, 0.3, 150);
-  const double way = simulation.state().q[0];
-  CHECK(way > 0.05);
-  CHECK(work(simulation, Work::forces) == Approx(pull * way).epsilon(1e-11));
+  const double distance = simulation.state().q[0];
+  CHECK(distance > 0.05);
+  CHECK(work(simulation, Work::forces) == Approx(pull * distance).epsilon(1e-11));
   CHECK(work(simulation, Work::friction) ==
-        Approx(-kMu * (block.total_mass() * kG + 30) * way).epsilon(1e-11));
+        Approx(-kMu * (block.total_mass() * kG + 30) * distance).epsilon(1e-11));
   CHECK(std::abs(simulation.ledger().balance) < 1e-11);
 }
 

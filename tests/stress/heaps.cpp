@@ -1,5 +1,5 @@
-// About five thousand contacts at once: balls packed close in a box of planes, and what it takes to solve
-// them as they become more.
+// About five thousand simultaneous contacts: balls packed densely in a box of planes, and the cost of their
+// solution with the number of contacts.
 #include "catch.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kG = 9.81, kStep = 2e-3, kRadius = 0.1;
 
-/// A square layer of balls that touch their neighbours, its first one at a place.
+/// Adds a square layer of balls that touch their neighbours; `first` is the position of the first ball.
 void layer(MultiBody& body, int across, const Vec3<double>& first) {
   for (int i = 0; i < across; ++i)
     for (int j = 0; j < across; ++j)
@@ -36,7 +36,7 @@ void layer(MultiBody& body, int across, const Vec3<double>& first) {
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// A box without a lid.
+/// Adds a floor and four walls.
 void walls(MultiBody& body, double width) {
   floor(body);
   body.plane("west", Vec3<double>(0, 0, 0), {1, 0, 0});
@@ -44,7 +44,7 @@ void walls(MultiBody& body, double width) {
   body.plane("south", Vec3<double>(0, 0, 0), {0, 1, 0});
   body.plane("north", Vec3<double>(0, width, 0), {0, -1, 0});
 }
-/// Five layers, each in the dents of the one below, between four walls.
+/// Adds five layers between four walls; each ball is in the dent of four balls below.
 void pack(MultiBody& body, int across) {
   for (int k = 0; k < 5; ++k) {
     const double in = kRadius * (1 + k % 2);
@@ -52,39 +52,38 @@ void pack(MultiBody& body, int across) {
   }
   walls(body, 2 * kRadius * across);
 }
-/// Contacts of that: within layers, between them, on the floor and the walls.
-std::size_t contacts_of_pack(int across) {
+/// Returns the number of contacts of `pack`: within layers, between layers, on the floor and the walls.
+std::size_t packed_contacts(int across) {
   const int n = across, m = n - 1;
   return static_cast<std::size_t>(3 * 2 * n * (n - 1) + 2 * 2 * m * (m - 1) + 4 * 4 * m * m + n * n +
                                   4 * 3 * n);
 }
-/// Layers that become smaller towards the top.
+/// Adds layers that become smaller towards the top.
 void pile(MultiBody& body, int across) {
   for (int k = 0; k < across; ++k)
     layer(body, across - k, kRadius * Vec3<double>(k, k, 1 + k * std::sqrt(2.0)));
   floor(body);
 }
-/// What the process has in memory, bytes.
-double resident() {
-  double all = 0, held = 0;
-  std::ifstream("/proc/self/statm") >> all >> held;
-  return held * static_cast<double>(sysconf(_SC_PAGESIZE));
+/// Returns the resident memory of the process, bytes.
+double resident_memory() {
+  double all = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
-/// What is taken from the heap and not given back, bytes; unlike what is resident, it does not depend on
-/// fragmentation.
-double taken() {
+/// Returns the allocated heap memory, bytes. Unlike the resident memory it does not depend on fragmentation.
+double heap_memory() {
   const struct mallinfo2 info = mallinfo2();
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
-/// The least processor time of a step, s.
-double least_time(Simulation& simulation, int steps) {
-  double least = kInfinity;
+/// Returns the shortest processor time of a step, s.
+double min_step_time(Simulation& simulation, int steps) {
+  double min_time = kInfinity;
   for (int i = 0; i < steps; ++i) {
     const std::clock_t start = std::clock();
     simulation.step(kStep);
-    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    min_time = std::min(min_time, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
-  return least;
+  return min_time;
 }
 
 }  // namespace
@@ -99,21 +98,21 @@ TEST_CASE("N55: five thousand contacts of balls packed in a box are solved to ro
   for (int i = 0; i < 4; ++i) {
     simulation.step(kStep);
     const ContactRecord& record = simulation.contact()->record();
-    REQUIRE(record.contacts.size() == contacts_of_pack(14));
+    REQUIRE(record.contacts.size() == packed_contacts(14));
     REQUIRE(record.contacts.size() > 4700);
-    double carried = 0;
+    double vertical_impulse = 0;
     for (std::size_t k = 0; k < record.contacts.size(); ++k) {
-      if (record.contacts[k].plane >= 0) carried += record.impulses[k][2];  // walls rub
+      if (record.contacts[k].plane >= 0) vertical_impulse += record.impulses[k][2];  // walls exert friction
     }
-    CHECK(carried == Approx(weight * kStep).epsilon(1e-11));
+    CHECK(vertical_impulse == Approx(weight * kStep).epsilon(1e-11));
   }
   CHECK((simulation.state().q - start).lpNorm<Eigen::Infinity>() < 1e-14);
   CHECK(simulation.state().v.lpNorm<Eigen::Infinity>() < 5e-14);
-  CHECK(simulation.step_counters().contact_residual < 1e-14);  // m/s; 3e-15 has been seen
+  CHECK(simulation.step_counters().contact_residual < 1e-14);  // m/s; 3e-15 has been observed
   CHECK(simulation.step_counters().contact_fallbacks == 0);
 }
 
-TEST_CASE("N55: what is missed of a pile that is not solved is told", "[contact]") {
+TEST_CASE("N55: the residual of a pile whose contacts are not solved is reported", "[contact]") {
   for (const int across : {3, 5, 9, 14}) {
     MultiBody body;
     body.contact.friction = 1;
@@ -132,25 +131,26 @@ TEST_CASE("N55: what is missed of a pile that is not solved is told", "[contact]
     const std::vector<Contact> contacts = ContactFinder(model).find(state, 0, 1e-9);
     ContactProblem problem(model, state, work, contacts);
     const ContactSolution solution = problem.solve(0);
-    double worst = 0;  // of the conditions on velocities, m/s
+    double max_violation = 0;  // largest violation of the velocity conditions, m/s
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       const Vec3<double>&p = solution.impulse[k], &u = solution.velocity[k], &n = contacts[k].normal;
       const double p_n = p.dot(n), u_n = u.dot(n), p_t = (p - p_n * n).norm();
       REQUIRE(p_n >= -1e-9);
       REQUIRE(p_t <= contacts[k].friction * p_n * (1 + 1e-9) + 1e-6);
-      worst = std::max(worst, -u_n);
-      if (p_n > 1e-6) worst = std::max(worst, u_n);
-      if (p_t < (1 - 1e-6) * contacts[k].friction * p_n - 1e-6) worst = std::max(worst, (u - u_n * n).norm());
+      max_violation = std::max(max_violation, -u_n);
+      if (p_n > 1e-6) max_violation = std::max(max_violation, u_n);
+      if (p_t < (1 - 1e-6) * contacts[k].friction * p_n - 1e-6)
+        max_violation = std::max(max_violation, (u - u_n * n).norm());
     }
     CAPTURE(across, contacts.size(), solution.residual);
-    CHECK(worst < 3 * solution.residual + 1e-9);
+    CHECK(max_violation < 3 * solution.residual + 1e-9);
     CHECK(solution.residual < 0.5 * kG * kStep);
     CHECK((solution.residual <= 1e-6) == (solution.fallbacks == 0));
     if (across == 3) CHECK(solution.residual < 1e-15);
   }
 }
 
-TEST_CASE("N55: a heap that was poured comes to rest, and none of it sinks", "[contact][long]") {
+TEST_CASE("N55: a poured heap comes to rest without penetration", "[contact][long]") {
   MultiBody body;
   constexpr int across = 4, layers = 10;
   test::Draws draws(3);
@@ -192,28 +192,29 @@ TEST_CASE("N55: a heap that was poured comes to rest, and none of it sinks", "[c
   CHECK(all[9 * all.size() / 10] < 5e-3);
 }
 
-TEST_CASE("N55: memory and time of five thousand contacts", "[contact][long]") {
+TEST_CASE("N55: memory and time of five thousand contacts grow almost linearly with their number",
+          "[contact][long]") {
   MultiBody few, many;
   pack(few, 7);
   pack(many, 14);
   Simulation small(few, "rk4");
   small.step(kStep);
-  const double before = resident();
+  const double before = resident_memory();
   Simulation large(many, "rk4");
-  least_time(large, 5);
-  CHECK(resident() - before < 110e6);  // 40 MB have been seen, 8 kB a contact
-  least_time(small, 5);
-  const double after = taken();
+  min_step_time(large, 5);
+  CHECK(resident_memory() - before < 110e6);  // 40 MB have been observed, 8 kB for each contact
+  min_step_time(small, 5);
+  const double after = heap_memory();
   double time_small = kInfinity, time_large = kInfinity;
   for (int i = 0; i < 4; ++i) {
-    time_small = std::min(time_small, least_time(small, 5));
-    time_large = std::min(time_large, least_time(large, 5));
+    time_small = std::min(time_small, min_step_time(small, 5));
+    time_large = std::min(time_large, min_step_time(large, 5));
   }
-  CAPTURE(taken() - after);
-  CHECK(taken() - after < 1e5);  // steps that come later take no more; half a kB has been seen
+  CAPTURE(heap_memory() - after);
+  CHECK(heap_memory() - after < 1e5);  // later steps allocate no further memory; 0.5 kB has been observed
   const double growth = static_cast<double>(many.parts().size()) / static_cast<double>(few.parts().size());
   CAPTURE(growth, time_small, time_large);
-  // As the number to a power of 1.2 has been seen.
+  // Growth with the number to the power 1.2 has been observed.
   CHECK(time_large < std::pow(growth, 1.5) * time_small);
   const auto sweeps = [](const Simulation& simulation) {
     return static_cast<double>(simulation.step_counters().contact_sweeps) /

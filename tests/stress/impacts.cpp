@@ -1,5 +1,5 @@
-// Planes that appear in bodies, blows on a board that lies on a floor and a hinge, strings that go taut: what
-// impulses do is booked, and every momentum jumps by those that are told.
+// Planes that appear inside parts, impacts on a board supported by a floor and a hinge, strings that become
+// taut: the ledger records the work of impulses, and changes of momentum equal the reported impulses.
 #include "catch.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ double work(const Ledger& ledger, Work kind) {
 
 }  // namespace
 
-TEST_CASE("N58: a plane that appears in a ball at a speed does the work that the ball gains", "[contact]") {
+TEST_CASE("N58: a moving plane that appears in a ball does the work that the ball gains", "[contact]") {
   for (const char* method : {"rk4", "semi_implicit_euler"})
     for (const double e : {0.0, 0.5, 1.0})
       for (const double speed : {0.0, 2.0}) {
@@ -51,7 +51,7 @@ TEST_CASE("N58: a plane that appears in a ball at a speed does the work that the
         for (int i = 0; i < 600; ++i) {
           const double before = simulation.state().q[2];
           simulation.step(h);
-          // A size a second, on top of what the impulse does.
+          // One size a second, in addition to the velocity after the impulse.
           REQUIRE(simulation.state().q[2] - before <= h * (v + kRadius) * (1 + 1e-9));
           REQUIRE(simulation.state().v[2] <= v * (1 + 3e-11));
           REQUIRE(work(simulation.ledger(), Work::contact) <= energy * (1 + 3e-11));
@@ -66,14 +66,14 @@ TEST_CASE("N58: a plane that appears in a ball at a speed does the work that the
       }
 }
 
-TEST_CASE("N59: a ball strikes a board that lies on a floor and a hinge: momenta jump by the impulses told",
+TEST_CASE("N59: a ball hits a board on a floor and a hinge: changes of momentum equal the reported impulses",
           "[contact][joints]") {
-  const bool bends = GENERATE(false, true);
+  const bool flexible = GENERATE(false, true);
   constexpr double kTilt = 0.2, kSpeed = 3;
   for (const double e : {0.0, 0.5})
     for (const double mu : {0.0, 0.5})
-      for (const double x : {-0.5, -0.2, 0.5}) {  // on the arm that the floor holds, or the other
-        CAPTURE(bends, e, mu, x);
+      for (const double x : {-0.5, -0.2, 0.5}) {  // on the arm that the floor supports, or on the other arm
+        CAPTURE(flexible, e, mu, x);
         MultiBody body;
         body.gravity.setZero();
         body.contact.friction = mu;
@@ -84,58 +84,62 @@ TEST_CASE("N59: a ball strikes a board that lies on a floor and a hinge: momenta
         Part& board = body.add(make_part("board", "box", {"bend"}, 500));
         board.rest({{"a1", 0.02}, {"a2", 0.1}, {"a3", 0.8}, {"bend.angle", 0}});
         board.place(middle, R * Eigen::Quaterniond(Eigen::AngleAxisd(kPi / 2, Vec3<double>::UnitY())));
-        if (bends) board.stiffness({{"bend.angle", 400}});
+        if (flexible) board.stiffness({{"bend.angle", 400}});
         body.hinge("pivot", centre(board), world(middle), {0, 1, 0});
         body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
-        Part& hits = ball(body, "ball", middle + R * Vec3<double>(x, 0.03, 0.02) + (kRadius + 5e-3) * up);
-        hits.velocity({0.3, 0, -kSpeed}, {0, 0, 0});
+        Part& ball_part =
+            ball(body, "ball", middle + R * Vec3<double>(x, 0.03, 0.02) + (kRadius + 5e-3) * up);
+        ball_part.velocity({0.3, 0, -kSpeed}, {0, 0, 0});
         Simulation simulation(body, "dop853", 1, 1e-10);
         const Model& model = simulation.model();
         const ContactRecord& record = simulation.contact()->record();
         const Ledger before = simulation.ledger();
         const VecX<double> v = simulation.state().v;
-        // Steps end at the blow.
+        // Steps with error control end at the impact.
         while (simulation.step_counters().impacts == 0) {
           REQUIRE(simulation.time() < 0.02);
           simulation.step_up_to(0.02);
         }
-        Vec3<double> on_ball = Vec3<double>::Zero(), of_floor = Vec3<double>::Zero(),
-                     turn = Vec3<double>::Zero(), there = Vec3<double>::Zero();
+        Vec3<double> ball_impulse = Vec3<double>::Zero(), floor_impulse = Vec3<double>::Zero(),
+                     angular_impulse = Vec3<double>::Zero(), contact_point = Vec3<double>::Zero();
         for (std::size_t k = 0; k < record.contacts.size(); ++k) {
           const Contact& contact = record.contacts[k];
           if (contact.plane < 0) {
-            on_ball += (contact.a.part == 1 ? 1 : -1) * record.impulses[k];
-            there = contact.x;
+            ball_impulse += (contact.a.part == 1 ? 1 : -1) * record.impulses[k];
+            contact_point = contact.x;
             continue;
           }
-          of_floor += record.impulses[k];
-          turn += contact.x.cross(record.impulses[k]);
+          floor_impulse += record.impulses[k];
+          angular_impulse += contact.x.cross(record.impulses[k]);
         }
         Workspace<double> work;
         const State& state = simulation.state();
         const Dynamics& dynamics = simulation.dynamics();
         dynamics.evaluate_joints(state.time(), state.q, state.v, state.joints, model.islands()[0], work);
         const Wrench pivot = dynamics.joint_wrench(state.time(), 0, work, record.joint_impulses);
-        turn += middle.cross(pivot.force) + pivot.torque;
-        const double scale = on_ball.norm();
-        const int of_ball = model.parts()[1].v0;
+        angular_impulse += middle.cross(pivot.force) + pivot.torque;
+        const double scale = ball_impulse.norm();
+        const int ball_v0 = model.parts()[1].v0;
         const Ledger after = simulation.ledger();
-        CHECK((hits.total_mass() * (state.v - v).segment<3>(of_ball) - on_ball).norm() < 1e-10 * scale);
-        CHECK((after.momentum - before.momentum - of_floor - pivot.force).norm() < 1e-10 * scale);
-        CHECK((after.angular_momentum - before.angular_momentum - turn).norm() < 1e-10 * scale);
+        CHECK((ball_part.total_mass() * (state.v - v).segment<3>(ball_v0) - ball_impulse).norm() <
+              1e-10 * scale);
+        CHECK((after.momentum - before.momentum - floor_impulse - pivot.force).norm() < 1e-10 * scale);
+        CHECK((after.angular_momentum - before.angular_momentum - angular_impulse).norm() < 1e-10 * scale);
         CHECK(model.gap(state, 0) < 1e-12);
         CHECK(after.energy() < before.energy());
-        if (bends || mu > 0 || x > 0) continue;
-        // A smooth board that cannot give way: the ball loses what it has along its normal, e of it comes
-        // back, and the floor and the hinge hold the board's ends up.
-        const double p = (1 + e) * hits.total_mass() * (kSpeed * std::cos(kTilt) + 0.3 * std::sin(kTilt));
-        CHECK((on_ball - p * up).norm() < 2e-8 * p);
+        if (flexible || mu > 0 || x > 0) continue;
+        // Reference for a rigid smooth board: the normal velocity of the ball is reversed and multiplied by
+        // e, and the floor and the hinge support the board.
+        const double p =
+            (1 + e) * ball_part.total_mass() * (kSpeed * std::cos(kTilt) + 0.3 * std::sin(kTilt));
+        CHECK((ball_impulse - p * up).norm() < 2e-8 * p);
         const double arm = 0.8 * std::cos(kTilt) - 0.02 * std::sin(kTilt);
-        CHECK(of_floor[2] == Approx(-p * (R.inverse() * (there - middle))[0] / arm).epsilon(1e-9));
+        CHECK(floor_impulse[2] ==
+              Approx(-p * (R.inverse() * (contact_point - middle))[0] / arm).epsilon(1e-9));
       }
 }
 
-TEST_CASE("N60: the ends of a slack string pass through each other, and the string stops them beyond",
+TEST_CASE("N60: the ends of a slack string pass each other, and the string stops them on the other side",
           "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler", "linearly_implicit", "dop853"}) {
     CAPTURE(method);
@@ -159,9 +163,11 @@ TEST_CASE("N60: the ends of a slack string pass through each other, and the stri
   }
 }
 
-TEST_CASE("a string goes slack where a swing takes its tension, and taut again where the fall ends",
-          "[joints]") {
-  // From below with v^2 = 3.5 g l it goes up to where its height over the hook is (v^2 / (g l) - 2) / 3 of l.
+TEST_CASE(
+    "a string becomes slack where the tension of a swing vanishes, and taut again at the end of the fall",
+    "[joints]") {
+  // A start at the bottom with v^2 = 3.5 g l reaches slackness at the height (v^2 / (g l) - 2) / 3 l above
+  // the hook.
   const double l = 1, g = 9.81;
   for (const double h : {2e-3, 1e-3, 5e-4}) {
     MultiBody body;
@@ -175,8 +181,8 @@ TEST_CASE("a string goes slack where a swing takes its tension, and taut again w
       simulation.step(h);
     }
     CHECK(state.joints[0] == JointMode::slack);
-    CHECK(state.q[2] == Approx(0.5 * l).margin(4e-5));  // 1.1e-5 has been seen, of all steps
-    // From there a parabola, until it is at l again.
+    CHECK(state.q[2] == Approx(0.5 * l).margin(4e-5));  // 1.1e-5 has been observed, for all steps
+    // The path is a parabola until the distance is l again.
     const double t = simulation.time();
     const Vec3<double> x = state.q.head<3>(), v = state.v.head<3>();
     while (state.joints[0] == JointMode::slack) {
@@ -192,7 +198,7 @@ TEST_CASE("a string goes slack where a swing takes its tension, and taut again w
   }
 }
 
-TEST_CASE("N60: two strings that go taut at once between free bodies keep their momenta", "[joints]") {
+TEST_CASE("N60: two strings that become taut at once between free parts conserve their momenta", "[joints]") {
   for (const char* method : {"rk4", "dop853"}) {
     CAPTURE(method);
     MultiBody body;
@@ -220,7 +226,7 @@ TEST_CASE("N60: two strings that go taut at once between free bodies keep their 
     const Ledger after = simulation.ledger();
     CHECK((after.momentum - before.momentum).norm() < 1e-13);
     CHECK((after.angular_momentum - before.angular_momentum).norm() < 1e-13);
-    // They went away from each other at 2 m/s, and turn about each other now.
+    // The parts separated at 2 m/s, and now rotate about each other.
     CHECK(work(after, Work::limits) == Approx(after.energy() - before.energy()).epsilon(1e-11));
     CHECK(after.energy() < 0.2 * before.energy());
     for (const JointMode mode : simulation.state().joints) CHECK(mode == JointMode::closed);

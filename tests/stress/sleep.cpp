@@ -1,5 +1,5 @@
-// What wakes sleepers besides bodies and forces: hands that move a part against them or the end of their
-// string, planes and plates that come and go.
+// Events that wake sleeping bodies, besides impacts and forces: prescribed motion of a part or of the end of
+// a string, planes and plates that appear or disappear.
 #include "catch.h"
 
 #include <algorithm>
@@ -29,19 +29,19 @@ void tower(MultiBody& body) {
 void floor(MultiBody& body) {
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// A plate of so much to each side that a hand moves.
-Part& moved(MultiBody& body, const Vec3<double>& half, TimeVector position) {
+/// Adds a box of the given half axes with prescribed motion.
+Part& add_moving_box(MultiBody& body, const Vec3<double>& half, TimeVector position) {
   PrescribedMotion motion;
   motion.position = std::move(position);
   return test::add(body, "hand", "box", {}, 500)
       .rest({{"a1", half[0]}, {"a2", half[1]}, {"a3", half[2]}})
       .prescribe(motion);
 }
-/// 0 until half a second, and then at 1 a second.
-TimeFunction late(const std::string& scale, const std::string& from) {
+/// Returns from + scale max(t - 0.5, 0).
+TimeFunction ramp_at_half(const std::string& scale, const std::string& from) {
   return TimeFunction::formula(from + " + " + scale + " * max(t - 0.5, 0)");
 }
-/// Whether both cubes, which REQUIREs that they sleep until half a second, are awake 40 ms later.
+/// Returns whether both cubes are awake at 0.54 s. Requires that they sleep until 0.5 s.
 bool wakes_at_half(MultiBody& body) {
   Simulation simulation(body, "rk4");
   while (simulation.time() < 0.3) simulation.step(kStep);
@@ -55,68 +55,69 @@ bool wakes_at_half(MultiBody& body) {
 
 }  // namespace
 
-TEST_CASE("hands, planes and plates that meet or leave sleepers wake them", "[sleep][contact]") {
+TEST_CASE("moving parts, planes and plates that touch or leave sleeping bodies wake them",
+          "[sleep][contact]") {
   MultiBody body;
-  SECTION("a paddle that comes at them") {
+  SECTION("a paddle that approaches") {
     tower(body);
     floor(body);
-    // It touches the upper cube at 0.51 s.
-    moved(body, {0.05, 0.2, 0.05}, TimeVector(late("1", "-0.15"), 0, 0.3));
+    // The paddle touches the upper cube at 0.51 s.
+    add_moving_box(body, {0.05, 0.2, 0.05}, TimeVector(ramp_at_half("1", "-0.15"), 0, 0.3));
     CHECK(wakes_at_half(body));
   }
-  SECTION("a plane that appears in them") {
+  SECTION("a plane that appears inside them") {
     tower(body);
     floor(body);
     body.plane("wall", Vec3<double>(-0.05, 0, 0), {1, 0, 0}).on = 0.5;
     CHECK(wakes_at_half(body));
   }
-  SECTION("a plate that goes from under them") {
+  SECTION("a plate under them that is removed") {
     tower(body);
     body.plate("table", {0, 0, 0}, Eigen::Quaterniond::Identity(), 1, 1).off = 0.5;
     CHECK(wakes_at_half(body));
   }
-  SECTION("a plate that appears in them") {
+  SECTION("a plate that appears inside them") {
     tower(body);
     floor(body);
     body.plate("shelf", {0, 0, 0.25}, Eigen::Quaterniond::Identity(), 1, 1).on = 0.5;
     CHECK(wakes_at_half(body));
   }
-  SECTION("the end of a taut string that a hand moves") {
+  SECTION("the end of a taut string that starts to move") {
     tower(body);
     floor(body);
     body.join("string", String{0.3},
-              {point(*body.parts()[1], 0, 0), world(TimeVector(late("0.5", "0.41"), 0, 0.3))});
+              {point(*body.parts()[1], 0, 0), world(TimeVector(ramp_at_half("0.5", "0.41"), 0, 0.3))});
     CHECK(wakes_at_half(body));
   }
 }
 
-TEST_CASE("what lies on a part that a hand moves does not sleep", "[sleep][contact]") {
+TEST_CASE("bodies on a part with prescribed motion do not sleep", "[sleep][contact]") {
   MultiBody body;
   tower(body);
-  moved(body, {1, 1, 0.05}, TimeVector(late("0.5", "0"), 0, -0.05));
+  add_moving_box(body, {1, 1, 0.05}, TimeVector(ramp_at_half("0.5", "0"), 0, -0.05));
   Simulation simulation(body, "rk4");
   while (simulation.time() < 0.6) {
     simulation.step(kStep);
     REQUIRE((!sleeps(simulation.state(), 0) && !sleeps(simulation.state(), 1)));
   }
-  CHECK(simulation.state().q[0] > 0.02);  // it is dragged along
+  CHECK(simulation.state().q[0] > 0.02);  // friction drags the cube along
 }
 
-TEST_CASE("what hands move elsewhere wakes none", "[sleep][contact]") {
+TEST_CASE("prescribed motion elsewhere does not wake bodies", "[sleep][contact]") {
   for (const bool plane : {false, true}) {
     MultiBody body;
     tower(body);
     floor(body);
     if (plane)
-      body.plane("wall", TimeVector(late("1", "-3"), 0, 0), {1, 0, 0});
+      body.plane("wall", TimeVector(ramp_at_half("1", "-3"), 0, 0), {1, 0, 0});
     else
-      moved(body, {0.05, 0.2, 0.05}, TimeVector(late("1", "-0.9"), 0, 0.3));
+      add_moving_box(body, {0.05, 0.2, 0.05}, TimeVector(ramp_at_half("1", "-0.9"), 0, 0.3));
     Simulation simulation(body, "rk4");
     while (simulation.time() < 0.3) simulation.step(kStep);
     const State asleep = simulation.state();
     CAPTURE(plane);
     REQUIRE((sleeps(asleep, 0) && sleeps(asleep, 1)));
-    while (simulation.time() < 0.8) simulation.step(kStep);  // it is at least 0.4 m away
+    while (simulation.time() < 0.8) simulation.step(kStep);  // the distance stays above 0.4 m
     CHECK((sleeps(simulation.state(), 0) && sleeps(simulation.state(), 1)));
     CHECK(simulation.state().q == asleep.q);
   }

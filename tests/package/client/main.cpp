@@ -1,5 +1,5 @@
-// A user's program. Its unused parameters are warnings under pliant's own flags, which must not reach it; the
-// layout of Eigen's types and the rounding of products must.
+// A user's program. Its unused parameters would give warnings under pliant's own flags, which must not reach
+// the client; the options for the layout of Eigen's types and for rounding must reach it.
 #include <cmath>
 
 #include <pliant/math/scalar/dual.h>
