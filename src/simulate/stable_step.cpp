@@ -18,12 +18,11 @@ namespace pliant {
 
 namespace {
 
-/// Above this many velocities in a group the parts are bounded one by one.
+/// Parts of a group with more velocities are bounded one by one.
 constexpr int kLargestGroup = 120;
-/// Turn in a step, rad, beyond which no method follows the rotation.
+/// Largest rotation in a step that a method follows, rad.
 constexpr double kMostTurnInStep = 0.5;
-/// Phase of a mode that a step goes through, rad, beyond which blows give it energy: they move it as they do
-/// what is free.
+/// Largest phase of a mode in a step, rad. Beyond it impacts move the mode like a free body and add energy.
 constexpr double kMostPhase = 1;
 
 /// L of a port on v_r of its part: 3 x n_v, world.
@@ -47,7 +46,7 @@ MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& 
 }
 
 double stable_step_of(const Integrator& method, const Linear& system) {
-  // Coordinates without inertia are held: drop them.
+  // Coordinates without inertia are fixed: remove them.
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < system.M.rows(); ++i)
     if (system.M(i, i) > 0) kept.push_back(i);
@@ -61,8 +60,8 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   MatX<double> T =
       scale.asDiagonal() * vectors * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX<double> all = columns_of(T, solid);
-  // Motions that nothing resists (free flight) are stable by themselves; left in, their double root 1 would
-  // only blur the growth of the others.
+  // Free motions are stable by themselves. Their double root 1 would only reduce the accuracy of the other
+  // roots.
   const MatX<double> resistance = all.transpose() * (K + D) * all;
   const Eigenpairs resisted = symmetric_eigenpairs(resistance);
   std::vector<Eigen::Index> stiff_modes;
@@ -73,7 +72,7 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   const double stiff = k.norm(), damped = d.norm();
   if (!(stiff > 0) && !(damped > 0)) return std::numeric_limits<double>::infinity();
   if (!std::isfinite(stiff + damped)) return 0;
-  // Bisection between a step that is surely stable and one that is surely not.
+  // Bisection between a stable and an unstable step.
   double low = 0.05 / std::max(std::sqrt(stiff), damped), high = low;
   const double slack = 1 + 1e-9;
   while (method.growth(k, d, high) <= slack && high < 1e12) high *= 2;
@@ -85,8 +84,8 @@ double stable_step_of(const Integrator& method, const Linear& system) {
   return low;
 }
 
-/// Bounds of K and D of a part that deforms locally in mass-normalised coordinates: those of elasticity, of
-/// the global parameters, and of springs at its points add up. implicit: the springs alone count.
+/// Bounds of K and D of a part that deforms locally, in mass-normalised coordinates: the sum of those of
+/// elasticity, of the global parameters and of springs at its points. implicit: springs alone count.
 LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w,
                                       bool implicit) {
   const PartModel& m = model.parts()[i];
@@ -110,14 +109,14 @@ LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const P
     for (const PortRef& ref : {s.a, s.b}) {
       if (ref.part != static_cast<int>(i)) continue;
       const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
-      // The other end may yield as much.
+      // The other end may move as much.
       bound.K += 2 * s.spring->stiffness * mobility;
       bound.D += 2 * s.spring->damping * mobility;
     }
   return bound;
 }
 
-/// "the parameters of part 'a'", or with its springs those it is tied to: "... and 2 parts tied to it".
+/// Returns "the parameters of part 'a'", with "and 2 parts tied to it" if springs connect it.
 std::string limit_of_group(const Model& model, const std::vector<std::size_t>& group) {
   const std::string name = "'" + model.parts()[group.front()].part->name() + "'";
   if (group.size() == 1) return "the springs and parameters of part " + name;
@@ -139,7 +138,7 @@ StableStep stable_step(const Simulation& simulation) {
   const std::size_t n = model.parts().size();
   const bool implicit = simulation.integrator().local_is_implicit();
 
-  // Groups of parts tied by springs.
+  // Groups of parts that springs connect.
   std::vector<std::size_t> joined(n);
   std::iota(joined.begin(), joined.end(), std::size_t{0});
   auto root = [&](std::size_t i) {
@@ -160,8 +159,8 @@ StableStep stable_step(const Simulation& simulation) {
     for (const int end : {springs[k].a.part, springs[k].b.part})
       if (moves(end)) springs_at[static_cast<std::size_t>(end)].push_back(k);
 
-  std::vector<int> first(n, -1);  // of each part in its system
-  /// The system of some parts, with their springs; weight of those with an end in no part of it.
+  std::vector<int> first(n, -1);  // first row of each part in its system
+  /// Assembles the system of some parts and their springs. weight: of springs with one end outside.
   auto system_of = [&](const std::vector<std::size_t>& parts, double open_weight) {
     int size = 0;
     for (const std::size_t i : parts) {
@@ -251,7 +250,7 @@ StableStep stable_step(const Simulation& simulation) {
       take(stable_step_of(simulation.integrator(), system_of(group, 1)), limit_of_group(model, group));
       continue;
     }
-    // One by one, an end sees the spring at up to twice its stiffness.
+    // For one part, a spring acts with up to twice its stiffness.
     for (const std::size_t i : group)
       take(stable_step_of(simulation.integrator(), system_of({i}, 2)), limit_of_group(model, {i}));
   }

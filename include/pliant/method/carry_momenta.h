@@ -1,15 +1,15 @@
-// Angular momenta that stay in the world while parts turn.
+// Rotation of the angular momenta with the parts, for semi-implicit Euler.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// After velocities of v_before have become those of a state by its accelerations times h (s): what makes of
-/// -h omega x L, the first term, the whole turn of the angular momentum L of each part about its centre of
-/// mass as the part turns by h omega. |L| then stays where nothing turns the part, and with it omega within
-/// bounds, whatever h; P stays, and so do the rates of parameters. Parts that deform locally are left out.
-/// work: of the accelerations.
+/// Corrects the angular velocities after v <- v + h v_dot. The gyroscopic term -h omega x L rotates the
+/// angular momentum L of each part about its centre of mass to first order in h; this function replaces it by
+/// the whole rotation by h omega. |L| then stays constant if no torque acts, and omega stays bounded for
+/// every h. Linear momenta and rates of parameters do not change. Parts that deform locally are not
+/// corrected. v_before: velocities before the update. work: the evaluation that gave v_dot.
 void carry_momenta(const Model& model, const Workspace<double>& work, const VecX<double>& v_before, double h,
                    State& state);
 

@@ -1,3 +1,5 @@
+// The coefficients of DOP853 (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I, section
+// II.10).
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -97,7 +99,7 @@ inline constexpr double kDop853C[] = {0.0,
                                       0.6,
                                       0.857142857142857142857142857142,
                                       1.0};
-// b less the weights of the method of order 3; of order 5.
+// b minus the weights of the embedded methods of orders 3 and 5.
 inline constexpr double kError3[] = {kDop853B[0] - 0.244094488188976377952755905512,
                                      kDop853B[1],
                                      kDop853B[2],
@@ -122,7 +124,7 @@ inline constexpr double kError5[] = {0.1312004499419488073250102996e-1,
                                      0.3341791187130174790297318841,
                                      0.8192320648511571246570742613e-1,
                                      -0.2235530786388629525884427845e-1};
-// Of the stages at 0.1, 0.2 and 7/9, each of all before it and of the rates at the end.
+// Rows of the three additional stages, at 0.1, 0.2 and 7/9.
 inline constexpr double kDop853BetweenA[] = {5.61675022830479523392909219681e-2,
                                              0,
                                              0,
@@ -230,7 +232,7 @@ inline constexpr double kDop853BetweenD[] = {-0.84289382761090128651353491142e+1
                                              0.96324553959188282948394950600e+2,
                                              -0.39177261675615439165231486172e+2,
                                              -0.14972683625798562581422125276e+3};
-// Of order 7: wrong by O(h^8).
+// Dense output of order 7; its error is O(h^8).
 inline constexpr ContinuousExtension kDop853Between{3, kDop853BetweenA, kDop853BetweenC, 4, kDop853BetweenD};
 inline constexpr ButcherTableau kDop853{"dop853", 8,       12, kDop853A, kDop853B,       kDop853C,
                                         kError5,  kError3, 7,  false,    &kDop853Between};

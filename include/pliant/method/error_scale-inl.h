@@ -1,3 +1,4 @@
+// Bodies of error_scale.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -18,14 +19,14 @@ PLIANT_INLINE ErrorScale::ErrorScale(const Model& model, double tolerance)
       if (m.part->parameters().moving(k).spec->quantity == Quantity::length)
         parameter_[m.v0 + 6 + k] = 1 / size;
     if (m.n_d() == 0) continue;
-    // Amplitudes of modes have the square root of a mass with them.
+    // Amplitudes of modes are scaled by the square root of the mass.
     const double each = m.local->oscillators() != nullptr ? 1 / std::sqrt(m.part->total_mass())
                                                           : std::sqrt(3.0 / static_cast<double>(m.n_d()));
     parameter_.segment(m.v0 + 6 + m.n_s, m.n_d()).setConstant(each / size);
   }
 }
 
-/// take(error, part, what) of each block, not in tolerances.
+/// Calls take(error, part, name) for each block. Errors are not divided by the tolerance.
 template <class Take>
 void ErrorScale::of_coordinates(const VecX<double>& of_q, Take&& take) const {
   for (const PartModel& m : model_->parts()) {
@@ -63,7 +64,7 @@ void ErrorScale::of_velocities(const VecX<double>& of_v, const VecX<double>& v, 
 }
 
 namespace error_scale {
-/// The larger of two errors, and not a number where the first is none.
+/// Returns the larger of two errors, or NaN if the first is NaN.
 inline double larger(double error, double most) {
   return error <= most ? most : error;
 }

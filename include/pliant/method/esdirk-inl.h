@@ -1,3 +1,4 @@
+// Bodies of esdirk.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -19,7 +20,7 @@ namespace esdirk {
 
 inline constexpr int kStages = 6;
 inline constexpr double kGamma = 0.25;
-/// Below the diagonal, row by row from the second stage on; the last row has the weights of the method.
+/// Entries below the diagonal, row by row. The last row has the weights of the method.
 inline constexpr double kEsdirkA[kStages][kStages] = {
     {},
     {1. / 4},
@@ -31,7 +32,7 @@ inline constexpr double kEsdirkC[kStages] = {0, 1. / 2, 83. / 250, 31. / 50, 17.
 inline constexpr double kB3[kStages] = {4586570599. / 29645900160, 0,
                                         178811875. / 945068544,    814220225. / 1159782912,
                                         -3700637. / 11593932,      61727. / 225920};
-/// What may be left of the equations of a stage where no tolerance says it, in sizes and radians.
+/// Residual of the equations of a stage if there is no tolerance, in sizes of the part and radians.
 inline constexpr double kStageTolerance = 1e-11;
 
 inline double weight(int stage) {
@@ -88,7 +89,7 @@ PLIANT_INLINE void Esdirk::step(StepContext& step) {
     solver_->damp(r_q_, r_v_);
     note_error(scale()->norm(r_q_, r_v_, state.v));
   }
-  state.q = q_;  // the last stage is the end
+  state.q = q_;  // stiffly accurate: the last stage is the end of the step
   state.v = v_;
   state.work += h * power;
   step.t = t + h;

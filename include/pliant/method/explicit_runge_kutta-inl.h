@@ -1,3 +1,4 @@
+// Bodies of explicit_runge_kutta.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -21,7 +22,7 @@ namespace pliant {
 
 namespace explicit_runge_kutta {
 
-/// to = from + h sum of weights_i column_i, in one pass over memory and four columns at a time.
+/// Computes to = from + h sum weights_i column_i in one pass over memory, four columns at a time.
 inline void combine(const VecX<double>& from, const MatX<double>& columns, const double* weights, int count,
                     double h, VecX<double>& to) {
   constexpr Eigen::Index in_cache = 256;
@@ -56,7 +57,7 @@ inline void combine(const VecX<double>& from, const MatX<double>& columns, const
   }
 }
 
-/// to = h sum of weights_i column_i.
+/// Computes to = h sum weights_i column_i.
 inline void sum(const MatX<double>& columns, const double* weights, int count, double h, VecX<double>& to) {
   to.setZero(columns.rows());
   for (int k = 0; k < count; ++k)
@@ -77,8 +78,8 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   powers_.col(stage) = work.power;
 }
 
-/// Whether the rates at the end of the step taken last are those of a state at a time. Baumgarte's terms may
-/// follow the length of the step, and the rates with them.
+/// Returns whether the rates at the end of the last step are valid at this state and time. Baumgarte's gains,
+/// and with them the rates, may depend on the length of the step.
 PLIANT_INLINE bool ExplicitRungeKutta::ended_at(const Dynamics& dynamics, double t,
                                                 const State& state) const {
   auto gains = [&](double step) {
@@ -147,7 +148,7 @@ PLIANT_INLINE StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const 
   if (of_->between == nullptr || free_.any()) return Integrator::path(dynamics, low, h, high, counters);
   try {
     return extended(dynamics, low, h, high, counters);
-  } catch (const StepFailure&) {  // where the motion itself did not go
+  } catch (const StepFailure&) {  // the interpolated coordinates left the range of the model
   } catch (const InvertedElement&) {
   }
   return Integrator::path(dynamics, low, h, high, counters);

@@ -1,3 +1,4 @@
+// Bodies of free_oscillation.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -13,8 +14,8 @@ namespace pliant {
 
 namespace free_oscillation {
 
-/// c and s of exp(A t) = [c + g s, s; -omega^2 s, c - g s] for g = D/2: of a damped oscillation, or of a
-/// decay that does not swing.
+/// The functions c and s of exp(A t) = [c + g s, s; -omega^2 s, c - g s] with g = D/2, for a damped
+/// oscillation or an overdamped decay.
 struct Swing {
   double c, s;
 };
@@ -25,24 +26,24 @@ inline Swing swing(double omega2, double g, double t) {
     const math::SinCos<double> of = math::sin_cos(kappa * t);
     return {fade * of.cos, fade * of.sin / kappa};
   }
-  // Two decays, of rates g - k and g + k.
+  // Overdamped: two decay rates g - k and g + k.
   const double k = std::sqrt(-squared), slow = g + k > 0 ? omega2 / (g + k) : 0;
   const double fade = math::exp(-slow * t), faster = -std::expm1(-2 * k * t);
   return {fade * (1 - 0.5 * faster), k * t != 0 ? fade * faster / (2 * k) : fade * t};
 }
 
-/// (1 - exp(-rate t)) / rate.
+/// Returns (1 - exp(-rate t)) / rate.
 inline double decayed(double rate, double t) {
   return rate == 0 ? t : -std::expm1(-rate * t) / rate;
 }
 
-/// The integral of s over t, which is (1 - c - g s) / omega^2: that loses its digits while t is short.
+/// Returns the integral of s over t. The closed form (1 - c - g s) / omega^2 loses digits for short t.
 inline double pushed(double omega2, double g, double t, const Swing& of) {
   constexpr double kShort = 0.5;
   if (std::sqrt(omega2) * std::abs(t) > kShort) return (1 - of.c - g * of.s) / omega2;
   const double k = std::sqrt(std::max(0.0, g * g - omega2));
   if (2 * k * std::abs(t) > kShort) return (decayed(omega2 / (g + k), t) - decayed(g + k, t)) / (2 * k);
-  // Gauss's rule of five points.
+  // Gauss quadrature with five points.
   constexpr std::array<double, 5> x{0.04691007703066800, 0.2307653449471585, 0.5, 0.7692346550528415,
                                     0.9530899229693320},
       w{0.1184634425280945, 0.2393143352496832, 0.2844444444444444, 0.2393143352496832, 0.1184634425280945};

@@ -1,3 +1,4 @@
+// Bodies of free_stages.h.
 #pragma once
 
 #include <pliant/math/header_only.h>

@@ -1,3 +1,4 @@
+// Bodies of implicit_midpoint.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -16,7 +17,7 @@
 namespace pliant {
 
 namespace implicit_midpoint {
-/// What may be left of the equations of a step, in sizes and radians: rounding.
+/// Residual of the equations of a step, in sizes of the part and radians: rounding.
 inline constexpr double kStageTolerance = 1e-13;
 }  // namespace implicit_midpoint
 

@@ -1,4 +1,4 @@
-// The largest growth per step of a one-step method on x'' + D x' + K x = 0, by its stability function.
+// Growth of a one-step method on x'' + D x' + K x = 0 by its stability function.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// stability: R(z) for z = h times an eigenvalue of the motion, complex.
+/// Returns the largest |R(z)|, z = h times an eigenvalue of the motion; stability: R(z).
 template <class Stability>
 double linear_growth(const MatX<double>& K, const MatX<double>& D, double h, Stability&& stability) {
   const Eigen::Index n = K.rows();

@@ -1,3 +1,4 @@
+// Bodies of linearly_implicit.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -20,7 +21,7 @@ namespace linearly_implicit {
 
 const double kGamma = 1 - std::sqrt(0.5);
 
-/// Whether the model has something that stops a part with soft elasticity: a string, or a limit.
+/// Returns whether a string or a limit can stop a part that deforms locally.
 inline bool can_be_stopped(const Model& model) {
   for (const PartModel& m : model.parts()) {
     if (m.local == nullptr || m.q0 < 0) continue;
@@ -84,8 +85,8 @@ PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
     if (has_implicit(island, soft)) factor_joints<double>(model, island, work.parts, work.joints);
 }
 
-/// Notes at an evaluation whether a taut string pulls on no stiff part, or seems not to: what stiff
-/// elasticity does at one moment tells little of what it does over a step.
+/// Records whether a taut string pulls on no stiff part. The elasticity at one moment does not decide that
+/// for the step.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
@@ -100,7 +101,7 @@ PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, co
   }
 }
 
-/// Whether strings or limits of parts that deform locally act otherwise than before a step.
+/// Returns whether the modes of strings or limits of implicit parts changed in the step.
 PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State& now) const {
   if (loose_) return true;
   for (const Island& island : model.islands())
@@ -194,8 +195,8 @@ PLIANT_INLINE void LinearlyImplicit::second_order(StepContext& step) {
   if (scale() != nullptr) {
     q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
-    // Rates of parts that are implicit count by what they move in the step: what rings faster than it is
-    // damped away, not followed, and shakes their frames.
+    // Rates of implicit parts are weighted by the displacement in the step: oscillations faster than the step
+    // are damped, not followed, and they shake the frames of their parts.
     for (std::size_t i = 0; i < of_second_.size(); ++i) {
       const PartModel& m = model.parts()[i];
       if (of_second_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
@@ -209,8 +210,8 @@ PLIANT_INLINE void LinearlyImplicit::second_order(StepContext& step) {
   end_step(step);
 }
 
-/// What brings a part onto a string or a limit would move no more than the node that it pushes, and put
-/// energy without bound into its elasticity, did it not push as it does over a step.
+/// Ends the motion and projects with the response of implicit parts over a step. With the response at one
+/// moment, a projection onto a string or limit would move only the pushed node, and add energy without bound.
 PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
   end_motion(step);
   const StepResponses responses(*this, step.model(), step.work);
@@ -218,7 +219,7 @@ PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
 }
 
 PLIANT_INLINE double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  // u = (x, v); A of what is explicit: x_dot = v alone.
+  // u = (x, v); for the explicit part of the motion A contains x_dot = v alone.
   const Eigen::Index n = K.rows();
   const MatX<double> I = MatX<double>::Identity(2 * n, 2 * n);
   MatX<double> F = MatX<double>::Zero(2 * n, 2 * n), filter = I;

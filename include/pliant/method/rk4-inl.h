@@ -1,3 +1,4 @@
+// Bodies of rk4.h.
 #pragma once
 
 #include <pliant/math/header_only.h>

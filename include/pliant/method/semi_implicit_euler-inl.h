@@ -1,3 +1,4 @@
+// Bodies of semi_implicit_euler.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -17,7 +18,7 @@ inline constexpr double kEulerNode[] = {0}, kEulerWeight[] = {1};
 inline constexpr ButcherTableau kEulerTableau{
     "semi_implicit_euler", 1, 1, nullptr, kEulerWeight, kEulerNode, nullptr, nullptr, 0, false};
 
-/// v += h v_dot, what v was before going to `before`: in one pass over memory.
+/// Stores v in `before` and adds h v_dot to v, in one pass over memory.
 inline void kick(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
   before.resize(v.size());
   for (Eigen::Index i = 0; i < v.size(); ++i) {

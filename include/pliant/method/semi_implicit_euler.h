@@ -1,8 +1,7 @@
-// Semi-implicit Euler, the paper's method (section 4), first order:
+// Semi-implicit Euler, the method of the paper (section 4), of first order:
 //   v <- v + h vdot(q, v),   q <- q (+) h v
-// What oscillates freely does so exactly under the rest of vdot, and angular momenta turn with
-// the parts by what they turn, not by its first order, which would let parts that tumble gain energy without
-// end.
+// Free oscillators are integrated exactly. Angular momenta rotate with their parts (carry_momenta.h); with
+// the first-order gyroscopic term tumbling parts would gain energy without bound.
 #pragma once
 
 #include <pliant/method/free_stages.h>

@@ -1,3 +1,4 @@
+// Bodies of step_path.h.
 #pragma once
 
 #include <pliant/math/header_only.h>

@@ -1,3 +1,4 @@
+// Bodies of assemble.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -19,24 +20,24 @@ namespace pliant {
 
 namespace assembly {
 
-/// Most turn of a part in one step, rad, and most change of a parameter, of its size or in rad.
+/// Largest rotation of a part in one step, rad, and largest change of a parameter, relative or in rad.
 inline constexpr double kMaxTurn = 0.5, kMaxChange = 0.3;
-/// eps over the smallest ratio of stiffness to inertia: how little rigid motion costs.
+/// eps divided by the smallest ratio of stiffness to inertia: the cost of rigid motion.
 inline constexpr double kRigidFirst = 1e-6;
-/// A step, in rad or sizes, at which the shape has settled.
+/// The shape has converged if a step is below this, in rad or relative.
 inline constexpr double kConverged = 1e-9;
-/// Merits of closed joints that differ by less than this part are equal.
+/// Relative difference at which the merits of two closed configurations are equal.
 inline constexpr double kEqual = 1e-12;
-/// A gap, in lengths, that is left to the projection at the start.
+/// Gap, in lengths of the joint, that the projection at the start closes.
 inline constexpr double kNearlyClosed = 1e-9;
 inline constexpr int kMaxIterations = 400;
-/// Without a gap smaller by this factor in so many iterations it cannot be closed.
+/// An island cannot close if its gap does not shrink by kProgress in kPatience iterations.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
-/// Most joints beside the widest that a message names.
+/// Most joints that a message names besides the widest.
 inline constexpr int kMaxNamed = 8;
-/// Steps of more than kTooFar times what is allowed make rigid motion dearer, once all gaps are below kNear
-/// lengths; good ones make it cheaper again.
+/// A step longer than kTooFar allowed steps makes rigid motion more expensive by kDearer, once all gaps are
+/// below kNear lengths; accepted steps make it cheaper by kCheaper.
 inline constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -61,7 +62,7 @@ class Assembly {
     eps_ = least_eps_ = kRigidFirst * (stiff_ ? softest : 1);
   }
 
-  /// Widest gap, in lengths of its joint.
+  /// Returns the widest gap, in lengths of its joint.
   double gap() {
     dynamics_.evaluate_joints(state_.time(), state_.q, state_.v, modes_, island_, work_);
     double widest = 0;
@@ -69,17 +70,17 @@ class Assembly {
         [&](int, double gap, const JointModel& joint) { widest = wider(gap / joint.length, widest); });
     return widest;
   }
-  /// The same in m.
+  /// Returns the widest gap, m.
   double metres() const {
     double widest = 0;
     for_each_gap([&](int, double gap, const JointModel&) { widest = wider(gap, widest); });
     return widest;
   }
 
-  /// Whether the shape settled within the most iterations.
+  /// Returns whether the shape converged within kMaxIterations.
   bool converged() const { return converged_; }
 
-  /// Returns the iterations.
+  /// Iterates to closed gaps and a converged shape; returns the number of iterations.
   int run() {
     double best_gap = kInfinite, best_merit = kInfinite, price = penalty_;
     int since_gap = 0, since_merit = 0;
@@ -87,19 +88,20 @@ class Assembly {
       const double now = gap();
       if (!std::isfinite(now))
         throw NumericalFailure("assembly: the gap of a joint is not a finite number", state_.time());
-      if (std::exchange(price, penalty_) != penalty_) best_merit = kInfinite;  // merits at another price
+      if (std::exchange(price, penalty_) != penalty_)
+        best_merit = kInfinite;  // merits with another penalty are not comparable
       since_gap = now < kProgress * best_gap ? 0 : since_gap + 1;
       since_merit = merit() < (1 - kConverged) * best_merit ? 0 : since_merit + 1;
       best_gap = std::min(best_gap, now);
       best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
       if (!closed && since_gap > kPatience && (!stiff_ || since_merit > kPatience)) fail(i);
-      // What is left is rounding, of gaps or of the shape.
+      // Further changes are rounding, of gaps or of the shape.
       if (now <= kNearlyClosed && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kConverged) return i;
     }
-    if (gap() > kClosedGap) fail(kMaxIterations);  // the projection at the start closes the rest
+    if (gap() > kClosedGap) fail(kMaxIterations);  // the projection at the start closes smaller gaps
     converged_ = false;
     return kMaxIterations;
   }
@@ -126,7 +128,7 @@ class Assembly {
     return closed;
   }
 
-  /// Smallest ratio of stiffness to inertia of a parameter that has stiffness; infinite when none has.
+  /// Returns the smallest ratio of stiffness to inertia over the parameters; infinite if none has stiffness.
   double softest_ratio() {
     dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
     double least = kInfinite;
@@ -141,7 +143,7 @@ class Assembly {
     return least;
   }
 
-  /// The metric M + K_s / eps of the parts, with turning dearer by a factor.
+  /// Sets the metric M + K_s / eps of the parts, with the inertia of rotation multiplied by a factor.
   void make_metric(double dear) {
     dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
     for (const int i : island_.parts) {
@@ -157,8 +159,7 @@ class Assembly {
     }
   }
 
-  /// Nodes stay where they are on the parts: the metric is that of c, theta and q_s, and of nodes that
-  /// nothing moves.
+  /// Fixes the nodes on the parts: the metric is that of c, theta and q_s, with immovable nodes.
   static void fix_nodes(PartWorkspace<double>& w) {
     constexpr double immovable = 1e12;
     MatX<double>&A = w.local->A, &M = w.inertia.M;
@@ -174,9 +175,9 @@ class Assembly {
     }
   }
 
-  /// One step; returns the largest turn or relative change of a parameter in it. Where rigid motion closes
-  /// little, as in a straight chain that is too short, it costs more for a while, which leaves more to the
-  /// parameters.
+  /// Takes one step; returns the largest rotation or relative change of a parameter in it. If rigid motion
+  /// closes little, as in a straight chain that is too short, its cost rises for a while, which moves the
+  /// parameters more.
   double step(double widest) {
     double size = 0;
     for (int attempt = 0;; ++attempt) {
@@ -193,7 +194,7 @@ class Assembly {
       double share = std::min(1.0, 1.0 / size);
       for (int halving = 0;; ++halving, share /= 2) {
         state_.q = from;
-        if (halving > 0) gap();  // the frames to move in
+        if (halving > 0) gap();  // evaluates the frames again
         move(group, x, share);
         restore(group);
         if (merit() < before || (is_closed() && merit() <= (1 + kEqual) * before)) {
@@ -209,7 +210,7 @@ class Assembly {
     }
   }
 
-  /// The step that the linearised problem asks for.
+  /// Returns the step of the linearised problem.
   VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double widest) {
     make_metric(1 + widest * widest);
     work_.joints.modes = modes_;
@@ -225,8 +226,8 @@ class Assembly {
     return x;
   }
 
-  /// Closes what a step left open by curvature, as long as that works: otherwise steps along curved
-  /// constraints would have to be short (Maratos 1978).
+  /// Closes the gaps that a step leaves open by curvature, as long as the iteration converges. Without this
+  /// correction steps along curved constraints would be short (Maratos 1978).
   void restore(const Group<double, Eigen::Dynamic>& group) {
     double before = projection::kWidest / projection::kSlow;
     for (double now = gap(); now <= projection::kSlow * before && !is_closed(); now = gap()) {
@@ -245,8 +246,8 @@ class Assembly {
     }
   }
 
-  /// Elastic energy and a price for every gap that is above all forces: it falls along every step that is
-  /// short enough.
+  /// Returns the merit: elastic energy plus a penalty for every gap, larger than all forces. It decreases
+  /// along every step that is short enough.
   double merit() const {
     double sum = 0;
     for_each_gap([&](int, double gap, const JointModel&) { sum += penalty_ * gap; });
@@ -262,7 +263,7 @@ class Assembly {
   VecMax<double> q_s(const PartModel& m) const { return state_.q.segment(m.q0 + 7, m.n_s); }
   VecMax<double> stretch(const PartModel& m) const { return q_s(m) - m.rest_at(state_.time()); }
 
-  /// What takes the parameters of a part alone to rest.
+  /// Returns the step that takes the parameters of a part to rest if no joint acts.
   VecX<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
     VecX<double> x = VecX<double>::Zero(m.n_x());
     VecX<double> f = -(m.part->K_s() * stretch(m));
@@ -286,7 +287,7 @@ class Assembly {
     return row.sign * ((row.sign > 0 ? range.min : range.max) - state_.q[m.q0 + 7 + row.k]);
   }
 
-  /// A step in units of the largest that is allowed.
+  /// Returns the length of a step in units of the largest allowed step.
   double step_size(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x) const {
     double size = 1e-300;
     for (int p = 0; p < group.parts(); ++p) {
@@ -341,9 +342,9 @@ class Assembly {
   const Island& island_;
   State& state_;
   Workspace<double>& work_;
-  std::vector<JointMode> modes_;    ///< with every joint closed that acts
+  std::vector<JointMode> modes_;    ///< modes with every acting joint closed
   double eps_ = 1, least_eps_ = 1;  ///< cost of rigid motion, 1/s^2
-  double penalty_ = 0;              ///< price of a gap, N
+  double penalty_ = 0;              ///< penalty of a gap, N
   bool stiff_ = false;              ///< whether any parameter has a stiffness
   bool converged_ = true;           ///< see converged()
 };

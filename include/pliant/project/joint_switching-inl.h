@@ -1,3 +1,4 @@
+// Bodies of joint_switching.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -15,14 +16,14 @@ namespace pliant {
 
 namespace projection {
 
-/// Units of the last place beside a kink.
+/// Distance of just_before() and just_after() from a kink, in units of the last place.
 inline constexpr double kBeside = 2;
 
-/// An impulse of a joint that is below this part of the momenta of its lightest part is rounding.
+/// An impulse below this share of the momentum of the lightest part is rounding.
 inline constexpr double kImpulseRounding = 1e-9;
 
-/// The momentum (N s) of the lightest part of a joint if it moved as fast as any of them, or as the joint
-/// closes.
+/// Returns the momentum (N s) of the lightest part of a joint at the largest speed of its parts, or at the
+/// closing speed of the joint.
 inline double momentum(const Model& model, const JointModel& joint, const VecX<double>& v) {
   double mass = std::numeric_limits<double>::infinity(),
          speed = model.body().stabilization.rate * joint.length;
@@ -105,7 +106,7 @@ PLIANT_INLINE void JointSwitching::follow_paths(StepContext& step, double kink, 
   }
 }
 
-/// step.work: of an evaluation of the island at step.t.
+/// Records the impulses of an island. step.work: an evaluation of the island at step.t.
 PLIANT_INLINE void JointSwitching::record(StepContext& step, const Island& island, bool of_path,
                                           const VecX<double>& v_before, const VecX<double>& impulses) {
   const double t = step.t;

@@ -1,4 +1,4 @@
-// Joints that begin and cease to act in the course of a run, and joints whose ends follow paths with kinks.
+// Joints that begin or cease to act during a run, and joints whose ends follow prescribed paths with kinks.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace pliant {
 
-/// What a joint does to its first side (a part, or the world) when it, or another of its island, begins to
-/// act on parts whose velocities do not agree with it, or when the rate jumps at which one's ends are moved.
+/// The impulse of a joint on its first side (a part, or the world) when this or another joint of its island
+/// begins to act on parts whose velocities do not agree with it, or when the rate of a prescribed path jumps.
 struct ImpulseOnEngage {
   double time;           ///< s
-  int joint;             ///< its number in the model
+  int joint;             ///< number in the model
   Wrench impulse;        ///< N s and N m s, about its first point
-  bool of_path = false;  ///< whether by a path whose rate jumped
+  bool of_path = false;  ///< whether the rate of a path jumped
 };
 
-/// Steps end and begin beside a kink of a path, on the side that is theirs: times (s) next to it.
+/// Return times (s) just before and just after a kink of a path, where steps end and begin.
 double just_before(double kink);
 double just_after(double kink);
 
@@ -26,7 +26,7 @@ class JointSwitching {
   /// The dynamics must outlive it.
   explicit JointSwitching(const Dynamics& dynamics) : dynamics_(dynamics) {}
 
-  /// A time; where a path has a kink there, or nearer to it than `near`, that just after the kink. s.
+  /// Returns t (s), or the time just after a kink of a path that is within `near` of t.
   double after_kink(double t, double near) const;
   /// Engages and releases joints as their times say at step.t; times nearer than `near` (s) count as equal.
   void switch_at(StepContext& step, double near);
@@ -35,9 +35,9 @@ class JointSwitching {
   /// Applies the impulses at a kink (s) of prescribed paths, or at kinks within `near` (s) of it; step.t: a
   /// time just after the kink. Throws UnsatisfiableModel if the path of a closed joint jumps in place.
   void follow_paths(StepContext& step, double kink, double near);
-  /// In the order of time; those that are mere rounding are left out.
+  /// Returns the impulses in the order of time, without those that are rounding.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
-  /// undo_step() takes back those since begin_step(); forget_after(): those after a time, s.
+  /// undo_step() removes the impulses since begin_step(); forget_after() removes those after a time, s.
   void begin_step() { at_begin_ = impulses_.size(); }
   void undo_step();
   void forget_after(double t);

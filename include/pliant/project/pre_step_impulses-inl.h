@@ -1,4 +1,5 @@
-// Before the coordinates move by h v: impulses that meet limits, strings and joints at the end of the step.
+// Impulses before the coordinates move by h v, so that limits, strings and joints are met at the end of the
+// step.
 #pragma once
 
 #include <algorithm>
@@ -14,14 +15,14 @@ namespace pliant {
 
 namespace projection {
 
-/// An iteration that leaves more than this part of the gaps has come to the rounding of the rows.
+/// The iteration ends at rounding: when the gaps shrink by less than this factor.
 inline constexpr double kIdle = 0.9;
-/// Most turn of a part in a step while a joint closes, rad.
+/// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxTurnClosing = 0.2;
 
-/// Adds to the velocities x of an island what takes the gaps at the end of the step, in `ahead`, off its
-/// closed joints. False when they are closed there, or as near as rounding lets them come. widest: that of
-/// the iteration before, and then of this one.
+/// Adds to the velocities x of an island the change that removes the gaps of closed joints at the end of the
+/// step, in `ahead`. Returns false if they are closed there to rounding. widest: the widest gap of the last
+/// iteration, then of this one.
 template <int Max>
 bool close_ahead(const Model& model, const Island& island, const Group<double, Max>& group,
                  const State& state, const Workspace<double>& ahead, double h, VecX<double>& error,
@@ -68,9 +69,9 @@ inline bool any_closing(const Island& island, const Workspace<double>& work) {
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// In a step of h no part of an island that closes comes to turn by more than kMaxTurnClosing: what a gap
-/// pulls may swing about it for long, and gains energy by each step. The centres of mass go on as they were.
-/// before: velocities at the start of the step. Returns the work of it.
+/// Limits the rotation of parts of a closing island to kMaxTurnClosing in the step. The pull of an open joint
+/// may make a part swing about it for long, which gains energy in each step. The centres of mass keep their
+/// velocities. before: velocities at the start of the step. Returns the work of the change.
 template <int Max>
 double cap_turns(const Group<double, Max>& group, const VecX<double>& before, double h,
                  VecMax<double, Max>& x, VecMax<double, Max>& capped) {
@@ -90,7 +91,7 @@ double cap_turns(const Group<double, Max>& group, const VecX<double>& before, do
   return work;
 }
 
-/// Whether a parameter passes a limit when it moves on for a time h.
+/// Returns whether a parameter passes a limit when it moves for a time h.
 template <int Max>
 bool crosses(const Group<double, Max>& group, double h, const State& state) {
   for (int i = 0; i < group.parts(); ++i) {
@@ -101,7 +102,7 @@ bool crosses(const Group<double, Max>& group, double h, const State& state) {
   return false;
 }
 
-/// Which limits the parameters of a group are at when they have moved on.
+/// Sets the limit modes of the parameters of a group at the end of the step.
 template <int Max>
 void note_limits(const Group<double, Max>& group, double h, State& state) {
   for (int i = 0; i < group.parts(); ++i) {
@@ -110,7 +111,7 @@ void note_limits(const Group<double, Max>& group, double h, State& state) {
       const double q = state.q[m.q0 + 7 + k], then = q + h * state.v[m.v0 + 6 + k];
       const Range range = m.limits[at(k)];
       limit_mode(state, m, k) = then <= range.min ? -1 : (then >= range.max ? 1 : 0);
-      // A rate too small to leave the limit is rounding of the impulses of others: it rests.
+      // A rate too small to leave the limit is rounding of other impulses: it is set to zero.
       if (limit_mode(state, m, k) != 0 && then == q) state.v[m.v0 + 6 + k] = 0;
     }
   }
@@ -189,8 +190,8 @@ class PreStep {
                        widest);
   }
 
-  /// The least velocity of a row: with it a limit, or the length of a string, is just reached at the end of
-  /// the step.
+  /// Returns the smallest velocity of a row: with it the limit, or the length of the string, is just reached
+  /// at the end of the step.
   double slowest(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];

@@ -1,6 +1,6 @@
-// Reference conditions W^T d = 0 after a step (design 1.3). A change of (c, theta, q_s) by delta that leaves
-// every node where it is changes d by -G delta, and W^T d by -K^T delta:
-//   K^T delta = W^T d,   and of the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
+// Reference conditions W^T d = 0 after a step (include/pliant/part/local/README.md). A change delta of (c,
+// theta, q_s) that leaves every node in place changes d by -G delta, and W^T d by -K^T delta:
+//   K^T delta = W^T d,   and for the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
 #pragma once
 
 #include <sstream>
@@ -18,16 +18,17 @@ namespace pliant {
 
 namespace projection {
 
-/// Changes of the frame below this part of the size of the part are rounding.
+/// Changes of the frame below this share of the size of the part are rounding.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
-/// K that differs from H by less than this share of its least diagonal entry is as regular.
+/// K is regular if it differs from H by less than this share of the smallest diagonal entry.
 inline constexpr double kSmallChange = 0.3;
-/// Of K with H0 scaled to a unit diagonal (design 1.3).
+/// Largest condition number of K, with H0 scaled to a unit diagonal.
 inline constexpr double kMaxCondition = 1e8;
 
-/// Whether the conditions of a part without dynamic parameters hold to rounding, in place and by the rates of
-/// another step, as they do after a step of most methods: W is constant then, and they are linear.
+/// Returns whether the conditions of a part without dynamic parameters are met to rounding, now and after
+/// another step with these rates. They are after a step of most methods: W is constant then, and the
+/// conditions are linear.
 inline bool conditions_hold(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
   if (m.n_s > 0 || !(state.h > 0) || !work.local || work.local->H0.rows() == 0 ||
       !(work.local->condition() <= kMaxCondition))
@@ -44,7 +45,7 @@ inline bool conditions_hold(const PartModel& m, const State& state, const PartWo
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H by no more than the root of 2 times this, and by what has just been told small.
+  // K differs from H by at most sqrt(2) times this, and by the unmet conditions, which are small.
   const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
 }
@@ -67,7 +68,8 @@ inline void project_frame(StepContext& step, std::size_t i) {
   if (!(condition <= kMaxCondition)) {
     std::ostringstream message;
     message << "the motion of the nodes of part '" << m.part->name()
-            << "' no longer tells its frame and global parameters apart (condition " << condition << "); "
+            << "' no longer determines its frame and global parameters (condition number " << condition
+            << "); "
             << (m.n_s > 0 ? "freeze some of the parameters"
                           : "they have come too near to a line, or are as far from the shape as it is large");
     throw NumericalFailure(message.str(), step.t);
@@ -97,7 +99,7 @@ inline void project_frame(StepContext& step, std::size_t i) {
     const double angle = turning.norm();
     const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
     local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
-    // Where the nodes would be with the displacements of before tells the reference shape.
+    // The reference shape at the new parameters.
     if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
     Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
     dynamics.evaluate_frame(state.q, state.v, part, work);

@@ -1,4 +1,4 @@
-// After a step: limits stop parameters, strings go taut, joints close and are projected.
+// Projection after a step: limits stop parameters, strings go taut, joints close and are projected.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -16,7 +16,7 @@ namespace pliant {
 
 namespace projection {
 
-/// The coordinates and velocities of a group in a state.
+/// Stores the coordinates and velocities of a group.
 template <int Max>
 class Snapshot {
  public:
@@ -31,7 +31,7 @@ class Snapshot {
     kept_.v.resize(n_v);
     exchange(state, [](auto&& kept, auto&& now) { kept = now; });
   }
-  /// The state takes these, and they become what it had.
+  /// Exchanges the stored values with those of the state.
   void swap(State& state) {
     exchange(state, [](auto&& kept, auto&& now) { kept.swap(now); });
   }
@@ -52,7 +52,7 @@ class Snapshot {
   GroupVectors<double, Max>& kept_;
 };
 
-/// A rigid motion is added to the velocities of a part that deforms locally, so that its P and L stay.
+/// Adds a rigid motion to the velocities of a part that deforms locally, which keeps its P and L.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
   const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
@@ -65,9 +65,9 @@ inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& 
   state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
 }
 
-/// New velocities for parts whose coordinates were set back: their generalised momenta M v stay, and with
-/// them P and L; of a part that deforms locally, whose nodes keep their velocities, P and L alone. before:
-/// evaluated at the coordinates before; now: at those now.
+/// Sets the velocities of parts whose coordinates were set back. The generalised momenta M v stay, and with
+/// them P and L. For a part that deforms locally, whose nodes keep their velocities, P and L alone stay.
+/// before: evaluated at the coordinates before; now: at the new ones.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {
@@ -96,8 +96,8 @@ inline const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& gro
   return group.island()->parts;
 }
 
-/// Brings a group onto its joints and within its limits. closed: some joints have closed just now. work:
-/// evaluated for the group; scratch: any. impulses: if given, those that close joints are added to them, N s.
+/// Projects a group onto its joints and limits. closed: whether joints have just closed. step.work: evaluated
+/// for the group. scratch: storage. impulses: if given, the impulses that close joints are added to it, N s.
 template <int Max>
 void project_group(StepContext& step, const Group<double, Max>& group, bool closed,
                    Workspace<double>& scratch, VecX<double>* impulses = nullptr) {
@@ -109,8 +109,8 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
   Projection<Max> projection(step, group, kept);
   if (impulses != nullptr) projection.add_impulses_to(*impulses);
   const bool pushed = projection.coordinates();
-  // The impulses that close a joint do work; those that put right the error of a step are an error too, and
-  // show in the balance.
+  // The impulses that close a joint do work. The work of a correction of the error of a step is an error too,
+  // and appears in the balance.
   double joints = 0, rows = 0;
   if (!pushed && !closed) {
     step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -125,7 +125,7 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
     dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
-  // What scratch sees of velocities is in the state; they are the same before and now.
+  // The velocities of scratch are those of the state; they have not changed.
   if (pushed) keep_momenta(group, scratch, work, state);
   projection.forget();
   step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -133,7 +133,7 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
       dynamics.energy(step.t, state.q, state.v, parts, scratch) - energy;
 }
 
-/// Whether a parameter of a part alone has passed a limit, or moves at one.
+/// Returns whether a parameter has passed a limit, or moves while it is at one.
 inline bool passes(const PartModel& m, State& state) {
   for (int k = 0; k < m.n_s; ++k)
     if ((limit_mode(state, m, k) != 0 && state.v[m.v0 + 6 + k] != 0) ||
@@ -142,8 +142,9 @@ inline bool passes(const PartModel& m, State& state) {
   return false;
 }
 
-/// Open joints close whose gap is small, and whose rate is, unless any rate will do; what a method of first
-/// order leaves of it on a turning joint, h |bias| alpha / beta^2, is small too. Returns whether any did.
+/// Closes open joints with a small gap and a small rate of the gap (any_rate: with any rate). A method of
+/// first order leaves a gap of h |bias| alpha / beta^2 on a turning joint, which counts as small. Returns
+/// whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -170,8 +171,8 @@ inline bool close_joints(const Dynamics& dynamics, const Island& island, bool an
   return any;
 }
 
-/// Throws for a joint that has had the time to close and is not let: rows follow from those of others that
-/// disagree, its own or theirs. work: of the last evaluation of the step that ends at t.
+/// Throws for a joint that should have closed by now and cannot: its rows depend on rows of other joints that
+/// contradict them. step.work: the last evaluation of the step that ends at step.t.
 inline void fail_if_stuck(StepContext& step, const Island& island) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;
@@ -205,7 +206,7 @@ inline void fail_if_stuck(StepContext& step, const Island& island) {
   std::for_each(island.strings.begin(), island.strings.end(), judge);
 }
 
-/// Strings that were too long have closed when they are short enough.
+/// Ends the closing of strings that are short enough now.
 inline void close_strings(const Model& model, const Island& island, const Workspace<double>& work,
                           State& state) {
   for (const int j : island.strings) {
@@ -215,7 +216,7 @@ inline void close_strings(const Model& model, const Island& island, const Worksp
   }
 }
 
-/// Strings are taut or slack as they are now.
+/// Sets strings taut or slack.
 inline void note_strings(const Model& model, const Island& island, const Workspace<double>& work,
                          State& state) {
   const double rate = model.body().stabilization.rate;
@@ -229,7 +230,8 @@ inline void note_strings(const Model& model, const Island& island, const Workspa
   }
 }
 
-/// Closes the joints of an island whose last evaluation was a rigid island's, if that is all there is to do.
+/// Projects an island whose last evaluation was that of a rigid island. Returns false if it needs more than
+/// that.
 inline bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
                                    State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);

@@ -1,5 +1,5 @@
-// What settling after a step and stopping ahead of it share: groups one by one, and the projection of a group
-// onto its joints and limits.
+// The projection of a group of parts onto its joints and limits: shared by the projection after a step and by
+// the impulses before it.
 #pragma once
 
 #include <algorithm>
@@ -17,34 +17,34 @@
 
 namespace pliant::projection {
 
-/// What a projection may leave, in lengths of the joint, and the rounding of coordinates of size 1.
+/// Residual of a projection, in lengths of the joint, and rounding of coordinates of size 1.
 inline constexpr double kLeft = 1e-13, kRounding = 4e-15;
-/// An iteration that leaves more than this part of the error takes a new factor; one that leaves more than
-/// the other part with a new factor has come to the rounding of the rows.
+/// An iteration that reduces the error by less than kSlow needs a new factor. With a new factor, one that
+/// reduces it by less than kStalled has reached the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
-/// A closed joint that its projection leaves this many times what it may be cannot be closed.
+/// A closed joint whose gap stays above this many residuals cannot close.
 inline constexpr double kOpen = 1e3;
 /// Most joints that a message names.
 inline constexpr int kMaxNamed = 8;
-/// Rows that make up a dependent one have at least this share of it.
+/// A row depends on another row if the share of the other is at least this.
 inline constexpr double kDepends = 1e-6;
-/// Widest gap, in lengths of the joint's smaller part, that a projection closes at once.
+/// Widest gap, in lengths of the joint's smaller part, that a projection closes.
 inline constexpr double kWidest = 0.1;
-/// A joint that is left open beyond kStuckGap lengths, and is not let close after a time of kPatience / beta,
-/// never will be.
+/// A joint that stays open beyond kStuckGap lengths for a time of kPatience / beta never closes.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
-/// A projection by other rows than the step began with may take back at most this part of its motion.
+/// A projection with other independent rows than at the start of the step may undo at most this share of its
+/// motion.
 inline constexpr double kFar = 0.25;
-/// A string this near to its length, in lengths of its smaller part, is taut.
+/// A string is taut within this distance of its length, in lengths of its smaller part.
 inline constexpr double kTaut = 1e-9;
 
-/// The wider of two gaps, and not a number if the first is none.
+/// Returns the wider of two gaps, or NaN if the first is NaN.
 inline double wider(double gap, double widest) {
   return gap <= widest ? widest : gap;
 }
 
-/// What a gap may be, by rounding, m.
+/// Returns the rounding of the gap of a joint, m.
 inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   double size = 0;
   for (const JointSide& side : joint.sides)
@@ -52,14 +52,14 @@ inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   return kLeft * joint.length + kRounding * size;
 }
 
-/// The same of the joints of rigid islands.
+/// Returns the rounding of the gaps of rigid islands.
 inline RigidIsland::Rounding rounding(const Model& model) {
   return {kLeft, kRounding, model.body().stabilization.rate};
 }
 inline std::size_t number_of(const Model& model, const Island& island) {
   return static_cast<std::size_t>(&island - model.islands().data());
 }
-/// That of an island whose last evaluation was a rigid island's; of others none.
+/// Returns the rigid workspace of an island, or nullptr if its last evaluation did not use one.
 inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& work) {
   if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return nullptr;
   return &work.rigid[at(island.rigid)];
@@ -69,7 +69,7 @@ inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
 
-/// The vectors of an island, or of the part alone that has its turn.
+/// Returns the storage of an island, or of the part without joints.
 template <int Max>
 GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work) {
   if constexpr (Max == Eigen::Dynamic)
@@ -78,7 +78,7 @@ GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspa
     return work.alone;
 }
 
-/// The velocities x of a group in v.
+/// Gathers the velocities x of a group from v.
 template <int Max>
 void gather_velocities(const Group<double, Max>& group, const VecX<double>& v, VecMax<double, Max>& x) {
   x.resize(group.size());
@@ -86,7 +86,7 @@ void gather_velocities(const Group<double, Max>& group, const VecX<double>& v, V
     gather_velocity(group.model(i), group.workspace(i), v, group.share(x, i));
 }
 
-/// Change of the kinetic energy from velocities x to y of a group.
+/// Returns the change of the kinetic energy of a group from velocities x to y.
 template <int Max>
 double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>& x,
                       const VecMax<double, Max>& y) {
@@ -105,7 +105,7 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
   return sum;
 }
 
-/// act(group) for every part alone that has parameters, and every island.
+/// Call act(group) for every part without joints that has parameters, and for every island.
 template <class F>
 void for_each_alone(const Model& model, Workspace<double>& work, F&& act) {
   for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
@@ -118,7 +118,7 @@ void for_each_island(const Model& model, Workspace<double>& work, F&& act) {
   for (const Island& island : model.islands()) act(Group<double, Eigen::Dynamic>(model, work, island, true));
 }
 
-/// A group whose coordinates and velocities are brought onto its joints and within its limits.
+/// Projects coordinates and velocities of a group onto its joints and limits.
 template <int Max>
 class Projection {
  public:
@@ -134,11 +134,11 @@ class Projection {
         work_(step.work),
         kept_(vectors) {}
 
-  /// Coordinates onto C = 0 and within the limits, from those that the vectors keep. Returns whether a limit
-  /// or a string that was loose pushed.
+  /// Projects the coordinates onto C = 0 and the limits. The storage holds the coordinates before. Returns
+  /// whether a limit, or a string that was slack, pushed.
   bool coordinates() {
-    // Rows that depended on others at the start of the step still do, unless it goes through a singular
-    // position. What can only be closed by going back does not go on.
+    // Dependent rows stay dependent, unless the step passes a singular configuration. A joint that could only
+    // close by undoing the step is a contradiction.
     std::optional<UnsatisfiableModel> failure;
     for (const RankRule rank : {RankRule::keep, RankRule::decide, RankRule::rounding}) {
       rank_ = rank;
@@ -159,13 +159,13 @@ class Projection {
     throw NumericalFailure(message.str(), step_.t);
   }
 
-  /// What was evaluated is of another state.
+  /// Forgets the last evaluation: the state has changed.
   void forget() { evaluated_ = false; }
-  /// From now on the impulses of velocities(), on the rows of all joints, are added to these.
+  /// Adds the impulses of velocities(), on the rows of all joints, to `impulses` from now on.
   void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
-  /// Velocities onto C_dot = 0; those at a limit or of a taut string may only lead back. Returns the impulses
-  /// on one-sided rows. joints, rows: work of the impulses of each, J.
+  /// Projects the velocities onto C_dot = 0; rates at a limit or of a taut string may only lead back. Returns
+  /// the number of impulses on one-sided rows. joints, one_sided: the work of the impulses is added, J.
   int velocities(double& joints, double& one_sided) {
     rank_ = RankRule::decide;
     int impulses = 0;
@@ -205,13 +205,14 @@ class Projection {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
       for (int k = 0; k < m.n_s; ++k)
-        if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0) limit_mode(state_, m, k) = 0;  // it leaves
+        if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0)
+          limit_mode(state_, m, k) = 0;  // it leaves the limit
     }
     return impulses;
   }
 
-  /// A joint that is open by a gap (m) and cannot close, with those that hold it open. held: that whose rows
-  /// depend on those of others, this one or one that it disagrees with.
+  /// Returns the failure of a joint that is open by a gap (m) and cannot close, naming the joints that hold
+  /// it open. held: the joint with the dependent rows, this one or one that contradicts it.
   UnsatisfiableModel contradiction(int open, double gap, int held) const {
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
@@ -237,7 +238,7 @@ class Projection {
  private:
   enum class Rows { coordinates, velocities };
 
-  /// Iterates until the joints are closed, or as near as they come.
+  /// Iterates until the joints are closed to rounding.
   bool approach() {
     fresh_ = false;
     tightened_.clear();
@@ -269,7 +270,7 @@ class Projection {
     return pushed;
   }
 
-  /// act(kept coordinates, those of the state) for each part.
+  /// Calls act(stored coordinates, coordinates of the state) for each part.
   template <class F>
   void for_each_coordinates(F&& act) const {
     int first = 0;
@@ -279,7 +280,7 @@ class Projection {
       first += m.n_q();
     }
   }
-  /// Whether the way from the kept coordinates is no small part of what the parts move in a step.
+  /// Returns whether the projection moved the parts by a large share of their motion in the step.
   bool moved_far() const {
     double way = 0, motion = 0;
     int i = 0;
@@ -294,7 +295,7 @@ class Projection {
     return way > kFar * kFar * state_.h * state_.h * motion;
   }
 
-  /// What a row of a joint may be, by rounding.
+  /// Returns the rounding of a row of a joint.
   double left(const JointModel& joint, Rows what) const {
     if (what == Rows::coordinates) return rounding(joint, work_);
     double size = 0;
@@ -303,7 +304,7 @@ class Projection {
     return kLeft * model_.body().stabilization.rate * joint.length + kRounding * size;
   }
 
-  /// What a push of a row adds to the impulses: its own, if it is a string's, and what the joints take up.
+  /// Adds the impulse of a one-sided row and the reactions of the joints to the impulses.
   void add_impulses_of(const OneSidedRow& row, double push) {
     if (row.part < 0) (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
     Vector x = group_.push(row);
@@ -311,7 +312,7 @@ class Projection {
     group_.joint_rows(x, rows);
     add_impulses(group_.correct(rows, x), push);
   }
-  /// lambda: of the joints of the island.
+  /// Adds factor * lambda, of the joints of the island, to the impulses.
   void add_impulses(const VecX<double>& lambda, double factor) {
     for (const int j : island_->joints) {
       const JointModel& joint = model_.joints()[at(j)];
@@ -319,8 +320,8 @@ class Projection {
     }
   }
 
-  /// Evaluates the joints and adds to x what takes the rows of the closed ones to zero. False when nothing is
-  /// left to do: they are there, or as near as rounding lets them come.
+  /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
+  /// they are zero to rounding.
   bool correct_joints(Rows what, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
     evaluate(what, iteration, x);
@@ -355,7 +356,7 @@ class Projection {
     return true;
   }
 
-  /// The joints as they are now. What new velocities add to C_dot, C_q tells.
+  /// Evaluates the joints at the state. The change of C_dot by new velocities follows from C_q alone.
   void evaluate(Rows what, int iteration, const Vector& x) {
     moved_on_ = what == Rows::velocities && iteration > 0 && island_->strings.empty();
     if (moved_on_) {
@@ -369,8 +370,8 @@ class Projection {
     if (what == Rows::velocities) kept_.start = x;
   }
 
-  /// The failure of a closed joint that is further open than rounding explains: it is named with those that
-  /// hold it open.
+  /// Returns the failure of a closed joint whose gap is wider than rounding, naming the joints that hold it
+  /// open.
   std::optional<UnsatisfiableModel> open_joint() const {
     int open = -1;
     double widest = 0;
@@ -387,7 +388,7 @@ class Projection {
     return contradiction(open, widest, open);
   }
 
-  /// Whether the rows of a joint that the factor holds are made of those of another, among the rest.
+  /// Returns whether the rows of a joint depend on the rows of another joint.
   bool depends(const JointModel& joint, const JointModel& other) const {
     for (int r = 0; r < joint.rows; ++r) {
       Vector x = Vector::Zero(group_.size());
@@ -407,7 +408,7 @@ class Projection {
     return false;
   }
 
-  /// Whether the last evaluation pushed on this row or its opposite: then it stays tight.
+  /// Returns whether the last evaluation pushed on this row or its opposite: then it stays active.
   bool stays(const OneSidedRow& row) const {
     if (island_ == nullptr) return false;
     if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
@@ -416,7 +417,7 @@ class Projection {
                        [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
   }
 
-  /// Strings that this projection has pushed on: it ends with them at their length, not short of it.
+  /// Marks a string that this projection has pushed: it ends exactly at its length.
   void tighten(int k) {
     if (!tightened(k)) tightened_.push_back(k);
   }
@@ -426,7 +427,7 @@ class Projection {
 
   static constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-  /// The change that a row asks for at the least.
+  /// Returns the smallest change of a row that the limits allow.
   double distance(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -446,7 +447,7 @@ class Projection {
     return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
   }
 
-  /// The velocity that a row allows at the least.
+  /// Returns the smallest velocity of a row that the limits allow.
   double slowest(const OneSidedRow& row, const Vector& v) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
@@ -473,11 +474,11 @@ class Projection {
   VecX<double>* impulses_ = nullptr;
   double before_ = 0;
   RankRule rank_ = RankRule::keep;
-  double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint,
-  int widest_ = -1;   ///< and whose it is
-  bool evaluated_ = false;      ///< whether the joints were evaluated at the state as it is,
-  bool moved_on_ = false;       ///< or at its coordinates and velocities of before
-  bool fresh_ = false;          ///< whether the factor was that of the iteration before
+  double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint
+  int widest_ = -1;   ///< the joint with that gap
+  bool evaluated_ = false;      ///< whether the joints were evaluated at the current state
+  bool moved_on_ = false;       ///< whether they were evaluated at earlier velocities
+  bool fresh_ = false;          ///< whether the factor is that of this iteration
   std::vector<int> tightened_;  ///< see tighten()
 };
 

@@ -1,3 +1,4 @@
+// Bodies of choose_integrator.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -18,27 +19,27 @@ namespace pliant {
 
 namespace integrator_choice {
 
-/// Steps of a trial, of which one in kStarting does not count, the first: steps grow then, and what rings as
-/// a motion begins may die away. Those that keep factors grow for longer.
+/// Steps of a trial. The first third does not count: steps grow then, and starting transients decay. Steps of
+/// methods that keep factors grow for longer.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kStarting = 3;
-/// A trial ends here, s: what does not move tells no more.
+/// Longest trial, s.
 inline constexpr double kLongestTrial = 1e3;
-/// Of a factorisation of the matrix of n velocities, in evaluations of their accelerations: n^2 times this.
-/// An evaluation takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
+/// Cost of a factorisation of the matrix of n velocities: this times n^2 evaluations. An evaluation takes
+/// about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 inline constexpr double kFactorisation = 0.005;
-/// Of a stiffness of nodes, which is sparse, in evaluations: the cube root of the number of their coordinates
-/// times this. It lies between what is measured: 110 of 654 coordinates of a shell (bench/work_precision,
-/// ringing), some 200 of 14 739 of a solid (bench/implicit_bench).
+/// Cost of a sparse factorisation of the stiffness of nodes: this times the cube root of their coordinates,
+/// in evaluations. Measured: 110 evaluations for 654 coordinates of a shell (bench/work_precision, ringing),
+/// some 200 for 14 739 of a solid (bench/implicit_bench).
 inline constexpr double kSparseFactorisation = 13;
-/// What is solved in a step with these factors, in factorisations: 0.13 of that shell, 0.1 of that solid.
+/// Cost of the solves of a step, in factorisations: 0.13 for that shell, 0.1 for that solid.
 inline constexpr double kSolves = 0.1;
-/// To this tolerance and coarser ones the steps of bodies that touch, of second order whatever the method,
-/// are most of what is done.
+/// To this tolerance and coarser ones most of the cost in contact are its own steps, of second order for
+/// every method.
 inline constexpr double kCoarse = 1e-6;
-/// Velocities of parts beyond which stiff ones are not taken all at once.
+/// Most velocities for dense implicit stages.
 inline constexpr int kMostStiff = 300;
 
-/// Seconds of motion per evaluation of the accelerations, or what costs as much; 0 where it fails.
+/// Returns the seconds of motion per evaluation of the accelerations, or equal cost; 0 if the method fails.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                    double factorisation) {
   State state = start;
@@ -79,7 +80,7 @@ inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScal
   return (state.time() - begun) / (evaluations + factorisation * (factored + kSolves * (steps - begun_at)));
 }
 
-/// Whether anything pushes back: elasticity or damping of parts, springs.
+/// Returns whether the model has elasticity, damping or springs.
 inline bool anything_stiff(const Model& model) {
   if (!model.springs().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
@@ -103,7 +104,7 @@ PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const
     return {"dop853", "nothing is elastic or damped"};
   }
   bool modes = false;
-  int nodes = 0;  // coordinates of them
+  int nodes = 0;  // number of nodal coordinates
   for (const PartModel& m : model.parts()) {
     if (m.local == nullptr) continue;
     if (m.local->oscillators() == nullptr)
@@ -123,8 +124,8 @@ PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const
   for (const auto& [name, factorisation] : candidates) {
     const std::unique_ptr<Integrator> method = make_integrator(name);
     const double speed = integrator_choice::pace(*method, dynamics, scale, start, factorisation);
-    told << (best.integrator.empty() ? "" : ", ") << name << " comes " << speed
-         << " s far with an evaluation of the accelerations";
+    told << (best.integrator.empty() ? "" : ", ") << name << " advances " << speed
+         << " s for each evaluation of the accelerations";
     if (speed > fastest) best.integrator = name;
     fastest = std::max(fastest, speed);
   }

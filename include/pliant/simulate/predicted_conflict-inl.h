@@ -1,3 +1,4 @@
+// Bodies of predicted_conflict.h.
 #pragma once
 
 #include <pliant/simulate/predicted_conflict.h>
@@ -11,7 +12,8 @@
 namespace pliant {
 
 namespace predicted_conflict {
-/// Longest look ahead beyond two, in times of the stabilization; how much further each is than the last.
+/// Longest prediction beyond two steps, in times of the stabilization, and the factor from one prediction to
+/// the next.
 inline constexpr double kLongest = 0.01, kFurther = 10;
 }  // namespace predicted_conflict
 

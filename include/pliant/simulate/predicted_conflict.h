@@ -1,13 +1,13 @@
-// Why a step fails may be that its joints cannot close at its end, which a method that iterates, or shortens
-// its steps, does not come to tell.
+// Prediction of joints that cannot close at the end of a step. A method that iterates, or that shortens its
+// steps, fails before it sees the contradiction itself.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// Throws UnsatisfiableModel where closed joints, as the parts are at a state, could not be closed a step of
-/// h (s) later, or a little later still. Does nothing where that cannot be told.
+/// Throws UnsatisfiableModel if the closed joints could not close a step of h (s) after the state, or a
+/// little later. Returns if that cannot be decided.
 void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h);
 
 }  // namespace pliant

@@ -1,13 +1,14 @@
-// A step of a simulation. Its stages, with the files that hold them:
-//   1 begin       keep the state to return to if the step fails             this file
-//   2 switch      engage and release joints whose time has come             project/joint_switching-inl.h
-//   3 integrate   advance q, v and work by the method of integration:       method/*-inl.h
-//                   positions -> mass -> forces -> joints -> accelerations  body/dynamics-inl.h, Eqs.
-//                   (11)-(14) projection of limits and joints project/project_joints-inl.h
-//   4 contact     predict, advance, detect, locate, resolve, correct, sleep contact/contact_stepping.h,
-//   around stage 3 5 accept      compare the error with the tolerance, or repeat shorter
-//   simulate/step_length.h 6 paths       impulses where prescribed paths have kinks
-//   project/follow_paths-inl.h 7 check       refuse states that are not finite simulate/failure_report.h
+// A step of a simulation. Its stages, with the files that contain them:
+//   1 begin      keep the state to return to if the step fails          this file
+//   2 switch     engage and release joints at their times               project/joint_switching-inl.h
+//   3 integrate  advance q, v and work by the method of integration     method/*-inl.h
+//                evaluate the accelerations, Eqs. (11)-(14)             body/dynamics-inl.h
+//                project limits and joints                              project/project_joints-inl.h
+//   4 contact    predict, advance, detect, locate, resolve, correct,    contact/contact_stepping.h
+//                sleep: around stage 3
+//   5 accept     accept the step, or repeat it shorter, by its error    simulate/step_length.h
+//   6 paths      apply impulses at kinks of prescribed paths            project/follow_paths-inl.h
+//   7 check      refuse states that are not finite                      simulate/failure_report.h
 #pragma once
 
 #include <algorithm>
@@ -35,11 +36,11 @@
 namespace pliant {
 
 namespace simulation {
-/// Times that differ by less than this part of a step, or this many units of their last place, are the same.
+/// Times are equal within this share of a step, or this many units in the last place.
 inline constexpr double kNear = 1e-9, kUlps = 8;
-/// A step at which joints do not close is tried again in so many.
+/// A step after which joints do not close is repeated in this many shorter steps.
 inline constexpr int kShorter = 16;
-/// No step to a tolerance is shorter than this part of the time.
+/// Shortest step to a tolerance, relative to the time.
 inline constexpr double kLeastStep = 16 * std::numeric_limits<double>::epsilon();
 
 inline void require_tolerance(double tolerance) {
@@ -50,7 +51,7 @@ inline void require_tolerance(double tolerance) {
   throw std::invalid_argument(message.str());
 }
 
-/// Does something about the state of a time t (s); what cannot be told of it is a failure of the run.
+/// Calls act(); an inverted element in it is a failure of the run at time t, s.
 template <class F>
 auto at_time(double t, F&& act) {
   try {
@@ -60,11 +61,12 @@ auto at_time(double t, F&& act) {
   }
 }
 
-/// Throws where supports are not finite, of this model and in their order, or their age is none.
+/// Throws std::invalid_argument if the contact cache of a state is not finite, not of this model or not
+/// sorted.
 inline void check_contact_cache(const State& state, const Model& model) {
   const std::vector<CachedContact>& contact_cache = state.contact_cache;
   if (state.contact_cache_age < 0)
-    throw std::invalid_argument("the supports of this state have a negative age");
+    throw std::invalid_argument("the contact cache of this state has a negative age");
   const ContactSettings& contact = model.body().contact;
   const std::array<std::size_t, 4> counts{model.parts().size(), model.parts().size(), contact.planes.size(),
                                           contact.obstacles.size()};
@@ -72,12 +74,12 @@ inline void check_contact_cache(const State& state, const Model& model) {
     bool fits = support.between[0] >= 0;
     for (std::size_t i = 0; i < counts.size(); ++i)
       fits = fits && support.between[i] >= -1 && support.between[i] < static_cast<int>(counts[i]);
-    if (!fits) throw std::invalid_argument("a support of this state belongs to another model");
+    if (!fits) throw std::invalid_argument("a cached contact of this state belongs to another model");
     if (!support.x.allFinite() || !support.force.allFinite())
-      throw std::invalid_argument("a support of this state is not finite");
+      throw std::invalid_argument("a cached contact of this state is not finite");
   }
   if (!std::is_sorted(contact_cache.begin(), contact_cache.end(), ByPair{}))
-    throw std::invalid_argument("the supports of this state are not in the order of what they are between");
+    throw std::invalid_argument("the contact cache of this state is not sorted by the pairs of bodies");
 }
 
 }  // namespace simulation
@@ -100,7 +102,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   if (!automatic) set_method(make_integrator(integrator));
   const bool projected = body.stabilization.projection.value_or(true);
   const bool first = !automatic && integrator_->order() == 1;
-  // Its steps are of first order where something touches; to a tolerance they are short enough.
+  // Its steps in contact are of first order; with a tolerance they are short enough.
   const bool at_times = !automatic && integrator_->local_is_implicit() && !scale_;
   dynamics_.set_joint_policy({first, projected, first || at_times});
   simulation::at_time(0, [&] {
@@ -120,8 +122,8 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
 
 PLIANT_INLINE Simulation::~Simulation() = default;
 
-/// Steps are taken by a method. Throws std::invalid_argument where there is a tolerance and it cannot be held
-/// to it.
+/// Sets the method. Throws std::invalid_argument if there is a tolerance and the method has no error
+/// estimate.
 PLIANT_INLINE void Simulation::set_method(std::unique_ptr<Integrator> method) {
   integrator_ = std::move(method);
   if (!scale_) return;
@@ -129,8 +131,7 @@ PLIANT_INLINE void Simulation::set_method(std::unique_ptr<Integrator> method) {
   if (integrator_->error_order() > 0) return;
   std::ostringstream message;
   message << "integrator '" << integrator_->name()
-          << "' does not tell the error of its steps, which a tolerance needs; expected one of '"
-          << kAutomatic << "'";
+          << "' has no error estimate, which a tolerance needs; expected one of '" << kAutomatic << "'";
   for (const std::string& name : controlled_integrators()) message << ", '" << name << "'";
   throw std::invalid_argument(message.str());
 }
@@ -139,14 +140,14 @@ PLIANT_INLINE void Simulation::step(double h) {
   const FlushSubnormals flushed;
   if (!(h > 0) || !std::isfinite(h)) {
     std::ostringstream message;
-    message << "a step of " << h << " s is not a positive time";
+    message << "a step of " << h << " s; expected a positive, finite time";
     throw std::invalid_argument(message.str());
   }
   if (scale_) {
     for (const double end = time() + h; time() < end;) step_up_to(end);
     return;
   }
-  if (h != state_.h) {  // a change of step starts a new count, so that time stays count * step
+  if (h != state_.h) {  // a new step length starts a new count: time is count * step
     state_.start = state_.time();
     state_.step = 0;
     state_.h = h;
@@ -158,14 +159,14 @@ PLIANT_INLINE void Simulation::step(double h) {
   end_step();
 }
 
-/// Remembers where the step began.
+/// Stage 1: keeps the state at the start of the step.
 PLIANT_INLINE void Simulation::begin_step() {
   last_good_ = state_;
   switching_.begin_step();
 }
 
-/// Does what a step of h seconds does; where it fails, the last good state is back, and the failure says what
-/// may be said of it.
+/// Calls `step` for a step of h seconds. If it throws, restores the last good state and completes the
+/// message.
 template <class Advance>
 void Simulation::guarded(double h, Advance&& step) {
   try {
@@ -214,7 +215,7 @@ PLIANT_INLINE void Simulation::step_up_to(double until) {
     StepContext begin = context();
     state_.h = first_step(begin, *scale_, order);
   }
-  // A step that ends near `end` goes there, which is not further than this many steps.
+  // A step that ends near `end` is extended to it, by at most this factor.
   constexpr double further = 1.1;
   const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
   const bool bends = std::isfinite(kink.time);
@@ -235,9 +236,9 @@ PLIANT_INLINE void Simulation::reject_step() {
   if (contact_) contact_->undo_step();
 }
 
-/// A step of the length in the state. Its error is that of the method, impacts that are told in time
-/// included; where few bodies lie on each other, or more meet than are told, what halves of it tell counts
-/// too; where many do, or soft ones, nothing does: steps are short instead.
+/// Takes a step of the length in the state; returns its error: that of the method, with located impacts. If
+/// few bodies rest on each other, or more meet than are located, step doubling estimates the error of
+/// contact. If many bodies do, or soft ones, the error is not estimated and the step is limited instead.
 PLIANT_INLINE StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();
@@ -265,11 +266,10 @@ PLIANT_INLINE StepError Simulation::try_step() {
   return result;
 }
 
-/// The same of a step that has been taken and in which bodies lay on each other. impacts: how many there had
-/// been before it.
+/// Completes the error of a step in which bodies rested on each other. impacts: their number before the step.
 PLIANT_INLINE void Simulation::step_in_contact(long impacts, StepError& result) {
   const bool few = contact_->few_resting();
-  // What forces do to what lies there is booked for a motion that it does not make: steps stay short for
+  // The work of forces on resting bodies is booked for a motion that does not happen: steps stay short for
   // that.
   if (!few || !model_.body().forces().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
@@ -287,7 +287,7 @@ PLIANT_INLINE void Simulation::step_in_contact(long impacts, StepError& result) 
   result.length = halves.length;
 }
 
-/// What stops a step that cannot be made any shorter.
+/// Throws the failure of a step that cannot be shorter.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   take_step();
   std::ostringstream message;
@@ -297,7 +297,7 @@ PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   throw NumericalFailure(message.str(), last_good_.time());
 }
 
-/// Whether joints that did not close after a step do so after shorter ones.
+/// Returns whether joints that do not close after a step close after shorter steps.
 PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   state_ = last_good_;
   try {
@@ -315,7 +315,7 @@ PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   return state_.q.allFinite() && state_.v.allFinite();
 }
 
-/// Returns how long the step was, which to a tolerance ends where bodies meet.
+/// Stages 3 and 4: returns the length of the step, s; with a tolerance it may end early, at an impact.
 PLIANT_INLINE double Simulation::take_step() {
   StepContext step = context();
   if (contact_) return contact_->step(*integrator_, step, scale_.has_value());
@@ -323,7 +323,8 @@ PLIANT_INLINE double Simulation::take_step() {
   return state_.h;
 }
 
-/// Moves the state on by h but for the count of its step, stopping where joints switch.
+/// Advances the state by h, except the count of its steps, with stops where joints switch and paths have
+/// kinks.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
   if (times.empty() && model_.driven_joints().empty()) {
@@ -429,7 +430,7 @@ PLIANT_INLINE void Simulation::set_state(State state) {
   if (state.contact_cache.empty()) state.contact_cache_age = 0;
   state_ = std::move(state);
   switching_.forget_after(time() + simulation::kNear * state_.h);
-  if (contact_) contact_->begin_step();  // nothing has touched yet
+  if (contact_) contact_->begin_step();  // no contacts yet
 }
 
 PLIANT_INLINE Ledger Simulation::ledger() {

@@ -1,4 +1,4 @@
-// The largest stable step, and what sets it.
+// The largest stable step and its limit.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ struct StableStep {
   double step;  ///< see largest_stable_step(), s
   std::string
       limit;  ///< what it would be too long for: "the local elasticity of part 'jelly'"; empty: nothing
-  /// What may bound it further down and is not counted, in words; empty: nothing.
+  /// Limits that are not counted and may be lower, as text; empty: none.
   std::string uncounted;
 };
 StableStep stable_step(const Simulation& simulation);

@@ -1,3 +1,4 @@
+// Bodies of step_length.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -12,11 +13,11 @@ namespace pliant {
 
 namespace step_length {
 inline constexpr double kSafety = 0.8, kMinFactor = 0.2;
-/// Of order 0 is what is known beforehand, not estimated.
+/// Safety factor of errors of order 0, which are known, not estimated.
 inline constexpr double kSafetyOfExact = 0.99;
-/// The share of the integral part.
+/// Weight of the integral part of the controller.
 inline constexpr double kIntegral = 0.2;
-/// Errors below this part of the tolerance count as that: what is zero once says little.
+/// Smaller errors, in tolerances, count as this.
 inline constexpr double kMinError = 1e-6;
 }  // namespace step_length
 
@@ -46,14 +47,14 @@ PLIANT_INLINE double first_step(StepContext& step, const ErrorScale& scale, int 
   const Dynamics& dynamics = step.dynamics;
   const State& state = step.state;
   Workspace<double>& work = step.work;
-  // The step by Euler's method whose way is a hundredth of what a step may be wrong by in one of order 0 ...
+  // A step of Euler's method that moves by a hundredth of the scale ...
   dynamics.accelerations(state.time(), state.q, state.v, state, work);
   VecX<double> q_dot, q_dot_then;
   dynamics.coordinate_rates(state.q, state.v, q_dot);
   const VecX<double> v_dot = work.v_dot;
   const double tolerance = scale.tolerance(), rate = tolerance * scale.norm(q_dot, v_dot, state.v);
   double h = rate > 0 ? 0.01 / rate : 1e-3;
-  // ... and how much the rates change over it.
+  // ... and the change of the rates over it.
   dynamics.accelerations(state.time() + h, state.q + h * q_dot, state.v + h * v_dot, state, work);
   dynamics.coordinate_rates(state.q + h * q_dot, state.v + h * v_dot, q_dot_then);
   step.counters.evaluations += 2;

@@ -1,3 +1,4 @@
+// Bodies of implicit_modes.h.
 #pragma once
 
 #include <pliant/math/header_only.h>

@@ -1,5 +1,5 @@
-// The same of a part that deforms by modes, whose mass and elasticity are diagonal; of its coupling to (c,
-// theta, q_s), which vanishes at rest, A knows nothing:
+// The implicit part for a part that deforms by modes, with diagonal mass and stiffness. A omits the coupling
+// of the modes to (c, theta, q_s), which vanishes at rest:
 //   x_j = -c (omega_j^2 (r_q + c r_v) + D_j r_v) / (1 + c D_j + c^2 omega_j^2)
 //   (H0 + c D_r + c^2 K_r) x_r = -c D_r r_v - K_r (c^2 r_v + c r_q)
 #pragma once

@@ -1,3 +1,4 @@
+// Bodies of implicit_nodes.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -18,16 +19,18 @@ namespace pliant {
 
 namespace implicit_nodes {
 
-/// A pivot of S below this part of the mass that stands there tells of stiffness that pushes away, as in a
-/// sheet that buckles. S then gets more mass, at first and at most so many times M, each time by a factor.
+/// A pivot of S below kMinPivot times the mass is a sign of negative stiffness, as in a buckling sheet. S
+/// then gets more mass: at first kFirstExtraMass times M, at most kMaxExtraMass, each time by a factor
+/// kExtraMassGrowth.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
-/// Change of the rest shape, in sizes of the part, that leaves no entry of K zero by chance.
+/// Perturbation of the rest shape, in sizes of the part, which leaves no entry of K zero by chance.
 inline constexpr double kGeneric = 1e-7;
 
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// add(row, column, value) for what the energies of one kind give the lower triangle of K. entries: any.
+/// Calls add(row, column, value) for the entries of the lower triangle of K by energies of one kind. entries:
+/// storage.
 template <class Add>
 void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
                     Add&& add) {
@@ -38,7 +41,7 @@ void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x,
     if (entry.row() >= entry.col()) add(entry.row(), entry.col(), entry.value());
 }
 
-/// (K_p + w w^T) dx at positions x.
+/// Returns (K_p + w w^T) dx at positions x.
 inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<double>& x,
                                     const VecX<double>& dx) {
   VecX<double> f = VecX<double>::Zero(x.size());
@@ -48,7 +51,7 @@ inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<do
   return -f;
 }
 
-/// What add_stiffness leaves out, a column each.
+/// Returns the vectors w that add_stiffness omits.
 inline std::vector<VecX<double>> rank_one(const NodalDeformation& local, const VecX<double>& x) {
   std::vector<VecX<double>> all;
   for (const auto& energy : local.energies()) {
@@ -58,7 +61,7 @@ inline std::vector<VecX<double>> rank_one(const NodalDeformation& local, const V
   return all;
 }
 
-/// Where the diagonal entry of a column stands among the values of a lower triangle.
+/// Returns the diagonal entry of a column of a lower triangle.
 inline double& diagonal(SparseMatrix& A, Eigen::Index i) {
   return A.valuePtr()[A.outerIndexPtr()[i]];
 }
@@ -92,7 +95,7 @@ PLIANT_INLINE void ImplicitNodes::make_pattern() {
   K_.makeCompressed();
 }
 
-/// Adds masses times a factor to the stiffness in S and factors it, with more mass where it must be.
+/// Adds `factor` times the masses to the stiffness in S and factors S, with more mass if S is not definite.
 PLIANT_INLINE int ImplicitNodes::factor_definite(double factor, double t) {
   const VecX<double>& M = local().inertia();
   const VecX<double> stiffness = S_.diagonal();
@@ -117,7 +120,7 @@ PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double 
   const bool fresh = follows_ || c != c_;
   int factorisations = 0;
   if (fresh || frame_in_border()) {
-    c_ = 0;  // should it fail
+    c_ = 0;  // in case the factorisation fails
     const std::string of_part = "the stiffness of the nodes of part '" + part_->part->name() + "'";
     try {
       if (fresh) factorisations = factor(c, now.x, t);
@@ -190,7 +193,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& at, double c
   for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
-  if (follows_ && n_s > 0) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // what is between is zero
+  if (follows_ && n_s > 0) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns between are zero
   if (n_gas > 0) factor_->solve(T_.rightCols(n_gas));
   core_fixed_ = -B_.transpose() * T_;
   core_fixed_.diagonal().tail(n_gas).array() -= 1;
@@ -210,7 +213,7 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& now) {
     S_r += now.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
     for (int k = 0; k < n_s; ++k)
-      if (now.held.test(static_cast<std::size_t>(6 + k))) {  // it has no row of W either
+      if (now.held.test(static_cast<std::size_t>(6 + k))) {  // W has no row for it either
         core(6 + k, 6 + k) -= 1;
         S_r(6 + k, 6 + k) += 1;
       }
@@ -234,7 +237,7 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n_d);
   auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n_d);
   // With e = r_v + s r_q, s = c / (c^2 + c beta), and y = x_d + e the first row becomes
-  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r: K needs not be applied.
+  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r: a product with K is not needed.
   const double s = 1 / (local().beta() + c_);
   e_ = k_v + s * r_q;
   y_ = M.cwiseProduct(e_);

@@ -1,5 +1,6 @@
-// A of a part that deforms locally, in (I - c A) k = r with c = gamma h (linearly_implicit.h): what is
-// implicit of its elasticity and damping. One file a kind: implicit_nodes.h, implicit_modes.h.
+// The part of the matrix A that belongs to one part that deforms locally, in (I - c A) k = r with c = gamma h
+// (linearly_implicit.h): its implicit elasticity and damping. implicit_nodes.h and implicit_modes.h are the
+// two kinds.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -8,12 +9,13 @@ namespace pliant {
 
 class ImplicitPart : public LocalResponse {
  public:
-  /// Takes A at an evaluation of the part at time t. Returns the factorisations done. Throws
+  /// Prepares A at an evaluation of the part at time t, s. Returns the number of factorisations. Throws
   /// NumericalFailure, OutOfMemory.
   virtual int prepare(const PartWorkspace<double>& w, double c, double t) = 0;
-  /// v_dot <- k_v of the part, for rates r = (q_dot, v_dot) of all parts. R: of its frame.
+  /// Replaces v_dot of the part by k_v, for the rates r = (q_dot, v_dot) of all parts. R: orientation of its
+  /// frame.
   virtual void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) = 0;
-  /// x of the last filter() as a group knows the part (body/group.h): of v_r and of d_dot at its joints.
+  /// Returns x of the last filter() for v_r and for d_dot at the joints (body/constraint/group.h).
   const VecX<double>& change() const { return change_; }
 
  protected:

@@ -1,3 +1,4 @@
+// Bodies of project_rates.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -16,7 +17,7 @@ namespace rate_projection {
 
 using AllSoft = std::vector<std::unique_ptr<ImplicitPart>>;
 
-/// What pushes do to the rates of a part, in the place of its mass.
+/// Copies the metric of a part: the compliance of the filter, or the mass.
 inline void copy_metric(const ImplicitPart* soft, const PartWorkspace<double>& w,
                         PartWorkspace<double>& filtered) {
   if (soft != nullptr) {
@@ -30,7 +31,7 @@ inline void copy_metric(const ImplicitPart* soft, const PartWorkspace<double>& w
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Takes x to where the joints and the pushed rows have no rate.
+/// Projects x: joints and pushed rows have zero rate afterwards.
 template <int Max>
 void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
              VecMax<double, Max>& x) {
@@ -55,7 +56,7 @@ void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pu
   x += responses * W.completeOrthogonalDecomposition().solve(b);
 }
 
-/// Holds a group, and gives the rates what that changed.
+/// Projects the rates of a group.
 template <int Max>
 void project_group_rates(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
                          const AllSoft& soft, const Workspace<double>& work, VecX<double>& v_dot) {
@@ -75,7 +76,7 @@ void project_group_rates(const Group<double, Max>& group, const std::vector<OneS
     if (const ImplicitPart* of_part = soft[at(group.part(i))].get())
       of_part->push(group.workspace(i).inertia.M * change, v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
     for (const OneSidedRow& row : pushed)
-      if (row.part == i) v_dot[m.v0 + 6 + row.k] = 0;  // to the last bit
+      if (row.part == i) v_dot[m.v0 + 6 + row.k] = 0;  // exactly zero
   }
 }
 

@@ -1,3 +1,4 @@
+// Bodies of stage_solver.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
@@ -19,24 +20,24 @@ namespace pliant {
 
 namespace stage_solver {
 
-/// An iteration that leaves more than this part of its change is slow.
+/// An iteration is slow if the change shrinks by less than this factor.
 inline constexpr double kSlow = 0.9;
 inline constexpr int kMaxStageIterations = 20;
-/// Iterations without the matrix that a stage may take, if not so many as with it: of velocities, each of
-/// which costs a matrix, once a step, two evaluations.
+/// A stage may take this many iterations without the matrix for each velocity, because the matrix costs two
+/// evaluations for each velocity.
 inline constexpr double kShareOfMatrix = 0.5;
-/// Matrices that a stage may have of its own.
+/// Most matrices that are formed for one stage.
 inline constexpr int kMaxMatrices = 4;
-/// Changes that no longer fall and are below this, in sizes and radians, are rounding.
+/// Changes that do not shrink and are below this, in sizes of the part and radians, are rounding.
 inline constexpr double kStageRounding = 1e-12;
-/// Differences, in sizes of what is varied.
+/// Size of the differences, relative to the scale of the coordinate.
 inline constexpr double kDifference = 1e-7;
-/// Most velocities in a dense matrix.
+/// Most velocities of a cluster, whose matrix is dense.
 inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
-/// Changes below this, in tolerances, are taken for convergence.
+/// The iteration has converged if the change is below this, in tolerances.
 inline constexpr double kConverged = 0.02;
 
-/// The turn (rad, body frame) of each part that a change of quaternions is, all else as it is.
+/// Converts changes of quaternions to rotations (rad, body frame); other coordinates stay as they are.
 inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& change,
                        VecX<double>& tangent) {
   tangent.resize(model.n_v());
@@ -50,8 +51,8 @@ inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<dou
   }
 }
 
-/// x <- x with the straight part of each part's share turned by its frame into the world, or back: stiff
-/// directions turn with the parts, and the matrix with them.
+/// Rotates the linear velocity in x of each part from its frame into the world, or back. Stiff directions,
+/// and with them the matrix, turn with the parts.
 enum class Turn { into_world, into_body };
 inline void turn(const Model& model, const VecX<double>& q, Turn way, VecX<double>& x) {
   for (const PartModel& m : model.parts()) {
@@ -65,7 +66,7 @@ inline void turn(const Model& model, const VecX<double>& q, Turn way, VecX<doubl
   }
 }
 
-/// The first of the set that a part is in.
+/// Returns the representative of the set of a part.
 inline int leader(std::vector<int>& of, int i) {
   while (of[at(i)] != i) i = of[at(i)] = of[at(of[at(i)])];
   return i;
@@ -123,8 +124,8 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
   q_guess_ = q;
   v_guess_ = v;
   if (iterate(t, r_q, r_v, q, v)) return;
-  // Where the matrix of the start of the step, as of stiff parts that turn on each other, is no longer near,
-  // that of the guess is taken, and then those of what it leads to.
+  // If the matrix at the start of the step does not help, the matrix at the guess is tried, then the matrices
+  // at the iterates.
   for (int i = linear_ ? 1 : 0; i <= stage_solver::kMaxMatrices; ++i) {
     if (i <= 1) {
       q = q_guess_;
@@ -139,8 +140,8 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
   }
   std::ostringstream message;
   message << "the equations of an implicit step of " << step_->state.h
-          << " s from t = " << step_->state.time() << " s have not been solved, worst "
-          << scale_->worst(rho_q_, rho_v_, v) << "; a smaller step may cure it";
+          << " s from t = " << step_->state.time() << " s did not converge, worst in "
+          << scale_->worst(rho_q_, rho_v_, v) << "; use a smaller step";
   throw NumericalFailure(message.str(), step_->state.time());
 }
 
@@ -167,7 +168,7 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
     if (change == 0 || (i > 0 && small)) return true;
     if (left > stage_solver::kSlow && change * scale_->tolerance() <= stage_solver::kStageRounding)
       return true;
-    // The first change with the matrix is as crude as the guess was.
+    // The first change with the matrix is as large as the error of the guess.
     const bool hopeless = linear_ ? i > 1 && left > stage_solver::kSlow
                                   : i > 0 && change * std::pow(left, most - 1 - i) > stage_solver::kConverged;
     if (hopeless) return false;

@@ -1,10 +1,10 @@
-// The equations of an implicit stage,
+// The solver of implicit stages,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
-// by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, of the derivatives A_q and A_v of v_dot, is
-// only formed where the iteration without it would cost more, by differences, once a step, and again where
-// stiff parts turn so far on each other in it that it no longer helps; parts that no joint, spring or torque
-// against each other ties together have one each. It stands in the frames of the parts, with which stiff
-// directions turn.
+// by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot,
+// is formed by differences, once in a step, and only if the iteration without it would cost more. It is
+// formed again if stiff parts turn so far that it no longer helps. Clusters of parts that joints, springs or
+// mutual torques connect have one matrix each, in the frames of the parts, because stiff directions turn with
+// the parts.
 #pragma once
 
 #include <string>
@@ -27,11 +27,11 @@ class StageSolver {
   /// the step holds the last evaluation. Throws NumericalFailure, naming the worst unknown, if the iteration
   /// diverges.
   void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
-  /// What the matrix leaves of an error: of one that dies out in the step nothing.
+  /// Filters an error estimate by the inverse matrix: components that the step damps away vanish.
   void damp(VecX<double>& of_q, VecX<double>& of_v) const;
 
  private:
-  /// Parts that act on each other's accelerations.
+  /// Parts whose states affect the accelerations of each other.
   struct Cluster {
     std::vector<int> parts;
     std::vector<Eigen::Index> velocities;
@@ -47,18 +47,18 @@ class StageSolver {
   /// Returns the changes of the coordinates whose accelerations give the column of each cluster.
   VecX<double> differences(Eigen::Index column) const;
   void allocate_matrices(double t);
-  /// (rho_q, rho_v) <- the change of (q, v) that takes these off the equations.
+  /// Replaces the residuals (rho_q, rho_v) by the Newton change of (q, v).
   void correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const;
 
   const Model& model_;
   std::vector<Cluster> clusters_;
-  VecX<double> difference_;  ///< of each velocity's coordinate, m or rad or 1
-  int max_free_iterations_;  ///< iterations without the matrix that a stage may take
+  VecX<double> difference_;  ///< size of the differences, for each velocity, m or rad or 1
+  int max_free_iterations_;  ///< most iterations of a stage without the matrix
   // Of the step.
   StepContext* step_ = nullptr;
   const ErrorScale* scale_ = nullptr;
   double c_ = 0;
-  bool linear_ = false;  ///< whether the matrices are there
+  bool linear_ = false;  ///< whether the matrices are valid
   mutable VecX<double> tangent_, right_;
   VecX<double> rho_q_, rho_v_, q_guess_, v_guess_, v_dot_;
 };

@@ -1,3 +1,4 @@
+// Bodies of stiff_pushes.h.
 #pragma once
 
 #include <pliant/math/header_only.h>
