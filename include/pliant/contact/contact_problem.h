@@ -1,7 +1,6 @@
-// The contacts of bodies that push on each other at once, at velocity level (design 1.6): each contact has a
-// velocity u of its sides against each other and an impulse p that meets Coulomb's law
-// (solve/coulomb_system.h), while the joints of each body hold, no parameter leaves its limits and no taut
-// string grows.
+// The problem of simultaneous contacts at velocity level: each contact has a relative velocity u of its sides
+// and an impulse p that satisfy Coulomb's law (solve/coulomb_system.h), while closed joints stay closed,
+// parameters stay within their limits and taut strings do not grow.
 #pragma once
 
 #include <vector>
@@ -13,77 +12,78 @@
 namespace pliant {
 
 struct ContactSolution {
-  std::vector<Vec3<double>> impulse;   ///< of each contact, N s, world, on side a
-  std::vector<Vec3<double>> velocity;  ///< after it, of side a against side b, m/s, world
-  double residual = 0;                 ///< what Coulomb's law misses at the worst contact, m/s
+  std::vector<Vec3<double>> impulse;   ///< of each contact on side a, N s, world
+  std::vector<Vec3<double>> velocity;  ///< of side a relative to side b afterwards, m/s, world
+  double residual = 0;                 ///< largest violation of Coulomb's law, m/s
   int sweeps = 0;
   int fallbacks = 0;  ///< see CoulombResult
 };
 
 class ContactProblem {
  public:
-  /// work: evaluated with masses and factors for every part that the contacts touch, but for those that they
-  /// move by nodes. state, contacts, work: must outlive it.
+  /// work: evaluated with masses and factors for all touched parts, except parts that are moved node by node
+  /// (evaluate_touched). state, contacts and work must outlive this object.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
-  /// Impulses of the contacts, with the rebound that each of them asks for, and of limits and strings, whose
-  /// `since` is that of all.
-  ContactSolution solve(double since_of_limits);
-  /// Where the search for the impulse of a contact begins, if that is near what is found: piles that stand
-  /// then take no sweeps, heaps that move as long as without. N s, world, on side a.
+  /// Computes the impulses of the contacts, with the rebound of each, and of limits and strings. limit_time:
+  /// the time `since` of all limits and strings, see Contact::since.
+  ContactSolution solve(double limit_time);
+  /// Sets the start value of the impulse of a contact, N s, on side a, world. Near the solution it saves all
+  /// sweeps, as in a pile at rest; far from it the search takes as long as without.
   void warm_start_at(int contact, const Vec3<double>& impulse);
-  /// Whether it may begin at the impulse of a contact. Once solve() was called.
+  /// Returns whether the impulse of a contact can be a start value. Valid after solve().
   bool may_warm_start(int contact) const { return system_.may_warm_start(contact); }
-  /// Velocities of side a against side b at each contact, m/s, world, were the parts to move as they do in
+  /// Returns the velocity of side a relative to side b at each contact, m/s, world, with the velocities of
   /// another state.
-  std::vector<Vec3<double>> velocities(const State& of) const;
-  /// Great impulses at other times each, as on something light between heavy things, may nearly cancel in
-  /// velocity and not at all in place: no mover goes farther by them than by its change of velocity in `most`
-  /// seconds, or it counts as moved for a time of `since` by all.
-  void bound_shifts(double since, double most);
-  /// Adds to the shifts, without friction: what takes the gaps that these leave to zero where they are
-  /// negative, each by at most its `most` m, and but for `enough` m.
-  void separate_bodies(const std::vector<double>& most, double enough = 0);
+  std::vector<Vec3<double>> velocities(const State& state) const;
+  /// Bounds the displacements of movers. Large impulses with different `since` (on a light part between heavy
+  /// ones) may nearly cancel in velocity, but not in displacement. If a displacement exceeds max_time (s)
+  /// times the change of velocity, it becomes limit_time (s) times this change.
+  void bound_shifts(double limit_time, double max_time);
+  /// Adds displacements, without friction, that close the remaining overlaps: each contact opens by at most
+  /// its max_separation (m), and overlaps up to `tolerance` (m) may remain.
+  void separate_bodies(const std::vector<double>& max_separation, double tolerance = 0);
 
   const Movers& movers() const { return movers_; }
-  /// Velocities of a mover before the impulses and after them, and how far they moved it, see Contact::since.
+  /// Return the velocities of a mover before and after the impulses, and its displacement by them.
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
   auto shift(const Mover& mover) const { return shift_.segment(mover.first, mover.size); }
-  /// Adds what the joints take up of the impulses: on the parts act C_q^T of it, N s. rows: of all joints.
+  /// Adds the impulses lambda of the joints against the contact impulses, N s; C_q^T lambda acts on the
+  /// parts. rows: of all joints.
   void add_joint_impulses(VecX<double>& rows) const;
 
  private:
-  /// Impulses of the joints of an island by unit impulses of a contact.
+  /// Impulses of the joints of an island by unit impulses at a contact.
   struct JointResponse {
     int contact;
     const Island* island;
     MatX<double> lambda;
   };
-  /// A taut string: the lone row that it is, and its number among those of all joints.
+  /// A taut string: its number among the contacts of the system, and its row among those of all joints.
   struct String {
     int contact, row;
   };
-  /// A side of the contact that is added now.
+  /// A side of the contact that is being added.
   struct Side {
-    int part, mover, first;  ///< of its velocities in those of the mover
+    int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;
-    /// J of so many local coordinates, likewise.
+    /// J of some local coordinates; first: index of their rates in the velocities of the mover.
     struct Local {
       int first;
       Eigen::Matrix3Xd J;
     };
     std::vector<Local> local;
   };
-  Side side_of(int part);
+  Side make_side(int part);
   void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
   void add_side(const ContactSide& side, const Contact& contact, double sign);
   void add_limits();
   void add_strings();
   void complete();
   void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;
-  void hold_joints(int contact);
+  void add_joint_responses(int contact);
 
   const Model& model_;
   const State& state_;

@@ -1,8 +1,9 @@
-// What contacts push and moves as one: a part alone, or the parts that joints tie together, with its
-// velocities as in body/group.h, and after these the rates of the local coordinates of those that a push
-// moves in all of them: parts that deform by modes, and those whose elasticity is stepped implicitly. Other
-// parts that deform at the nodes of a mesh have lumped masses: what pushes a node moves that node alone, and
-// every node is a mover of its own, with its velocity in the world.
+// Movers: groups of velocities that contact impulses change together. A mover is
+// - a part without joints, or an island (parts that joints connect), with the velocities of body/group.h. If
+//   an impulse moves all local coordinates of a part (deformation by modes, or implicit elasticity), the
+//   rates of these coordinates follow the velocities of the mover;
+// - a node of any other part that deforms locally. Its mass is lumped, so an impulse on a node moves this
+//   node only. Its velocity is in the world frame.
 #pragma once
 
 #include <vector>
@@ -12,35 +13,39 @@
 namespace pliant {
 
 struct Mover {
-  int part = -1;                   ///< a part alone
-  int node = -1;                   ///< or this node of it
-  const Island* island = nullptr;  ///< or this
-  int first = 0, size = 0;         ///< of its velocities among those of all movers
+  int part = -1;                   ///< number of the part without joints, or of the part of the node
+  int node = -1;                   ///< number of the node; -1: not a node
+  const Island* island = nullptr;  ///< the island; nullptr: not an island
+  int first = 0, size = 0;         ///< its velocities in the vector of all movers
 };
 
-/// Whether what pushes a part moves all of its local coordinates; or nodes of it, each by itself.
+/// Returns whether an impulse on a part moves all of its local coordinates.
 bool moves_locally(const PartModel& m, const PartWorkspace<double>& w);
+/// Returns whether an impulse on a part moves single nodes.
 bool moves_by_nodes(const PartModel& m, const PartWorkspace<double>& w);
 
-/// Some movers of a model, numbered as they are asked for.
+/// The movers that some contacts need, numbered in the order in which they are requested.
 class Movers {
  public:
-  /// The model must outlive it. work: tells how parts answer to pushes (LocalWorkspace::response).
+  /// The model must outlive this object. work: determines how parts respond to impulses
+  /// (LocalWorkspace::response).
   Movers(const Model& model, const Workspace<double>& work);
 
-  /// The number of what a part moves with, or of a node.
-  int of_part(int part);
-  int of_node(int part, int node);
+  /// Returns the number of the mover of a part, or of a node; adds the mover if it is new.
+  int mover_of_part(int part);
+  int mover_of_node(int part, int node);
 
   int n_x() const { return n_x_; }
   const std::vector<Mover>& all() const { return all_; }
   const Mover& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
-  /// Where the velocities of a part begin in those of its mover.
+  /// Returns the index of the first velocity of a part in its mover.
   static int first_in(const Mover& mover, int part);
-  /// The same of the rates of its local coordinates, where they are among these; and how many they are.
+  /// Returns the index of the first rate of the local coordinates of a part in its mover, if they belong to
+  /// it; n_local() is their number.
   int first_local(const Mover& mover, int part) const;
   int n_local(int part) const { return n_local_[static_cast<std::size_t>(part)]; }
-  /// Velocities of all movers. state: its coordinates may be those of an earlier time than those of work.
+  /// Returns the velocities of all movers. The coordinates of the state may be those of an earlier time than
+  /// those of work.
   VecX<double> velocities(const State& state, const Workspace<double>& work) const;
 
  private:
@@ -49,9 +54,9 @@ class Movers {
   const Model* model_;
   std::vector<Mover> all_;
   int n_x_ = 0;
-  std::vector<int> n_local_;                // of each part
-  std::vector<int> of_parts_;               // number of each part; -1: not there yet
-  std::vector<std::vector<int>> of_nodes_;  // the same of the nodes of each part that deforms at them
+  std::vector<int> n_local_;                   // of each part
+  std::vector<int> part_movers_;               // number of the mover of each part; -1: none yet
+  std::vector<std::vector<int>> node_movers_;  // number of the mover of each node of each part
 };
 
 }  // namespace pliant

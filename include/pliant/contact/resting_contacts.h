@@ -1,4 +1,4 @@
-// Surfaces that lie on each other.
+// Resting contacts: surfaces that touch and do not separate.
 #pragma once
 
 #include <vector>
@@ -10,47 +10,48 @@ namespace pliant {
 
 class RestingContacts {
  public:
-  /// finder: must outlive it, as must its model.
+  /// model and finder must outlive this object.
   RestingContacts(const Model& model, const ContactFinder& finder);
 
-  /// What was left of the laws of contact may have parted what rests by so many m more than rounding.
-  void loosen(double loose);
-  /// Surfaces that are nearer than this, and do not move apart, rest on each other, m: of this pair, and of
-  /// the largest part.
-  double gap(const Contact& contact) const { return loosened(tight_gap(contact)); }
-  double gap() const { return loosened(gap_); }
-  /// Of this pair when nothing was left.
+  /// Widens the largest gap of resting contacts by `extra` (m), the opening that the residual of the last
+  /// impulses may have caused.
+  void widen_gap(double extra);
+  /// Returns the largest gap of a resting contact, m: for the pair of a contact, and for the largest part.
+  double gap(const Contact& contact) const { return widened(tight_gap(contact)); }
+  double gap() const { return widened(gap_); }
+  /// Returns the largest gap for the pair without the residual of the last impulses, m.
   double tight_gap(const Contact& contact) const;
-  /// What lies near each other at time t (s), within gap().
+  /// Returns the contacts with a gap of at most gap() at a time t (s). Searches again only near parts that
+  /// have moved since the last call.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Those of them that neither open nor strike by more than `slow` m/s.
-  std::vector<Contact> at_rest(const State& state, double t, double slow);
-  /// How long a motion may be, s, that has led to `state`, for what rested at its start to have sunk into
-  /// each other, where nothing holds it, by no more than ContactFinder::thin.
+  /// Returns the resting contacts among them: those whose normal speed is at most max_speed (m/s).
+  std::vector<Contact> at_rest(const State& state, double t, double max_speed);
+  /// Returns the longest motion (s) in which contacts that rest at the start sink by at most
+  /// ContactFinder::thin, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
-  /// The same as far as it is foreseen before the motion: by gravity alone, m/s^2.
+  /// Predicts this length before the motion, for gravity (m/s^2) alone.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// What meets at the end of a motion, where it has led to `state`: sides that overlap, and of what rested
-  /// on each other at its start all that is near, for rounding may have parted it, or the motion, in which
-  /// nothing held it. What rested did so all along (Contact::since).
-  std::vector<Contact> met(const FreeMotion& motion, const std::vector<Contact>& resting,
-                           const State& state) const;
+  /// Returns the contacts at the end of a motion, which has led to `state`: the sides that overlap, and the
+  /// contacts that rested at the start and are still near, which rounding or the motion may have opened. The
+  /// `since` of resting contacts is that of a force during the whole motion.
+  std::vector<Contact> contacts_after(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                      const State& state) const;
 
  private:
-  double loosened(double tight) const;
+  double widened(double tight) const;
   bool few_moved(const State& state);
-  bool rests(const Contact& contact, double gap, double velocity, double slow) const;
-  bool rested(const Contact& contact, const FreeMotion& motion, const State& state) const;
+  bool is_resting(const Contact& contact, double gap, double velocity, double max_speed) const;
+  bool was_resting(const Contact& contact, const FreeMotion& motion, const State& state) const;
 
   const Model& model_;
   const ContactFinder& finder_;
-  double gap_ = 0, loose_ = 0;
-  // Of the state that was looked at last.
+  double gap_ = 0, extra_gap_ = 0;
+  // The last search: its state and time, and its result.
   VecX<double> last_q_;
   std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<bool> moved_;  // parts that are elsewhere now
+  std::vector<bool> moved_;  // parts that have moved since
 };
 
 }  // namespace pliant

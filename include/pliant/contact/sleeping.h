@@ -1,5 +1,5 @@
-// Sleep of bodies that have come to rest (contact_settings.h): which fall asleep after a step, and what wakes
-// them before one. What sleeps keeps its coordinates to the last bit, and its velocities are zero.
+// Sleep of bodies at rest (body/contact_settings.h): which bodies fall asleep after a step, and which wake
+// before one. The coordinates of a sleeping part do not change by a bit, and its velocities are zero.
 #pragma once
 
 #include <functional>
@@ -14,41 +14,42 @@ namespace pliant {
 
 class Sleeping {
  public:
-  /// All must outlive it. Throws std::invalid_argument for settings out of range.
+  /// All arguments must outlive this object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Before a motion of h seconds from time t (s): those wake that have been given a velocity, or that
-  /// something drives whose value changes by then, with all that sleep with them. What sleeps then is
-  /// remembered.
+  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have got a velocity, or whose
+  /// drive changes in the motion, with all parts that sleep with them. Stores the coordinates of the others.
   void begin_motion(double t, double h, State& state);
-  /// After the motion: what sleeps is as it was.
+  /// Ends the motion: restores the coordinates of sleeping parts.
   void restore(State& state) const;
-  /// Whether a sleeper is met at some of these contacts, by what is awake or moved by hand.
-  bool is_met(const std::vector<Contact>& contacts, const State& state) const;
-  /// Those that are met wake, with all that sleep with them.
-  void wake_met(const std::vector<Contact>& contacts, State& state) const;
-  /// So do those that impulses have moved since.
+  /// Returns whether another body has met a sleeping part at one of these contacts. Contacts of sleeping
+  /// parts with each other are not searched.
+  bool touches_sleeping(const std::vector<Contact>& contacts, const State& state) const;
+  /// Wakes the parts at the contacts, with all parts that sleep with them.
+  void wake_touched(const std::vector<Contact>& contacts, State& state) const;
+  /// Wakes parts that impulses have moved since begin_motion().
   void wake_moved(State& state) const;
-  /// After h seconds with these contacts, from time t (s) on: bodies that have been at rest for long enough,
-  /// and all that they touch and are tied to, fall asleep. What kinetic energy they had is lost in contact.
+  /// Lets bodies fall asleep after h seconds with these contacts from time t (s) on, if they, and all parts
+  /// that they touch or are connected to, have been at rest for long enough. Their kinetic energy is lost in
+  /// contact.
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
-  /// Whether anything sleeps in this motion.
+  /// Returns whether any part sleeps in this motion.
   bool any() const { return q_.size() > 0; }
 
  private:
-  /// What may move a part, and with it its island, though nothing meets it.
+  /// A cause that may move a sleeping part without contact.
   struct Drive {
-    int part;                                         ///< -1: all
-    std::function<bool(double t, double h)> changes;  ///< within h seconds of t
+    int part;                                         ///< -1: all parts
+    std::function<bool(double t, double h)> changes;  ///< whether it changes within h seconds after t
   };
 
-  void note_drives();
-  void note_switches();
+  void find_drives();
+  void find_switches();
   double speed(const State& state, int part) const;
-  bool note_rest(double h, State& state) const;
-  bool is_moved_by_hand(const ContactSide& side, int plane) const;
-  DisjointSets sets_of(const std::vector<Contact>& contacts) const;
+  bool update_rest_times(double h, State& state) const;
+  bool is_kinematic(const ContactSide& side, int plane) const;
+  DisjointSets connected_parts(const std::vector<Contact>& contacts) const;
 
   const Dynamics& dynamics_;
   const Model& model_;
@@ -57,7 +58,7 @@ class Sleeping {
   const Sleep* settings_;    // nullptr: nothing sleeps
   std::vector<int> moving_;  // parts that have coordinates
   std::vector<Drive> drives_;
-  VecX<double> q_;  // what was remembered; empty: nothing sleeps
+  VecX<double> q_;  // coordinates at the start of the motion; empty if nothing sleeps
 };
 
 }  // namespace pliant
