@@ -1,6 +1,7 @@
+// Bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x on the velocities that the joints
+// allow.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/simulate/fastest_sway.h>
 
 #include <algorithm>
@@ -11,17 +12,18 @@
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/group.h>
 #include <pliant/math/eigenvalues.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
-namespace fastest_sway {
+namespace sway {
 
-inline constexpr std::size_t kMostVectors = 30;
+inline constexpr std::size_t kMaxVectors = 30;
 /// A vector below this share of the image of the map is rounding.
 inline constexpr double kVanished = 1e-9;
 
-/// The map x -> -da/dq x on the velocities that the joints allow; it is symmetric in the mass metric for
-/// parts at rest. Its eigenvalues are omega^2 of swinging motions, and negative for falling ones.
+/// The map x -> -da/dq x on the velocities that the joints allow. It is symmetric in the mass metric for
+/// parts at rest. Its eigenvalues are omega^2 of oscillations, and negative for unstable motions.
 class Sway {
  public:
   Sway(const Dynamics& dynamics, const State& state, Workspace<double>& work)
@@ -35,15 +37,15 @@ class Sway {
   double largest() {
     VecX<double> x(state_.v.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + static_cast<double>(i));
-    keep_allowed(x);
-    MatX<double> H = MatX<double>::Zero(kMostVectors, kMostVectors);
+    project_onto_joints(x);
+    MatX<double> H = MatX<double>::Zero(kMaxVectors, kMaxVectors);
     std::vector<VecX<double>> basis;
     double size = std::sqrt(product(x, x)), scale = 0;
-    while (basis.size() < kMostVectors && size > kVanished * scale) {
+    while (basis.size() < kMaxVectors && size > kVanished * scale) {
       const auto k = static_cast<Eigen::Index>(basis.size());
       basis.push_back(x / size);
       x = -derivative(basis.back());
-      keep_allowed(x);
+      project_onto_joints(x);
       scale = std::max(scale, std::sqrt(product(x, x)));
       for (const bool again : {false, true})
         for (Eigen::Index i = 0; i <= k; ++i) {
@@ -65,9 +67,9 @@ class Sway {
     return dynamics_.jvp(state_.time(), state_.q, state_.v, along_, work_, dual_work_);
   }
 
-  /// Projects a change of velocities onto the joints, for parts with joints.
-  void keep_allowed(VecX<double>& all) {
-    VecX<double> kept = VecX<double>::Zero(all.size()), x, rows;
+  /// Projects a change of velocities onto the joints, C_q x = 0, for parts with joints; zero for others.
+  void project_onto_joints(VecX<double>& all) {
+    VecX<double> allowed = VecX<double>::Zero(all.size()), x, rows;
     for (const Island& island : model_.islands()) {
       const Group<double, Eigen::Dynamic> group(model_, work_, island, false);
       group.gather(x, [&](int i) {
@@ -76,12 +78,12 @@ class Sway {
       group.joint_rows(x, rows);
       group.correct(rows, x);
       for (int i = 0; i < group.parts(); ++i)
-        share_of(group.model(i), kept) = world_velocity(group.workspace(i), group.share(x, i));
+        share_of(group.model(i), allowed) = world_velocity(group.workspace(i), group.share(x, i));
     }
-    all = kept;
+    all = allowed;
   }
 
-  /// Inner product in the mass metric.
+  /// Returns the inner product in the mass metric.
   double product(const VecX<double>& x, const VecX<double>& y) const {
     double sum = 0;
     for (const Island& island : model_.islands())
@@ -102,7 +104,7 @@ class Sway {
   StateDirection along_;
 };
 
-}  // namespace fastest_sway
+}  // namespace sway
 
 PLIANT_INLINE bool sway_is_unknown(const Model& model) {
   return !model.islands().empty() && std::any_of(model.parts().begin(), model.parts().end(),
@@ -112,7 +114,7 @@ PLIANT_INLINE bool sway_is_unknown(const Model& model) {
 PLIANT_INLINE double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work) {
   const Model& model = dynamics.model();
   if (model.islands().empty() || sway_is_unknown(model)) return 0;
-  const double value = fastest_sway::Sway(dynamics, state, work).largest();
+  const double value = sway::Sway(dynamics, state, work).largest();
   return value > 0 ? std::sqrt(value) : 0;
 }
 

@@ -1,16 +1,18 @@
-// How fast parts with joints sway: the forces of joints and gravity hold them like springs.
+// The fastest small oscillation of parts on joints, to which joint forces and gravity give a stiffness.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// The greatest omega (rad/s) of small motions that the joints allow, about a state with all its forces; 0
-/// when none swing. By Lanczos' method on directional derivatives of the accelerations, so slightly from
-/// below; 0 where it is unknown. work: as Dynamics::accelerations left it there.
+/// Returns the largest angular frequency (rad/s) of small motions that the joints allow, about a state with
+/// all its forces; 0 if nothing oscillates, or if it is unknown. By Lanczos' method on directional
+/// derivatives of the accelerations, so slightly too small. work: the evaluation by Dynamics::accelerations
+/// at the state.
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work);
 
-/// Whether there are joints, and parts that deform locally: their accelerations have no derivative.
+/// Returns whether the fastest oscillation is unknown: with joints and parts that deform locally, whose
+/// accelerations have no derivatives here.
 bool sway_is_unknown(const Model& model);
 
 }  // namespace pliant

@@ -1,6 +1,8 @@
-// The largest stable step: M, K and D of each group of parts tied by springs, in mass-normalised coordinates,
-// and the step at which the method's growth passes 1.
+// Bodies of stable_step.h: M, K and D of each group of parts that springs connect, in mass-normalised
+// coordinates, and the largest step for which the growth of the method is at most 1.
 #pragma once
+
+#include <pliant/simulate/stable_step.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,25 +12,23 @@
 
 #include <Eigen/Cholesky>
 
-#include <pliant/math/header_only.h>
 #include <pliant/math/eigenvalues.h>
+#include <pliant/math/header_only.h>
 #include <pliant/method/free_oscillation.h>
-#include <pliant/simulate/stable_step.h>
-
 #include <pliant/simulate/fastest_sway.h>
 
 namespace pliant {
 
-namespace stable_step {
+namespace stability {
 
-/// Parts of a group with more velocities are bounded one by one.
-inline constexpr int kLargestGroup = 120;
-/// Largest rotation in a step that a method follows, rad.
-inline constexpr double kMostTurnInStep = 0.5;
-/// Largest phase of a mode in a step, rad. Beyond it impacts move the mode like a free body and add energy.
-inline constexpr double kMostPhase = 1;
+/// In groups with more velocities, each part is bounded separately.
+inline constexpr int kMaxGroupVelocities = 120;
+/// Largest rotation of a part in a step, rad.
+inline constexpr double kMaxRotation = 0.5;
+/// Largest phase of a mode in a step, rad. Beyond it, impacts move the mode like a free body and add energy.
+inline constexpr double kMaxPhase = 1;
 
-/// L of a port on v_r of its part: 3 x n_v, world.
+/// Returns L of Eq. (9) of a port on v_r of its part: 3 x n_v, world.
 inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
   const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
   MatX<double> L(3, 6 + m.n_s);
@@ -38,17 +38,20 @@ inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double
   return w.R * L;
 }
 
-struct Linear {
+/// M x_ddot + D x_dot + K x = 0.
+struct LinearSystem {
   MatX<double> M, K, D;
 };
 
+/// Returns some columns of a matrix.
 inline MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
-  MatX<double> kept(A.rows(), static_cast<Eigen::Index>(which.size()));
-  for (std::size_t i = 0; i < which.size(); ++i) kept.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
-  return kept;
+  MatX<double> columns(A.rows(), static_cast<Eigen::Index>(which.size()));
+  for (std::size_t i = 0; i < which.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
+  return columns;
 }
 
-inline double stable_step_of(const Integrator& method, const Linear& system) {
+/// Returns the largest step (s) for which a method keeps the solutions of a linear system bounded.
+inline double stable_step_of(const Integrator& method, const LinearSystem& system) {
   // Coordinates without inertia are fixed: remove them.
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < system.M.rows(); ++i)
@@ -63,8 +66,8 @@ inline double stable_step_of(const Integrator& method, const Linear& system) {
   MatX<double> T =
       scale.asDiagonal() * vectors * values.cwiseMax(1e-300).cwiseSqrt().cwiseInverse().asDiagonal();
   const MatX<double> all = columns_of(T, solid);
-  // Free motions are stable by themselves. Their double root 1 would only reduce the accuracy of the other
-  // roots.
+  // Motions without stiffness and damping are always stable. Their double root 1 would only reduce the
+  // accuracy of the other roots.
   const MatX<double> resistance = all.transpose() * (K + D) * all;
   const Eigenpairs resisted = symmetric_eigenpairs(resistance);
   std::vector<Eigen::Index> stiff_modes;
@@ -87,10 +90,11 @@ inline double stable_step_of(const Integrator& method, const Linear& system) {
   return low;
 }
 
-/// Bounds of K and D of a part that deforms locally, in mass-normalised coordinates: the sum of those of
-/// elasticity, of the global parameters and of springs at its points. implicit: springs alone count.
-inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, const PartWorkspace<double>& w,
-                                      bool implicit) {
+/// Returns bounds of K and D of a part that deforms locally, in mass-normalised coordinates: the sum of the
+/// bounds of its local elasticity, its global parameters and the springs at its points. implicit: springs
+/// only.
+inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
+                                             const PartWorkspace<double>& w, bool implicit) {
   const PartModel& m = model.parts()[i];
   const Part& part = *m.part;
   LocalDeformation::Bound bound;
@@ -112,154 +116,200 @@ inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i, 
     for (const PortRef& ref : {s.a, s.b}) {
       if (ref.part != static_cast<int>(i)) continue;
       const double mobility = m.local->mobility(m.node_weights[static_cast<std::size_t>(ref.port)]);
-      // The other end may move as much.
+      // The other end may move by an equal amount in the opposite direction.
       bound.K += 2 * s.spring->stiffness * mobility;
       bound.D += 2 * s.spring->damping * mobility;
     }
   return bound;
 }
 
-/// Returns "the parameters of part 'a'", with "and 2 parts tied to it" if springs connect it.
+/// Returns the cause of the limit of a group: its springs and parameters.
 inline std::string limit_of_group(const Model& model, const std::vector<std::size_t>& group) {
   const std::string name = "'" + model.parts()[group.front()].part->name() + "'";
   if (group.size() == 1) return "the springs and parameters of part " + name;
   return "the springs and parameters of part " + name + " and of " + std::to_string(group.size() - 1) +
-         " tied to it";
+         (group.size() == 2 ? " part" : " parts") + " that springs connect to it";
 }
 
-}  // namespace stable_step
+inline bool moves(const Model& model, int part) {
+  return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0;
+}
+
+/// Groups of moving parts that springs connect, and the springs at each part.
+struct SpringGroups {
+  std::vector<std::vector<std::size_t>> members;     ///< parts of each group; empty entries are not groups
+  std::vector<std::vector<std::size_t>> springs_at;  ///< springs at each part
+
+  explicit SpringGroups(const Model& model)
+      : members(model.parts().size()), springs_at(model.parts().size()) {
+    const std::size_t n = model.parts().size();
+    std::vector<std::size_t> joined(n);
+    std::iota(joined.begin(), joined.end(), std::size_t{0});
+    auto root = [&](std::size_t i) {
+      while (joined[i] != i) i = joined[i] = joined[joined[i]];
+      return i;
+    };
+    const std::vector<SpringModel>& springs = model.springs();
+    for (const SpringModel& s : springs)
+      if (moves(model, s.a.part) && moves(model, s.b.part))
+        joined[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
+    for (std::size_t i = 0; i < n; ++i)
+      if (model.parts()[i].q0 >= 0) members[root(i)].push_back(i);
+    for (std::size_t k = 0; k < springs.size(); ++k)
+      for (const int end : {springs[k].a.part, springs[k].b.part})
+        if (moves(model, end)) springs_at[static_cast<std::size_t>(end)].push_back(k);
+  }
+};
+
+/// The search for the smallest of all bounds of the step.
+class StableStepSearch {
+ public:
+  explicit StableStepSearch(const Simulation& simulation)
+      : simulation_(simulation),
+        model_(simulation.model()),
+        state_(simulation.state()),
+        implicit_(simulation.integrator().local_is_implicit()),
+        groups_(model_),
+        first_(model_.parts().size(), -1) {
+    simulation.dynamics().accelerations(state_.time(), state_.q, state_.v, state_, work_);
+  }
+
+  StableStep run() {
+    limit_by(scalar_step(std::pow(fastest_sway(simulation_.dynamics(), state_, work_), 2), 0),
+             "the oscillation of parts on joints");
+    limit_by_stabilization();
+    for (std::size_t i = 0; i < model_.parts().size(); ++i)
+      if (model_.parts()[i].q0 >= 0) limit_by_part(i);
+    for (const std::vector<std::size_t>& group : groups_.members) limit_by_group(group);
+    if (sway_is_unknown(model_))
+      smallest_.uncounted =
+          "the oscillation of parts on joints is not included, because parts deform locally";
+    return smallest_;
+  }
+
+ private:
+  void limit_by(double step, const std::string& limit) {
+    if (step < smallest_.step) smallest_ = {step, limit, {}};
+  }
+  /// Returns the stable step for x_ddot + damping x_dot + stiffness x = 0.
+  double scalar_step(double stiffness, double damping) const {
+    const auto matrix = [](double x) { return MatX<double>::Constant(1, 1, x); };
+    return stable_step_of(simulation_.integrator(), {matrix(1), matrix(stiffness), matrix(damping)});
+  }
+
+  /// Baumgarte's terms act on open joints, and on closed joints without projection.
+  void limit_by_stabilization() {
+    const JointPolicy& policy = simulation_.dynamics().joint_policy();
+    const Stabilization& rule = model_.body().stabilization;
+    const bool acts = !rule.follows_step(policy.step_consistent) &&
+                      std::any_of(state_.joints.begin(), state_.joints.end(), [&](JointMode mode) {
+                        return mode == JointMode::closing || (mode == JointMode::closed && !policy.projected);
+                      });
+    if (!acts) return;
+    const Gains gains = rule.gains(state_.h, policy.step_consistent);
+    limit_by(scalar_step(gains.beta * gains.beta, 2 * gains.alpha),
+             "the gaps of joints, which Baumgarte's terms close");
+  }
+
+  void limit_by_part(std::size_t i) {
+    const PartModel& m = model_.parts()[i];
+    const double speed = state_.v.segment<3>(m.v0 + 3).norm();
+    const std::string name = "part '" + m.part->name() + "'";
+    if (speed > 0) limit_by(kMaxRotation / speed, "the rotation of " + name);
+    if (m.local == nullptr) return;
+    if (const Oscillators* modes = m.local->oscillators();
+        modes != nullptr && !implicit_ && model_.body().contact.active)
+      limit_by(kMaxPhase / std::sqrt(modes->omega2.maxCoeff()),
+               "the modes of " + name + ", which impacts may excite");
+    const LocalDeformation::Bound bound = bound_locally(model_, i, work_.parts[i], implicit_);
+    limit_by(scalar_step(bound.K, bound.D),
+             (implicit_ ? "the springs at " : "the local elasticity of ") + name);
+  }
+
+  void limit_by_group(const std::vector<std::size_t>& group) {
+    int size = 0;
+    for (const std::size_t i : group) size += 6 + model_.parts()[i].n_s;
+    if (size == 0) return;
+    if (size <= kMaxGroupVelocities) {
+      limit_by(stable_step_of(simulation_.integrator(), system_of(group, 1)), limit_of_group(model_, group));
+      return;
+    }
+    // For one part, a spring acts with up to twice its stiffness.
+    for (const std::size_t i : group)
+      limit_by(stable_step_of(simulation_.integrator(), system_of({i}, 2)), limit_of_group(model_, {i}));
+  }
+
+  /// Assembles the system of some parts and their springs. open_weight: weight of springs with one end on
+  /// another part.
+  LinearSystem system_of(const std::vector<std::size_t>& parts, double open_weight) {
+    int size = 0;
+    for (const std::size_t i : parts) {
+      first_[i] = size;
+      size += 6 + model_.parts()[i].n_s;
+    }
+    LinearSystem system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
+                        MatX<double>::Zero(size, size)};
+    std::vector<std::size_t> springs;
+    for (const std::size_t i : parts) {
+      add_part(i, system);
+      springs.insert(springs.end(), groups_.springs_at[i].begin(), groups_.springs_at[i].end());
+    }
+    std::sort(springs.begin(), springs.end());
+    springs.erase(std::unique(springs.begin(), springs.end()), springs.end());
+    for (const std::size_t k : springs) add_spring(model_.springs()[k], open_weight, system);
+    for (const std::size_t i : parts) first_[i] = -1;
+    return system;
+  }
+  void add_part(std::size_t i, LinearSystem& system) const {
+    const PartModel& m = model_.parts()[i];
+    const Part& part = *m.part;
+    const int row = first_[i], n_v = 6 + m.n_s;
+    const MatX<double>& M = mass_matrix(work_.parts[i]);
+    system.M.block(row, row, n_v, n_v) = M;
+    const VecMax<double> q_s = state_.q.segment(m.q0 + 7, m.n_s);
+    if (m.local == nullptr || !implicit_) {
+      system.K.block(row + 6, row + 6, m.n_s, m.n_s) += part.elastic_stiffness(q_s);
+      system.D.block(row + 6, row + 6, m.n_s, m.n_s) +=
+          part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.strain_stiffness(q_s);
+    }
+    system.D.block(row, row, n_v, n_v) += part.drag() * M;
+  }
+  /// d = x_b - x_a. An axial spring is bounded by the isotropic spring of its stiffness.
+  void add_spring(const SpringModel& s, double open_weight, LinearSystem& system) const {
+    const auto is_outside = [&](int part) {
+      return moves(model_, part) && first_[static_cast<std::size_t>(part)] < 0;
+    };
+    const bool closed = !is_outside(s.a.part) && !is_outside(s.b.part);
+    MatX<double> L = MatX<double>::Zero(3, system.M.rows());
+    for (const auto& [ref, sign] : {std::pair{s.a, -1.0}, std::pair{s.b, 1.0}}) {
+      if (!moves(model_, ref.part) || is_outside(ref.part)) continue;
+      const auto i = static_cast<std::size_t>(ref.part);
+      L.middleCols(first_[i], 6 + model_.parts()[i].n_s) +=
+          sign * port_jacobian(model_.parts()[i], work_.parts[i], ref.port);
+    }
+    const double weight = closed ? 1.0 : open_weight;
+    system.K += weight * s.spring->stiffness * L.transpose() * L;
+    system.D += weight * s.spring->damping * L.transpose() * L;
+  }
+
+  const Simulation& simulation_;
+  const Model& model_;
+  const State& state_;
+  const bool implicit_;  // whether local elasticity is integrated implicitly
+  const SpringGroups groups_;
+  std::vector<int> first_;  // first row of each part in the system that is being assembled; -1: not there
+  Workspace<double> work_;
+  StableStep smallest_{std::numeric_limits<double>::infinity(), {}, {}};
+};
+
+}  // namespace stability
 
 PLIANT_INLINE double largest_stable_step(const Simulation& simulation) {
   return stable_step(simulation).step;
 }
 
 PLIANT_INLINE StableStep stable_step(const Simulation& simulation) {
-  const Model& model = simulation.model();
-  const State& state = simulation.state();
-  Workspace<double> work;
-  simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work);
-  const std::size_t n = model.parts().size();
-  const bool implicit = simulation.integrator().local_is_implicit();
-
-  // Groups of parts that springs connect.
-  std::vector<std::size_t> joined(n);
-  std::iota(joined.begin(), joined.end(), std::size_t{0});
-  auto root = [&](std::size_t i) {
-    while (joined[i] != i) i = joined[i] = joined[joined[i]];
-    return i;
-  };
-  auto moves = [&](int part) { return part >= 0 && model.parts()[static_cast<std::size_t>(part)].q0 >= 0; };
-  for (const SpringModel& s : model.springs())
-    if (moves(s.a.part) && moves(s.b.part))
-      joined[root(static_cast<std::size_t>(s.a.part))] = root(static_cast<std::size_t>(s.b.part));
-
-  // Members of each group, and the springs at each of their parts.
-  std::vector<std::vector<std::size_t>> members(n), springs_at(n);
-  for (std::size_t i = 0; i < n; ++i)
-    if (model.parts()[i].q0 >= 0) members[root(i)].push_back(i);
-  const std::vector<SpringModel>& springs = model.springs();
-  for (std::size_t k = 0; k < springs.size(); ++k)
-    for (const int end : {springs[k].a.part, springs[k].b.part})
-      if (moves(end)) springs_at[static_cast<std::size_t>(end)].push_back(k);
-
-  std::vector<int> first(n, -1);  // first row of each part in its system
-  /// Assembles the system of some parts and their springs. weight: of springs with one end outside.
-  auto system_of = [&](const std::vector<std::size_t>& parts, double open_weight) {
-    int size = 0;
-    for (const std::size_t i : parts) {
-      first[i] = size;
-      size += 6 + model.parts()[i].n_s;
-    }
-    stable_step::Linear system{MatX<double>::Zero(size, size), MatX<double>::Zero(size, size),
-                  MatX<double>::Zero(size, size)};
-    std::vector<std::size_t> ours;
-    for (const std::size_t i : parts) {
-      const PartModel& m = model.parts()[i];
-      const Part& part = *m.part;
-      const int at = first[i], n_v = 6 + m.n_s;
-      const MatX<double>& M = mass_matrix(work.parts[i]);
-      system.M.block(at, at, n_v, n_v) = M;
-      const VecMax<double> q_s = state.q.segment(m.q0 + 7, m.n_s);
-      if (m.local == nullptr || !implicit) {
-        system.K.block(at + 6, at + 6, m.n_s, m.n_s) += part.elastic_stiffness(q_s);
-        system.D.block(at + 6, at + 6, m.n_s, m.n_s) +=
-            part.alpha() * M.bottomRightCorner(m.n_s, m.n_s) + part.beta() * part.strain_stiffness(q_s);
-      }
-      system.D.block(at, at, n_v, n_v) += part.drag() * M;
-      ours.insert(ours.end(), springs_at[i].begin(), springs_at[i].end());
-    }
-    std::sort(ours.begin(), ours.end());
-    ours.erase(std::unique(ours.begin(), ours.end()), ours.end());
-    for (const std::size_t k : ours) {
-      // d = x_b - x_a; an axial spring is bounded by the isotropic one of its stiffness.
-      const SpringModel& s = springs[k];
-      const bool closed = (!moves(s.a.part) || first[static_cast<std::size_t>(s.a.part)] >= 0) &&
-                          (!moves(s.b.part) || first[static_cast<std::size_t>(s.b.part)] >= 0);
-      MatX<double> L = MatX<double>::Zero(3, size);
-      for (const auto& [ref, sign] : {std::pair{s.a, -1.0}, std::pair{s.b, 1.0}}) {
-        if (!moves(ref.part) || first[static_cast<std::size_t>(ref.part)] < 0) continue;
-        const auto i = static_cast<std::size_t>(ref.part);
-        L.middleCols(first[i], 6 + model.parts()[i].n_s) +=
-            sign * stable_step::port_jacobian(model.parts()[i], work.parts[i], ref.port);
-      }
-      const double weight = closed ? 1.0 : open_weight;
-      system.K += weight * s.spring->stiffness * L.transpose() * L;
-      system.D += weight * s.spring->damping * L.transpose() * L;
-    }
-    for (const std::size_t i : parts) first[i] = -1;
-    return system;
-  };
-
-  StableStep smallest{std::numeric_limits<double>::infinity(), {}, {}};
-  auto take = [&](double step, const std::string& limit) {
-    if (step < smallest.step) smallest = {step, limit, {}};
-  };
-  /// x_ddot = -stiffness x - damping x_dot.
-  auto one = [&](double stiffness, double damping) {
-    const auto number = [](double x) { return MatX<double>::Constant(1, 1, x); };
-    return stable_step::stable_step_of(simulation.integrator(), {number(1), number(stiffness), number(damping)});
-  };
-  take(one(std::pow(fastest_sway(simulation.dynamics(), state, work), 2), 0), "what sways on joints");
-  const JointPolicy& policy = simulation.dynamics().joint_policy();
-  const Stabilization& rule = model.body().stabilization;
-  const bool by_gains =
-      !rule.follows_step(policy.step_consistent) &&
-      std::any_of(state.joints.begin(), state.joints.end(), [&](JointMode mode) {
-        return mode == JointMode::closing || (mode == JointMode::closed && !policy.projected);
-      });
-  if (by_gains) {
-    const Gains gains = rule.gains(state.h, policy.step_consistent);
-    take(one(gains.beta * gains.beta, 2 * gains.alpha), "the gaps of joints, which Baumgarte's terms close");
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const PartModel& m = model.parts()[i];
-    if (m.q0 < 0) continue;
-    const double turning = state.v.segment<3>(m.v0 + 3).norm();
-    const std::string name = "part '" + m.part->name() + "'";
-    if (turning > 0) take(stable_step::kMostTurnInStep / turning, "the spin of " + name);
-    if (m.local == nullptr) continue;
-    if (const Oscillators* modes = m.local->oscillators();
-        modes != nullptr && !implicit && model.body().contact.active)
-      take(stable_step::kMostPhase / std::sqrt(modes->omega2.maxCoeff()),
-           "the modes of " + name + ", which may be struck");
-    const LocalDeformation::Bound bound = stable_step::bound_locally(model, i, work.parts[i], implicit);
-    take(one(bound.K, bound.D), (implicit ? "the springs at " : "the local elasticity of ") + name);
-  }
-  for (const std::vector<std::size_t>& group : members) {
-    int size = 0;
-    for (const std::size_t i : group) size += 6 + model.parts()[i].n_s;
-    if (size == 0) continue;
-    if (size <= stable_step::kLargestGroup) {
-      take(stable_step::stable_step_of(simulation.integrator(), system_of(group, 1)), stable_step::limit_of_group(model, group));
-      continue;
-    }
-    // For one part, a spring acts with up to twice its stiffness.
-    for (const std::size_t i : group)
-      take(stable_step::stable_step_of(simulation.integrator(), system_of({i}, 2)), stable_step::limit_of_group(model, {i}));
-  }
-  if (sway_is_unknown(model))
-    smallest.uncounted = "what sways on joints is not counted, since parts deform locally";
-  return smallest;
+  return stability::StableStepSearch(simulation).run();
 }
 
 }  // namespace pliant
