@@ -17,23 +17,23 @@ namespace pliant {
 
 namespace {
 
-/// Impacts of this speed, in units of what gravity gives in a step, do not rebound.
+/// Impacts below this speed, in units of the velocity by gravity in a step, do not rebound.
 constexpr double kSlowImpact = 1e-3;
-/// What impulses left of the laws of contact moves what rests in the next step by this many times as much, at
-/// most as gravity would: that much counts as resting.
+/// Speed of resting contacts in the next step, in units of the residual of the impulses, at most the velocity
+/// by gravity.
 constexpr double kLoose = 8;
-/// Most pairs whose impacts in one step are told in time, which takes the step of all parts several times
-/// again; and most moving parts of a body for which that is worth it.
+/// Most pairs whose impacts in one step are located, because each trial repeats the step of all parts, and
+/// most moving parts for which this pays.
 constexpr std::size_t kMaxLocatedPairs = 3;
 constexpr std::ptrdiff_t kMaxLocatedParts = 8;
-/// Most parts of a step, so that nothing passes through anything.
+/// Most motions in a step; motions are short enough that no body passes through another.
 constexpr double kMaxMotions = 1e4;
 constexpr int kMaxLocatedImpacts = 200;
-/// Where an impact has been told in time, surfaces this near, as a share of what counts as resting, touch.
+/// At a located impact surfaces touch within this share of the gap of resting contacts.
 constexpr double kTouchingGap = 1e-6;
 
-/// How fast what rests may move, m/s, as impulses left so much of the laws of contact: a power of two, so
-/// that what was found near each other is mostly still good.
+/// Returns the largest speed of resting contacts after a residual, m/s, rounded to a power of two, so that
+/// the last search is mostly still valid.
 double loose_speed(double residual, double falls) {
   const double left = std::min(kLoose * residual, falls);
   if (!(left > kSlowImpact * falls)) return 0;

@@ -1,4 +1,4 @@
-// The error of steps in which bodies lie on each other, and what is left of it.
+// The error of steps with resting contacts by step doubling, and Richardson extrapolation.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,18 +17,18 @@ namespace pliant {
 
 namespace {
 
-/// What lies on each other and moves by less than this in a step, in tolerances, is at rest: that is exact.
+/// Resting bodies that move less than this in a step, in tolerances, have no error of contact.
 constexpr double kAtRestTolerance = 1e-2;
 
-/// A step and its halves tell that something struck, or that bodies touch at other points, at times that
-/// differ: if one of them has and the other has not yet, rates jump between them however short the step is.
-/// They jump where they differ by more than gravity changes them in so many steps; what counts is then where
-/// that leads in the step, in steps no longer than those of contact that is not controlled.
+/// A step and its halves may strike, or change contact points, at different times. If one of them has and the
+/// other has not, the rates differ by a jump, however short the step is: more than the change by gravity in
+/// this many steps. Then only the displacement in the step counts, in steps no longer than those of
+/// uncontrolled contact.
 constexpr double kJumpInFalls = 0.6;
-/// In steps as short as this, s, it is what counts in any case.
+/// In shorter steps, s, only the displacement by differences of velocities counts.
 constexpr double kBriefStep = 2e-5;
 
-/// Whether rates of some part differ by more than so much, m/s.
+/// Returns whether the rates of some part differ by more than `most`, m/s.
 bool jump(const Model& model, const VecX<double>& of_v, double most) {
   return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
     return m.q0 >= 0 &&
@@ -36,7 +36,7 @@ bool jump(const Model& model, const VecX<double>& of_v, double most) {
   });
 }
 
-/// Gravity, m/s^2, as it acts on the velocities of parts that lay on something which they do not touch now.
+/// Returns gravity, m/s^2, on the velocities of parts that lost a resting contact.
 VecX<double> gravity_on_lost(const Model& model, const RestingContacts& resting,
                              const std::vector<Contact>& lay, std::vector<Contact> now, double t) {
   now.erase(std::remove_if(now.begin(), now.end(), [&](const Contact& c) { return c.gap > resting.gap(c); }),
@@ -52,8 +52,8 @@ VecX<double> gravity_on_lost(const Model& model, const RestingContacts& resting,
   return gravity;
 }
 
-/// Whether hands move what touches, or the parts that are tied to it: what is the same at both ends of a step
-/// may have been elsewhere.
+/// Returns whether a touching part, or one tied to it, is kinematic: equal positions at both ends of a step
+/// do not mean that it was at rest.
 bool anything_moved(const Model& model, const std::vector<Contact>& touch) {
   auto moves = [&](const ContactSide& side) {
     return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
@@ -66,7 +66,7 @@ bool anything_moved(const Model& model, const std::vector<Contact>& touch) {
          are_driven(model, parts_touched(model, touch));
 }
 
-/// Whether a step did to parts less than its error may be.
+/// Returns whether a step moved the parts by less than the allowed error.
 bool rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts, const State& begun,
           const State& state) {
   VecX<double> of_q = VecX<double>::Zero(state.q.size()), of_v = VecX<double>::Zero(state.v.size());

@@ -1,4 +1,4 @@
-// Contacts by what touches what.
+// Lookup of contacts by the pair of bodies.
 #pragma once
 
 #include <algorithm>
@@ -11,19 +11,19 @@
 
 namespace pliant {
 
-/// What touches what: part a, part b, plane, obstacle.
+/// The pair of bodies of a contact: part a, part b, plane, obstacle; -1 for none.
 using PairKey = std::array<int, 4>;
 inline PairKey key_of(const Contact& contact) {
   return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
 }
-inline const PairKey& key_of(const CachedContact& support) {
-  return support.between;
+inline const PairKey& key_of(const CachedContact& cached) {
+  return cached.between;
 }
 inline const PairKey& key_of(const std::pair<PairKey, const Contact*>& entry) {
   return entry.first;
 }
 
-/// The order of contacts, supports and entries by what touches what.
+/// The order of contacts, cached contacts and entries by their pairs.
 struct ByPair {
   template <class A, class B>
   bool operator()(const A& a, const B& b) const {
@@ -33,7 +33,7 @@ struct ByPair {
 
 class Pairs {
  public:
-  /// The contacts must outlive it.
+  /// The contacts must outlive the object.
   explicit Pairs(const std::vector<Contact>& contacts) {
     for (const Contact& contact : contacts) all_.emplace_back(key_of(contact), &contact);
     std::sort(all_.begin(), all_.end());
@@ -42,7 +42,7 @@ class Pairs {
     const auto [first, last] = range(contact);
     return first != last;
   }
-  /// Whether some contact of the same pair is one that `is` says it is.
+  /// Returns whether `is` holds for some contact of the same pair.
   template <class F>
   bool has(const Contact& contact, F&& is) const {
     const auto [first, last] = range(contact);

@@ -1,4 +1,4 @@
-// Impulses of contact: where bodies meet they are stopped, and what still overlaps is parted.
+// Resolution of contacts: impulses, then separation of the overlaps that remain.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@
 
 namespace pliant {
 
-/// What impulses did in a step: an entry for each time that they acted at a contact. Impacts within a step,
-/// and parts that move far in it, have it made in several parts.
+/// The impulses of a step, one entry for each time that an impulse acted at a contact. Impacts within a step,
+/// and fast parts, divide the step into several motions.
 struct ContactRecord {
   std::vector<Contact> contacts;
-  std::vector<Vec3<double>> impulses;  ///< on their sides a, N s, world
-  std::vector<double> sliding;         ///< speeds along them afterwards, m/s
-  VecX<double> joint_impulses;  ///< that equations of joints took up of them: on the parts act C_q^T of it
+  std::vector<Vec3<double>> impulses;  ///< on side a, N s, world
+  std::vector<double> sliding;         ///< tangential speeds afterwards, m/s
+  VecX<double> joint_impulses;  ///< reactions of the joints, on their rows: C_q^T of it acts on the parts
 
   void clear();
 };
@@ -33,13 +33,13 @@ struct ResolvedMotion {
 
 class ContactResolution {
  public:
-  /// All must outlive it. record: what is added to.
+  /// All arguments must outlive the object. record: receives the contacts and impulses.
   ContactResolution(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                     RestingContacts& resting, ContactRecord& record);
 
-  /// Forgets what took something, and settles whether searches of this step begin at the supports of a state.
+  /// Begins a step: decides whether its resolutions warm-start from the contact cache of the state.
   void begin_step(const State& state);
-  /// What took something of this step, of so many seconds, becomes the supports of a state.
+  /// Stores the mean forces of the step, of h seconds, as the contact cache of the state.
   void end_step(double h, State& state) const;
 
   /// Applies impulses at contacts at step.t, the end of a motion, each for the time that it says, and then
@@ -75,18 +75,18 @@ class ContactResolution {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
-  /// A support whose force is still an impulse, N s, how near another is the same, m, and the number of the
-  /// settlement in the step.
+  /// A cached contact with its impulse in place of a force, N s; the distance within which another contact is
+  /// the same, m; and the number of the resolution in the step.
   struct Pushed {
     CachedContact support;
     double same_within;
     int resolution;
   };
-  std::vector<Pushed> pushed_;  // of the step
+  std::vector<Pushed> pushed_;  // in this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
-  // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
+  // In this step: how far parts travel towards contacts, or are ejected, m; and the pairs that were too deep
+  // for a whole separation and have been separated as far as allowed.
   std::vector<double> travel_;
   VecX<double> ejected_from_;
   std::set<std::array<int, 4>> fully_separated_;
