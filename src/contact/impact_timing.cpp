@@ -70,6 +70,7 @@ std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
 
 }  // namespace
 
+// One function above 60 lines: its three searches share the bracket and the state that they move.
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts) {
   const Dynamics& dynamics = step.dynamics;

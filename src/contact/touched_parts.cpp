@@ -38,7 +38,8 @@ void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Ei
 }
 
 /// Sets the velocities of a part whose local coordinates all move, and shifts it. x, shift: of its mover,
-/// with its v_r from `first` on and its local coordinates from `local` on.
+/// with its v_r from `first` on and its local coordinates from `local` on. Seven parameters: the part, its
+/// workspace, its place in the mover, and the state.
 void move_locally(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& x,
                   const VecX<double>& shift, int first, int local, State& state) {
   const Eigen::Index n_r = 6 + m.n_s;

@@ -10,7 +10,7 @@ namespace pliant {
 struct StableStep {
   double step;  ///< see largest_stable_step(), s
   std::string
-      limit;  ///< what it would be too long for: "the local elasticity of part 'jelly'"; empty: nothing
+      limit;  ///< what limits it: "the local elasticity of part 'jelly'"; empty if nothing does
   /// Limits that are not counted and may be lower, as text; empty: none.
   std::string uncounted;
 };
