@@ -1,15 +1,14 @@
-// What contact costs: time per body and step of ellipsoids dropped on a plane, from the first impacts until
-// they lie still, and of towers and pyramids of ten boxes that stand; the exponent of its growth with their
+// Cost of contact: time per body and step for ellipsoids dropped on a plane, from the first impacts until
+// they are at rest, and for standing towers and pyramids of ten boxes; the exponent of its growth with their
 // number, and the share of each stage.
 //
 //   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
-//   standard output; no more than MOST bodies (10000)
+//   standard output; at most MOST bodies (10000)
 //
-// Begun: a step at the end, alone, whose search for impulses begins at the supports of the step before, as
-// those of ten steps in eleven do; anew: one whose search begins at none. Asleep: a step in which all of them
-// sleep, which a scene may ask for. Stages, of a step at the end: motion (the method's own step), near (what
-// may meet), find (contacts), solve (impulses). They are timed one by one, in loops of their own, so that
-// their caches are warm.
+// Begun: a single step at the end whose impulses warm-start from the contact cache, as in ten steps of
+// eleven; anew: one that starts cold. Asleep: a step in which all bodies sleep. Stages of a step at the end:
+// motion (step of the method), near (search for near bodies), find (contacts), solve (impulses). They are
+// timed one by one, in loops of their own, with warm caches.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -52,7 +51,7 @@ struct Cost {
   long fallbacks;
 };
 
-/// A number in [0, 1) from a count: the fractional parts of multiples of the golden ratio.
+/// Returns a number in [0, 1) from a count: the fractional part of a multiple of the golden ratio.
 double spread(int i, double ratio) {
   return std::fmod((i + 1) * ratio, 1.0);
 }
@@ -68,7 +67,7 @@ void build_towers(MultiBody& body, const System& system, int n) {
   }
 }
 
-/// Of rows of 4, 3, 2 and 1.
+/// A pyramid with rows of 4, 3, 2 and 1 boxes.
 void build_pyramids(MultiBody& body, int n) {
   constexpr double half = 0.05;
   for (int first = 0; first < n; first += 10)

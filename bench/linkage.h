@@ -17,10 +17,10 @@ inline constexpr double kLinkLength = 0.6;
 /// Radius of the spheres of a net, m.
 inline constexpr double kNetRadius = 0.1;
 
-/// Parts and joints numbered as they come.
+/// Builds linkages: parts and joints are numbered in their order.
 class Linkage {
  public:
-  /// soft: the semi-axes of links are dynamic. tied: joints are added; else the parts fall apart.
+  /// soft: the semi-axes of links are dynamic. tied: with joints; otherwise the parts fall freely.
   explicit Linkage(MultiBody& body, bool soft = false, bool tied = true)
       : body_(body), soft_(soft), tied_(tied) {}
 
@@ -48,7 +48,8 @@ class Linkage {
   bool soft_, tied_;
 };
 
-/// n links from the origin on: along x, released at rest, or hanging down; link i rolled by 0.7 i rad.
+/// A chain of n links from the origin: along x, released at rest, or hanging down; link i is rolled by 0.7 i
+/// rad.
 inline void chain(Linkage& linkage, int n, bool hanging = false) {
   const Eigen::Quaterniond along(Eigen::AngleAxisd(hanging ? kPi / 2 : 0, Vec3<double>::UnitY()));
   const Part* before = nullptr;
@@ -60,7 +61,7 @@ inline void chain(Linkage& linkage, int n, bool hanging = false) {
   }
 }
 
-/// n links in a binary tree from the origin on: link i carries links 2i + 1 and 2i + 2 at its far tip.
+/// A binary tree of n links from the origin: link i carries links 2i + 1 and 2i + 2 at its far tip.
 inline void tree(Linkage& linkage, int n) {
   struct Node {
     const Part* part;
@@ -84,7 +85,7 @@ inline void tree(Linkage& linkage, int n) {
   }
 }
 
-/// n links as the sides of an upright regular polygon, hung from the origin at a corner.
+/// A ring of n links: the sides of an upright regular polygon that hangs from the origin at a corner.
 inline void ring(Linkage& linkage, int n) {
   std::vector<const Part*> links;
   Vec3<double> corner = Vec3<double>::Zero();
@@ -98,7 +99,7 @@ inline void ring(Linkage& linkage, int n) {
     linkage.tie(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
 }
 
-/// A sphere held at its centre, with n links all around it.
+/// A star: a sphere on a ball joint at its centre, with n links around it.
 inline void star(Linkage& linkage, int n) {
   const double radius = 0.3;
   const Part& hub = linkage.sphere(Vec3<double>::Zero(), radius);
@@ -113,8 +114,8 @@ inline void star(Linkage& linkage, int n) {
   }
 }
 
-/// n x n touching spheres on a wavy surface (a flat net is singular), each tied to its neighbours where they
-/// touch, and pinned at two corners.
+/// A net of n x n touching spheres on a wavy surface (a flat net is singular), joined at their contacts and
+/// pinned at two corners.
 inline void net(Linkage& linkage, int n) {
   const auto size = static_cast<std::size_t>(n);
   auto along_x = [](int i) {

@@ -1,6 +1,5 @@
-// The motion of what is smooth, to the last digits, by two methods of order 8 that no method of the engine
-// shares: for references, which they reach in hundreds of evaluations where RK4 takes millions. Both know
-// accelerations alone: nothing is projected.
+// References for smooth motion, to rounding, by two methods of order 8 that the engine does not use. They
+// need hundreds of evaluations where RK4 needs millions. Both use accelerations alone, without projection.
 #pragma once
 
 #include <array>
@@ -11,7 +10,7 @@
 
 namespace pliant::bench {
 
-/// y = (q, v) from a state on, whose limits and joints stay as they are.
+/// The motion y = (q, v) from a state, with constant modes of limits and joints.
 class SmoothMotion {
  public:
   SmoothMotion(const Dynamics& dynamics, const State& start)
@@ -122,8 +121,8 @@ class Collocation final : public SmoothMotion {
       if (!(moved < least)) break;
       least = moved;
     }
-    // What diverges is no solution. No less: four-bars, near its singular positions, does not come to 1e-8;
-    // how good a solution is the other method tells.
+    // A diverging iteration is refused. The bound is not tighter, because four-bars does not reach 1e-8 near
+    // its singular positions; the other method measures the accuracy.
     if (!(least <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }

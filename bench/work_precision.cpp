@@ -1,32 +1,33 @@
-// Run time against error of every method of integration, over the problems of problems.h.
+// Run time against error of every method of integration, on the problems of problems.h.
 //
 //   work_precision [--all] [--only PROBLEM] [--again] [FOLDER]
 //
-// writes to FOLDER work_precision.csv (a run a row; bench/plot.py draws it), precision_cost.csv (time at an
-// error), precision_auto.csv (that of auto over that of the best method chosen by hand) and
-// precision_reference.csv (where bodies are at the end); tables to standard output. --all: the long problems
-// too, and four times as long runs. --again: the rows of FOLDER of problems that are not measured stay, and
-// of a run that is in it already, with as many steps and evaluations, the lesser time counts: on a machine
-// that others use, some rounds of the same code tell what it takes.
+// writes to FOLDER work_precision.csv (one row for each run; bench/plot.py draws it), precision_cost.csv
+// (time at a given error), precision_auto.csv (time of auto over the time of the best method) and
+// precision_reference.csv (final positions), and tables to standard output. --all: the long problems too, and
+// four times as long runs. --again: rows of FOLDER for problems that are not measured stay. Of two runs with
+// as many steps and evaluations the smaller time counts: on a shared machine some rounds of the same code
+// give the true cost.
 //
-// Methods without error control take steps of 0.05 s, or eight a run, and each half as long as before; the
-// others tolerances from 0.1 on, each a tenth of the one before; linearly_implicit is measured in either way,
-// to a tolerance as linearly_implicit_controlled. Six settings that succeed at least, and then no more once a
-// run takes 4 s or errors are below what the reference tells.
+// Methods without error control take steps of 0.05 s, or eight a run, then each half as long; the others
+// tolerances from 0.1 on, each a tenth of the last. linearly_implicit is measured in both ways, with a
+// tolerance as linearly_implicit_controlled. Each method has at least six settings that succeed; the sweep
+// ends when a run takes 4 s, or when errors are below those of the reference.
 //
-// error: at the end, of the places of bodies over their length, or of all coordinates (error_scale.h);
-// error_along: the worst at eight times, of a run that stops at each, as are gaps and energies; error_v: of
-// velocities at the end, over the fastest; error_lambda: of the forces of joints there, over the largest.
+// error: of positions at the end over the length of their bodies, or of all coordinates (error_scale.h);
+// error_along: the worst at eight moments of a run that stops at each, as for gaps and energies; error_v: of
+// velocities at the end, over the fastest; error_lambda: of the forces of joints at the end, over the
+// largest.
 //
-// Time: CPU time of the stepping loop, one thread, the least of several, in runs that stop nowhere before,
-// without the trial by which auto chooses.
+// Time: CPU time of the stepping loop, one thread, the minimum of several runs without stops, without the
+// trial of auto.
 //
-// Reference: collocation, and what it differs by from extrapolation (reference_methods.h). Of nodes and of
-// joints that close dop853 to 1e-12 and dormand_prince to 1e-11, or the least that rounding lets them hold:
-// two methods, but the engine's projection and its search for the time of closing are in both. Where bodies
-// touch: dop853 to 1e-10 and rk4, each in short steps and half as long ones, extrapolated, as the error of
-// contacts that last is of first order. Errors below 100 times the difference are written as that, those of
-// velocities and of forces by differences of their own.
+// Reference: collocation, with its difference from extrapolation (reference_methods.h). For nodes and closing
+// joints: dop853 to 1e-12 and dormand_prince to 1e-11, or the smallest tolerance that rounding allows; both
+// use the projection of the engine and its search for the time of closing. For contact: dop853 to 1e-10 and
+// rk4, each in short steps and in half as long ones, extrapolated, because the error of lasting contact is of
+// first order. Errors below 100 times the difference of the references are replaced by that bound; velocities
+// and forces have differences of their own.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -56,17 +57,17 @@ namespace {
 
 constexpr int kSamples = 8;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// What takes steps of one length, or to a tolerance.
+/// Names of the rows with steps of one length, and with a tolerance.
 const std::string kFixed = "linearly_implicit", kControlled = kFixed + "_controlled";
 
-/// How a method is asked to step: to a tolerance, or in so many steps.
+/// A setting of a method: a tolerance, or a number of steps.
 struct Setting {
   std::string method;
   double tolerance;
   long steps;
 };
 
-/// A run: its states at the samples and at the end, the forces of joints there, what it cost.
+/// A run: its states at the samples and at the end, the forces of joints at the end, and its cost.
 struct Outcome {
   std::vector<State> states;
   State end;  // of a reference: the last of them
@@ -82,8 +83,8 @@ double worst_gap(const Model& model, const State& state) {
   return worst;
 }
 
-/// From start to end in so many parts of equal length, with something done after each, whose processor time
-/// is not counted. Returns that of the others, s. Throws StepFailure.
+/// Advances from the start to the end in parts of equal length, with a call after each, whose processor time
+/// is not counted. Returns the time of the parts, s. Throws StepFailure.
 template <class F>
 double go(const Problem& problem, const Setting& setting, int parts, F&& after_part) {
   MultiBody body;
@@ -105,9 +106,9 @@ double go(const Problem& problem, const Setting& setting, int parts, F&& after_p
   return seconds;
 }
 
-/// Once with samples, then timed until so many seconds are spent: steps to a tolerance would be cut short by
-/// samples, and go to the end at once then. What is told of the end is of the runs that are timed. Throws
-/// StepFailure.
+/// Runs once with samples, then repeats for the timing until `repeats` seconds are spent. Samples would cut
+/// steps to a tolerance, so that timed runs go to the end at once; results at the end are of the timed runs.
+/// Throws StepFailure.
 Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) {
   Outcome result;
   auto at_end = [&](const Simulation& simulation) {
@@ -140,7 +141,7 @@ Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) 
   return result;
 }
 
-/// What errors are measured by: a model of the problem.
+/// Measures errors by a model of the problem.
 class Meter {
  public:
   explicit Meter(const Problem& problem) : length_(problem.length) {
@@ -168,7 +169,7 @@ class Meter {
   double of_velocities(const Outcome& a, const Outcome& b) const {
     return scale_->norm(VecX<double>::Zero(a.end.q.size()), a.end.v - b.end.v, b.end.v);
   }
-  /// Over the largest of b; NaN without any.
+  /// Returns the difference over the largest entry of b; NaN if b is empty.
   static double of_forces(const Outcome& a, const Outcome& b) {
     const double largest = b.lambda.size() > 0 ? b.lambda.cwiseAbs().maxCoeff() : 0;
     return largest > 0 ? (a.lambda - b.lambda).cwiseAbs().maxCoeff() / largest : kNone;
@@ -181,8 +182,8 @@ class Meter {
   std::unique_ptr<ErrorScale> scale_;
 };
 
-/// Whether its motion is one smooth function of time that accelerations give: joints that hold, no nodes
-/// (whose stiffness would bound the steps).
+/// Returns whether the motion is one smooth function of time that follows from accelerations: closed joints,
+/// no nodes, whose stiffness would bound the steps.
 bool is_smooth(const Problem& problem) {
   MultiBody body;
   problem.build(body);
@@ -196,7 +197,7 @@ bool is_smooth(const Problem& problem) {
   });
 }
 
-/// To the first tolerance from `finest` on, each ten times the one before, that rounding lets a method hold.
+/// Runs a method to the smallest tolerance that rounding allows: from `finest` on, each ten times the last.
 Outcome to_the_finest(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {
@@ -206,8 +207,8 @@ Outcome to_the_finest(const Problem& problem, const std::string& method, double 
     }
 }
 
-/// By a method of reference_methods.h: with the step at which it agrees best with that of twice the length;
-/// further ones only round.
+/// Runs a method of reference_methods.h with the step that agrees best with the step of twice the length;
+/// shorter steps only add rounding.
 template <class Method>
 Outcome smooth(const Problem& problem, const Meter& meter) {
   constexpr double kAgree = 1e-14, kFirstStep = 0.0125;
@@ -246,7 +247,7 @@ Outcome smooth(const Problem& problem, const Meter& meter) {
   return best;
 }
 
-/// What two runs tend to whose errors are as their steps, those of the second half as long.
+/// Extrapolates two runs of first order; the second has half the step.
 Outcome limit_of(const Outcome& coarse, Outcome fine, const Model& model) {
   for (std::size_t i = 0; i < fine.states.size(); ++i) {
     fine.states[i].q = (2 * fine.states[i].q - coarse.states[i].q).eval();
@@ -262,8 +263,8 @@ struct Cost {
   double cpu_ms, error;
 };
 
-/// CPU time at an error, log-log between the runs on either side, from where all finer ones are below it; NaN
-/// when none is.
+/// Returns the CPU time at an error, by log-log interpolation between the runs on either side, from where all
+/// finer runs are below it; NaN if there are none.
 double cost_at(const std::vector<Cost>& runs, double level) {
   for (std::size_t i = runs.size(); i-- > 0;) {
     if (runs[i].error <= level) continue;
@@ -274,8 +275,8 @@ double cost_at(const std::vector<Cost>& runs, double level) {
   }
   return runs.empty() ? kNone : runs.front().cpu_ms;
 }
-/// CPU time of the cheapest run with at most this error that neither of the next two finer ones is three
-/// times worse than; NaN when there is none.
+/// Returns the CPU time of the cheapest run with at most this error for which the next two finer runs are at
+/// most three times worse; NaN if there is none.
 double cost_of_run(const std::vector<Cost>& runs, double level) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -287,14 +288,14 @@ double cost_of_run(const std::vector<Cost>& runs, double level) {
   return std::isfinite(least) ? least : kNone;
 }
 
-/// What a folder has of earlier rounds.
+/// The rows of earlier rounds in a folder.
 class Rounds {
  public:
-  /// is_measured: of a problem by name. again: whether its rows count at all.
+  /// is_measured: whether a problem is measured now, by name. again: whether earlier rows count.
   Rounds(std::string folder, bool again, std::function<bool(const std::string&)> is_measured)
       : folder_(std::move(folder)), again_(again), is_measured_(std::move(is_measured)) {}
 
-  /// A file of the folder, with the rows that stay.
+  /// Opens a file of the folder, with the rows that stay.
   std::unique_ptr<bench::TableFile> open(const char* name, const std::string& head) const {
     const std::string path = folder_.empty() ? "" : folder_ + name;
     const auto rows = again_ ? bench::read_rows(path, head) : decltype(bench::read_rows(path, head))();
@@ -303,13 +304,13 @@ class Rounds {
       if (!is_measured_(row.front())) file->row(row);
     return file;
   }
-  /// The runs of earlier rounds, by the first columns of their rows.
+  /// Runs of earlier rounds, by the first columns of their rows.
   void read_runs(const char* name, const std::string& head) {
     if (!again_) return;
     for (const std::vector<std::string>& row : bench::read_rows(folder_ + name, head))
       if (row.size() > kTime && !row[kTime].empty()) least_[key(row)] = std::stod(row[kTime]);
   }
-  /// The least time of a run, with that measured now, ms. run: the cells before that.
+  /// Returns the smallest time of a run, including `measured`, ms. run: the cells before the time.
   double least(const std::string& run, double cpu_ms) const {
     const auto found = least_.find(run);
     return found == least_.end() ? cpu_ms : std::min(cpu_ms, found->second);
@@ -329,14 +330,14 @@ class Rounds {
   std::map<std::string, double> least_;
 };
 
-/// What auto takes at an error against the best method of all; levels that the same two runs reach count
+/// The time of auto at an error against that of the best method. Levels that the same two runs reach count
 /// once.
 class Choices {
  public:
   explicit Choices(const Rounds& rounds)
       : file_(rounds.open("precision_auto.csv",
                           "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n")) {}
-  /// NaN: it does not reach this error.
+  /// NaN: the method does not reach this error.
   void add(const std::string& method, double error, double cpu_ms) {
     if (std::isnan(cpu_ms)) return;
     if (method == kAutomatic)
@@ -393,7 +394,7 @@ class Choices {
   std::string worst_, missed_;
 };
 
-/// The settings of a method, from the coarsest on.
+/// Returns the settings of a method, from the coarsest on.
 std::vector<Setting> settings_of(const std::string& method, bool controlled, double end) {
   std::vector<Setting> all;
   if (controlled) {
@@ -500,10 +501,10 @@ int main(int argc, char** argv) try {
         std::snprintf(key, sizeof key, "%s,%s,%g,%ld,%ld,", problem.name.c_str(), method.c_str(), asked,
                       of.steps, of.evaluations);
         of.cpu_ms = rounds.least(key, of.cpu_ms);
-        // What is nearer to the reference than that is to itself may be as far from the truth.
-        auto told = [](double error, double between) { return std::max(error, kResolved * between); };
-        const double error = told(meter.of_places(of.end, exact.end), difference),
-                     along = told(meter.along(of, exact), difference);
+        // The reference is known to the difference of its two methods only.
+        auto resolved = [](double error, double between) { return std::max(error, kResolved * between); };
+        const double error = resolved(meter.of_places(of.end, exact.end), difference),
+                     along = resolved(meter.along(of, exact), difference);
         points.push_back({of.cpu_ms, error});
         runs_file->row("%s%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e,%.3e,%.3e\n", key, of.cpu_ms,
                        of.cpu_ms / problem.end, error, along,

@@ -6,7 +6,7 @@
 
 #include <pliant/deform/all_deforms.h>
 
-#include "primitive_factory.h"
+#include "part/instances/primitive_factory.h"
 
 namespace pliant {
 

@@ -252,7 +252,7 @@ TEST_CASE("given mass and inertia are used", "[mass]") {
       I - 4 * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
   CHECK(v.dot(part->rest_inertia().M * v) == Approx(4 * about_centre(2, 2)).epsilon(1e-14));
   part->make_dynamic({"a1"});
-  CHECK_THROWS_WITH(part->prepare(), test::has_text("rigid part only"));
+  CHECK_THROWS_WITH(part->prepare(), test::has_text("only a rigid part"));
 }
 
 TEST_CASE("M is symmetric and positive definite, and inertial forces balance the power of the change of M",

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <functional>
 
-#include <pliant/body/body_stages.h>
+#include <pliant/body/stages/body_stages.h>
 #include <pliant/body/dynamics.h>
-#include <pliant/body/evaluation.h>
-#include <pliant/body/part_stages.h>
+#include <pliant/body/stages/evaluation.h>
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {

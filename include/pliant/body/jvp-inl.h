@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include <pliant/body/dynamics.h>
-#include <pliant/body/evaluation.h>
+#include <pliant/body/stages/evaluation.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include <pliant/body/dynamics.h>
-#include <pliant/body/part_stages.h>
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/math/header_only.h>
 
 namespace pliant {

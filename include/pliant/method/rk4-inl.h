@@ -21,7 +21,8 @@ inline constexpr double kRk4A[] = {0.5, 0, 0.5, 0, 0, 1}, kRk4Nodes[] = {0, 0.5,
 inline constexpr ButcherTableau kRk4Tableau{"rk4",     4,       4,       kRk4A, kRk4Weights,
                                             kRk4Nodes, nullptr, nullptr, 0,     false};
 
-/// sum += weight rate, or its first share, and to = from + step rate: in one pass over memory.
+/// Adds weight * rate to sum (first: sets it), and computes to = from + step * rate. One function with seven
+/// parameters, for one pass over memory.
 inline void take(const VecX<double>& rate, double weight, bool first, VecX<double>& sum,
                  const VecX<double>& from, double step, VecX<double>& to) {
   constexpr Eigen::Index in_cache = 512;

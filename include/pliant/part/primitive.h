@@ -18,7 +18,7 @@
 #include <utility>
 
 #include <pliant/deform/any_chain.h>
-#include <pliant/part/kernel_instances.h>
+#include <pliant/part/instances/kernel_instances.h>
 #include <pliant/part/part.h>
 
 namespace pliant {

@@ -20,27 +20,6 @@ inline constexpr double kIdle = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxTurnClosing = 0.2;
 
-/// Adds to the velocities x of an island the change that removes the gaps of closed joints at the end of the
-/// step, in `ahead`. Returns false if they are closed there to rounding. widest: the widest gap of the last
-/// iteration, then of this one.
-template <int Max>
-bool close_ahead(const Model& model, const Island& island, const Group<double, Max>& group,
-                 const State& state, const Workspace<double>& ahead, double h, VecX<double>& error,
-                 VecMax<double, Max>& x, double& widest) {
-  error.setZero(island.rows);
-  const double before = std::exchange(widest, 0);
-  for (const int j : island.joints) {
-    const JointModel& joint = model.joints()[at(j)];
-    if (state.joints[at(j)] != JointMode::closed) continue;
-    const auto C = ahead.joints.C.segment(joint.row, joint.rows);
-    widest = wider(C.norm() / rounding(joint, ahead), widest);
-    error.segment(joint.island_row, joint.rows) = C / h;
-  }
-  if (!(widest > 1) || widest > kIdle * before) return false;
-  group.correct(error, x);
-  return true;
-}
-
 /// Closes an island whose last evaluation was that of a rigid island. If that fails, evaluates the island the
 /// general way and returns false.
 inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island, VecX<double>& q_end) {
@@ -185,9 +164,25 @@ class PreStep {
     step_.dynamics.evaluate_joints(state_.time() + step_.h, storage_.q_end, state_.v, state_.joints, *island_,
                                    storage_.ahead);
     kept_.before = kept_.x;
-    return step_.joint_policy().projected &&
-           close_ahead(step_.model(), *island_, group_, state_, storage_.ahead, step_.h, kept_.rows, kept_.x,
-                       widest);
+    return step_.joint_policy().projected && close_gaps(widest);
+  }
+
+  /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false if
+  /// they are closed there to rounding. widest: the widest gap of the last iteration, then of this one.
+  bool close_gaps(double& widest) {
+    VecX<double>& error = kept_.rows;
+    error.setZero(island_->rows);
+    const double before = std::exchange(widest, 0);
+    for (const int j : island_->joints) {
+      const JointModel& joint = step_.model().joints()[at(j)];
+      if (state_.joints[at(j)] != JointMode::closed) continue;
+      const auto C = storage_.ahead.joints.C.segment(joint.row, joint.rows);
+      widest = wider(C.norm() / rounding(joint, storage_.ahead), widest);
+      error.segment(joint.island_row, joint.rows) = C / step_.h;
+    }
+    if (!(widest > 1) || widest > kIdle * before) return false;
+    group_.correct(error, kept_.x);
+    return true;
   }
 
   /// Returns the smallest velocity of a row: with it the limit, or the length of the string, is just reached

@@ -26,7 +26,8 @@ struct Diagnostic {
 /// characters that change the writing direction are escaped, so that a file cannot control the terminal.
 std::string to_string(const Diagnostic& diagnostic);
 
-/// Returns the text with all characters escaped that must not reach a terminal: \n, \x1b, \u{202e}.
+/// Returns the text with all characters escaped that must not reach a terminal: line feed, escape, and
+/// characters that change the writing direction.
 std::string escaped(std::string_view text);
 
 class Diagnostics {

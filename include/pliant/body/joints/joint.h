@@ -96,8 +96,10 @@ struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::lin
 ///   static constexpr bool framed = true;
 /// It has MaterialFrames `from` and `to`. A side with axes has four points; a side with one point has no
 /// axes. Its formula is
+/// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const;
+/// @endcode
 template <class F, class = void>
 struct IsFramed : std::false_type {};
 template <class F>
@@ -112,8 +114,10 @@ struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : st
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
 /// rows; `first` and `second`, the numbers of points of its sides (second = 0: the world itself); and
 /// `one_sided`. Its formula is
+/// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;
+/// @endcode
 /// Formulas for scenes also declare `keys`, the members of JointSetting that they use.
 template <class F>
 class JointOf final : public Joint {

@@ -164,6 +164,7 @@ bool is_constant(const Dual<N>& x, double c) {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <int N, class T>
 struct Eigen::NumTraits<pliant::Dual<N, T>> : Eigen::NumTraits<double> {
   using Real = pliant::Dual<N, T>;
@@ -171,3 +172,4 @@ struct Eigen::NumTraits<pliant::Dual<N, T>> : Eigen::NumTraits<double> {
   using Nested = pliant::Dual<N, T>;
   enum { RequireInitialization = 1 };
 };
+#endif

@@ -160,9 +160,11 @@ struct Pack {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <>
 struct Eigen::NumTraits<pliant::Pack> : Eigen::NumTraits<double> {
   using Real = pliant::Pack;
   using NonInteger = pliant::Pack;
   using Nested = pliant::Pack;
 };
+#endif

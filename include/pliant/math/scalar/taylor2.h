@@ -110,6 +110,7 @@ struct Taylor2 {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <class T>
 struct Eigen::NumTraits<pliant::Taylor2<T>> : Eigen::NumTraits<double> {
   using Real = pliant::Taylor2<T>;
@@ -117,3 +118,4 @@ struct Eigen::NumTraits<pliant::Taylor2<T>> : Eigen::NumTraits<double> {
   using Nested = pliant::Taylor2<T>;
   enum { RequireInitialization = 1 };
 };
+#endif

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include <pliant/body/constraint/constraints.h>
-#include <pliant/body/evaluation.h>
-#include <pliant/body/loads.h>
-#include <pliant/body/part_stages.h>
+#include <pliant/body/stages/evaluation.h>
+#include <pliant/body/stages/loads.h>
+#include <pliant/body/stages/part_stages.h>
 #include <pliant/local/solid/inverted_element.h>
 
 namespace pliant::detail {

@@ -221,7 +221,7 @@ TEST_CASE("invalid contact caches are refused", "[contact]") {
   refuses("not finite", [](Cache& all) { all[0].x[0] = HUGE_VAL; });
   refuses("another model", [](Cache& all) { all[0].between[0] = 3; });
   refuses("another model", [](Cache& all) { all[0].between[2] = -2; });
-  refuses("order", [](Cache& all) { std::swap(all.front(), all.back()); });
+  refuses("not sorted", [](Cache& all) { std::swap(all.front(), all.back()); });
   State old = good;
   old.contact_cache_age = -1;
   CHECK_THROWS_WITH(simulation.set_state(old), test::has_text("negative age"));

@@ -1,5 +1,5 @@
 // The kernels of all deformations, compiled once.
-#include <pliant/part/kernel_instances.h>
+#include <pliant/part/instances/kernel_instances.h>
 
 namespace pliant {
 

@@ -13,7 +13,7 @@
 
 #include <pliant/body/constraint/group.h>
 #include <pliant/body/constraint/one_sided_rows.h>
-#include <pliant/body/evaluation.h>
+#include <pliant/body/stages/evaluation.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant::detail {

@@ -2,7 +2,7 @@
 // gathered at the ports of the parts; part_stages.h turns them into f_q = L^T f, Eq. (11).
 #pragma once
 
-#include <pliant/body/evaluation.h>
+#include <pliant/body/stages/evaluation.h>
 
 namespace pliant::detail {
 
