@@ -1,7 +1,6 @@
-// Bodies of choose_integrator.h.
+// Bodies of choose_integrator.h: trials of the candidates, and the cost model of factorisations.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/simulate/choose_integrator.h>
 
 #include <algorithm>
@@ -13,15 +12,16 @@
 
 #include <pliant/body/step_failure.h>
 #include <pliant/local/solid/inverted_element.h>
+#include <pliant/math/header_only.h>
 #include <pliant/simulate/step_length.h>
 
 namespace pliant {
 
 namespace integrator_choice {
 
-/// Steps of a trial. The first third does not count: steps grow then, and starting transients decay. Steps of
-/// methods that keep factors grow for longer.
-inline constexpr int kSteps = 48, kStepsWithFactors = 96, kStarting = 3;
+/// Number of steps of a trial, more for methods that reuse factors, whose steps grow for longer. The first of
+/// kShares equal shares of the trial is not timed: the steps grow there, and transients of the start decay.
+inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
 /// Longest trial, s.
 inline constexpr double kLongestTrial = 1e3;
 /// Cost of a factorisation of the matrix of n velocities: this times n^2 evaluations. An evaluation takes
@@ -33,55 +33,57 @@ inline constexpr double kFactorisation = 0.005;
 inline constexpr double kSparseFactorisation = 13;
 /// Cost of the solves of a step, in factorisations: 0.13 for that shell, 0.1 for that solid.
 inline constexpr double kSolves = 0.1;
-/// To this tolerance and coarser ones most of the cost in contact are its own steps, of second order for
-/// every method.
+/// For tolerances from this value on, most of the cost in contact is that of the steps with contact, which
+/// are of second order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Most velocities for dense implicit stages.
-inline constexpr int kMostStiff = 300;
+/// Largest number of velocities for dense implicit stages.
+inline constexpr int kMaxDenseVelocities = 300;
 
-/// Returns the seconds of motion per evaluation of the accelerations, or equal cost; 0 if the method fails.
+/// Returns the simulated time (s) per evaluation of the accelerations, or work of equal cost; 0 if the method
+/// fails. factorisation: cost of a factorisation, in evaluations.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                    double factorisation) {
   State state = start;
   Workspace<double> work;
   StepCounters counters, before;
   const int order = method.error_order();
-  const StepError none{std::numeric_limits<double>::infinity(), order, 0};
+  const StepError failed{std::numeric_limits<double>::infinity(), order, 0};
   method.measure(&scale);
   auto attempt = [&] {
     try {
       StepContext step(dynamics, state, work, counters);
       method.step(step);
     } catch (const StepFailure&) {
-      return none;
+      return failed;
     } catch (const InvertedElement&) {
-      return none;
+      return failed;
     }
     const StepError error{method.take_error(), order, state.h};
-    return state.q.allFinite() && state.v.allFinite() ? error : none;
+    return state.q.allFinite() && state.v.allFinite() ? error : failed;
   };
   StepContext start_of_trial(dynamics, state, work, counters);
   state.h = first_step(start_of_trial, scale, order);
   const StepGrowth growth = growth_of(method, dynamics.model());
-  const int most = growth.rarely ? kStepsWithFactors : kSteps;
-  const double far = start.time() + kLongestTrial;
-  double begun = start.time();
-  int begun_at = 0, steps = 0;
-  for (; steps < most && state.time() < far; ++steps) {
-    if (steps == most / kStarting) {
-      begun = state.time();
-      begun_at = steps;
+  const int max_steps = growth.rarely ? kStepsWithFactors : kSteps;
+  const double end = start.time() + kLongestTrial;
+  double timed_from = start.time();
+  int first_timed = 0, steps = 0;
+  for (; steps < max_steps && state.time() < end; ++steps) {
+    if (steps == max_steps / kShares) {
+      timed_from = state.time();
+      first_timed = steps;
       before = counters;
     }
-    if (!take_controlled_step(state, far, 0, growth, counters, attempt)) return 0;
+    if (!take_controlled_step(state, end, 0, growth, counters, attempt)) return 0;
   }
   const auto evaluations = static_cast<double>(counters.evaluations - before.evaluations),
              factored = static_cast<double>(counters.factorisations - before.factorisations);
-  return (state.time() - begun) / (evaluations + factorisation * (factored + kSolves * (steps - begun_at)));
+  return (state.time() - timed_from) /
+         (evaluations + factorisation * (factored + kSolves * (steps - first_timed)));
 }
 
 /// Returns whether the model has elasticity, damping or springs.
-inline bool anything_stiff(const Model& model) {
+inline bool has_stiffness(const Model& model) {
   if (!model.springs().empty()) return true;
   return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
     const Part& part = *m.part;
@@ -95,12 +97,11 @@ inline bool anything_stiff(const Model& model) {
 PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale,
                                                  const State& start) {
   const Model& model = dynamics.model();
-  if (!integrator_choice::anything_stiff(model)) {
+  if (!integrator_choice::has_stiffness(model)) {
     if (model.body().contact.active && scale.tolerance() >= integrator_choice::kCoarse)
-      return {
-          "dormand_prince",
-          "nothing is elastic or damped, and to a tolerance this coarse the steps of bodies that touch need "
-          "no higher order"};
+      return {"dormand_prince",
+              "nothing is elastic or damped, and for a tolerance this coarse steps with contact need no "
+              "higher order"};
     return {"dop853", "nothing is elastic or damped"};
   }
   bool modes = false;
@@ -115,21 +116,21 @@ PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const
   const double sparse = integrator_choice::kSparseFactorisation * std::cbrt(nodes);
   std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
   if (nodes > 0 || modes) candidates.emplace_back("linearly_implicit", sparse);
-  if (nodes == 0 && model.n_v() <= integrator_choice::kMostStiff)
+  if (nodes == 0 && model.n_v() <= integrator_choice::kMaxDenseVelocities)
     candidates.emplace_back("esdirk", integrator_choice::kFactorisation * model.n_v() * model.n_v());
   IntegratorChoice best;
   double fastest = -1;
-  std::ostringstream told;
-  told.precision(2);
+  std::ostringstream reason;
+  reason.precision(2);
   for (const auto& [name, factorisation] : candidates) {
     const std::unique_ptr<Integrator> method = make_integrator(name);
     const double speed = integrator_choice::pace(*method, dynamics, scale, start, factorisation);
-    told << (best.integrator.empty() ? "" : ", ") << name << " advances " << speed
-         << " s for each evaluation of the accelerations";
+    reason << (best.integrator.empty() ? "" : ", ") << name << " advances " << speed
+           << " s per evaluation of the accelerations";
     if (speed > fastest) best.integrator = name;
     fastest = std::max(fastest, speed);
   }
-  best.why = told.str();
+  best.why = reason.str();
   return best;
 }
 

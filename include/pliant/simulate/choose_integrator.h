@@ -1,6 +1,6 @@
-// The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped it is
-// an explicit method of high order. Otherwise each candidate takes some steps from the start, and the one
-// that advances farthest at the same cost is chosen. The cost is counted in evaluations of the accelerations
+// The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped, it is
+// an explicit method of high order. Otherwise each candidate integrates some steps from the start, and the
+// one that advances farthest at equal cost is chosen. The cost is counted in evaluations of the accelerations
 // by a fixed model, never by a clock.
 #pragma once
 
@@ -10,9 +10,9 @@
 
 namespace pliant {
 
-/// The name that asks for this choice.
+/// The name of a method that requests this choice.
 inline constexpr const char* kAutomatic = "auto";
-/// Tolerance of the choice if none is given.
+/// Tolerance with this choice if none is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
 struct IntegratorChoice {
@@ -20,7 +20,7 @@ struct IntegratorChoice {
   std::string why;  ///< the reason, as text
 };
 
-/// Returns the choice. start: the state at time 0, with acting joints closed.
+/// Returns the choice. start: the state at time 0, with engaged joints.
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start);
 
 }  // namespace pliant

@@ -1,16 +1,17 @@
-// Bodies of failure_report.h.
+// Bodies of failure_report.h: the parts of the messages of failed steps.
 #pragma once
+
+#include <pliant/simulate/failure_report.h>
 
 #include <cmath>
 #include <sstream>
 
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
-#include <pliant/simulate/failure_report.h>
 
 namespace pliant::failure_report {
 
-/// A part has burst when its nodes are this many times its size away from rest.
+/// A part has burst if a node is farther from rest than this multiple of its size.
 inline constexpr double kBurst = 2;
 
 PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
@@ -20,14 +21,15 @@ PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
     const Nodes d = m.local->displacements(state.q.data() + m.q0 + 7 + m.n_s);
     const double farthest = d.rowwise().norm().maxCoeff() / m.part->size();
     if (!(farthest > kBurst)) continue;
-    message << "part '" << m.part->name() << "' has burst: its nodes are " << farthest
-            << " times its size away from rest; its elasticity finds no balance with its load (expected a "
-               "smaller one, or a stiffer law), or the steps are too long for it; ";
+    message << "part '" << m.part->name() << "' has burst: its nodes are up to " << farthest
+            << " times its size away from rest, because its elasticity does not balance its load (use a "
+               "smaller load or a stiffer law) or because the steps are too long for it; ";
   }
   return message.str();
 }
 
-/// Names the first joint whose gap is not a finite number. Rigid islands evaluate no gaps.
+/// Returns the name of the first joint whose gap is not finite; empty if there is none. Rigid islands
+/// evaluate no gaps.
 inline std::string gap_not_finite(const Model& model, const Workspace<double>& work) {
   if (work.joints.C.allFinite()) return {};
   for (const JointModel& joint : model.joints()) {
@@ -54,10 +56,9 @@ PLIANT_INLINE std::string cause(const Dynamics& dynamics, const State& before) {
   Workspace<double> scratch;
   std::string term = dynamics.diagnose(before.time(), before.q, before.v, before, scratch);
   if (term.empty()) term = dynamics.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
-  if (!term.empty()) return "the term at fault is " + term;
+  if (!term.empty()) return "the first such term is " + term;
   std::ostringstream message;
-  message << "the motion has grown beyond all bounds, which a smaller step than " << before.h
-          << " s may cure";
+  message << "the motion has grown without bound; use a smaller step than " << before.h << " s";
   return message.str();
 }
 

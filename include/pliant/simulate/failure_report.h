@@ -1,4 +1,4 @@
-// Messages for steps that fail: which parts burst, which number is not finite, what may cure it.
+// Messages of failed steps: parts that have burst, numbers that are not finite, and remedies.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace pliant::failure_report {
 
-/// Names parts that have burst at a state, as the beginning of a message; empty if none has.
+/// Returns the beginning of a message, which names the parts that have burst at a state; empty if none has.
 std::string burst_parts(const Model& model, const State& state);
-/// Names the coordinate, velocity, gap or work that is not finite after a step; empty if all are finite.
-/// work: of the last evaluation of the step.
+/// Returns the name of the coordinate, velocity, gap or work that is not finite after a step; empty if all
+/// are finite. work: the last evaluation of the step.
 std::string not_finite(const Model& model, const State& state, const Workspace<double>& work);
-/// Names the term of the equations of motion that is not finite in the step from a state, and what may cure
-/// it.
+/// Returns the first term of the equations of motion that is not finite in the step from a state, or a remedy
+/// if all terms are finite.
 std::string cause(const Dynamics& dynamics, const State& before);
 
 }  // namespace pliant::failure_report

@@ -1,4 +1,4 @@
-// Bodies of predicted_conflict.h.
+// Bodies of predicted_conflict.h: projections of the state at predicted times.
 #pragma once
 
 #include <pliant/simulate/predicted_conflict.h>
@@ -12,23 +12,23 @@
 namespace pliant {
 
 namespace predicted_conflict {
-/// Longest prediction beyond two steps, in times of the stabilization, and the factor from one prediction to
-/// the next.
-inline constexpr double kLongest = 0.01, kFurther = 10;
+/// Longest prediction, in units of 1 / rate of the stabilization, and the factor from one prediction to the
+/// next.
+inline constexpr double kMaxPrediction = 0.01, kPredictionGrowth = 10;
 }  // namespace predicted_conflict
 
 PLIANT_INLINE void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h) {
   if (dynamics.model().joints().empty()) return;
   const double rate = dynamics.model().body().stabilization.rate,
-               longest = rate > 0 ? predicted_conflict::kLongest / rate : h;
-  for (double ahead = h; ahead <= std::max(longest, predicted_conflict::kFurther * h);
-       ahead *= predicted_conflict::kFurther)
+               longest = rate > 0 ? predicted_conflict::kMaxPrediction / rate : h;
+  for (double ahead = h; ahead <= std::max(longest, predicted_conflict::kPredictionGrowth * h);
+       ahead *= predicted_conflict::kPredictionGrowth)
     try {
       Workspace<double> work;
       StepCounters counters;
-      State then = state;
+      State predicted = state;
       dynamics.accelerations(state.time(), state.q, state.v, state, work);
-      StepContext step(dynamics, then, work, counters, state.time() + ahead, ahead);
+      StepContext step(dynamics, predicted, work, counters, state.time() + ahead, ahead);
       project_joints(step);
     } catch (const UnsatisfiableModel& failure) {
       throw UnsatisfiableModel(failure.what(), state.time());

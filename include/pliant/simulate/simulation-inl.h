@@ -1,15 +1,17 @@
-// A step of a simulation. Its stages, with the files that contain them:
-//   1 begin      keep the state to return to if the step fails          this file
+// The steps of a simulation. The stages of a step, with the files that contain them:
+//   1 begin      store the state, which a failed step restores          this file
 //   2 switch     engage and release joints at their times               project/joint_switching-inl.h
 //   3 integrate  advance q, v and work by the method of integration     method/*-inl.h
 //                evaluate the accelerations, Eqs. (11)-(14)             body/dynamics-inl.h
 //                project limits and joints                              project/project_joints-inl.h
-//   4 contact    predict, advance, detect, locate, resolve, correct,    contact/contact_stepping.h
+//   4 contact    predict, advance, detect, locate, resolve, correct,    contact/contact_stepping-inl.h
 //                sleep: around stage 3
-//   5 accept     accept the step, or repeat it shorter, by its error    simulate/step_length.h
+//   5 accept     accept the step, or reject and repeat it shorter       simulate/step_length.h
 //   6 paths      apply impulses at kinks of prescribed paths            project/follow_paths-inl.h
-//   7 check      refuse states that are not finite                      simulate/failure_report.h
+//   7 check      reject states that are not finite                      simulate/failure_report-inl.h
 #pragma once
+
+#include <pliant/simulate/simulation.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +20,7 @@
 #include <sstream>
 
 #include <pliant/body/advance.h>
+#include <pliant/contact/contact_pairs.h>
 #include <pliant/contact/contact_stepping.h>
 #include <pliant/contact/longest_contact_step.h>
 #include <pliant/local/solid/inverted_element.h>
@@ -28,21 +31,19 @@
 #include <pliant/simulate/choose_integrator.h>
 #include <pliant/simulate/failure_report.h>
 #include <pliant/simulate/predicted_conflict.h>
-#include <pliant/simulate/simulation.h>
 #include <pliant/simulate/step_length.h>
-
-#include <pliant/contact/contact_pairs.h>
 
 namespace pliant {
 
 namespace simulation {
-/// Times are equal within this share of a step, or this many units in the last place.
+/// Times are equal within this share of a step, or this number of units in the last place.
 inline constexpr double kNear = 1e-9, kUlps = 8;
-/// A step after which joints do not close is repeated in this many shorter steps.
-inline constexpr int kShorter = 16;
-/// Shortest step to a tolerance, relative to the time.
-inline constexpr double kLeastStep = 16 * std::numeric_limits<double>::epsilon();
+/// If joints do not close after a step, the step is repeated as this number of shorter steps.
+inline constexpr int kShorterSteps = 16;
+/// Shortest step to a tolerance, as a share of the time.
+inline constexpr double kMinStep = 16 * std::numeric_limits<double>::epsilon();
 
+/// Throws std::invalid_argument if a tolerance is out of range.
 inline void require_tolerance(double tolerance) {
   if (tolerance >= kLeastTolerance && tolerance <= kGreatestTolerance) return;
   std::ostringstream message;
@@ -51,7 +52,7 @@ inline void require_tolerance(double tolerance) {
   throw std::invalid_argument(message.str());
 }
 
-/// Calls act(); an inverted element in it is a failure of the run at time t, s.
+/// Calls act(), and turns the failure of an inverted element into a NumericalFailure at time t, s.
 template <class F>
 auto at_time(double t, F&& act) {
   try {
@@ -61,24 +62,23 @@ auto at_time(double t, F&& act) {
   }
 }
 
-/// Throws std::invalid_argument if the contact cache of a state is not finite, not of this model or not
-/// sorted.
+/// Throws std::invalid_argument if the contact cache of a state is not finite, belongs to another model or is
+/// not sorted.
 inline void check_contact_cache(const State& state, const Model& model) {
-  const std::vector<CachedContact>& contact_cache = state.contact_cache;
   if (state.contact_cache_age < 0)
     throw std::invalid_argument("the contact cache of this state has a negative age");
   const ContactSettings& contact = model.body().contact;
   const std::array<std::size_t, 4> counts{model.parts().size(), model.parts().size(), contact.planes.size(),
                                           contact.obstacles.size()};
-  for (const CachedContact& support : contact_cache) {
-    bool fits = support.between[0] >= 0;
+  for (const CachedContact& cached : state.contact_cache) {
+    bool fits = cached.between[0] >= 0;
     for (std::size_t i = 0; i < counts.size(); ++i)
-      fits = fits && support.between[i] >= -1 && support.between[i] < static_cast<int>(counts[i]);
+      fits = fits && cached.between[i] >= -1 && cached.between[i] < static_cast<int>(counts[i]);
     if (!fits) throw std::invalid_argument("a cached contact of this state belongs to another model");
-    if (!support.x.allFinite() || !support.force.allFinite())
+    if (!cached.x.allFinite() || !cached.force.allFinite())
       throw std::invalid_argument("a cached contact of this state is not finite");
   }
-  if (!std::is_sorted(contact_cache.begin(), contact_cache.end(), ByPair{}))
+  if (!std::is_sorted(state.contact_cache.begin(), state.contact_cache.end(), ByPair{}))
     throw std::invalid_argument("the contact cache of this state is not sorted by the pairs of bodies");
 }
 
@@ -92,19 +92,19 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
       switching_(dynamics_),
       contact_(body.contact.active ? std::make_unique<ContactStepping>(dynamics_) : nullptr),
       state_(model_.initial_state()),
-      held_(static_cast<std::size_t>(model_.n_v())) {
+      without_inertia_(static_cast<std::size_t>(model_.n_v())) {
   const bool automatic = integrator == kAutomatic;
-  const double asked = automatic && tolerance == 0 ? kStandardTolerance : tolerance;
-  if (asked != 0) {
-    simulation::require_tolerance(asked);
-    scale_.emplace(model_, asked);
+  const double requested = automatic && tolerance == 0 ? kStandardTolerance : tolerance;
+  if (requested != 0) {
+    simulation::require_tolerance(requested);
+    scale_.emplace(model_, requested);
   }
   if (!automatic) set_method(make_integrator(integrator));
   const bool projected = body.stabilization.projection.value_or(true);
-  const bool first = !automatic && integrator_->order() == 1;
-  // Its steps in contact are of first order; with a tolerance they are short enough.
-  const bool at_times = !automatic && integrator_->local_is_implicit() && !scale_;
-  dynamics_.set_joint_policy({first, projected, first || at_times});
+  const bool first_order = !automatic && integrator_->order() == 1;
+  // Steps of this method with contact are of first order. With a tolerance they are short enough.
+  const bool first_order_in_contact = !automatic && integrator_->local_is_implicit() && !scale_;
+  dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {
     if (body.stabilization.assemble_first) assembly_ = assemble(dynamics_, state_);
     StepContext start(dynamics_, state_, output_work_, step_counters_, 0, 0);
@@ -122,7 +122,7 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
 
 PLIANT_INLINE Simulation::~Simulation() = default;
 
-/// Sets the method. Throws std::invalid_argument if there is a tolerance and the method has no error
+/// Sets the method. Throws std::invalid_argument if a tolerance is given and the method has no error
 /// estimate.
 PLIANT_INLINE void Simulation::set_method(std::unique_ptr<Integrator> method) {
   integrator_ = std::move(method);
@@ -154,21 +154,21 @@ PLIANT_INLINE void Simulation::step(double h) {
   }
   begin_step();
   if (contact_) contact_->begin_step();
-  guarded(h, [&] { advance(h); });
+  with_rollback(h, [&] { advance(h); });
   ++state_.step;
   end_step();
 }
 
-/// Stage 1: keeps the state at the start of the step.
+/// Stage 1: stores the state at the start of the step.
 PLIANT_INLINE void Simulation::begin_step() {
   last_good_ = state_;
   switching_.begin_step();
 }
 
-/// Calls `step` for a step of h seconds. If it throws, restores the last good state and completes the
+/// Calls step() for a step of h seconds. If it throws, restores the last good state and completes the
 /// message.
 template <class Advance>
-void Simulation::guarded(double h, Advance&& step) {
+void Simulation::with_rollback(double h, Advance&& step) {
   try {
     step();
   } catch (const UnsatisfiableModel& failure) {
@@ -177,7 +177,7 @@ void Simulation::guarded(double h, Advance&& step) {
     if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
     std::ostringstream message;
     message << "a step of " << h << " s is too long for the motion: " << failure.what()
-            << ", but not after steps of " << h / simulation::kShorter << " s";
+            << ", but not after steps of " << h / simulation::kShorterSteps << " s";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     reject_step();
@@ -194,39 +194,41 @@ void Simulation::guarded(double h, Advance&& step) {
 
 PLIANT_INLINE void Simulation::step_up_to(double until) {
   const FlushSubnormals flushed;
-  if (!scale_) throw std::logic_error("a simulation without a tolerance has no step of its own");
+  if (!scale_)
+    throw std::logic_error("step_up_to() needs a tolerance, which determines the length of the step");
   const double now = time();
   if (!(until > now) || !std::isfinite(until)) {
     std::ostringstream message;
-    message << "a step from " << now << " s cannot end at " << until << " s";
+    message << "a step from " << now << " s cannot end at " << until << " s; expected a later, finite time";
     throw std::invalid_argument(message.str());
   }
-  const double least = simulation::kLeastStep * std::max(std::abs(now), std::abs(until));
+  const double min_step = simulation::kMinStep * std::max(std::abs(now), std::abs(until));
   const std::vector<double>& times = model_.switch_times();
-  const auto next = std::upper_bound(times.begin(), times.end(), now + least);
+  const auto next = std::upper_bound(times.begin(), times.end(), now + min_step);
   const double end = next == times.end() ? until : std::min(until, *next);
   state_.start = now;
   state_.step = 0;
   begin_step();
-  switch_joints(now, least);
-  state_.start = switching_.after_kink(now, least);
+  switch_joints(now, min_step);
+  state_.start = switching_.after_kink(now, min_step);
   const int order = integrator_->error_order();
   if (!(state_.h > 0)) {
     StepContext begin = context();
     state_.h = first_step(begin, *scale_, order);
   }
-  // A step that ends near `end` is extended to it, by at most this factor.
-  constexpr double further = 1.1;
-  const Kink kink = model_.next_kink(now + least, std::min(end, now + further * state_.h) + least);
-  const bool bends = std::isfinite(kink.time);
-  const double stop = bends ? just_before(kink.time) : end;
-  const bool done = take_controlled_step(state_, stop, least, growth_of(*integrator_, model_), step_counters_,
-                                         [&] { return try_step(); });
-  if (!done) guarded(state_.h, [&] { fail_to_meet_tolerance(); });
-  const bool at_kink = bends && state_.start >= stop;
+  // A step that ends near `end` is extended to it, at most by this factor.
+  constexpr double max_extension = 1.1;
+  const Kink kink =
+      model_.next_kink(now + min_step, std::min(end, now + max_extension * state_.h) + min_step);
+  const bool has_kink = std::isfinite(kink.time);
+  const double stop = has_kink ? just_before(kink.time) : end;
+  const bool done = take_controlled_step(state_, stop, min_step, growth_of(*integrator_, model_),
+                                         step_counters_, [&] { return try_step(); });
+  if (!done) with_rollback(state_.h, [&] { fail_to_meet_tolerance(); });
+  const bool at_kink = has_kink && state_.start >= stop;
   if (at_kink) state_.start = std::min(kink.time, end);
-  switch_joints(at_kink ? just_after(kink.time) : state_.start, least);
-  if (at_kink) guarded(state_.h, [&] { follow_paths(kink.time, least); });
+  switch_joints(at_kink ? just_after(kink.time) : state_.start, min_step);
+  if (at_kink) with_rollback(state_.h, [&] { follow_paths(kink.time, min_step); });
   end_step();
 }
 
@@ -236,22 +238,24 @@ PLIANT_INLINE void Simulation::reject_step() {
   if (contact_) contact_->undo_step();
 }
 
-/// Takes a step of the length in the state; returns its error: that of the method, with located impacts. If
-/// few bodies rest on each other, or more meet than are located, step doubling estimates the error of
-/// contact. If many bodies do, or soft ones, the error is not estimated and the step is limited instead.
+/// Attempts a step of the length in the state and returns its error: the error of the method, which includes
+/// located impacts. If few bodies rest on each other, or if impacts were not located, step doubling estimates
+/// the error of contact. With many bodies, or with contacts at nodes, this error is not estimated, and the
+/// length of the step is limited instead.
 PLIANT_INLINE StepError Simulation::try_step() {
   if (contact_) {
     contact_->begin_step();
-    begun_ = state_;
+    attempt_start_ = state_;
   }
   const int order = integrator_->error_order();
   StepError result{std::numeric_limits<double>::infinity(), order, state_.h};
   const long impacts = step_counters_.impacts;
   try {
-    result.length = take_step();
+    result.length = integrate();
     const double error = integrator_->take_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
-    if (contact_ && result.error <= 1 && contact_->has_contact_error()) step_in_contact(impacts, result);
+    if (contact_ && result.error <= 1 && contact_->has_contact_error())
+      estimate_contact_error(impacts, result);
   } catch (const StepFailure&) {
     integrator_->take_error();
     result.error = std::numeric_limits<double>::infinity();
@@ -266,14 +270,15 @@ PLIANT_INLINE StepError Simulation::try_step() {
   return result;
 }
 
-/// Completes the error of a step in which bodies rested on each other. impacts: their number before the step.
-PLIANT_INLINE void Simulation::step_in_contact(long impacts, StepError& result) {
-  const bool few = contact_->may_double();
-  // The work of forces on resting bodies is booked for a motion that does not happen: steps stay short for
-  // that.
-  if (!few || !model_.body().forces().empty()) {
+/// Adds the error of contact to the result of a step with resting contacts. impacts: their number before the
+/// step.
+PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& result) {
+  const bool may_double = contact_->may_double();
+  // The booked work of forces on resting bodies belongs to a motion that the contacts prevent. Short steps
+  // limit this error.
+  if (!may_double || !model_.body().forces().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
-    if (!few || share > 1) {
+    if (!may_double || share > 1) {
       result.order = 0;
       result.error = std::max(result.error, share);
       if (result.error <= 1) ++step_counters_.uncontrolled;
@@ -282,30 +287,30 @@ PLIANT_INLINE void Simulation::step_in_contact(long impacts, StepError& result) 
   }
   StepContext step = context();
   const StepError halves =
-      contact_->step_by_doubling(*integrator_, step, *scale_, begun_, result.length, impacts);
+      contact_->step_by_doubling(*integrator_, step, *scale_, attempt_start_, result.length, impacts);
   if (!(halves.error <= result.error)) result = halves;
   result.length = halves.length;
 }
 
-/// Throws the failure of a step that cannot be shorter.
+/// Throws the failure of a step that cannot be shorter: that of the method, or else of the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
-  take_step();
+  integrate();
   std::ostringstream message;
-  message << "the error of a step from t = " << last_good_.time() << " s stays above the tolerance of "
+  message << "the error of a step from t = " << last_good_.time() << " s exceeds the tolerance of "
           << scale_->tolerance()
-          << " however short it is; expected a larger tolerance, or motion without jumps";
+          << " for the shortest possible step; expected a larger tolerance, or motion without jumps";
   throw NumericalFailure(message.str(), last_good_.time());
 }
 
-/// Returns whether joints that do not close after a step close after shorter steps.
+/// Returns whether joints that do not close after a step of h seconds close after shorter steps.
 PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   state_ = last_good_;
   try {
-    for (int i = 0; i < simulation::kShorter; ++i) {
-      state_.start = last_good_.time() + i * h / simulation::kShorter;
+    for (int i = 0; i < simulation::kShorterSteps; ++i) {
+      state_.start = last_good_.time() + i * h / simulation::kShorterSteps;
       state_.step = 0;
-      state_.h = h / simulation::kShorter;
-      advance(h / simulation::kShorter);
+      state_.h = h / simulation::kShorterSteps;
+      advance(h / simulation::kShorterSteps);
     }
   } catch (const StepFailure&) {
     return false;
@@ -315,45 +320,45 @@ PLIANT_INLINE bool Simulation::shorter_steps_pass(double h) {
   return state_.q.allFinite() && state_.v.allFinite();
 }
 
-/// Stages 3 and 4: returns the length of the step, s; with a tolerance it may end early, at an impact.
-PLIANT_INLINE double Simulation::take_step() {
+/// Stages 3 and 4. Returns the length of the step, s; with a tolerance it may end early, at an impact.
+PLIANT_INLINE double Simulation::integrate() {
   StepContext step = context();
   if (contact_) return contact_->step(*integrator_, step, scale_.has_value());
   integrator_->step(step);
   return state_.h;
 }
 
-/// Advances the state by h, except the count of its steps, with stops where joints switch and paths have
-/// kinks.
+/// Stages 2 to 4 and 6 of a step of fixed length: advances the state by h, with stops where joints switch and
+/// paths have kinks. The caller counts the step.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
   if (times.empty() && model_.driven_joints().empty()) {
-    take_step();
+    integrate();
     return;
   }
   const double end = state_.time() + h;
-  const double near = std::max(simulation::kNear * h,
-                               simulation::kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
+  const double tolerance = std::max(
+      simulation::kNear * h, simulation::kUlps * std::numeric_limits<double>::epsilon() * std::abs(end));
   const double start = state_.start;
   const std::int64_t step = state_.step;
-  double now = state_.time(), from = switching_.after_kink(now, near);
-  switch_joints(from, near);
-  while (now < end - near) {
-    const auto next = std::upper_bound(times.begin(), times.end(), now + near);
-    const double stop = next == times.end() || *next > end - near ? end : *next;
-    const Kink kink = model_.next_kink(now + near, stop + near);
-    const bool bends = std::isfinite(kink.time);
-    const double to = bends ? just_before(kink.time) : stop;
+  double now = state_.time(), from = switching_.after_kink(now, tolerance);
+  switch_joints(from, tolerance);
+  while (now < end - tolerance) {
+    const auto next = std::upper_bound(times.begin(), times.end(), now + tolerance);
+    const double stop = next == times.end() || *next > end - tolerance ? end : *next;
+    const Kink kink = model_.next_kink(now + tolerance, stop + tolerance);
+    const bool has_kink = std::isfinite(kink.time);
+    const double to = has_kink ? just_before(kink.time) : stop;
     if (from != state_.time() || to != end) {
       state_.start = from;
       state_.step = 0;
       state_.h = to - from;
     }
-    take_step();
-    now = bends && kink.time < stop - near ? kink.time : stop;
-    from = bends ? just_after(kink.time) : now;
-    switch_joints(from, near);
-    if (bends) follow_paths(kink.time, near);
+    integrate();
+    now = has_kink && kink.time < stop - tolerance ? kink.time : stop;
+    from = has_kink ? just_after(kink.time) : now;
+    switch_joints(from, tolerance);
+    if (has_kink) follow_paths(kink.time, tolerance);
   }
   state_.start = start;
   state_.step = step;
@@ -364,32 +369,33 @@ PLIANT_INLINE StepContext Simulation::context() {
   return {dynamics_, state_, work_, step_counters_};
 }
 
-/// Stage 2: engages and releases joints at a time, s; times nearer than `near` are equal.
-PLIANT_INLINE void Simulation::switch_joints(double t, double near) {
+/// Stage 2: engages and releases joints at a time, s. Times within the tolerance (s) are equal.
+PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
   if (model_.switch_times().empty()) return;
   StepContext at(dynamics_, state_, work_, step_counters_, t, state_.h);
-  switching_.switch_at(at, near);
+  switching_.switch_at(at, tolerance);
 }
 
 /// Stage 6: applies the impulses at a kink (s) of the prescribed paths.
-PLIANT_INLINE void Simulation::follow_paths(double kink, double near) {
+PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   StepContext after(dynamics_, state_, work_, step_counters_, just_after(kink), state_.h);
-  switching_.follow_paths(after, kink, near);
+  switching_.follow_paths(after, kink, tolerance);
 }
 
-/// Stage 7: counts the step, and refuses a state that is not finite.
+/// Stage 7: counts the step, and rejects a state that is not finite.
 PLIANT_INLINE void Simulation::end_step() {
   ++step_counters_.steps;
   const std::string where = failure_report::not_finite(model_, state_, work_);
   if (!where.empty()) fail_not_finite(where);
-  record_held();
+  record_without_inertia();
 }
 
+/// Restores the last good state and throws. where: the number that is not finite.
 PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
   const State before = last_good_;
   std::ostringstream message;
-  message << failure_report::burst_parts(model_, before) << "not a finite number in " << where
-          << " after the step from t = " << before.time() << " s; "
+  message << failure_report::burst_parts(model_, before) << where
+          << " is not a finite number after the step from t = " << before.time() << " s; "
           << failure_report::cause(dynamics_, before);
   reject_step();
   const double stable = largest_stable_step(*this);
@@ -399,12 +405,13 @@ PLIANT_INLINE void Simulation::fail_not_finite(const std::string& where) {
   throw NumericalFailure(message.str(), before.time());
 }
 
-PLIANT_INLINE void Simulation::record_held() {
+/// Records the velocities that had no inertia in the step.
+PLIANT_INLINE void Simulation::record_without_inertia() {
   for (std::size_t i = 0; i < work_.held.size(); ++i) {
     if (work_.held[i] == 0) continue;
     const PartModel& m = model_.parts()[i];
     for (int k = 0; k < 6 + m.n_s; ++k)
-      if (work_.parts[i].held(k)) held_[static_cast<std::size_t>(m.v0 + k)] = true;
+      if (work_.parts[i].held(k)) without_inertia_[static_cast<std::size_t>(m.v0 + k)] = true;
   }
 }
 
@@ -412,7 +419,7 @@ PLIANT_INLINE std::set<std::string> Simulation::held() const {
   std::set<std::string> names;
   for (const PartModel& m : model_.parts())
     for (int k = 0; m.q0 >= 0 && k < 6 + m.n_s; ++k)
-      if (held_[static_cast<std::size_t>(m.v0 + k)]) {
+      if (without_inertia_[static_cast<std::size_t>(m.v0 + k)]) {
         std::string name = model_.velocity_name(m.v0 + k);
         if (k >= 6) name.resize(name.size() - 4);  // without _dot
         names.insert(name);

@@ -22,31 +22,32 @@ class ContactStepping;  // contact/contact_stepping.h
 
 class Simulation {
  public:
-  /// Prepares the body (which must outlive the simulation) and starts at time 0: joints with a small gap are
-  /// closed, and the velocities made consistent. integrator: the name of a method, or kAutomatic. tolerance:
-  /// of the error of a step (method/error_scale.h), which then has its own length; 0: steps have the length
-  /// that the caller asks for, or kStandardTolerance with kAutomatic. Throws std::invalid_argument,
-  /// UnsatisfiableModel.
+  /// Prepares the body, which must outlive the simulation, and starts at time 0: joints with a small gap
+  /// become closed, and impulses make the velocities agree with them. integrator: the name of a method, or
+  /// kAutomatic. tolerance: of the error of a step (method/error_scale.h), which then determines the length
+  /// of the steps; 0: steps have the length that the caller gives, or with kAutomatic the tolerance is
+  /// kStandardTolerance. Throws std::invalid_argument and UnsatisfiableModel.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
   Simulation(const Simulation&) = delete;  // dynamics_ refers to model_
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by h seconds (> 0 and finite): by one step, with stops where joints begin or cease to act, or
-  /// with a tolerance by as many steps as it needs. Throws NumericalFailure, UnsatisfiableModel,
-  /// std::invalid_argument.
+  /// Advances by h seconds (> 0 and finite). Without a tolerance it is one step, with stops where joints
+  /// begin or stop acting; with a tolerance it is as many steps as the tolerance needs. Throws
+  /// NumericalFailure, UnsatisfiableModel and std::invalid_argument; the state is then that before the failed
+  /// step.
   void step(double h);
-  /// Takes one step of the length that the tolerance allows, which ends at the time `until` (s, later than
+  /// Advances by one step of the length that the tolerance allows. It ends at the time `until` (s, later than
   /// now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
   void step_up_to(double until);
 
   const Model& model() const { return model_; }
   const Dynamics& dynamics() const { return dynamics_; }
   const Integrator& integrator() const { return *integrator_; }
-  /// Returns the method that kAutomatic chose, and why; empty for a named method.
+  /// Returns the choice of kAutomatic with its reason; empty for a named method.
   const IntegratorChoice& choice() const { return choice_; }
-  /// Returns the tolerance of the error of a step; 0: the error is not controlled.
+  /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
   /// Continues from another state of the same model. Throws std::invalid_argument if it does not fit.
@@ -55,7 +56,7 @@ class Simulation {
 
   /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
-  /// The energy at the first state, to which the balance refers. A resumed run sets it.
+  /// The energy of the first state, J, to which the balance refers. A resumed run sets it.
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }
 
@@ -64,22 +65,22 @@ class Simulation {
   /// Returns the contacts (contact/contact_stepping.h); nullptr if nothing can touch.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// Returns the impulses of joints that engaged moving parts, or whose prescribed path has a kink, in the
-  /// order of time, without those that are rounding.
+  /// Returns the impulses of joints when they or other joints engaged, and at kinks of prescribed paths, in
+  /// the order of time, except rounding.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
   /// Returns the counters of the kernels, summed over parts.
   Counters counters() const;
-  /// Returns parameters that had no inertia at some step and were fixed there: "part.parameter".
+  /// Returns the parameters that had no inertia at some step, and were fixed in it, as "part.parameter".
   std::set<std::string> held() const;
 
  private:
   template <class Advance>
-  void guarded(double h, Advance&& step);
+  void with_rollback(double h, Advance&& step);
   void advance(double h);
-  double take_step();
+  double integrate();
   void set_method(std::unique_ptr<Integrator> method);
   StepError try_step();
-  void step_in_contact(long impacts, StepError& result);
+  void estimate_contact_error(long impacts, StepError& result);
   void fail_to_meet_tolerance();
   bool shorter_steps_pass(double h);
   void begin_step();
@@ -87,9 +88,9 @@ class Simulation {
   void end_step();
   [[noreturn]] void fail_not_finite(const std::string& where);
   StepContext context();
-  void switch_joints(double t, double near);
-  void follow_paths(double kink, double near);
-  void record_held();
+  void switch_joints(double t, double tolerance);
+  void follow_paths(double kink, double tolerance);
+  void record_without_inertia();
 
   Model model_;
   std::unique_ptr<ThreadPool> pool_;
@@ -99,20 +100,21 @@ class Simulation {
   std::optional<ErrorScale> scale_;  ///< only with a tolerance
   IntegratorChoice choice_;
   std::unique_ptr<ContactStepping> contact_;  ///< nullptr if nothing can touch
-  State state_, last_good_, begun_;
+  State state_, last_good_, attempt_start_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
   AssemblyReport assembly_;
-  std::vector<bool> held_;  ///< by velocity
+  std::vector<bool> without_inertia_;  ///< velocities that had no inertia at some step
   double start_energy_ = 0;
 };
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
-/// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs, the
-/// fastest sway of parts with joints, Baumgarte's terms while a joint is open, and half a radian of rotation
-/// a step. Parts with springs between them are bounded together, or one by one in large groups, with each
-/// spring counted twice. Joints, which only slow the elasticity, are ignored; both are conservative. For a
-/// method that integrates local elasticity implicitly, only springs at nodes count for such parts.
+/// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs,
+/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open, and
+/// a rotation of half a radian per step. Parts that springs connect are bounded together; in large groups
+/// they are bounded separately, with twice the stiffness of each spring. Joints are ignored, because they
+/// only reduce the frequencies of elasticity. Both are conservative. For a method that integrates local
+/// elasticity implicitly, only the springs at nodes of such parts are included.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -13,49 +13,51 @@ namespace pliant {
 
 /// Limits of the growth from one step to the next.
 struct StepGrowth {
-  bool rarely = false;  ///< grow only by kWorthAFactor or more
-  double most = 6;
+  bool rarely = false;  ///< grow only by kMinRareGrowth or more
+  double max_growth = 6;
 };
-/// Growth that is worth a new factorisation, for methods that keep factors for one step length.
-inline constexpr double kWorthAFactor = 2;
+/// Smallest growth that is worth a new factorisation, for methods whose factors depend on the step length.
+inline constexpr double kMinRareGrowth = 2;
 StepGrowth growth_of(const Integrator& method, const Model& model);
 
-/// Returns the length of the step after one of length h with this error, in tolerances. order: of the error
-/// estimate. last_error: of the step before, 0 if there was none. rejected: whether the step is repeated or
-/// was repeated. most: largest growth factor.
-double next_step(double h, double error, double last_error, int order, bool rejected, double most);
+/// Returns the length (s) of the step after a step of length h (s) with this error, in tolerances. order: of
+/// the error estimate. last_error: of the step before, 0 if there was none. rejected: whether this step is or
+/// was repeated. max_growth: largest growth factor.
+double next_step(double h, double error, double last_error, int order, bool rejected, double max_growth);
 
 /// Returns the length of a first step at the state, s. order: of the error estimate of the method. step.work
-/// is storage; its contents are ignored.
+/// is scratch storage; its contents are ignored.
 double first_step(StepContext& step, const ErrorScale& scale, int order);
 
-/// Takes a step from a state, which ends at `end` at the latest: tries the length in the state, and shorter
-/// ones until the error is at most 1 tolerance. attempt(): takes the step in the state and returns its
-/// StepError. Returns false if the step would have to be shorter than `least`.
+/// Takes a step from a state, with the length in the state, which ends at the time `end` (s) at the latest.
+/// Accepts the step if its error is at most 1 tolerance; otherwise rejects it, and repeats it shorter.
+/// attempt(): advances the state by its h and returns the StepError. Returns false if the step would have to
+/// be as short as min_length (s).
 template <class Attempt>
-bool take_controlled_step(State& state, double end, double least, StepGrowth growth, StepCounters& counters,
-                          Attempt&& attempt) {
+bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
+                          StepCounters& counters, Attempt&& attempt) {
   constexpr double kNearEnd = 0.99;  // a step that ends this near to `end` is extended to it
-  const State begun = state;
-  const double now = begun.time();
+  const State start = state;
+  const double now = start.time();
   bool rejected = false;
-  for (double h = begun.h;;) {
-    const bool last = h > kNearEnd * (end - now);
-    const double taken = last ? end - now : h;
-    state = begun;
+  for (double h = start.h;;) {
+    const bool reaches_end = h > kNearEnd * (end - now);
+    const double tried = reaches_end ? end - now : h;
+    state = start;
     state.start = now;
     state.step = 0;
-    state.h = taken;
-    if (taken <= least && !last) return false;
+    state.h = tried;
+    if (tried <= min_length && !reaches_end) return false;
     const auto [error, order, length] = attempt();
-    const double tried = error <= 1 ? taken : length;  // the error is that of the length reached
-    double next =
-        next_step(tried, error, rejected ? 0 : begun.error, order, rejected || !(error <= 1), growth.most);
-    if (error <= 1 && growth.rarely && next < kWorthAFactor * taken) next = taken;
-    if (error <= 1) {
-      const bool cut = length < taken;
-      state.start = last && !cut ? end : now + length;
-      state.h = cut ? h : last ? std::max(h, next) : next;  // a step that an event cut keeps its length
+    const bool accepted = error <= 1;
+    const double measured = accepted ? tried : length;  // length to which the error belongs
+    double next = next_step(measured, error, rejected ? 0 : start.error, order, rejected || !accepted,
+                            growth.max_growth);
+    if (accepted && growth.rarely && next < kMinRareGrowth * tried) next = tried;
+    if (accepted) {
+      const bool cut = length < tried;
+      state.start = reaches_end && !cut ? end : now + length;
+      state.h = cut ? h : reaches_end ? std::max(h, next) : next;  // a step cut by an event keeps its length
       state.error = error;
       return true;
     }
