@@ -1,16 +1,20 @@
-// What contact costs: time per body and step of ellipsoids dropped on a plane, from the first impacts until
-// they lie still, and of towers and pyramids of ten boxes that stand; the exponent of its growth with their
-// number, and the share of each stage.
+// The cost of contact: time per body and step of ellipsoids that fall onto a plane, from the first impacts
+// until they are at rest, and of standing towers and pyramids of ten boxes. Also the exponent with which the
+// cost grows with the number of bodies, and the share of each stage.
 //
-//   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
-//   standard output; no more than MOST bodies (10000)
+//   contact_bench [FOLDER] [MAX]
 //
-// Begun: a step at the end, alone, whose search for impulses begins at the supports of the step before, as
-// those of ten steps in eleven do; anew: one whose search begins at none. Asleep: a step in which all of them
-// sleep, which a scene may ask for. Stages, of a step at the end: motion (the method's own step), near (what
-// may meet), find (contacts), solve (impulses). They are timed one by one, in loops of their own, so that
-// their caches are warm.
-#include <cmath>
+// Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
+// largest number of bodies (10000).
+//
+// The table and the columns of the file name these single steps at the end of the run: begun (warm-started):
+// the impulse solver starts from the impulses of the previous step, as in ten steps of eleven; anew (cold
+// start): the solver starts without them; asleep: all bodies sleep, which a scene can enable. still is the
+// mean of the last tenth of the run.
+//
+// Stages of a step at the end: motion (the step of the integration method alone), near (candidate pairs),
+// find (contacts), solve (impulses). They are timed one by one in separate loops, so that their caches are
+// warm.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -29,13 +33,13 @@ namespace {
 
 constexpr double kStep = 2e-3, kDuration = 1;
 
-enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: of three parameters each
+enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: three parameters per body
 
 struct System {
   const char* name;
   Bodies bodies;
-  int layers;  ///< on top of each other; 1: side by side
-  int most;    ///< bodies
+  int layers;  ///< layers on top of each other; 1: side by side
+  int most;  ///< largest number of bodies
 };
 
 /// Times in microseconds per body and step.
@@ -43,15 +47,15 @@ struct Cost {
   std::string system;
   int bodies, contacts;
   double begun, anew;
-  double step, still_step;  ///< over the whole fall and its impacts; of the end
-  double asleep;            ///< of a step in which all sleep
+  double step, still_step;  ///< over the whole run with its impacts; of the end of the run
+  double asleep;  ///< of a step in which all bodies sleep
   double motion, near, find, solve;
-  double deepest;  ///< penetration over all of it, in sizes of a body
+  double deepest;  ///< largest penetration in the run, in sizes of a body
   double residual;
   long fallbacks;
 };
 
-/// A number in [0, 1) from a count: the fractional parts of multiples of the golden ratio.
+/// Returns the fractional part of (i + 1) * ratio: a quasi-random number in [0, 1).
 double spread(int i, double ratio) {
   return std::fmod((i + 1) * ratio, 1.0);
 }
@@ -67,7 +71,7 @@ void build_towers(MultiBody& body, const System& system, int n) {
   }
 }
 
-/// Of rows of 4, 3, 2 and 1.
+/// Pyramids with rows of 4, 3, 2 and 1 boxes.
 void build_pyramids(MultiBody& body, int n) {
   constexpr double half = 0.05;
   for (int first = 0; first < n; first += 10)
