@@ -1,3 +1,4 @@
+// Declaration, check and use of --color-by and --color-range.
 #include "color_options.h"
 
 #include <cmath>
@@ -24,16 +25,17 @@ CLI::Option* add_by(CLI::App& command, ColorOptions& options, const std::string&
 }  // namespace
 
 void add_color_by(CLI::App& command, ColorOptions& options) {
-  add_by(command, options, "Quantity that PLY vertices carry besides, or none: part [as the scene says]");
+  add_by(command, options,
+         "Quantity written with each vertex of a PLY file; part for none [as in the scene]");
 }
 
 void add_color_options(CLI::App& command, ColorOptions& options) {
   CLI::Option* by = add_by(command, options,
-                           "Colours of pictures: of each part its own, or by how parts are deformed [as the "
-                           "scene says]");
+                           "Colours in pictures: part for the colour of each part, or a quantity of the "
+                           "deformation [as in the scene]");
   command
       .add_option("--color-range", options.range,
-                  "Values with the first and the last colour [from 0 as far as the motion goes]")
+                  "Values of the first and the last colour [0 to the largest recorded value]")
       ->expected(2)
       ->check(any_number())
       ->needs(by)
@@ -44,7 +46,8 @@ void check_colors(const ColorOptions& options) {
   if (options.range.empty()) return;
   const double span = options.range[1] - options.range[0];
   if (!(span > 0) || !std::isfinite(span))
-    throw CLI::ValidationError("--color-range", "the second number must be larger than the first");
+    throw CLI::ValidationError("--color-range",
+                               "the second number must be larger than the first, and both must be finite");
 }
 
 void apply_colors(const ColorOptions& options, pliant::Scene& scene) {
@@ -54,7 +57,7 @@ void apply_colors(const ColorOptions& options, pliant::Scene& scene) {
     scene.coloring.reset();
     return;
   }
-  // Another quantity than the scene's has another range.
+  // The range of the scene is valid only for the quantity of the scene.
   if (!scene.coloring || scene.coloring->by != *by) {
     pliant::Coloring asked;
     asked.by = *by;

@@ -1,4 +1,4 @@
-// Colouring parts by how they are deformed: --color-by and --color-range.
+// The options --color-by and --color-range: colours of parts by a quantity of their deformation.
 #pragma once
 
 #include <string>
@@ -11,15 +11,16 @@
 namespace pliant_cli {
 
 struct ColorOptions {
-  std::string by;  ///< "part", the name of a quantity, or empty: as the scene says
+  std::string by;  ///< "part", or the name of a quantity; empty for the setting of the scene
   std::vector<double> range;
 };
 /// Declares --color-by and --color-range.
 void add_color_options(CLI::App& command, ColorOptions& options);
-/// Declares --color-by alone, for files that hold values and no colours of them.
+/// Declares --color-by alone, for files that contain values but no colours for them.
 void add_color_by(CLI::App& command, ColorOptions& options);
-/// Throws CLI::ValidationError on a range that does not rise.
+/// Throws CLI::ValidationError if the range is not increasing.
 void check_colors(const ColorOptions& options);
+/// Sets the colouring of a scene as the options require.
 void apply_colors(const ColorOptions& options, pliant::Scene& scene);
 
 }  // namespace pliant_cli

@@ -1,4 +1,5 @@
-// A command of the program: it declares its options, and once they are parsed, leaves what is to be done.
+// The commands of the program. Each declares its options; after parsing, the selected command sets the
+// action.
 #pragma once
 
 #include <functional>
@@ -9,7 +10,7 @@
 
 namespace pliant_cli {
 
-/// What the command line asks for; returns an exit code, throws what failure.h knows.
+/// The action of a command line. Returns an exit code; throws exceptions that failure.h reports.
 using Action = std::function<int()>;
 
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line);

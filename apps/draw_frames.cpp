@@ -1,3 +1,4 @@
+// Opens a graphics library before drawing, to report a missing one.
 #include "draw_frames.h"
 
 #include <stdexcept>
@@ -15,12 +16,11 @@ std::string require_graphics(pliant::GlBackend backend) {
   }
 }
 
-void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,
-                 const pliant::Recording& recording, double frame_rate,
+void draw_frames(const std::filesystem::path& folder, const pliant::FilmSource& source, double frame_rate,
                  const std::vector<std::int64_t>& frames, pliant::Progress& progress,
                  pliant::GlBackend backend) {
   require_graphics(backend);
-  pliant::render_frames(folder, scene, model, recording, frame_rate, frames, progress, backend);
+  pliant::render_frames(folder, source, frame_rate, frames, progress, backend);
 }
 
 }  // namespace pliant_cli

@@ -1,4 +1,4 @@
-// Drawing a run's frames from the program: a missing graphics library becomes a failure of its own.
+// Drawing the frames of a run. A missing graphics library is reported as ResourceFailure.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,12 @@
 
 namespace pliant_cli {
 
-/// Opens a graphics library and closes it again. Throws ResourceFailure when none opens; returns the words
-/// for run.json, as "OSMesa: llvmpipe".
+/// Opens a context and closes it again. Returns its description for run.json, as "OSMesa: llvmpipe,
+/// OpenGL 4.5". Throws ResourceFailure if none opens.
 std::string require_graphics(pliant::GlBackend backend);
 
-/// As pliant::render_frames; throws ResourceFailure when no graphics library opens.
-void draw_frames(const std::filesystem::path& folder, const pliant::Scene& scene, const pliant::Model& model,
-                 const pliant::Recording& recording, double frame_rate,
+/// Calls pliant::render_frames. Throws ResourceFailure if no graphics library opens.
+void draw_frames(const std::filesystem::path& folder, const pliant::FilmSource& source, double frame_rate,
                  const std::vector<std::int64_t>& frames, pliant::Progress& progress,
                  pliant::GlBackend backend);
 

@@ -1,4 +1,4 @@
-// Exit codes of the program; documented in its help.
+// Exit codes of the program, as its help describes them.
 #pragma once
 
 namespace pliant_cli {
@@ -14,12 +14,12 @@ enum ExitCode {
   kResources = 8,
   kWouldOverwrite = 9,
   kDoesNotFit = 10,
-  kSignal = 128,  // plus the number of the signal
+  kSignal = 128,  // the number of the signal is added
 };
 
 inline constexpr const char* kExitCodesHelp =
     "Exit codes: 0 done, 1 internal error, 2 command line, 3 input, 4 joints contradict each other,\n"
-    "5 numerical failure, 7 file system, 8 resources (memory, graphics), 9 would overwrite,\n"
-    "10 recording does not fit, 130/143 stopped by a signal (go on with --resume).";
+    "5 numerical failure, 7 file system, 8 resources (memory, graphics), 9 would overwrite files,\n"
+    "10 recording does not match the scene or program, 130/143 stopped by a signal (continue with --resume).";
 
 }  // namespace pliant_cli

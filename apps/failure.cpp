@@ -1,3 +1,4 @@
+// The exit code and the message of each exception, and messages for words that were not understood.
 #include "failure.h"
 
 #include <algorithm>
@@ -22,12 +23,12 @@
 namespace pliant_cli {
 namespace {
 
-int tell(const char* what, int code) {
+int report(const char* what, int code) {
   std::cerr << "pliant: error: " << what << "\n";
   return code;
 }
 
-// Names that could have been meant where a word was not understood.
+// Names to suggest for an option that does not exist.
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {
@@ -46,7 +47,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 
 std::string unexpected_words(const CLI::App& app, const CLI::App& command) {
   std::vector<std::string> words = app.remaining(true);
-  if (&command == &app && words.size() > 1) words.resize(1);  // without a command the rest has no meaning
+  if (&command == &app && words.size() > 1) words.resize(1);  // the first word should be a command
   std::string text;
   for (const std::string& word : words) {
     const std::string name = word.substr(0, word.find('='));
@@ -72,34 +73,34 @@ int reporting_failures(const std::function<int()>& task) {
     std::cerr << error.what();
     return kInput;
   } catch (const pliant::FileError& error) {
-    return tell(error.what(), error.exit_code());
+    return report(error.what(), error.exit_code());
   } catch (const pliant::OutputRefused& error) {
-    return tell(error.what(), kWouldOverwrite);
+    return report(error.what(), kWouldOverwrite);
   } catch (const pliant::RecordingMismatch& error) {
-    return tell(error.what(), kDoesNotFit);
+    return report(error.what(), kDoesNotFit);
   } catch (const pliant::UnsatisfiableModel& error) {
-    return tell(error.what(), kUnsatisfiable);
+    return report(error.what(), kUnsatisfiable);
   } catch (const pliant::NumericalFailure& error) {
-    return tell(error.what(), kNumerical);
+    return report(error.what(), kNumerical);
   } catch (const pliant::Interrupted& error) {
     std::cerr << "pliant: " << error.what() << "\n";
     return kSignal + stop_signal();
   } catch (const ResourceFailure& error) {
-    return tell(error.what(), kResources);
+    return report(error.what(), kResources);
   } catch (const pliant::OutOfMemory& error) {
-    return tell(error.what(), kResources);
+    return report(error.what(), kResources);
   } catch (const std::bad_alloc&) {
-    return tell("out of memory", kResources);
+    return report("out of memory; reduce the resolution or the number of parts", kResources);
   } catch (const std::filesystem::filesystem_error& error) {
     const std::string what = error.what(), label = "filesystem error: ";
-    return tell(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),
-                kFileSystem);
+    return report(what.compare(0, label.size(), label) == 0 ? what.c_str() + label.size() : what.c_str(),
+                  kFileSystem);
   } catch (const std::system_error& error) {
-    return tell(error.what(), kFileSystem);
+    return report(error.what(), kFileSystem);
   } catch (const std::invalid_argument& error) {
-    return tell(error.what(), kInput);
+    return report(error.what(), kInput);
   } catch (const std::exception& error) {
-    return tell((std::string("internal: ") + error.what()).c_str(), kInternal);
+    return report((std::string("internal error: ") + error.what()).c_str(), kInternal);
   }
 }
 

@@ -1,4 +1,4 @@
-// From exceptions to a message on standard error and an exit code.
+// Conversion of exceptions to a message on standard error and an exit code.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,16 @@
 
 namespace pliant_cli {
 
-/// The machine lacks something (a graphics library): exit code 8.
+/// A resource of the machine is missing (a graphics library): exit code 8.
 class ResourceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Runs a task; every exception ends here.
+/// Runs a task and returns its exit code. Reports every exception and returns the exit code for it.
 int reporting_failures(const std::function<int()>& task);
 
-/// The same for a command line that could not be parsed; help and version come this way too, with code 0.
+/// Reports a command line that could not be parsed and returns its exit code. Prints help and version too,
+/// with exit code 0.
 int report_parse_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace pliant_cli

@@ -1,4 +1,4 @@
-// Which way to a picture is taken: --gl.
+// The option --gl: which graphics library draws the pictures.
 #pragma once
 
 #include <map>
@@ -10,6 +10,7 @@
 
 namespace pliant_cli {
 
+/// Declares --gl.
 void add_graphics_option(CLI::App& command, pliant::GlBackend& backend);
 
 }  // namespace pliant_cli

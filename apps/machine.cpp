@@ -1,3 +1,4 @@
+// Processor features, loaded BLAS libraries, programs in PATH, and the text of --version.
 #include "machine.h"
 
 #include <cstdlib>
@@ -55,21 +56,20 @@ std::string version_text() {
   std::string text;
   for (const auto& [name, value] : pliant::build_info()) text += name + " " + value + "\n";
   const std::string features = processor_features();
-  if (!features.empty()) text += "processor features here: " + features + "\n";
+  if (!features.empty()) text += "processor features of this machine: " + features + "\n";
   text += std::string("libpng ") + pliant::png_library_version() + "\n";
   text +=
-      "licence of the sources: MIT. Eigen is MPL-2, nlohmann-json MIT, CLI11 BSD-3, libpng under its own "
-      "permissive "
-      "licence.\n"
+      "licence of the sources: MIT. Eigen is MPL-2, nlohmann-json MIT, CLI11 BSD-3; libpng has its own "
+      "permissive licence.\n"
 #ifdef PLIANT_HAS_SUITESPARSE
-      "SuiteSparse is linked: AMD is BSD-3, CHOLMOD's core LGPL-2.1+, its supernodal module GPL-2+, so that "
-      "this "
-      "program is distributed under the GPL's terms.\n"
+      "SuiteSparse is linked: AMD is BSD-3, the core of CHOLMOD LGPL-2.1+ and its supernodal module GPL-2+. "
+      "This program "
+      "is therefore distributed under the terms of the GPL.\n"
 #else
       "SuiteSparse is not linked.\n"
 #endif
-      "graphics: OSMesa or EGL, opened only when a picture is asked for (pliant doctor tells which there "
-      "are).\n";
+      "graphics: OSMesa or EGL, opened only when a picture is requested (pliant doctor lists the available "
+      "ones).\n";
   return text;
 }
 

@@ -1,4 +1,4 @@
-// What the machine offers and what is linked, in words.
+// Texts about the machine and the linked libraries.
 #pragma once
 
 #include <string>
@@ -6,14 +6,15 @@
 
 namespace pliant_cli {
 
-/// Instruction sets of the processor that matter here: "avx avx2 fma"; empty where they are not known.
+/// Returns the instruction sets of the processor that the library can use, as "avx avx2 fma"; empty if
+/// unknown.
 std::string processor_features();
-/// BLAS libraries that are loaded into this process; "none" if there are none.
+/// Returns the BLAS libraries that are loaded into this process, or "none".
 std::string loaded_blas();
-/// Path of a program in PATH; empty if there is none.
+/// Returns the path of a program in PATH; empty if there is none.
 std::string find_program(const std::string& name);
 
-/// Text of pliant --version.
+/// Returns the text of pliant --version.
 std::string version_text();
 
 }  // namespace pliant_cli

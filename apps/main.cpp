@@ -1,4 +1,4 @@
-// The program pliant: parses the command line and does what it asks.
+// The program pliant: parses the command line and runs the selected command.
 #include <cerrno>
 #include <iostream>
 #include <string>
@@ -21,11 +21,11 @@ int run_command(int argc, char** argv) {
 #endif
   app.require_subcommand(1);
   app.set_version_flag("--version", pliant_cli::version_text(),
-                       "Print versions, what is linked, and licences");
+                       "Print versions, linked libraries and licences");
   app.footer(
       std::string("Examples:\n"
                   "  pliant run scenes/pull.json --png -o out/pull    simulate, record, draw\n"
-                  "  pliant info scenes/pull.json                     what the scene is to the engine\n"
+                  "  pliant info scenes/pull.json                     parts, masses, degrees of freedom\n"
                   "  pliant list shapes                               parameters, ranges, formulas\n"
                   "  pliant run --help                                options of a command\n\n") +
       pliant_cli::kExitCodesHelp);

@@ -1,3 +1,4 @@
+// Reads the record, the scene and the recording of a run, and checks that they belong together.
 #include "open_run.h"
 
 #include <pliant/io/format/number_text.h>
@@ -15,27 +16,28 @@ OpenRun open_run(const std::filesystem::path& folder) {
   run.record = pliant::read_run_record(folder / pliant::kRunFile);
   const std::filesystem::path file = folder / pliant::kSceneFile;
   if (!std::filesystem::exists(file))
-    throw pliant::RecordingMismatch("the run has no scene: there is no " + file.string());
-  pliant::Diagnostics warnings;  // they were shown when the run began
+    throw pliant::RecordingMismatch("cannot open the run in " + folder.string() + ": its scene " +
+                                    file.string() + " is missing");
+  pliant::Diagnostics warnings;  // ignored: they were shown at the start of the run
   run.scene = pliant::read_scene(file.string(), run.record.overrides, warnings, solvers(),
                                  pliant::MeshFiles::of_a_run);
   if (run.scene->hash != run.record.scene_hash)
-    throw pliant::RecordingMismatch(file.string() +
-                                    " is not the scene that was recorded: it was changed since");
+    throw pliant::RecordingMismatch("the scene " + file.string() +
+                                    " was changed after the run was recorded; restore it or simulate again");
   run.scene->name = run.record.scene;
   run.scene->frame_rate = run.record.frame_rate;
   run.scene->width = run.record.width;
   run.scene->height = run.record.height;
   run.model = std::make_unique<pliant::Model>(run.scene->body);
   run.recording = std::make_unique<pliant::Recording>(folder, *run.model);
-  // A run that was killed may have lost what it had not yet sent to the disk; one that ended has not.
+  // A run that was killed may have lost states that were not yet on the disk. A run that ended cannot have.
   if (run.record.status != pliant::RunRecord::Status::running && run.recording->rows() < run.record.states)
-    throw pliant::RecordingMismatch("the recording in " + folder.string() + " is damaged: its tables hold " +
-                                    pliant::count_text(run.recording->rows(), "whole state") +
-                                    ", the run had recorded " + std::to_string(run.record.states) +
-                                    "; pliant run --resume simulates the rest again");
+    throw pliant::RecordingMismatch(
+        "the recording in " + folder.string() + " is damaged: its tables contain " +
+        pliant::count_text(run.recording->rows(), "whole state") + ", but the run recorded " +
+        std::to_string(run.record.states) + "; pliant run --resume simulates the missing ones again");
   if (run.recording->rows() == 0)
-    throw pliant::RecordingMismatch("the recording in " + folder.string() + " is empty");
+    throw pliant::RecordingMismatch("the recording in " + folder.string() + " has no state; simulate again");
   return run;
 }
 
@@ -52,7 +54,8 @@ void prepare_frame_folder(const std::filesystem::path& folder, const std::vector
   for (const std::int64_t frame : frames) {
     const std::filesystem::path file = folder / pliant::frame_name("frame", frame, ending);
     if (std::filesystem::exists(file))
-      throw pliant::OutputRefused(file.string() + " exists; --force replaces it, -o names another folder");
+      throw pliant::OutputRefused(file.string() +
+                                  " exists; use --force to replace it, or -o for another folder");
   }
 }
 

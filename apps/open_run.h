@@ -1,5 +1,4 @@
-// A finished (or unfinished) run opened for reading: its scene is built again from the copy beside the
-// recording.
+// A finished or unfinished run, opened for reading. Its scene is built again from the copy in its folder.
 #pragma once
 
 #include <filesystem>
@@ -17,16 +16,16 @@ struct OpenRun {
   std::unique_ptr<pliant::Model> model;
   std::unique_ptr<pliant::Recording> recording;
 
-  /// Frames that the recording reaches.
+  /// Number of frames up to the last recorded time.
   std::int64_t frames() const;
 };
 
-/// Throws pliant::FileError when the folder holds no run, pliant::RecordingMismatch when this program cannot
-/// read it.
+/// Opens the run in a folder. Throws pliant::FileError if there is none, and pliant::RecordingMismatch if
+/// this program cannot read it.
 OpenRun open_run(const std::filesystem::path& folder);
 
-/// Makes a folder for frames where there is none. Throws pliant::OutputRefused when a file of one of these
-/// frames exists and `force` is not given.
+/// Makes a folder for frames if there is none. ending: of the file names. Throws pliant::OutputRefused if a
+/// file of one of the frames exists and `force` is false.
 void prepare_frame_folder(const std::filesystem::path& folder, const std::vector<std::int64_t>& frames,
                           const std::string& ending, bool force);
 

@@ -1,3 +1,4 @@
+// Validators of option values.
 #include "options.h"
 
 #include <charconv>
@@ -12,7 +13,8 @@
 namespace pliant_cli {
 namespace {
 
-// Accepts what `parse` takes without throwing std::invalid_argument, whose message is shown otherwise.
+// Accepts a text if `parse` does not throw std::invalid_argument; otherwise the message of the exception is
+// shown.
 CLI::Validator parsed_by(const std::function<void(const std::string&)>& parse) {
   return {[parse](std::string& text) -> std::string {
             try {
@@ -25,7 +27,7 @@ CLI::Validator parsed_by(const std::function<void(const std::string&)>& parse) {
           ""};
 }
 
-constexpr int kMostPixels = 8192;
+constexpr int kMaxPixels = 8192;
 
 template <class Number>
 std::optional<Number> parse(const std::string& text) {
@@ -55,20 +57,20 @@ CLI::Validator number_from_zero() {
   return number_that("a number >= 0", [](double x) { return x >= 0; });
 }
 
-CLI::Validator number_between(double least, double most) {
-  return number_that("a number from " + pliant::number_text(least) + " to " + pliant::number_text(most),
-                     [least, most](double x) { return x >= least && x <= most; });
+CLI::Validator number_between(double min, double max) {
+  return number_that("a number from " + pliant::number_text(min) + " to " + pliant::number_text(max),
+                     [min, max](double x) { return x >= min && x <= max; });
 }
 
 CLI::Validator any_number() {
   return number_that("a finite number", [](double) { return true; });
 }
 
-CLI::Validator count_up_to(int most) {
-  return {[most](std::string& text) -> std::string {
+CLI::Validator count_up_to(int max) {
+  return {[max](std::string& text) -> std::string {
             const std::optional<int> number = parse<int>(text);
-            if (number && *number >= 1 && *number <= most) return {};
-            return "\"" + text + "\" is not a whole number from 1 to " + std::to_string(most);
+            if (number && *number >= 1 && *number <= max) return {};
+            return "\"" + text + "\" is not a whole number from 1 to " + std::to_string(max);
           },
           ""};
 }
@@ -77,7 +79,7 @@ PictureSize parse_picture_size(const std::string& text) {
   const std::size_t by = text.find('x');
   if (by == std::string::npos) return {};
   const std::optional<int> width = parse<int>(text.substr(0, by)), height = parse<int>(text.substr(by + 1));
-  const auto good = [](const std::optional<int>& n) { return n && *n >= 1 && *n <= kMostPixels; };
+  const auto good = [](const std::optional<int>& n) { return n && *n >= 1 && *n <= kMaxPixels; };
   if (!good(width) || !good(height)) return {};
   return {*width, *height};
 }
@@ -86,18 +88,16 @@ CLI::Validator picture_size() {
   return {[](std::string& text) -> std::string {
             if (parse_picture_size(text).width > 0) return {};
             return "\"" + text + "\" is not a size like 640x480 (each side from 1 to " +
-                   std::to_string(kMostPixels) + ")";
+                   std::to_string(kMaxPixels) + ")";
           },
           ""};
 }
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
-  command
-      .add_option("--frames", options.frames,
-                  "Which frames: FIRST:END:STRIDE, END not included, or one number [all]")
+  command.add_option("--frames", options.frames, "Frames: FIRST:END:STRIDE without END, or one number [all]")
       ->check(parsed_by([](const std::string& text) { pliant::FrameRange::parse(text); }))
       ->type_name("A:B:S");
-  command.add_option("--shard", options.shard, "Only the i-th of n equal shares, for several processes")
+  command.add_option("--shard", options.shard, "Only share I of N of the frames, for several processes")
       ->check(parsed_by([](const std::string& text) { pliant::FrameRange().parse_shard(text); }))
       ->type_name("I/N");
 }

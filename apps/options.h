@@ -1,4 +1,5 @@
-// Checks of option values: the whole word must be understood, whatever the locale.
+// Checks of option values. A value must be a valid number from its first to its last character, in any
+// locale.
 #pragma once
 
 #include <string>
@@ -13,12 +14,12 @@ namespace pliant_cli {
 CLI::Validator positive_number();
 /// A number >= 0, finite.
 CLI::Validator number_from_zero();
-/// A number from least to most.
-CLI::Validator number_between(double least, double most);
+/// A number from min to max.
+CLI::Validator number_between(double min, double max);
 /// A finite number.
 CLI::Validator any_number();
-/// A whole number from 1 to most.
-CLI::Validator count_up_to(int most);
+/// A whole number from 1 to max.
+CLI::Validator count_up_to(int max);
 
 /// "640x480": width and height in pixels, each from 1 to 8192.
 struct PictureSize {
@@ -27,12 +28,13 @@ struct PictureSize {
 CLI::Validator picture_size();
 PictureSize parse_picture_size(const std::string& text);
 
-/// Which frames of a run: --frames and --shard.
+/// The selection of frames of a run: --frames and --shard.
 struct FrameOptions {
   std::string frames = ":", shard;
 };
 /// Declares --frames and --shard.
 void add_frame_options(CLI::App& command, FrameOptions& options);
+/// Returns the selected frames. Throws std::invalid_argument if the options have a fault.
 pliant::FrameRange parse_frames(const FrameOptions& options);
 
 }  // namespace pliant_cli

@@ -1,3 +1,4 @@
+// Declaration of SCENE and --set, and reading of the scene.
 #include "scene_options.h"
 
 #include <iostream>
@@ -10,13 +11,13 @@
 namespace pliant_cli {
 
 void add_scene_options(CLI::App& command, SceneOptions& options) {
-  command.add_option("scene", options.file, "Scene file (JSON); - is standard input")
+  command.add_option("scene", options.file, "Scene file (JSON), or - for standard input")
       ->required()
       ->type_name("SCENE");
   command
       .add_option(
           "--set", options.overrides,
-          "Value in the scene by its JSON pointer, as /parts/0/density=500; may be given several times")
+          "Set a value of the scene by its JSON pointer, as /parts/0/density=500; may be given several times")
       ->type_name("/POINTER=VALUE")
       ->take_all()
       ->allow_extra_args(false);

@@ -1,4 +1,4 @@
-// The options that say which scene is meant: the file and the values set on the command line.
+// The options that select a scene: its file, and values set on the command line.
 #pragma once
 
 #include <memory>
@@ -18,10 +18,11 @@ struct SceneOptions {
 
 /// Declares SCENE and --set.
 void add_scene_options(CLI::App& command, SceneOptions& options);
-/// Reads the scene; warnings go to standard error. Throws pliant::SceneError, pliant::FileError.
+/// Reads the scene and prints its warnings on standard error. Throws pliant::SceneError and
+/// pliant::FileError.
 std::unique_ptr<pliant::Scene> read(const SceneOptions& options);
 
-/// The solvers that are linked into this program.
+/// Returns the linear solvers that are linked into this program.
 pliant::JointSolver solvers();
 
 }  // namespace pliant_cli

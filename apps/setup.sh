@@ -1,16 +1,37 @@
-# What apps/quickstart.sh, tests/run.sh and .ci/run share: the Debian packages, their installation, and the build with a
-# preset. Source it from POSIX sh with the project's folder as the current one.
+# Functions of apps/quickstart.sh, tests/run.sh and .ci/run: the Debian packages, their installation, and the build with a
+# preset. Source this file from POSIX sh with the project's folder as the current one.
 # shellcheck shell=sh disable=SC2034,SC2086  # lists are words to split
 
-# Words of these lists are packages; a|b,c means a, or where the distribution has no a, both b and c.
+# Minutes that a stage takes from nothing on 2 cores. README.md and tests/README.md tell users the same numbers.
+pliant_minutes_program=4
+pliant_minutes_everything=10
+pliant_minutes_tests=25
+
+# The words of these lists are packages. a|b,c means a, or both b and c if the distribution has no a.
 pliant_packages="g++ cmake ninja-build libeigen3-dev libspectra-dev libsuitesparse-dev libopenblas0-serial|libopenblas0
 nlohmann-json3-dev libcli11-dev libpng-dev libassimp-dev libosmesa6|libegl1,libgl1-mesa-dri"
-# Tests need these too: both ways to draw without a screen, and an independent judge of the scenes' schema.
-pliant_test_packages="catch2 pkgconf libegl1 libgl1-mesa-dri libvalijson-dev"
+# Tests also need: both ways to draw without a screen, an independent validator of the scenes' schema, and Python for the
+# test of scenes/KEYS.md.
+pliant_test_packages="catch2 pkgconf python3 libegl1 libgl1-mesa-dri libvalijson-dev"
 
 pliant_say() { printf '%s\n' "pliant: $*"; }
 
-# Whether each package named is installed.
+# pliant_begin STAGE EXPECTATION: prints what comes and how long it takes; pliant_end prints how long it took.
+pliant_begin() {
+  pliant_stage=$1
+  pliant_stage_start=$(date +%s)
+  pliant_say "$1: $2"
+}
+pliant_end() {
+  pliant_seconds=$(($(date +%s) - pliant_stage_start))
+  if [ "$pliant_seconds" -lt 120 ]; then
+    pliant_say "$pliant_stage: took $pliant_seconds s"
+  else
+    pliant_say "$pliant_stage: took $((pliant_seconds / 60)) min $((pliant_seconds % 60)) s"
+  fi
+}
+
+# Whether all given packages are installed.
 pliant_installed() {
   for installed_name; do
     case $(dpkg-query -W -f '${db:Status-Abbrev}' "$installed_name" 2>/dev/null) in
@@ -20,14 +41,14 @@ pliant_installed() {
   done
 }
 
-# Whether the distribution has a package to install by each name.
+# Whether the distribution has all given packages.
 pliant_available() {
   for available_name; do
     apt-cache policy "$available_name" 2>/dev/null | grep -q '^  Candidate: [^(]' || return 1
   done
 }
 
-# Prints the packages that are missing, of the words of a list given as arguments.
+# Prints the missing packages of a list, whose words are the arguments.
 pliant_missing() {
   for word; do
     wanted=
@@ -36,18 +57,18 @@ pliant_missing() {
       if pliant_installed $names; then continue 2; fi
       if [ -z "$wanted" ] && pliant_available $names; then wanted=$names; fi
     done
-    # Before the first look at the distribution's lists nothing is available: name the first choice.
+    # Before the package lists are read, no package is available: print the first choice.
     for name in ${wanted:-$(printf '%s' "${word%%|*}" | tr ',' ' ')}; do
       pliant_installed "$name" || printf '%s ' "$name"
     done
   done
 }
 
-# Installs what is missing of the packages every build needs and of the words given: as root, or through sudo. Otherwise
-# it prints them and ends with status 4.
+# Installs the missing packages of those that every build needs and of the given words, as root or through sudo. If that is
+# impossible, prints their names and ends with status 4.
 pliant_install() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    pliant_say "not a Debian system: should configuring fail, install the counterparts of" $pliant_packages "$@"
+    pliant_say "this is not a Debian system; if configuring fails, install the counterparts of" $pliant_packages "$@"
     return 0
   fi
   missing=$(pliant_missing $pliant_packages "$@")
@@ -55,22 +76,23 @@ pliant_install() {
   as_root=
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null || { [ ! -t 0 ] && ! sudo -n true 2>/dev/null; }; then
-      pliant_say "packages are missing, and installing them needs root or sudo: apt-get install $missing" >&2
+      pliant_say "packages are missing, and their installation needs root or sudo: apt-get install $missing" >&2
       exit 4
     fi
     as_root=sudo
   fi
   apt="$as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=600"
-  $apt update || pliant_say "the package lists could not be renewed; trying with the old ones"
-  missing=$(pliant_missing $pliant_packages "$@")  # again: now it is known what the distribution has
-  pliant_say "installing $missing"
+  pliant_begin "packages" "installing $missing; the time depends on the network"
+  $apt update || pliant_say "the package lists could not be updated; continuing with the old ones"
+  missing=$(pliant_missing $pliant_packages "$@")  # again, with the updated lists
   if ! $apt install -y --no-install-recommends $missing; then
     pliant_say "these packages could not be installed: $missing" >&2
     exit 4
   fi
+  pliant_end
 }
 
-# Compile jobs: one a processor, as far as memory goes (2 GB a job).
+# Prints the number of compile jobs: one for each processor, but no more than one for each 2 GB of free memory.
 pliant_jobs() {
   jobs=$(nproc 2>/dev/null || echo 1)
   by_memory=$(awk '/^MemAvailable/ { print int($2 / 2000000) }' /proc/meminfo 2>/dev/null)
@@ -79,7 +101,7 @@ pliant_jobs() {
   echo "$jobs"
 }
 
-# pliant_configure PRESET [option...]: configures build/PRESET, with Ninja and ccache where they are installed.
+# pliant_configure PRESET [option...]: configures build/PRESET, with Ninja and ccache if they are installed.
 pliant_configure() {
   preset=$1
   shift
@@ -90,9 +112,10 @@ pliant_configure() {
   cmake --preset "$preset" "$@"
 }
 
-# pliant_build PRESET [option...]: builds build/PRESET.
+# pliant_build PRESET [option...]: builds build/PRESET. Each line of Ninja begins with the elapsed time, because files take
+# very different times to compile.
 pliant_build() {
   preset=$1
   shift
-  cmake --build "build/$preset" --parallel "$(pliant_jobs)" "$@"
+  NINJA_STATUS="${NINJA_STATUS-[%e s, %f of %t steps] }" cmake --build "build/$preset" --parallel "$(pliant_jobs)" "$@"
 }

@@ -1,3 +1,4 @@
+// Displays of progress: a bar, lines, or nothing.
 #include "show_progress.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// "42 s", "3 min 5 s", "2 h 10 min".
+// Returns a text as "42 s", "3 min 5 s" or "2 h 10 min".
 std::string duration(double seconds) {
   const auto whole = static_cast<long>(std::ceil(seconds));
   if (whole < 100) return std::to_string(whole) + " s";
@@ -29,8 +30,8 @@ std::string printed(const char* format, double a, double b = 0) {
   return text;
 }
 
-// Watches how a stage goes; what is shown, and when, is up to those below.
-class Watched : public pliant::Progress {
+// Keeps the state of a stage. Derived classes decide when it is shown, and how.
+class StageProgress : public pliant::Progress {
  public:
   void begin(const std::string& stage, double total, const std::string& unit) override {
     stage_ = stage;
@@ -63,7 +64,7 @@ class Watched : public pliant::Progress {
 
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   double fraction() const { return total_ > 0 ? std::min(1.0, done_ / total_) : 1; }
-  // "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left"
+  // Returns a text as "45 %, 1.8 of 4 s, 2.3 times real time, 12 s left".
   std::string numbers() const {
     const double wall = elapsed();
     std::string text =
@@ -78,7 +79,7 @@ class Watched : public pliant::Progress {
   Clock::time_point start_, shown_;
 };
 
-class Bar final : public Watched {
+class Bar final : public StageProgress {
  public:
   void end() override {
     if (drawn_) {
@@ -107,10 +108,10 @@ class Bar final : public Watched {
   bool drawn_ = false;
 };
 
-class Lines final : public Watched {
+class Lines final : public StageProgress {
  public:
   void begin(const std::string& stage, double total, const std::string& unit) override {
-    Watched::begin(stage, total, unit);
+    StageProgress::begin(stage, total, unit);
     tenth_ = 0;
   }
   void end() override {
@@ -121,8 +122,9 @@ class Lines final : public Watched {
  private:
   bool due(Clock::time_point now) override {
     const int tenth = static_cast<int>(10 * fraction());
-    const bool often = now - start_ > std::chrono::seconds(2);  // short stages only tell their end
-    if (!(often && tenth > tenth_ && tenth < 10) && now - shown_ < std::chrono::seconds(60)) return false;
+    const bool long_stage = now - start_ > std::chrono::seconds(2);  // short stages report their end only
+    if (!(long_stage && tenth > tenth_ && tenth < 10) && now - shown_ < std::chrono::seconds(60))
+      return false;
     tenth_ = tenth;
     return true;
   }

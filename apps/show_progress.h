@@ -1,4 +1,4 @@
-// Progress on standard error: a bar on a terminal, now and then a line elsewhere, nothing when quiet.
+// Progress on standard error: a bar on a terminal, occasional lines elsewhere, nothing if quiet.
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 namespace pliant_cli {
 
-/// Its advance() throws pliant::Interrupted when a stop signal came during a stage that cannot stop in the
-/// middle itself.
+/// Returns a progress display. Its advance() throws pliant::Interrupted after a stop signal, except during
+/// the simulation, which stops by itself after a step.
 std::unique_ptr<pliant::Progress> make_progress(bool quiet);
 
 }  // namespace pliant_cli

@@ -1,3 +1,4 @@
+// The signal handler.
 #include "stop_signal.h"
 
 #include <csignal>

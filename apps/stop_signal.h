@@ -1,12 +1,12 @@
-// Signals that ask the program to stop: the first lets it end in good order, the second ends it at once.
+// Signals that stop the program. After the first one it ends in good order; a second one ends it at once.
 #pragma once
 
 namespace pliant_cli {
 
-/// Begins to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU; SIGPIPE and SIGXFSZ
-/// are ignored from now on: a write that fails is an error where it happens.
+/// Starts to catch SIGINT, SIGTERM, SIGHUP and SIGXCPU. Ignores SIGPIPE and SIGXFSZ from now on: a failed
+/// write is reported by the function that writes.
 void catch_stop_signals();
-/// The number of the signal that was caught, 0 for none.
+/// Returns the number of the caught signal; 0 for none.
 int stop_signal();
 
 }  // namespace pliant_cli

@@ -2,9 +2,9 @@
 //
 //   assembly_bench [FOLDER] [LAYOUTS]     writes assembly_bench.csv to FOLDER, a table to standard output
 //
-// Layouts are trees of ellipsoids on ball joints, the first tied to the world, some with a joint more for
-// every four parts, which makes loops (that need not be possible), in random poses within a cube of so many
-// body lengths. LAYOUTS: of each kind, 1000 unless given, a tenth of it where there are 100 parts.
+// A layout is a tree of ellipsoids on ball joints, the first joined to the world, in random poses within a
+// cube of a given number of body lengths. Some have one more joint for every four parts; these loops need not
+// be possible. LAYOUTS: number of each kind (1000); a tenth of it for 100 parts.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

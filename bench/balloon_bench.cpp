@@ -1,12 +1,12 @@
-// What soft contact costs: a balloon dropped on a plane, and nine balloons on strings that swing into each
-// other, by the triangles of each.
+// Cost of soft contact by the number of triangles: a balloon dropped on a plane, and nine balloons on strings
+// that collide.
 //
-//   balloon_bench [FOLDER] [MOST]   writes balloon_bench.csv to FOLDER, a table to standard output; no more
-//   than MOST triangles a balloon (5120)
+//   balloon_bench [FOLDER] [MOST]   writes balloon_bench.csv to FOLDER, a table to standard output; at most
+//   MOST triangles for each balloon (5120)
 //
-// The balloon: R = 0.1 m, rubber of E = 1e7 Pa, 1 mm thick, dropped by half its radius, for half a second;
-// the nine are like it, or of 0.5 mm and 1e5 Pa under 30 Pa, and swing for a second. Real-time factor:
-// simulated over processor time, one thread.
+// The balloon has R = 0.1 m and 1 mm of rubber with E = 1e7 Pa; it drops by half its radius for half a
+// second. The nine are alike, or have 0.5 mm, 1e5 Pa and a pressure of 30 Pa, and swing for a second.
+// Real-time factor: simulated time over processor time, one thread.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <pliant/body/joints/string.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 #include <pliant/pliant.h>
 
@@ -54,7 +55,7 @@ void drop(MultiBody& body, const System& system, int resolution) {
   balloon(body, system, "balloon", resolution, {0, 0, 1.5 * kRadius});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Three by three, those outside pulled away from the middle one.
+/// Three by three balloons; the outer ones are pulled away from the middle one.
 void hang(MultiBody& body, const System& system, int resolution) {
   constexpr double length = 1;
   body.contact.active = true;
@@ -72,7 +73,7 @@ void hang(MultiBody& body, const System& system, int resolution) {
   }
 }
 
-/// How deep anything is in anything, m.
+/// Returns the largest overlap, m.
 double deepest(const Simulation& simulation, const MeshFinder& finder) {
   std::vector<Contact> found;
   finder.find(simulation.state(), simulation.time(), found);

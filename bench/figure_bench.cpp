@@ -1,6 +1,6 @@
-// What the scenes of the paper's figures take on one core: how many seconds of them a second of the clock
-// makes (the real-time factor), the shares of its stages, and how deep bodies are in each other at most at
-// 60 moments a second, in sizes of the smaller one. CSV to standard output.
+// The scenes of the figures of the paper on one core: the real-time factor (simulated seconds for each second
+// of the clock), the shares of the stages, and the largest overlap at 60 moments a second, in sizes of the
+// smaller body. CSV to standard output.
 //
 //   figure_bench SCENES_FOLDER [FOLDER]     writes figure_bench.csv to FOLDER as well
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <exception>
 #include <string>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/pliant.h>
 #include <pliant/scene/read_scene.h>

@@ -1,6 +1,6 @@
-// The linearly implicit method on solids. First what a step costs beside a step of RK4 and one evaluation,
-// and what the factor costs, by law, size and factorisation; then processor time against error of a stiff
-// solid that swings on a joint: RK4 at its limit against the implicit method at multiples of it. CSV to
+// The linearly implicit method on solids. First the cost of a step beside a step of RK4 and one evaluation,
+// and the cost of the factor, by law, size and factorisation. Then processor time against error for a stiff
+// solid that swings on a joint: RK4 at its stable step against the implicit method at multiples of it. CSV to
 // standard output.
 //
 //   implicit_bench [FOLDER]     writes implicit_cost.csv and implicit_work_error.csv to FOLDER as well
@@ -36,7 +36,7 @@ struct Measured {
   double analysis = 0, factorisation = 0;  // s, of the last
 };
 
-/// A factor that tells what it costs.
+/// A sparse factor that measures its cost.
 class MeasuredFactor final : public SparseFactor {
  public:
   MeasuredFactor(std::unique_ptr<SparseFactor> factor, Measured& measured)
@@ -72,7 +72,7 @@ std::unique_ptr<SparseFactor> make_factor(const std::string& kind) {
   return make_cholmod_factor(options);
 }
 
-/// A solid hung from a joint at its top, pushed aside.
+/// A solid that hangs from a joint at its top, displaced sideways.
 void swinging(MultiBody& body, const std::string& law, int resolution, double E) {
   auto& part = body.add<Primitive<Ellipsoid>>("solid", 1000.0);
   part.rest({{"a1", 0.15}, {"a2", 0.1}, {"a3", 0.4}}).place({0, 0, -0.4}).velocity({0.4, 0, 0}, {0, -1, 0});
@@ -163,7 +163,7 @@ void measure_error(const std::string& folder) {
     MultiBody body;
     swinging(body, law, 3, E);
     const double limit = largest_stable_step(Simulation(body, "rk4"));
-    // Of RK4, at its limit and half of it.
+    // RK4 at its stable step and at half of it.
     const Outcome exact = run("rk4", 0.45 * limit);
     auto tell = [&, law = law, E = E](const char* method, double times) {
       const Outcome outcome = run(method, times * limit);

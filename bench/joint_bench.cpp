@@ -1,15 +1,15 @@
-// What joints cost: time per link of a force evaluation, of a stage of RK4 and of a step, for chains, trees,
-// nets, rings and stars of growing size, the exponents of their growth, and the share of each stage.
+// Cost of joints: time per link of an evaluation, of a stage of RK4 and of a step, for chains, trees, nets,
+// rings and stars of growing size; the exponents of the growth, and the share of each stage.
 //
 //   joint_bench [FOLDER]     writes joint_bench.csv and joint_exponents.csv to FOLDER, a table to standard
 //   output
 //
-// Of one evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T, W_c and
-// its factor), solve (lambda and what it adds), rest (the joints' points, powers). A stage asks for rates
-// alone, which rigid islands give faster. Both solvers are timed beside the one that "auto" takes. Projection
-// is a step less its stages or evaluations. Parts of an evaluation are timed one by one, in loops of their
-// own, so that their caches are warm. Every time is the least of some rounds over all sizes of a system: what
-// else a machine does lasts longer than one measurement and would bend the growth.
+// Stages of an evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T,
+// W_c and its factor), solve (lambda and accelerations), rest (points of joints, powers). A stage needs rates
+// alone, which rigid islands compute faster. Both solvers are timed beside the choice of "auto". Projection
+// is a step minus its stages or evaluations. The stages are timed one by one, in loops of their own, with
+// warm caches. Every time is the minimum over rounds of all sizes: other load of the machine lasts longer
+// than one measurement and would distort the growth.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -75,7 +75,7 @@ double step_seconds(Simulation& simulation, const State& start) {
       0.02, 3);
 }
 
-/// Seconds of an evaluation at a state, by a solver.
+/// Returns the time of an evaluation at a state with a solver, s.
 double evaluation_by(JointSolver::Choice choice, const System& system, int size, const State& at) {
   MultiBody body;
   body.joint_solver.choice = choice;

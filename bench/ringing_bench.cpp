@@ -1,12 +1,12 @@
-// Work against error of what rings freely: a solid sphere (r = 0.1 m, E = 1e5 Pa, nu_P = 0.3, 1000 kg/m^3),
-// whose lowest modes are T2 at 24.68711 Hz and S2 at 26.11917 Hz (Lamb 1882), and a closed membrane of the
-// same radius and material, 1 mm thick, whose lowest are those of n = 2 at 11.695 Hz (Lamb 1882; on a mesh
-// the next ones lie among short waves): processor time of a period of the lowest mode and relative error of
-// the frequencies, by basis. Nodes take steps of 0.9 of the largest stable one, modes three a period, which
-// they solve exactly. The error of nodes is that of the modes of their mesh, which of order 2 has more nodes
-// an element than modes use and is better than that, and of the method at the step. CSV to standard output;
-// after it what each basis takes at the errors of the table, of the lower mode and of both, "not reached"
-// where no row does.
+// Run time against error of free vibrations: a solid sphere (r = 0.1 m, E = 1e5 Pa, nu_P = 0.3, 1000 kg/m^3)
+// with the lowest modes T2 at 24.68711 Hz and S2 at 26.11917 Hz (Lamb 1882), and a closed membrane of the
+// same radius and material, 1 mm thick, with the lowest modes n = 2 at 11.695 Hz (Lamb 1882; on a mesh the
+// next ones lie among short waves). The table has the processor time of a period of the lowest mode and the
+// relative error of the frequencies, by basis. Nodes take steps of 0.9 of the largest stable one; modes take
+// three steps a period and are exact. The error of nodes is that of the modes of their mesh and of the
+// method. Meshes of order 2 have more nodes an element than modes use, and smaller errors. CSV to standard
+// output, then the time of each basis at given errors of the lower mode and of both; "not reached" if no row
+// has such an error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>
@@ -33,13 +33,13 @@ namespace {
 
 constexpr double kRadius = 0.1, kYoung = 1e5, kPoisson = 0.3, kDensity = 1000, kThickness = 1e-3;
 
-/// Of a kind of modes: frequency, Hz, and how many modes have it.
+/// A frequency, Hz, and the number of modes with it.
 struct Mode {
   double frequency;
   int multiplicity;
 };
 
-/// The root of f in [low, high], where it changes its sign.
+/// Returns the root of f in [low, high], where f changes its sign.
 template <class F>
 double root(F&& f, double low, double high) {
   for (const bool rises = f(low) < 0; high - low > 1e-15 * high;) {
@@ -82,7 +82,7 @@ struct Row {
   double error, error_of_both, time;  // time: s a period
 };
 
-/// What is measured: solid or shell by a basis, as fine as it is.
+/// A measured case: a solid or shell, its basis and resolution.
 struct Case {
   std::string name;
   bool shell;
@@ -117,7 +117,7 @@ class Bench {
     std::fputs(head().c_str(), stdout);
   }
 
-  /// By both methods. of_mesh: frequencies of nodes. Returns the frequencies, of modes their own.
+  /// Measures both methods. of_mesh: frequencies of nodes. Returns the frequencies, for modes their own.
   std::vector<double> measure(const Case& of, std::vector<double> of_mesh = {}) {
     const std::vector<Mode> exact = of.shell ? membrane_modes() : lamb_modes();
     MultiBody body;

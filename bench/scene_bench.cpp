@@ -1,10 +1,10 @@
-// Run time against energy error of scenes, with both integrators and ever smaller steps; by default the
-// mechanisms of the IFToMM benchmark library (Gonzalez et al. 2006) A01, A02 and A04.
+// Run time against energy error of scenes, with two methods and decreasing steps; by default the mechanisms
+// A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et al. 2006).
 //
 //   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
 //
-// Time: CPU time of the stepping loop, one thread. Energy error: the largest balance of the ledger, looked at
-// a hundred times; gap: the widest of the closed joints.
+// Time: CPU time of the stepping loop, one thread. Energy error: the largest balance error of the ledger at a
+// hundred moments; gap: the widest gap of the closed joints.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,7 +1,7 @@
-// Time per triangle of a force evaluation by each shell energy, on spheres. CSV to standard output. Beside it
-// what an evaluation computes (multiply-adds: the larger of its products and its sums) and moves (bytes),
-// counted from the formulas; and how much it reaches of the bounds by this machine's multiply-add peak and by
-// its bandwidth, that of a triad over as many bytes, so in the same cache, both measured in this run.
+// Time per triangle of a force evaluation for each shell energy, on spheres. CSV to standard output. Further
+// columns: the multiply-adds (the larger of products and sums) and the bytes of an evaluation, counted from
+// the formulas, and the share of two bounds that it reaches: the multiply-add peak of this machine, and the
+// bandwidth of a triad over as many bytes (in the same cache), both measured in this run.
 //
 //   shell_bench [FOLDER]     writes shell_bench.csv to FOLDER as well
 #include <cmath>

@@ -1,7 +1,7 @@
-// Time per triangle of a whole step of a spinning sphere with a linear membrane, beside its parts: the kernel
-// of the membrane alone, an evaluation of the accelerations, a step of RK4 (four evaluations) and of
-// semi-implicit Euler (one), each half the longest stable one. Least times of four rounds. The last column is
-// in kernels per evaluation. CSV to standard output.
+// Time per triangle of a step of a spinning sphere with a linear membrane, beside its parts: the kernel of
+// the membrane, an evaluation of the accelerations, a step of RK4 (four evaluations) and of semi-implicit
+// Euler (one), at half the largest stable step. Minimum of four rounds. The last column is in kernels per
+// evaluation. CSV to standard output.
 //
 //   soft_step_bench [FOLDER]     writes soft_step_bench.csv to FOLDER as well
 #include <algorithm>
@@ -44,7 +44,7 @@ void measure(int resolution, int threads, bench::TableFile& file) {
   NodalEnergy::Buffer buffer;
   ThreadPool pool(threads);
   Workspace<double> work;
-  // Least times of rounds over all of them, so that what else the machine does bends no ratio.
+  // Minimum times of rounds over all of them, so that other load does not distort the ratios.
   double kernel = std::numeric_limits<double>::infinity(), evaluation = kernel, of_euler = kernel,
          of_rk4 = kernel;
   auto least = [](double& time, auto&& call) {

@@ -1,8 +1,8 @@
 // Time of one force evaluation of solid energies by element, law, size and threads. CSV to standard output,
-// after a table of what the columns mean. Operations are counted by running the formulas of an element once
-// with a number that counts; bytes are those that must pass through memory if nothing stays in a cache:
-// constants of the points, node numbers, pushes written and read back, coordinates and forces once a node.
-// The bandwidth is that of a triad over as many bytes, so in the same cache.
+// after a table with the meaning of the columns. Operations are counted by evaluating the formulas of an
+// element with a counting number. Bytes are those that pass through memory if no data stay in a cache:
+// constants of the points, node numbers, forces written and read back, coordinates and forces once for each
+// node. The bandwidth is that of a triad over as many bytes, in the same cache.
 //
 //   solid_bench [FOLDER]     writes solid_bench.csv to FOLDER as well
 #include <cstdio>
@@ -38,7 +38,7 @@ Mesh sphere(int resolution, Solid::Order order) {
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements()};
 }
 
-/// Operations of one element: the kernel of SolidEnergy with a number that counts.
+/// Returns the operations of one element: the kernel of SolidEnergy with a counting number.
 template <class Element, class Law>
 long operations() {
   using bench::Counted;
@@ -57,7 +57,8 @@ long operations() {
     const long before = Counted::operations;
     if (Law::of == NodalEnergy::Of::position) G = inverse;  // near rest, as in most runs
     Counted::operations = before;
-    Element::push(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse), f);
+    Element::add_nodal_forces(at, product_transposed(scaled(Counted(1.0), Law(kMaterial).stress(G)), inverse),
+                              f);
   }
   return Counted::operations;
 }

@@ -1,6 +1,6 @@
-// Time per step and per force evaluation, by what a part can do and by how many parts there are. CSV to
-// standard output; the last column is the evaluation's price in multiply-adds at this machine's measured
-// peak.
+// Time per step and per evaluation of the accelerations, by the features of a part and by the number of
+// parts. CSV to standard output. The last column is the cost of an evaluation in multiply-adds at the
+// measured peak of this machine.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ void rigid(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
 }
-/// A deformation that is there but frozen at nothing: must cost a rigid part no more.
+/// A frozen deformation at its identity: a rigid part must cost no more with it.
 void rigid_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -29,7 +29,7 @@ void three(MultiBody& body, const std::string& name) {
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
-/// The same with deformations frozen at nothing: at most 5 % more.
+/// With frozen deformations at their identity: at most 5 % more.
 void three_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Taper, Bend>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -52,7 +52,7 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
-/// The exponents too, over all of their ranges: no ring keeps its shape, the full rule is needed.
+/// With dynamic exponents over their whole ranges: no ring keeps its shape, and the full rule is needed.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Prints a scene: a chain of N ellipsoids on ball joints, hung at one end, leaning, released.
+# Prints a scene: a chain of N ellipsoids on ball joints, hung at one end and released at an angle.
 #   bash scenes/chain.sh 1000 | pliant run - -o out/chain
 if [[ $# != 1 || ! $1 =~ ^[1-9][0-9]{0,5}$ ]]; then
   echo "usage: bash chain.sh LINKS    (1 to 999999)" >&2
@@ -8,7 +8,7 @@ fi
 LC_ALL=C awk -v links="$1" 'BEGIN {
   length_ = 0.4; lean = 0.5; half_pi = atan2(1, 0)
   x = -length_ * sin(lean); z = -length_ * cos(lean); middle = links / 2
-  printf "{\n  \"description\": \"A chain of %d ellipsoids, hung at one end, swings from a lean of half a radian.\",\n", links
+  printf "{\n  \"description\": \"A chain of %d ellipsoids, hung at one end, swings from an angle of half a radian.\",\n", links
   print "  \"time\": {\"end\": 3, \"step\": 0.001, \"integrator\": \"rk4\"},"
   print "  \"parts\": ["
   for (i = 0; i < links; ++i)

@@ -1,12 +1,14 @@
 #!/bin/bash
-# Prints a scene: a net of N x M knots, tied by ellipsoids on ball joints, hung by its corners, falls from a dome.
+# Prints a scene: a net of N x M knots, connected by ellipsoids on ball joints and hung by its corners, falls from a
+# dome.
 #   bash scenes/net.sh 12 8 | pliant run - -o out/net
 if [[ $# != 2 || ! $1 =~ ^[1-9][0-9]{0,2}$ || ! $2 =~ ^[1-9][0-9]{0,2}$ || $1 -lt 3 || $2 -lt 3 ]]; then
   echo "usage: bash net.sh KNOTS KNOTS    (along and across, 3 to 999 each)" >&2
   exit 2
 fi
 LC_ALL=C awk -v n="$1" -v m="$2" '
-# Knots of an arc of equal chords that turns by `turn` to either side, its middle at 0: along[k], up[k].
+# Computes the knots of an arc of equal chords with its middle at 0: along[k], up[k]. On either side of the middle its
+# direction changes by `turn`.
 function arc(knots, along, up,    k, a) {
   along[0] = up[0] = 0
   for (k = 1; k < knots; ++k) {
@@ -24,7 +26,7 @@ function show(title,    k) {
   print "  ],"
   count = 0
 }
-# A link from knot (i, j) to knot (i + di, j + dj): its z axis points from one to the other.
+# Adds a link from knot (i, j) to knot (i + di, j + dj); its z axis points from the first to the second knot.
 function link(i, j, di, dj,    dx, dy, dz, angle) {
   dx = (x[i + di] - x[i]) / spacing; dy = (y[j + dj] - y[j]) / spacing
   dz = (zx[i + di] - zx[i] + zy[j + dj] - zy[j]) / spacing
@@ -36,7 +38,7 @@ function link(i, j, di, dj,    dx, dy, dz, angle) {
               -dy, dx, angle, di ? "#4a7ab5" : "#d9c08a"))
 }
 function link_name(i, j, di) { return sprintf("%s%d-%d", di ? "along" : "across", i, j) }
-# The joint of an end of a link with a knot, in the direction d from the middle of the knot.
+# Adds the joint between an end of a link and a knot, at the surface of the knot in the direction d.
 function tie(i, j, name, d_x, d_y, d_z, u) {
   add(sprintf("{\"type\": \"ball\", \"from\": {\"part\": \"knot%d-%d\", \"at\": {\"direction\": [%.15g, %.15g, %.15g]}}, " \
               "\"to\": {\"part\": \"%s\", \"at\": {\"u\": %.16g, \"v\": 0}}}", i, j, d_x, d_y, d_z, name, u))

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Prints a scene: N ellipsoids are poured into a bowl, the mesh beside this script, as large as they need.
+# Prints a scene: N ellipsoids are poured into a bowl, whose size depends on N. The scene must be stored in the folder
+# of this script, which contains the mesh bowl.obj.
 #   bash scenes/pour.sh 1000 > scenes/pour.json && pliant run scenes/pour.json -o out/pour
 if [[ $# != 1 || ! $1 =~ ^[1-9][0-9]{0,5}$ ]]; then
   echo "usage: bash pour.sh ELLIPSOIDS    (1 to 999999)" >&2

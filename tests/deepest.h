@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <pliant/collision/mesh/mesh_finder.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/simulate/simulation.h>
 
 namespace pliant::test {

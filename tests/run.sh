@@ -1,11 +1,19 @@
 #!/bin/sh
-# Builds everything and runs all tests on a bare Debian machine; missing packages are installed first. Arguments are
-# passed to ctest (for example: -R dual, -LE long). The exit status is 4 if packages are missing and cannot be installed.
+# Builds everything and runs all tests, from a bare Debian machine: installs missing packages first. Arguments go to ctest
+# (for example: -R dual, -LE long). Ends with status 4 if packages are missing and cannot be installed.
 set -eu
 cd "$(dirname "$0")/.."
 . apps/setup.sh
 
 pliant_install $pliant_test_packages
+pliant_begin "build" \
+  "about $pliant_minutes_everything minutes on 2 cores from nothing, with $(pliant_jobs) jobs here"
 pliant_configure release -DPLIANT_TESTS=ON -DPLIANT_BENCH=ON
 pliant_build release
-ctest --test-dir build/release -j2 --output-on-failure "$@"
+pliant_end
+
+pliant_begin "tests" "about $pliant_minutes_tests minutes on 2 cores for all of them"
+status=0
+ctest --test-dir build/release -j2 --output-on-failure "$@" || status=$?
+pliant_end
+exit "$status"

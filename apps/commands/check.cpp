@@ -1,4 +1,4 @@
-// pliant check: whether a scene can be run, and what a run would cost. Writes nothing.
+// pliant check: checks a scene and estimates the cost of a run. Writes no files.
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -22,7 +22,7 @@ struct CheckCommand {
   std::string diagnostics = "text";
 };
 
-// Wall time of a run, s, if it goes on as in its first twentieth of a second.
+// Estimates the wall time of a run, s, from its first 0.05 s of computation.
 double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedule& schedule) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
@@ -37,7 +37,7 @@ double seconds_of_run(pliant::Simulation& simulation, const pliant::FrameSchedul
   return simulation.time() > 0 ? seconds / simulation.time() * schedule.end() : 0;
 }
 
-// ", 2 obstacles of 644 triangles"; nothing where there are none.
+// Returns a text as ", 2 obstacles of 644 triangles"; empty if there are none.
 std::string obstacle_text(const pliant::MultiBody& body) {
   const auto& obstacles = body.contact.obstacles;
   std::int64_t triangles = 0;
@@ -55,15 +55,16 @@ void print_estimate(pliant::Scene& scene) {
             << obstacle_text(scene.body) << ", " << simulation.model().n_v() << " degrees of freedom\n"
             << "estimate: ";
   if (scene.tolerance > 0)
-    std::cout << "steps to a tolerance of " << scene.tolerance;
+    std::cout << "adaptive steps with a tolerance of " << scene.tolerance;
   else
     std::cout << schedule.steps() << " steps of " << schedule.step() << " s";
   if (scene.tolerance == 0 && schedule.step() > stable.step)
-    std::cout << "\nwarning: the step is above the largest stable one, about "
-              << pliant::rounded_text(stable.step) << " s, set by " << stable.limit;
+    std::cout << "\nwarning: the step is larger than the largest stable step of about "
+              << pliant::rounded_text(stable.step) << " s, which is limited by " << stable.limit
+              << "; choose a smaller --step";
   else
     std::cout << ", about " << pliant::rounded_text(seconds_of_run(simulation, schedule), 2)
-              << " s of computing";
+              << " s of computation";
   const pliant::Model& model = simulation.model();
   const std::size_t numbers =
       1 + static_cast<std::size_t>(model.n_q() + model.n_v()) + pliant::mode_columns_of(model).size();
@@ -98,14 +99,16 @@ int check(const CheckCommand& command) {
 void add_check(CLI::App& app, Action& action) {
   const auto options = std::make_shared<CheckCommand>();
   CLI::App* command =
-      app.add_subcommand("check", "Check a scene and estimate what a run costs; nothing is written");
+      app.add_subcommand("check", "Check a scene and estimate the cost of a run; writes no files");
   add_scene_options(*command, options->scene);
-  command->add_option("--diagnostics", options->diagnostics, "Form of the faults: text, or json for programs")
+  command
+      ->add_option("--diagnostics", options->diagnostics,
+                   "Format of the fault reports: text, or json for other programs")
       ->check(CLI::IsMember({"text", "json"}))
       ->option_text("text|json");
   command->footer(
       "Example:\n  pliant check scenes/pull.json\n"
-      "Faults are told as  file:line:column: error: /json/pointer: what is wrong; what is expected.");
+      "Each fault is reported as  file:line:column: error: /json/pointer: the fault; the expected value.");
   command->callback([options, &action] { action = [options] { return check(*options); }; });
 }
 

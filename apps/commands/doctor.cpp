@@ -1,4 +1,4 @@
-// pliant doctor: what works on this machine.
+// pliant doctor: reports which features work on this machine.
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -24,22 +24,22 @@ namespace {
 namespace fs = std::filesystem;
 
 void print_graphics() {
-  bool any = false;
+  bool any_opened = false;
   std::cout << "graphics\n";
   for (const pliant::GlProbe& probe : pliant::probe_gl_backends()) {
     std::cout << "  " << probe.name << ": ";
     if (probe.opened)
-      std::cout << "works, " << probe.renderer << ", OpenGL " << probe.version << "\n";
+      std::cout << "works: " << probe.renderer << ", OpenGL " << probe.version << "\n";
     else
-      std::cout << "no, " << probe.reason << "\n";
-    any = any || probe.opened;
+      std::cout << "does not open: " << probe.reason << "\n";
+    any_opened = any_opened || probe.opened;
   }
-  if (!any)
-    std::cout
-        << "  no pictures (--png, render) until libosmesa6, or libegl1 with libgl1-mesa-dri, is installed\n";
+  if (!any_opened)
+    std::cout << "  pictures (--png, render) need libosmesa6, or libegl1 with libgl1-mesa-dri: install one "
+                 "of them\n";
 }
 
-// MB/s of a file that is written and reaches the disk.
+// Measures the speed of a write that reaches the disk, MB/s.
 double write_speed(const fs::path& folder) {
   using Clock = std::chrono::steady_clock;
   constexpr std::size_t block = std::size_t{1} << 20, blocks = 64;
@@ -60,12 +60,12 @@ int examine(const fs::path& folder) {
   std::cout << version_text();
   const std::string features = processor_features();
   std::cout << "processor\n  " << std::thread::hardware_concurrency()
-            << " threads; features: " << (features.empty() ? "not known" : features)
+            << " threads; features: " << (features.empty() ? "unknown" : features)
             << "\n  BLAS loaded: " << loaded_blas() << "\n";
   print_graphics();
   const std::string ffmpeg = find_program("ffmpeg");
   std::cout << "films\n  ffmpeg: "
-            << (ffmpeg.empty() ? "not installed (only needed to make films of frames)" : ffmpeg) << "\n";
+            << (ffmpeg.empty() ? "not installed (needed only to make films from frames)" : ffmpeg) << "\n";
   std::cout << "output folder " << folder.string() << "\n" << std::flush;
   const fs::space_info space = fs::space(folder);
   std::cout << "  writes " << static_cast<long>(write_speed(folder)) << " MB/s, " << space.available / 1000000
@@ -78,8 +78,8 @@ int examine(const fs::path& folder) {
 void add_doctor(CLI::App& app, Action& action) {
   const auto folder = std::make_shared<std::string>(".");
   CLI::App* command = app.add_subcommand(
-      "doctor", "Tell what works here: graphics libraries, processor, ffmpeg, speed of the disk");
-  command->add_option("-o,--out", *folder, "Folder whose speed is measured [.]")
+      "doctor", "Report the state of this machine: graphics libraries, processor, ffmpeg, speed of the disk");
+  command->add_option("-o,--out", *folder, "Folder for the measurement of the disk speed [.]")
       ->check(CLI::ExistingDirectory)
       ->option_text("DIR");
   command->callback([folder, &action] { action = [folder] { return examine(*folder); }; });

@@ -1,4 +1,4 @@
-// pliant export: meshes of a recorded run.
+// pliant export: writes the meshes of a recorded run.
 #include <map>
 #include <memory>
 
@@ -46,7 +46,7 @@ int export_meshes(const ExportCommand& command) {
 void add_export(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ExportCommand>();
   CLI::App* command =
-      app.add_subcommand("export", "Write the surfaces of a run's frames, from its recording");
+      app.add_subcommand("export", "Write the surfaces of the frames of a run, from its recording");
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_option("--to", options->format, "Format: obj (text, with colours) or ply (binary)")
       ->required()

@@ -1,4 +1,4 @@
-// pliant info: what a scene is to the engine, without running it.
+// pliant info: prints the parts, joints, degrees of freedom and stable step of a scene without running it.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -20,7 +20,7 @@ namespace {
 
 using pliant::Vec3;
 
-// What is rounding beside `scale` is shown as the zero that it stands for.
+// Returns zero for a number that is rounding in comparison with `scale`.
 double rounded(double x, double scale) {
   return std::abs(x) <= 1e-12 * scale ? 0 : x;
 }
@@ -48,7 +48,7 @@ void print_part(const pliant::PartModel& model) {
   print_parameters(part);
   const int frozen = part.parameters().size() - part.parameters().n_dynamic();
   if (part.motion() != nullptr)
-    std::cout << "  moves as prescribed: no degrees of freedom\n";
+    std::cout << "  prescribed motion: no degrees of freedom\n";
   else if (part.fixed())
     std::cout << "  fixed: no degrees of freedom\n";
   else
@@ -77,14 +77,17 @@ void print_part(const pliant::PartModel& model) {
     const pliant::StrainPoints& strained = part.continuum()->points();
     std::cout << "  elasticity: " << law.law << ", E " << law.E << " Pa, nu " << law.nu_P
               << "; strain points: " << strained.n_points << ", rule \"" << strained.rule << "\"";
-    if (strained.settled > 0) std::cout << " settled to " << pliant::rounded_text(strained.settled);
+    if (strained.settled > 0)
+      std::cout << " with a relative error of about " << pliant::rounded_text(strained.settled);
     std::cout << "\n";
   }
   const pliant::MassPoints& points = part.mass_points();
   if (!points.rule.empty())
     std::cout << "  mass points: " << points.n_points << ", rule \"" << points.rule << "\" of level "
               << points.level
-              << (points.unsettled > 0 ? ", settled to " + pliant::rounded_text(points.unsettled) : "")
+              << (points.unsettled > 0
+                      ? " with a relative error of about " + pliant::rounded_text(points.unsettled)
+                      : "")
               << "\n";
 }
 
@@ -157,8 +160,8 @@ void print_joints(const pliant::Simulation& simulation) {
       std::cout << ", open by " << pliant::rounded_text(gap) << " m";
     else if (mode == pliant::JointMode::slack)
       std::cout << ", slack";
-    if (std::isfinite(joint.joint->on())) std::cout << ", from " << joint.joint->on() << " s on";
-    if (std::isfinite(joint.joint->off())) std::cout << ", until " << joint.joint->off() << " s";
+    if (std::isfinite(joint.joint->on())) std::cout << ", active from " << joint.joint->on() << " s";
+    if (std::isfinite(joint.joint->off())) std::cout << ", active until " << joint.joint->off() << " s";
     std::cout << "\n";
   }
   const std::vector<int> redundant = pliant::redundant_rows(model, work.joints);
@@ -171,14 +174,14 @@ void print_joints(const pliant::Simulation& simulation) {
   }
   std::int64_t numbers = 0, augmented = 0;
   for (const pliant::Island& island : model.islands()) {
-    numbers += island.numbers;
+    numbers += island.factor_values;
     augmented += island.augmented ? 1 : 0;
   }
   const auto islands = static_cast<std::int64_t>(model.islands().size());
   std::cout << "constraints: " << pliant::count_text(rows, "row") << " of rank " << rows - dependent << ", "
             << pliant::count_text(islands, "island");
   if (islands > augmented) std::cout << ", " << islands - augmented << " solved by blocks of C_q M^-1 C_q^T";
-  if (augmented > 0) std::cout << ", " << augmented << " as the augmented matrix";
+  if (augmented > 0) std::cout << ", " << augmented << " solved with the augmented matrix";
   std::cout << ", " << pliant::count_text(numbers, "number") << " in the factor\n";
   for (const std::string& note : pliant::redundancy_notes(simulation)) std::cout << "  " << note << "\n";
 }
@@ -206,21 +209,22 @@ int info(const SceneOptions& options) {
   const pliant::FrameSchedule schedule = pliant::schedule_of(*scene);
   std::cout << "run: ";
   if (scene->tolerance > 0)
-    std::cout << "steps to a tolerance of " << simulation.tolerance();
+    std::cout << "adaptive steps with a tolerance of " << simulation.tolerance();
   else
     std::cout << schedule.steps() << " steps of " << schedule.step() << " s";
-  std::cout << " to " << schedule.end() << " s by " << simulation.integrator().name() << ", "
+  std::cout << " to " << schedule.end() << " s with " << simulation.integrator().name() << ", "
             << pliant::count_text(schedule.frames(), "frame") << "\n";
   if (!simulation.choice().why.empty()) std::cout << "  chosen: " << simulation.choice().why << "\n";
   const pliant::StableStep stable = pliant::stable_step(simulation);
   if (std::isfinite(stable.step))
     std::cout << "largest stable step: about " << pliant::rounded_text(stable.step)
-              << " s at the start, set by " << stable.limit << "\n";
+              << " s at the start, limited by " << stable.limit << "\n";
   else
-    std::cout << "largest stable step: no bound, nothing is stiff\n";
+    std::cout << "largest stable step: unlimited, because nothing is stiff\n";
   if (!stable.uncounted.empty()) std::cout << "  " << stable.uncounted << "\n";
   if (scene->tolerance == 0 && schedule.step() > stable.step)
-    std::cout << "warning: the step of " << schedule.step() << " s is above it; the run would likely fail\n";
+    std::cout << "warning: the step of " << schedule.step()
+              << " s is larger; the run will probably fail; choose a smaller --step\n";
   return kDone;
 }
 
@@ -229,7 +233,7 @@ int info(const SceneOptions& options) {
 void add_info(CLI::App& app, Action& action) {
   const auto options = std::make_shared<SceneOptions>();
   CLI::App* command = app.add_subcommand(
-      "info", "Tell about a scene: parts, degrees of freedom, mass, what is skipped, largest stable step");
+      "info", "Describe a scene: parts, degrees of freedom, mass, skipped work, largest stable step");
   add_scene_options(*command, *options);
   command->footer("Example:\n  pliant info scenes/pull.json --set /time/step=0.01");
   command->callback([options, &action] { action = [options] { return info(*options); }; });

@@ -1,4 +1,4 @@
-// pliant list: what scenes are made of, from the lists of the library.
+// pliant list: prints the shapes, deformations, laws, joints, methods and functions that the library knows.
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -54,7 +54,7 @@ void list_deformations() {
 
 void list_laws() {
   for (const pliant::LocalLawInfo& law : pliant::all_local_laws()) {
-    std::cout << law.name << "\n  of " << (law.shell ? "shells" : "solids") << ": " << law.meaning << "\n";
+    std::cout << law.name << "\n  for " << (law.shell ? "shells" : "solids") << ": " << law.meaning << "\n";
     for (const pliant::LocalLawInfo::Number& n : law.numbers) {
       const bool bounded = std::isfinite(n.min) || std::isfinite(n.max);
       std::cout << "    " << std::left << std::setw(9) << n.key << " " << std::setw(5)
@@ -75,13 +75,13 @@ void list_joints() {
 
 void list_integrators() {
   std::cout << pliant::kAutomatic
-            << "\n  by trial, of those below what comes farthest at a cost; to a tolerance\n";
+            << "\n  the method below that advances farthest in a trial for its cost; used with a tolerance\n";
   for (const pliant::IntegratorInfo& method : pliant::all_integrators())
     std::cout << method.name << "\n  order " << method.order << ": " << method.description << "\n";
 }
 
 void list_functions() {
-  std::cout << "Formulas of time, such as \"0.2 * sin(2 * pi * t)\", may use t, pi, + - * / ^ and\n";
+  std::cout << "Formulas of time, as \"0.2 * sin(2 * pi * t)\", may contain t, pi, + - * / ^ and\n";
   for (const pliant::Formula::Function& function : pliant::Formula::functions())
     std::cout << "  " << std::left << std::setw(8) << function.name << " " << function.meaning << "\n";
 }
@@ -94,10 +94,10 @@ struct Kind {
 constexpr Kind kKinds[] = {
     {"shapes", "solid primitives, with their parameters, ranges and formulas", list_shapes},
     {"deformations", "links of a part's chain of global deformations", list_deformations},
-    {"laws", "energies of local deformation, with what they take", list_laws},
+    {"laws", "energies of local deformation, with their parameters", list_laws},
     {"joints", "constraints between points of parts and of the world", list_joints},
     {"integrators", "methods of time integration", list_integrators},
-    {"functions", "what formulas of time may use", list_functions},
+    {"functions", "functions for formulas of time", list_functions},
 };
 
 }  // namespace
@@ -112,7 +112,7 @@ void add_list(CLI::App& app, Action& action) {
     names.push_back(k.name);
     footer += std::string("  ") + k.name + ": " + k.meaning + "\n";
   }
-  command->add_option("kind", *kind, "What to list")
+  command->add_option("kind", *kind, "Kind of things to list")
       ->required()
       ->check(CLI::IsMember(names))
       ->option_text("KIND REQUIRED");

@@ -1,4 +1,4 @@
-// pliant render: pictures of a recorded run, with another camera or size if wanted.
+// pliant render: draws the pictures of a recorded run again, also with another camera or size.
 #include <memory>
 #include <optional>
 
@@ -55,7 +55,7 @@ int render(const RenderCommand& command) {
   prepare_frame_folder(folder, frames, "png", command.force);
   catch_stop_signals();
   const std::unique_ptr<pliant::Progress> progress = make_progress(command.quiet);
-  draw_frames(folder, *run.scene, *run.model, *run.recording, run.record.frame_rate, frames, *progress,
+  draw_frames(folder, {*run.scene, *run.model, *run.recording}, run.record.frame_rate, frames, *progress,
               command.backend);
   return kDone;
 }
@@ -68,24 +68,24 @@ void add_render(CLI::App& app, Action& action) {
   command->add_option("run", options->run, "Folder of the run")->required()->type_name("RUN");
   command->add_option("-o,--out", options->folder, "Folder for the pictures [RUN/frames]")->type_name("DIR");
   add_frame_options(*command, options->frames);
-  command->add_option("--size", options->size, "Size in pixels [that of the run]")
+  command->add_option("--size", options->size, "Size of the pictures in pixels [size of the run]")
       ->check(picture_size())
       ->type_name("WxH");
   add_color_options(*command, options->colors);
-  command->add_option("--camera-eye", options->eye, "Position of the camera, m")
+  command->add_option("--camera-eye", options->eye, "Position of the camera (m)")
       ->expected(3)
       ->check(any_number())
       ->option_text("X Y Z");
-  command->add_option("--camera-target", options->target, "Point that the camera looks at, m")
+  command->add_option("--camera-target", options->target, "Point that the camera looks at (m)")
       ->expected(3)
       ->check(any_number())
       ->option_text("X Y Z");
-  command->add_option("--fov", options->field_of_view, "Vertical field of view, degrees, 5 to 120")
+  command->add_option("--fov", options->field_of_view, "Vertical field of view, 5 to 120 degrees")
       ->check(number_between(5, 120))
       ->type_name("DEGREES");
-  command->add_flag("--no-ground", options->no_ground, "Without the ground");
-  command->add_flag("--no-springs", options->no_springs, "Without what shows springs and joints");
-  command->add_flag("--no-shadows", options->no_shadows, "Without shadows");
+  command->add_flag("--no-ground", options->no_ground, "Hide the ground");
+  command->add_flag("--no-springs", options->no_springs, "Hide springs and joints");
+  command->add_flag("--no-shadows", options->no_shadows, "Draw no shadows");
   add_graphics_option(*command, options->backend);
   command->add_flag("--force", options->force, "Replace pictures that exist");
   command->add_flag("--quiet", options->quiet, "Show errors only");

@@ -1,4 +1,5 @@
-// pliant run: simulates a scene into a folder, and writes meshes and pictures of its frames when asked.
+// pliant run: simulates a scene, records it in a folder, and writes meshes and pictures of its frames on
+// request.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -43,17 +44,18 @@ fs::path folder_of(const RunCommand& command) {
          (command.scene.file == "-" ? fs::path("scene") : fs::path(command.scene.file).stem());
 }
 
-// What the command line says of how to run; a resumed run goes on as it began where it says nothing.
-void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& begun,
+// Sets the options of the command line in the scene. A resumed run keeps its old settings where the command
+// line has none.
+void apply_options(const RunCommand& command, const std::optional<pliant::RunRecord>& previous,
                    pliant::Scene& scene) {
-  if (begun) {
-    scene.end = begun->end;
-    if (begun->tolerance == 0) scene.step = begun->asked_step;
-    scene.tolerance = begun->tolerance;
-    scene.integrator = begun->asked_integrator;
-    scene.frame_rate = begun->frame_rate;
-    scene.width = begun->width;
-    scene.height = begun->height;
+  if (previous) {
+    scene.end = previous->end;
+    if (previous->tolerance == 0) scene.step = previous->asked_step;
+    scene.tolerance = previous->tolerance;
+    scene.integrator = previous->asked_integrator;
+    scene.frame_rate = previous->frame_rate;
+    scene.width = previous->width;
+    scene.height = previous->height;
   }
   apply_colors(command.colors, scene);
   scene.end = command.end.value_or(scene.end);
@@ -102,46 +104,47 @@ void write_frames(const RunCommand& command, pliant::Run& run, pliant::Progress&
     run.write("frames", {series(pliant::kFrameFolder, "png")}, [&] {
       const fs::path folder = run.folder() / pliant::kFrameFolder;
       pliant::make_subfolder(folder);
-      draw_frames(folder, scene, model, run.recording(), scene.frame_rate, frames, progress, command.backend);
+      const pliant::Recording recording = run.recording();
+      draw_frames(folder, {scene, model, recording}, scene.frame_rate, frames, progress, command.backend);
     });
   }
 }
 
 void print_error(const pliant::ErrorEstimate& error) {
-  std::cout << "error, by a run ";
+  std::cout << "largest differences from a more accurate run with ";
   if (error.tolerance > 0)
-    std::cout << "to a tolerance of " << error.tolerance;
+    std::cout << "a tolerance of " << error.tolerance;
   else
-    std::cout << "with steps of " << error.step << " s";
-  const auto tell = [](const char* what, double value, const char* unit) {
+    std::cout << "steps of " << error.step << " s";
+  const auto print = [](const char* what, double value, const char* unit) {
     if (value != 0) std::cout << "\n  " << what << " " << pliant::rounded_text(value) << " " << unit;
   };
-  tell("place", error.place, "m");
-  tell("rotation", error.rotation, "rad");
-  tell("parameters that are lengths", error.length, "m");
-  tell("other parameters", error.parameter, "");
-  tell("local displacement", error.displacement, "m, or of modes m kg^(1/2)");
-  tell("velocity", error.velocity, "m/s");
-  tell("angular velocity", error.angular_velocity, "rad/s");
-  tell("energy", error.energy, "J");
-  tell("force of joints, without impulses of contact", error.joint_force, "N");
-  tell("torque of joints, without them", error.joint_torque, "N m");
-  tell("gap of joints, of this run", error.gap, "m");
+  print("position", error.place, "m");
+  print("rotation", error.rotation, "rad");
+  print("parameters with the unit of length", error.length, "m");
+  print("other parameters", error.parameter, "");
+  print("local displacement", error.displacement, "m; for modes m kg^(1/2)");
+  print("velocity", error.velocity, "m/s");
+  print("angular velocity", error.angular_velocity, "rad/s");
+  print("energy", error.energy, "J");
+  print("joint force, without impulses of contacts", error.joint_force, "N");
+  print("joint torque, without impulses of contacts", error.joint_torque, "N m");
+  print("largest joint gap of this run", error.gap, "m");
   std::cout << "\n";
 }
 
 int run_scene(const RunCommand& command) {
   const fs::path folder = folder_of(command);
   SceneOptions asked = command.scene;
-  std::optional<pliant::RunRecord> begun;
+  std::optional<pliant::RunRecord> previous;
   if (command.resume) {
-    begun = pliant::read_run_record(folder / pliant::kRunFile);
-    if (asked.overrides.empty()) asked.overrides = begun->overrides;
+    previous = pliant::read_run_record(folder / pliant::kRunFile);
+    if (asked.overrides.empty()) asked.overrides = previous->overrides;
   }
   const std::unique_ptr<pliant::Scene> scene = read(asked);
-  apply_options(command, begun, *scene);
+  apply_options(command, previous, *scene);
 
-  // What would fail after the simulation fails before it.
+  // Faults of later stages are reported before the simulation starts.
   if (command.estimate) pliant::require_better_run(*scene);
   if (command.obj || command.png) pliant::FrameRange().size(pliant::schedule_of(*scene).frames());
   pliant::RunOptions options;
@@ -160,26 +163,28 @@ int run_scene(const RunCommand& command) {
   pliant::Run run(*scene, std::move(options), *progress);
   if (!command.quiet && scene->tolerance == 0 && std::isfinite(run.record().stable_step))
     progress->note("step " + pliant::number_text(run.record().step) +
-                   " s; the largest stable one at the start is about " +
+                   " s; the largest stable step at the start is about " +
                    pliant::rounded_text(run.record().stable_step) + " s");
   if (!run.simulate()) {
     run.finish(pliant::RunRecord::Status::stopped, "by signal " + std::to_string(stop_signal()));
-    std::cerr << "pliant: stopped at t = " << run.simulation().time() << " s; go on with --resume\n";
+    std::cerr << "pliant: stopped at t = " << run.simulation().time() << " s; continue with --resume\n";
     return kSignal + stop_signal();
   }
   try {
     if (command.estimate) print_error(run.estimate_error());
     write_frames(command, run, *progress);
   } catch (const pliant::Interrupted&) {
-    std::cerr << "pliant: stopped while writing files; the motion is recorded: go on with --resume\n";
+    std::cerr << "pliant: stopped while writing files; the motion is recorded; continue with --resume\n";
     return kSignal + stop_signal();
   }
   run.finish(pliant::RunRecord::Status::complete);
   if (!command.quiet)
     std::cout << folder.string() << ": t = " << run.record().time << " s, "
               << pliant::count_text(run.record().steps_done, "step") << ", "
-              << pliant::count_text(run.record().states, "state") << " recorded; largest balance error "
-              << pliant::rounded_text(run.record().max_balance_error) << " J\n";
+              << pliant::count_text(run.record().states, "state")
+              << " recorded; largest error of the energy balance "
+              << pliant::rounded_text(run.record().max_balance_error) << " J (largest kinetic energy "
+              << pliant::rounded_text(run.record().max_kinetic) << " J)\n";
   return kDone;
 }
 
@@ -189,6 +194,41 @@ std::vector<std::string> integrator_names() {
   return names;
 }
 
+// Declares the options of time integration.
+void add_time_options(CLI::App& command, RunCommand& options) {
+  command.add_option("--end", options.end, "End time of the run (s)")
+      ->check(number_from_zero())
+      ->type_name("T");
+  CLI::Option* step = command.add_option("--step", options.step, "Fixed time step (s)")
+                          ->check(positive_number())
+                          ->type_name("H");
+  command
+      .add_option("--tolerance", options.tolerance,
+                  "Error tolerance of a step; the step length is then adaptive")
+      ->check(positive_number())
+      ->excludes(step)
+      ->type_name("E");
+  command
+      .add_option("--integrator", options.integrator,
+                  "Method of time integration (see pliant list integrators)")
+      ->check(CLI::IsMember(integrator_names()))
+      ->option_text("NAME");
+  command.add_option("--fps", options.frame_rate, "Recorded states and frames per second of simulated time")
+      ->check(positive_number())
+      ->type_name("N");
+}
+
+// Declares the options of meshes and pictures.
+void add_output_options(CLI::App& command, RunCommand& options) {
+  command.add_flag("--obj", options.obj, "Write the surfaces of every frame as OBJ files");
+  command.add_flag("--png", options.png, "Draw a picture of every frame");
+  command.add_option("--size", options.size, "Size of the pictures in pixels")
+      ->check(picture_size())
+      ->type_name("WxH");
+  add_color_options(command, options.colors);
+  add_graphics_option(command, options.backend);
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, Action& action, const std::vector<std::string>& command_line) {
@@ -196,54 +236,37 @@ void add_run(CLI::App& app, Action& action, const std::vector<std::string>& comm
   options->command_line = command_line;
   CLI::App* command = app.add_subcommand("run", "Simulate a scene and record its motion");
   add_scene_options(*command, options->scene);
-  command->add_option("-o,--out", options->folder, "Folder for everything that is written [out/SCENE]")
-      ->type_name("DIR");
-  command->add_option("--end", options->end, "End of the run, s")->check(number_from_zero())->type_name("T");
-  CLI::Option* step = command->add_option("--step", options->step, "Time step, s: all are so long")
-                          ->check(positive_number())
-                          ->type_name("H");
-  command->add_option("--tolerance", options->tolerance, "Error of a step, which then finds its own length")
-      ->check(positive_number())
-      ->excludes(step)
-      ->type_name("E");
-  command->add_option("--integrator", options->integrator, "Method of time integration, see pliant list")
-      ->check(CLI::IsMember(integrator_names()))
-      ->option_text("NAME");
-  command->add_option("--fps", options->frame_rate, "Recorded states and frames per second of the motion")
-      ->check(positive_number())
-      ->type_name("N");
-  command->add_flag("--obj", options->obj, "Write the surfaces of every frame as OBJ files");
-  command->add_flag("--png", options->png, "Draw a picture of every frame");
-  command->add_option("--size", options->size, "Size of pictures, pixels")
-      ->check(picture_size())
-      ->type_name("WxH");
-  add_color_options(*command, options->colors);
-  add_graphics_option(*command, options->backend);
+  command->add_option("-o,--out", options->folder, "Folder for all output [out/SCENE]")->type_name("DIR");
+  add_time_options(*command, *options);
+  add_output_options(*command, *options);
   command
       ->add_option("--threads", options->threads,
-                   "Threads [as many as are of use]; results do not depend on it")
+                   "Number of threads [as many as are useful]; results do not depend on it")
       ->check(count_up_to(4096))
       ->type_name("N");
   command->add_flag(
       "--estimate-error", options->estimate,
-      "Run again, to a tenth of the tolerance or with half the step, and where bodies lie on each "
-      "other with half the step, and tell the differences");
+      "Run a second time with a tenth of the tolerance, or with half the step, and print the differences; "
+      "steps with resting contacts are halved in both cases");
   command->add_flag("--quiet", options->quiet, "Show errors only");
-  CLI::Option* force = command->add_flag("--force", options->force, "Replace the run that is in the folder");
+  CLI::Option* force = command->add_flag("--force", options->force, "Replace the run in the folder");
   command
       ->add_flag("--resume", options->resume,
-                 "Go on with the run that is in the folder, to the last bit as if unbroken")
+                 "Continue the run in the folder; the result is equal to the last bit to that of an "
+                 "uninterrupted run")
       ->excludes(force);
   command->footer(
       "Examples:\n"
       "  pliant run scenes/tumbling.json --obj --png -o out/tumbling\n"
       "  pliant run scenes/balloon.json --png --color-by strain\n"
       "  pliant run scenes/pull.json --set /parts/0/density=500 --set /gravity=[0,0,-9.81] --end 2\n"
-      "  pliant run scenes/pull.json -o out/pull --resume --end 20    longer than it was, or after Ctrl-C\n"
-      "The folder then holds run.json (status, options, timings), trajectory.csv, the recording (t.npy, "
-      "q.npy, v.npy,\n"
-      "modes.npy, supports.npy, explained by layout.json), meshes/ and frames/; and contacts.csv and\n"
-      "joint_impulses.csv where the scene says \"output\": {\"contacts\": true}.");
+      "  pliant run scenes/pull.json -o out/pull --resume --end 20    extend a run, or continue after "
+      "Ctrl-C\n"
+      "Output: run.json (status, options, timings), trajectory.csv, the recording (t.npy, q.npy, v.npy, "
+      "modes.npy\n"
+      "and supports.npy, described in layout.json), meshes/ and frames/. With \"output\": {\"contacts\": "
+      "true} in the\n"
+      "scene also contacts.csv and joint_impulses.csv.");
   command->callback([options, &action] {
     check_colors(options->colors);
     action = [options] { return run_scene(*options); };

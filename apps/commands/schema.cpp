@@ -1,4 +1,4 @@
-// pliant schema: the JSON Schema of scene files.
+// pliant schema: prints the JSON Schema of scene files.
 #include <iostream>
 
 #include <pliant/scene/schema/scene_schema.h>
@@ -13,8 +13,7 @@ void add_schema(CLI::App& app, Action& action) {
   command->footer(
       "Example:\n"
       "  pliant schema > pliant-scene.schema.json\n"
-      "A scene that begins with  \"$schema\": \"pliant-scene.schema.json\"  is completed and checked by "
-      "editors.");
+      "Editors complete and check a scene that begins with  \"$schema\": \"pliant-scene.schema.json\".");
   command->callback([&action] {
     action = [] {
       std::cout << pliant::schema::schema_json(pliant::scene_record());

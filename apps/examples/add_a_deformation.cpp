@@ -1,4 +1,4 @@
-// A deformation of one's own, in one struct: a wave along the axis. It joins chains like any other.
+// Adds a deformation: a wave along the axis, in one struct. It works in chains as any other deformation.
 #include <cstdio>
 
 #include <pliant/pliant.h>

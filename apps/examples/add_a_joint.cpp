@@ -1,4 +1,4 @@
-// A joint of one's own, in one struct: a bead on a helical wire. It joins the others in the solver.
+// Adds a joint: a bead on a helical wire, in one struct. The solver treats it as any other joint.
 #include <cstdio>
 
 #include <pliant/pliant.h>

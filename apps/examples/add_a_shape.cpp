@@ -1,4 +1,4 @@
-// A shape of one's own, in one struct: an egg. Simulated like any other.
+// Adds a shape: an egg, in one struct. It is simulated as any other shape.
 #include <cstdio>
 
 #include <pliant/pliant.h>

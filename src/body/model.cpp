@@ -1,107 +1,130 @@
+// The set-up of a model: the places of parts and joints in the flat vectors, the islands, and the solver of
+// each.
 #include <pliant/body/model.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include <pliant/math/disjoint_sets.h>
 #include <pliant/part/local/patch_weights.h>
 
 namespace pliant {
 
 namespace {
-/// Multiplications below which blocks are always the faster way.
+
+/// Number of multiplications below which the factorisation by blocks is always the faster one.
 constexpr long kCheapBlocks = 10000;
-/// Parts below this share of the mass of another of their island are light among heavy ones.
+/// Number of pairs of joints on a part above which the blocks of W_c are not considered.
+constexpr double kMaxJointPairs = 1e7;
+/// Ratio of the masses of two parts of an island below which solutions are refined.
 constexpr double kUneven = 1e-4;
+
 }  // namespace
 
 Model::Model(MultiBody& body) : body_(&body) {
-  if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity is not finite");
-  for (const auto& part : body.parts()) {
-    part->prepare();
-    PartModel m;
-    m.part = part.get();
-    m.use = part->use();
-    m.n_s = part->n_s();
-    m.motion = part->motion();
-    m.local = part->local();
-    m.drag = part->drag();
-    m.q0 = part->fixed() ? -1 : n_q_;
-    m.v0 = part->fixed() ? -1 : n_v_;
-    m.limit0 = n_limits_;
-    m.rest.resize(m.n_s);
-    for (int k = 0; k < m.n_s; ++k) {
-      const Parameter& p = part->parameters().moving(k);
-      m.limits.push_back(p.limits);
-      m.rest[k] = p.rest_value();
-      m.actuated = m.actuated || !p.rest.is_constant();
-    }
-    m.R0 = part->R0().toRotationMatrix();
-    n_q_ += part->n_q();
-    n_v_ += part->n_v();
-    n_limits_ += m.n_s;
-
-    m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
-    for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part->inertia_floor(k);
-    if (part->rigid()) {
-      m.rigid_factor.compute(part->rest_inertia().M, m.inertia_floor);
-      for (int k = 0; k < 6; ++k) {
-        VecMax<double> column = VecMax<double>::Unit(6, k);
-        m.rigid_factor.solve(column);
-        m.rigid_inverse.col(k) = column;
-      }
-    }
-    parts_.push_back(std::move(m));
-  }
-  for (const auto& spring : body.springs()) {
-    const std::string what = "spring '" + spring->name + "'";
-    SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
-    if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
-    springs_.push_back(m);
-  }
-  for (const auto& force : body.forces()) {
-    if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
-    forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
-  }
-  for (const auto& torque : body.torques()) {
-    const std::string what = "torque '" + torque->name + "'";
-    if (torque->part == nullptr) throw std::invalid_argument(what + " acts on no part");
-    if (torque->against == torque->part)
-      throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
-    torques_.push_back({torque.get(), body.index(*torque->part),
-                        torque->against == nullptr ? -1 : body.index(*torque->against)});
-  }
+  if (!body.gravity_at(0).allFinite()) throw std::invalid_argument("gravity at time 0 is not finite");
+  for (const auto& part : body.parts()) add_part(*part);
+  add_springs();
+  add_forces_and_torques();
   body.stabilization.check();
-  auto note_times = [&](double on, double off) {
-    for (const double time : {on, off})
-      if (time > 0 && std::isfinite(time)) switch_times_.push_back(time);
-  };
-  for (const auto& joint : body.joints()) {
-    add_joint(*joint);
-    note_times(joint->on(), joint->off());
-  }
-  if (body.contact.active) {
-    for (const ContactPlane& plane : body.contact.planes) note_times(plane.on, plane.off);
-    for (const ContactObstacle& obstacle : body.contact.obstacles) note_times(obstacle.on, obstacle.off);
-  }
-  std::sort(switch_times_.begin(), switch_times_.end());
-  lay_sides();
+  for (const auto& joint : body.joints()) add_joint(*joint);
+  note_switch_times();
+  share_joint_points();
+  assign_side_offsets();
   make_islands();
-  Counters unused;
-  for (PartModel& m : parts_)
-    if (m.n_s == 0 && !m.ports.empty())
-      m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
-  note_loaded_parts();
+  evaluate_rigid_ports();
+  mark_loaded_parts();
   make_rigid_islands();
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i].island < 0) lone_parts_.push_back(static_cast<int>(i));
 }
 
-void Model::note_loaded_parts() {
+void Model::add_part(Part& part) {
+  part.prepare();
+  PartModel m;
+  m.part = &part;
+  m.use = part.use();
+  m.n_s = part.n_s();
+  m.motion = part.motion();
+  m.local = part.local();
+  m.drag = part.drag();
+  m.q0 = part.fixed() ? -1 : n_q_;
+  m.v0 = part.fixed() ? -1 : n_v_;
+  m.limit0 = n_limits_;
+  m.rest.resize(m.n_s);
+  for (int k = 0; k < m.n_s; ++k) {
+    const Parameter& p = part.parameters().moving(k);
+    m.limits.push_back(p.limits);
+    m.rest[k] = p.rest_value();
+    m.actuated = m.actuated || !p.rest.is_constant();
+  }
+  m.R0 = part.R0().toRotationMatrix();
+  n_q_ += part.n_q();
+  n_v_ += part.n_v();
+  n_limits_ += m.n_s;
+
+  m.inertia_floor = VecX<double>::Zero(6 + m.n_s);
+  for (int k = 0; k < m.n_s; ++k) m.inertia_floor[6 + k] = part.inertia_floor(k);
+  if (part.rigid()) {
+    m.rigid_factor.compute(part.rest_inertia().M, m.inertia_floor);
+    for (int k = 0; k < 6; ++k) {
+      VecMax<double> column = VecMax<double>::Unit(6, k);
+      m.rigid_factor.solve(column);
+      m.rigid_inverse.col(k) = column;
+    }
+  }
+  parts_.push_back(std::move(m));
+}
+
+void Model::add_springs() {
+  for (const auto& spring : body_->springs()) {
+    const std::string what = "spring '" + spring->name + "'";
+    SpringModel m{spring.get(), attach(spring->a, what), attach(spring->b, what)};
+    if (m.a.part < 0 && m.b.part < 0) throw std::invalid_argument(what + " ties the world to itself");
+    springs_.push_back(m);
+  }
+}
+
+void Model::add_forces_and_torques() {
+  for (const auto& force : body_->forces()) {
+    if (force->at.part == nullptr) throw std::invalid_argument("force '" + force->name + "' acts on no part");
+    forces_.push_back({force.get(), attach(force->at, "force '" + force->name + "'")});
+  }
+  for (const auto& torque : body_->torques()) {
+    const std::string what = "torque '" + torque->name + "'";
+    if (torque->part == nullptr) throw std::invalid_argument(what + " acts on no part");
+    if (torque->against == torque->part)
+      throw std::invalid_argument(what + " acts on part '" + torque->part->name() + "' against itself");
+    torques_.push_back({torque.get(), body_->index(*torque->part),
+                        torque->against == nullptr ? -1 : body_->index(*torque->against)});
+  }
+}
+
+void Model::note_switch_times() {
+  auto note = [&](double on, double off) {
+    for (const double time : {on, off})
+      if (time > 0 && std::isfinite(time)) switch_times_.push_back(time);
+  };
+  for (const auto& joint : body_->joints()) note(joint->on(), joint->off());
+  if (body_->contact.active) {
+    for (const ContactPlane& plane : body_->contact.planes) note(plane.on, plane.off);
+    for (const ContactObstacle& obstacle : body_->contact.obstacles) note(obstacle.on, obstacle.off);
+  }
+  std::sort(switch_times_.begin(), switch_times_.end());
+}
+
+void Model::evaluate_rigid_ports() {
+  Counters unused;
+  for (PartModel& m : parts_)
+    if (m.n_s == 0 && !m.ports.empty())
+      m.part->points(m.ports, VecMax<double>(0), VecMax<double>(0), m.rigid_ports, unused);
+}
+
+void Model::mark_loaded_parts() {
   for (const SpringModel& spring : springs_)
     for (const PortRef& ref : {spring.a, spring.b})
       if (ref.part >= 0) parts_[static_cast<std::size_t>(ref.part)].loaded = true;
@@ -117,9 +140,9 @@ void Model::note_loaded_parts() {
 }
 
 void Model::make_rigid_islands() {
-  if (body_->changing_gravity) return;  // its power needs to know where all parts are
+  if (body_->changing_gravity) return;  // the power of gravity needs the positions of all parts
   for (Island& island : islands_) {
-    if (!RigidIsland::takes(*this, island)) continue;
+    if (!RigidIsland::applies_to(*this, island)) continue;
     island.rigid = static_cast<int>(rigid_islands_.size());
     for (const int i : island.parts) parts_[static_cast<std::size_t>(i)].rigid_island = island.rigid;
     rigid_islands_.emplace_back(*this, island);
@@ -137,9 +160,8 @@ PortRef Model::attach(const Point& point, const std::string& what) {
   if (point.part == nullptr) return {};
   const Material<double>& m = point.material;
   if (!(m.w >= 0 && m.w <= 1) || std::isnan(m.cu.x + m.su.x + m.cv.x + m.sv.x))
-    throw std::invalid_argument(
-        what + ": its point on part '" + point.part->name() +
-        "' needs angles that are numbers, and w from 0 at the centre to 1 on the surface");
+    throw std::invalid_argument(what + ": its point on part '" + point.part->name() +
+                                "' needs finite angles, and w from 0 at the centre to 1 on the surface");
   const int part = body_->index(*point.part);
   auto& ports = parts_[static_cast<std::size_t>(part)].ports;
   ports.push_back(point.material);
@@ -188,8 +210,7 @@ void Model::add_joint(const Joint& joint) {
   joints_.push_back(std::move(m));
 }
 
-void Model::lay_sides() {
-  // Joints at the same point of a part that deforms locally share its local velocities.
+void Model::share_joint_points() {
   for (const JointModel& joint : joints_)
     for (const PortRef& ref : joint.at) {
       if (ref.part < 0) continue;
@@ -200,6 +221,9 @@ void Model::lay_sides() {
       m.port_place[port] = static_cast<int>(same - m.shared.begin());
       if (same == m.shared.end()) m.shared.push_back(m.node_weights[port]);
     }
+}
+
+void Model::assign_side_offsets() {
   for (JointModel& joint : joints_)
     for (JointSide& side : joint.sides) {
       side.offset = n_sides_;
@@ -211,56 +235,8 @@ void Model::lay_sides() {
 }
 
 void Model::make_islands() {
-  // Parts tied by joints get the same root.
-  std::vector<int> parent(parts_.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  auto root = [&](int i) {
-    for (auto at = static_cast<std::size_t>(i); parent[at] != i; at = static_cast<std::size_t>(i))
-      i = parent[at] = parent[static_cast<std::size_t>(parent[at])];
-    return i;
-  };
-  for (const JointModel& joint : joints_)
-    for (const JointSide& side : joint.sides) {
-      const int a = root(joint.sides.front().part), b = root(side.part);
-      parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
-  std::vector<int> island_of(parts_.size(), -1);
-  SidesOfParts sides_of(parts_.size());
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    JointModel& joint = joints_[j];
-    int& island = island_of[static_cast<std::size_t>(root(joint.sides.front().part))];
-    if (island < 0) {
-      island = static_cast<int>(islands_.size());
-      islands_.emplace_back();
-    }
-    joint.island = island;
-    for (std::size_t s = 0; s < joint.sides.size(); ++s)
-      sides_of[static_cast<std::size_t>(joint.sides[s].part)].emplace_back(static_cast<int>(j),
-                                                                           static_cast<int>(s));
-    for (const PortRef& ref : joint.at)
-      if (ref.part >= 0 && parts_[static_cast<std::size_t>(ref.part)].q0 < 0)
-        islands_[static_cast<std::size_t>(island)].anchors.push_back(ref.part);
-    if (joint.joint->one_sided()) {
-      islands_[static_cast<std::size_t>(island)].strings.push_back(static_cast<int>(j));
-      continue;
-    }
-    std::vector<int>& joints = islands_[static_cast<std::size_t>(island)].joints;
-    joint.node = static_cast<int>(joints.size());
-    joint.island_row = islands_[static_cast<std::size_t>(island)].rows;
-    islands_[static_cast<std::size_t>(island)].rows += joint.rows;
-    joints.push_back(static_cast<int>(j));
-  }
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    if (sides_of[i].empty()) continue;
-    parts_[i].island = island_of[static_cast<std::size_t>(root(static_cast<int>(i)))];
-    Island& island = islands_[static_cast<std::size_t>(parts_[i].island)];
-    for (const auto& [joint, side] : sides_of[i])
-      joints_[static_cast<std::size_t>(joint)].sides[static_cast<std::size_t>(side)].place =
-          static_cast<int>(island.parts.size());
-    island.parts.push_back(static_cast<int>(i));
-    island.first.push_back(island.n_v);
-    island.n_v += parts_[i].n_x();
-  }
+  const SidesOfParts sides_of = number_joints();
+  number_parts(sides_of);
   for (Island& island : islands_) {
     double lightest = std::numeric_limits<double>::infinity(), heaviest = 0;
     for (const int i : island.parts) {
@@ -270,19 +246,64 @@ void Model::make_islands() {
     }
     island.uneven = lightest < kUneven * heaviest;
     choose_solver(island, sides_of);
-    if (!island.augmented) lay_couplings(island, sides_of);
+    if (!island.augmented) add_couplings(island, sides_of);
+  }
+}
+
+Model::SidesOfParts Model::number_joints() {
+  DisjointSets joined(parts_.size());
+  for (const JointModel& joint : joints_)
+    for (const JointSide& side : joint.sides) joined.unite(joint.sides.front().part, side.part);
+  std::vector<int> island_of(parts_.size(), -1);
+  SidesOfParts sides_of(parts_.size());
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    JointModel& joint = joints_[j];
+    int& number = island_of[static_cast<std::size_t>(joined.leader(joint.sides.front().part))];
+    if (number < 0) {
+      number = static_cast<int>(islands_.size());
+      islands_.emplace_back();
+    }
+    joint.island = number;
+    Island& island = islands_[static_cast<std::size_t>(number)];
+    for (std::size_t s = 0; s < joint.sides.size(); ++s)
+      sides_of[static_cast<std::size_t>(joint.sides[s].part)].emplace_back(static_cast<int>(j),
+                                                                           static_cast<int>(s));
+    for (const PortRef& ref : joint.at)
+      if (ref.part >= 0 && parts_[static_cast<std::size_t>(ref.part)].q0 < 0)
+        island.anchors.push_back(ref.part);
+    if (joint.joint->one_sided()) {
+      island.strings.push_back(static_cast<int>(j));
+      continue;
+    }
+    joint.node = static_cast<int>(island.joints.size());
+    joint.island_row = island.rows;
+    island.rows += joint.rows;
+    island.joints.push_back(static_cast<int>(j));
+  }
+  return sides_of;
+}
+
+void Model::number_parts(const SidesOfParts& sides_of) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (sides_of[i].empty()) continue;
+    parts_[i].island = joints_[static_cast<std::size_t>(sides_of[i].front().first)].island;
+    Island& island = islands_[static_cast<std::size_t>(parts_[i].island)];
+    for (const auto& [joint, side] : sides_of[i])
+      joints_[static_cast<std::size_t>(joint)].sides[static_cast<std::size_t>(side)].place =
+          static_cast<int>(island.parts.size());
+    island.parts.push_back(static_cast<int>(i));
+    island.first.push_back(island.n_v);
+    island.n_v += parts_[i].n_x();
   }
 }
 
 void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
-  /// Pairs of joints beyond which W_c is not even looked at.
-  constexpr double most_pairs = 1e7;
   const JointSolver& solver = body_->joint_solver;
   auto equation = [&](int j) { return joints_[static_cast<std::size_t>(j)].node >= 0; };
   std::vector<int> rows;
   for (const int j : island.joints) rows.push_back(joints_[static_cast<std::size_t>(j)].rows);
 
-  // Eq. (14): parts and joints, a block for each side.
+  // The augmented matrix of Eq. (14): its nodes are parts and joints, with a block for each side.
   std::vector<int> sizes;
   std::vector<std::pair<int, int>> edges;
   double pairs = 0;
@@ -300,12 +321,13 @@ void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
   sizes.insert(sizes.end(), rows.begin(), rows.end());
   using Choice = JointSolver::Choice;
   island.augmented =
-      solver.choice == Choice::augmented || (solver.choice == Choice::automatic && pairs > most_pairs);
+      solver.choice == Choice::augmented || (solver.choice == Choice::automatic && pairs > kMaxJointPairs);
   if (island.augmented) {
-    island.numbers = eliminate(sizes, edges, solver.order).values;
+    island.factor_values = eliminate(sizes, edges, solver.order).values;
     return;
   }
-  std::vector<std::pair<int, int>> meetings;  // of joints on a part
+  // The matrix W_c: its nodes are joints, with a block for each pair of joints on a part.
+  std::vector<std::pair<int, int>> meetings;
   for (const int i : island.parts)
     for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
       for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)])
@@ -313,16 +335,16 @@ void Model::choose_solver(Island& island, const SidesOfParts& sides_of) {
           meetings.emplace_back(joints_[static_cast<std::size_t>(a)].node,
                                 joints_[static_cast<std::size_t>(b)].node);
   const Elimination blocks = cheapest_elimination(rows, meetings, solver.order);
-  island.numbers = blocks.values;
+  island.factor_values = blocks.values;
   if (solver.choice == Choice::automatic && blocks.products > kCheapBlocks) {
     const Elimination augmented = eliminate(sizes, edges, solver.order);
     island.augmented = augmented_is_faster(blocks, augmented);
-    if (island.augmented) island.numbers = augmented.values;
+    if (island.augmented) island.factor_values = augmented.values;
   }
   if (!island.augmented) island.pattern = BlockPattern(blocks);
 }
 
-void Model::lay_couplings(Island& island, const SidesOfParts& sides_of) {
+void Model::add_couplings(Island& island, const SidesOfParts& sides_of) {
   for (const int i : island.parts)
     for (const auto& [a, side_a] : sides_of[static_cast<std::size_t>(i)])
       for (const auto& [b, side_b] : sides_of[static_cast<std::size_t>(i)]) {
@@ -348,7 +370,7 @@ void Model::lay_couplings(Island& island, const SidesOfParts& sides_of) {
 }
 
 namespace {
-/// What displacements at time 0 do to the frame and the parameters of a part.
+/// Adds the motion of the frame and of the parameters that is contained in the local displacements at time 0.
 void displace_frame(const PartModel& m, State& state) {
   const Mat3<double> R = m.part->R0().toRotationMatrix();
   if (const VecX<double>& rate = m.local->initial_frame_rate(); rate.size() > 0) {

@@ -1,19 +1,2 @@
-#include <pliant/body/placed_point.h>
-
-#include <utility>
-
-namespace pliant {
-
-PlacedPoint::PlacedPoint(const Model& model, Point point)
-    : model_(&model),
-      point_(std::move(point)),
-      part_(point_.part == nullptr ? -1 : model.body().index(*point_.part)) {
-  if (part_ >= 0) among_nodes_ = Model::node_weights(point_);
-}
-
-Vec3<double> PlacedPoint::at(const State& state) const {
-  return part_ < 0 ? point_.world.value(state.time())
-                   : model_->world_point(state, part_, point_.material, among_nodes_);
-}
-
-}  // namespace pliant
+// The compiled bodies of placed_point-inl.h.
+#include <pliant/body/placed_point-inl.h>

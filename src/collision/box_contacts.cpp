@@ -1,3 +1,4 @@
+// Separating axis test of two boxes, clipping of the facing face, and the nearest point of a ball.
 #include <pliant/collision/box_contacts.h>
 
 #include <algorithm>
@@ -10,21 +11,24 @@ namespace pliant {
 
 namespace {
 
-/// A face's normal is taken before another axis along which the gap is greater by no more than this, in
-/// sizes.
+/// A face normal is preferred to a later axis whose gap is larger by at most this, in sizes of the smaller
+/// box.
 constexpr double kFaceFirst = 1e-6;
-/// Edges whose directions differ by less than this (sine) are parallel: they cross nowhere.
+/// Edges whose directions have a smaller sine between them are parallel and have no crossing.
 constexpr double kParallelEdges = 1e-6;
-/// Corners nearer than this, in sizes, are one.
-constexpr double kOneCorner = 1e-6;
+/// Corners nearer than this, in sizes of the smaller box, are merged.
+constexpr double kSameCorner = 1e-6;
 
-/// The axis across which two boxes are farthest apart.
+/// The axis along which the gap between two boxes is largest.
 struct Axis {
   Vec3<double> n = Vec3<double>::Zero();  ///< from a to b
   double gap = -std::numeric_limits<double>::infinity();
-  int of_a = -1, of_b = -1;  ///< of which it is the face's normal; both: across an edge of each
+  /// Number of the box axis that n is the face normal of, on a or on b. If both are set, n is the cross
+  /// product of an edge of a and an edge of b.
+  int of_a = -1, of_b = -1;
 };
 
+/// Half the extent of a box along a unit vector, m.
 double extent(const PlacedBox& box, const Vec3<double>& n) {
   return box.half.dot((box.R.transpose() * n).cwiseAbs());
 }
@@ -32,44 +36,46 @@ double extent(const PlacedBox& box, const Vec3<double>& n) {
 Axis widest_gap(const PlacedBox& a, const PlacedBox& b, double size) {
   const Vec3<double> d = b.c - a.c;
   Axis best;
-  auto look = [&](const Vec3<double>& n, int of_a, int of_b) {
+  auto test = [&](const Vec3<double>& n, int of_a, int of_b) {
     const double along = n.dot(d), gap = std::abs(along) - extent(a, n) - extent(b, n);
     if (best.gap == -std::numeric_limits<double>::infinity() || gap > best.gap + kFaceFirst * size)
       best = {along < 0 ? Vec3<double>(-n) : n, gap, of_a, of_b};
   };
-  for (int i = 0; i < 3; ++i) look(a.R.col(i), i, -1);
-  for (int j = 0; j < 3; ++j) look(b.R.col(j), -1, j);
+  for (int i = 0; i < 3; ++i) test(a.R.col(i), i, -1);
+  for (int j = 0; j < 3; ++j) test(b.R.col(j), -1, j);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const Vec3<double> across = a.R.col(i).cross(b.R.col(j));
-      if (across.norm() > kParallelEdges) look(across.normalized(), i, j);
+      if (across.norm() > kParallelEdges) test(across.normalized(), i, j);
     }
   return best;
 }
 
-/// The corner that is farthest in a direction, world; along: but for this axis, where it is in the middle.
-Vec3<double> farthest(const PlacedBox& box, const Vec3<double>& n, int along = -1) {
+/// Returns the corner that is farthest in a direction, world. along: an axis of the box for which the middle
+/// of the edge is returned instead.
+Vec3<double> farthest_corner(const PlacedBox& box, const Vec3<double>& n, int along = -1) {
   Vec3<double> p = box.R.transpose() * n;
   for (int k = 0; k < 3; ++k) p[k] = k == along ? 0 : std::copysign(box.half[k], p[k]);
   return box.c + box.R * p;
 }
 
-/// The point of a box that is nearest to a point of the world.
-Vec3<double> within(const PlacedBox& box, const Vec3<double>& x) {
+/// Returns the point of a box that is nearest to a point of the world.
+Vec3<double> nearest_in_box(const PlacedBox& box, const Vec3<double>& x) {
   const Vec3<double> in_box = box.R.transpose() * (x - box.c);
   return box.c + box.R * in_box.cwiseMin(box.half).cwiseMax(-box.half);
 }
 
-/// Where the edges along axis i of a and j of b that face each other cross, on a.
+/// Returns the point of the edge of a that is nearest to the opposite edge of b. The edges are those whose
+/// cross product is the axis.
 Vec3<double> crossing(const PlacedBox& a, const PlacedBox& b, const Axis& axis) {
-  const Vec3<double> p = farthest(a, axis.n, axis.of_a), q = farthest(b, -axis.n, axis.of_b);
+  const Vec3<double> p = farthest_corner(a, axis.n, axis.of_a), q = farthest_corner(b, -axis.n, axis.of_b);
   const Vec3<double> e = a.R.col(axis.of_a), f = b.R.col(axis.of_b), d = q - p;
-  const double ef = e.dot(f), s = (d.dot(e) - ef * d.dot(f)) / (1 - ef * ef), most = a.half[axis.of_a];
-  return p + std::clamp(s, -most, most) * e;
+  const double ef = e.dot(f), s = (d.dot(e) - ef * d.dot(f)) / (1 - ef * ef), half = a.half[axis.of_a];
+  return p + std::clamp(s, -half, half) * e;
 }
 
-/// A face, and what is left of it when it is cut by four planes: at most eight corners, and with rounding
-/// never more than half as many again for each plane.
+/// A face of a box that is clipped by four planes. Exactly it has at most eight corners. With rounding each
+/// plane adds at most half as many corners again, so 20 places suffice.
 struct Polygon {
   std::array<Vec3<double>, 20> corners;
   std::size_t n = 0;
@@ -77,20 +83,20 @@ struct Polygon {
   void add(const Vec3<double>& p) { corners[n++] = p; }
 };
 
-/// A convex polygon, cut to where n . x <= most: it may have one corner more.
-void cut(Polygon& polygon, const Vec3<double>& n, double most) {
+/// Clips a convex polygon to the half space n . x <= bound.
+void clip(Polygon& polygon, const Vec3<double>& n, double bound) {
   Polygon kept;
   for (std::size_t k = 0; k < polygon.n; ++k) {
     const Vec3<double>&p = polygon.corners[k], &q = polygon.corners[(k + 1) % polygon.n];
-    const double at_p = n.dot(p) - most, at_q = n.dot(q) - most;
+    const double at_p = n.dot(p) - bound, at_q = n.dot(q) - bound;
     if (at_p <= 0) kept.add(p);
     if ((at_p < 0 && at_q > 0) || (at_p > 0 && at_q < 0)) kept.add(p + at_p / (at_p - at_q) * (q - p));
   }
   polygon = kept;
 }
 
-/// The face of a box that looks most against a direction, cut to what lies over face number `number` of
-/// another one, whose normal that is.
+/// Returns the face of a box whose normal is most opposite to n, clipped to the part over face `number` of
+/// the other box, which has the normal n.
 Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const Vec3<double>& n) {
   const Vec3<double> in_box = box.R.transpose() * n;
   int k = 0;
@@ -102,7 +108,7 @@ Polygon facing(const PlacedBox& box, const PlacedBox& other, int number, const V
   for (const int side : {(number + 1) % 3, (number + 2) % 3})
     for (const double sign : {-1.0, 1.0}) {
       const Vec3<double> out = sign * other.R.col(side);
-      cut(polygon, out, out.dot(other.c) + other.half[side]);
+      clip(polygon, out, out.dot(other.c) + other.half[side]);
     }
   return polygon;
 }
@@ -116,44 +122,44 @@ std::array<Vec3<double>, 8> box_corners(const Vec3<double>& half) {
   return corners;
 }
 
-void touch_boxes(const PlacedBox& a, const PlacedBox& b, double most, std::vector<BoxTouch>& found) {
+void touch_boxes(const PlacedBox& a, const PlacedBox& b, double max_gap, std::vector<BoxTouch>& found) {
   const double size = std::min(a.half.maxCoeff(), b.half.maxCoeff());
   const Axis axis = widest_gap(a, b, size);
-  if (axis.gap > most) return;
+  if (axis.gap > max_gap) return;
   if (axis.of_a >= 0 && axis.of_b >= 0) {
     found.push_back({crossing(a, b, axis), -axis.n, axis.gap});
     return;
   }
   const bool on_a = axis.of_a >= 0;
-  const PlacedBox &on = on_a ? a : b, &lies = on_a ? b : a;
-  const Vec3<double> up = on_a ? axis.n : Vec3<double>(-axis.n);  // of the face that it lies on
-  const double face = up.dot(on.c) + on.half[on_a ? axis.of_a : axis.of_b];
+  const PlacedBox &support = on_a ? a : b, &resting = on_a ? b : a;
+  const Vec3<double> up = on_a ? axis.n : Vec3<double>(-axis.n);  // normal of the supporting face
+  const double face = up.dot(support.c) + support.half[on_a ? axis.of_a : axis.of_b];
   const std::size_t first = found.size();
   auto add = [&](const Vec3<double>& p) {
     const double gap = up.dot(p) - face;
-    if (gap > most) return;
-    const BoxTouch touch{on_a ? within(a, p - gap * up) : p, -axis.n, gap};
+    if (gap > max_gap) return;
+    const BoxTouch touch{on_a ? nearest_in_box(a, p - gap * up) : p, -axis.n, gap};
     for (std::size_t k = first; k < found.size(); ++k)
-      if ((found[k].x - touch.x).norm() < kOneCorner * size) {
+      if ((found[k].x - touch.x).norm() < kSameCorner * size) {
         if (gap < found[k].gap) found[k] = touch;
         return;
       }
     found.push_back(touch);
   };
-  const Polygon polygon = facing(lies, on, on_a ? axis.of_a : axis.of_b, up);
+  const Polygon polygon = facing(resting, support, on_a ? axis.of_a : axis.of_b, up);
   for (std::size_t k = 0; k < polygon.n; ++k) add(polygon.corners[k]);
-  if (found.size() == first) add(farthest(lies, -up));
+  if (found.size() == first) add(farthest_corner(resting, -up));
 }
 
 BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box) {
   const Vec3<double> in_box = box.R.transpose() * (centre - box.c),
-                     way = in_box - in_box.cwiseMin(box.half).cwiseMax(-box.half);
-  const double distance = way.norm();
+                     outward = in_box - in_box.cwiseMin(box.half).cwiseMax(-box.half);
+  const double distance = outward.norm();
   Vec3<double> normal = Vec3<double>::Zero();  // in the frame of the box
   double gap = distance - radius;
   if (distance > 0) {
-    normal = way / distance;
-  } else {  // out through the nearest face
+    normal = outward / distance;
+  } else {  // the centre is inside the box: the nearest face gives the normal
     int axis = 0;
     const double depth = (box.half - in_box.cwiseAbs()).minCoeff(&axis);
     normal[axis] = std::copysign(1.0, in_box[axis]);

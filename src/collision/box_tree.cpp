@@ -1,3 +1,4 @@
+// Construction of the tree, and the traversal of pairs of nodes.
 #include <pliant/collision/box_tree.h>
 
 #include <algorithm>
@@ -71,10 +72,10 @@ void BoxTree::between(int a, int b, double square, F& found) const {
   }
 }
 
-void BoxTree::near_pairs(double most, std::vector<std::pair<int, int>>& pairs) const {
+void BoxTree::near_pairs(double max_distance, std::vector<std::pair<int, int>>& pairs) const {
   pairs.clear();
   if (nodes_.empty()) return;
-  const double square = most * most;
+  const double square = max_distance * max_distance;
   auto found = [&](int i, int j) {
     if ((*boxes_)[at(i)].squaredExteriorDistance((*boxes_)[at(j)]) <= square)
       pairs.emplace_back(std::min(i, j), std::max(i, j));

@@ -1,3 +1,4 @@
+// Sample points of a part, and the search for the lowest points of a field on its surface.
 #include <pliant/collision/collision_surface.h>
 
 #include <algorithm>
@@ -12,37 +13,39 @@ namespace pliant {
 
 namespace {
 
-/// Edges along an eighth of a great circle.
+/// Edges of the sample mesh along an eighth of a great circle.
 constexpr int kSurfaceResolution = 6;
-/// The same of few points that tell how far the part reaches, and by how much it may reach beyond them.
-constexpr int kFewEdges = 2;
-constexpr double kBeyondFew = 1.1;
-/// How far the surface may lie below the chords between its points, in sizes of the part.
+/// Edges of a coarse mesh from which the reach of a part with dynamic parameters is estimated, and the factor
+/// on its largest distance from the origin.
+constexpr int kCoarseEdges = 2;
+constexpr double kCoarseMargin = 1.1;
+/// Largest distance of the surface from the chords between its sample points, in sizes of the part.
 constexpr double kSurfaceSag = 0.02;
-/// How far it may lie below the lowest of them, where it is thin and crosses something thin.
+/// Largest height of the lowest sample point over the lowest surface point, in sizes, where a thin part
+/// crosses a thin part.
 constexpr double kThinSag = 0.1;
-/// Points this near in height, in sizes of the part, lie as low as each other.
+/// Sample points whose heights differ by at most this, in sizes of the part, are equally low.
 constexpr double kSameHeight = 1e-6;
-/// Points nearer than this, in sizes, are one; and how deep the chord between two may lie below a face, in
-/// sizes.
+/// Points nearer than kSamePlace, in sizes, are merged. Two points are on one flat face if the middle of
+/// their chord is at most kFlatChord below the surface, in sizes.
 constexpr double kSamePlace = 0.02, kFlatChord = 1e-6;
-/// Size of the stencil, in spacings, that tells whether a point is lowest already; and heights, in sizes,
-/// that differ by rounding alone: on a flat face nothing is sought among them.
-constexpr double kCorner = 1e-3, kRounding = 1e-14;
-/// Heights of a stencil that bend by less, in sizes, are those of a flat surface.
-constexpr double kFlat = 1e-13;
-/// The search ends when its stencil is this small, in spacings.
-constexpr double kSmallest = 1e-8;
-/// Nearer to a pole than this, as the sine of the angle, directions have no clear latitude and longitude.
+/// Size of the stencil, in spacings, of the test whether a sample point is already lowest; and the difference
+/// of heights, in sizes, that is rounding: it starts no search on a flat face.
+constexpr double kCorner = 1e-3, kHeightRounding = 1e-14;
+/// A stencil whose second difference is smaller than this, in sizes, is flat.
+constexpr double kFlatStencil = 1e-13;
+/// The search ends at this size of its stencil, in spacings.
+constexpr double kMinStencil = 1e-8;
+/// Directions whose angle to a pole has a smaller sine are not described by latitude and longitude.
 constexpr double kNearPole = 0.2;
-constexpr int kMostHalvings = 60;
+constexpr int kMaxStencilHalvings = 60;
 
-/// Nine places, rows of three along the first axis.
+/// Nine places: three rows of three along the first axis.
 using Stencil = std::array<Vec3<double>, 9>;
 
-/// Places of a mesh pattern about one of them by two coordinates: latitude and longitude of a ball, along
-/// which rims and edges run, or u and v of a torus; about the poles of a ball any two axes. Mesh points are
-/// whole spacings apart.
+/// Two coordinates for the places of a mesh pattern around one of them. For a ball they are latitude and
+/// longitude, because rims and edges are along these; near its poles they are along any two axes. For a torus
+/// they are u and v. Neighbouring mesh points are one spacing apart.
 class Chart {
  public:
   Chart(const Vec3<double>& start, bool ball) : start_(start) {
@@ -57,11 +60,12 @@ class Chart {
       e2_ = start.normalized().cross(e1_);
     }
   }
-  /// To its neighbours in every direction, in spacings; circles of latitude are shorter than others.
+  /// Distance to the farthest neighbour in each coordinate, in spacings. Circles of latitude are shorter than
+  /// great circles.
   Eigen::Vector2d farthest() const { return {1, by_angles_ ? 2 : 1}; }
   Vec3<double> place(const Eigen::Vector2d& x) const {
     if (!by_angles_ || x.isZero(0)) return start_ + x[0] * e1_ + x[1] * e2_;
-    return towards(up(x[0]), round(x[1]));
+    return at_angles(up(x[0]), round(x[1]));
   }
   Stencil stencil(const Eigen::Vector2d& at, double size) const {
     Stencil places;
@@ -72,7 +76,7 @@ class Chart {
       rounds[k] = round(at[1] + offset);
     }
     for (std::size_t j = 0; j < 9; ++j)
-      places[j] = by_angles_ ? towards(ups[j % 3], rounds[j / 3])
+      places[j] = by_angles_ ? at_angles(ups[j % 3], rounds[j / 3])
                              : place(at + size * Eigen::Vector2d(static_cast<double>(j % 3) - 1,
                                                                  static_cast<double>(j / 3) - 1));
     if (at.isZero(0)) places[4] = start_;
@@ -87,7 +91,7 @@ class Chart {
   Direction round(double y) const {
     return {std::cos(longitude_ + widening_ * y), std::sin(longitude_ + widening_ * y)};
   }
-  static Vec3<double> towards(const Direction& up, const Direction& round) {
+  static Vec3<double> at_angles(const Direction& up, const Direction& round) {
     return {up.cos * round.cos, up.cos * round.sin, up.sin};
   }
 
@@ -96,14 +100,14 @@ class Chart {
   double latitude_ = 0, longitude_ = 0, widening_ = 1;
 };
 
-/// Where quadratics through the heights of a stencil are lowest, in its radii: along each of its axes, as
-/// rims and lines on which a surface lies flat have it, and of both. What bends by less than `flat` tells
-/// nothing.
+/// Returns the minima of quadratics through the heights h of a stencil, in stencil radii: one along each
+/// axis, which suits rims and lines on which a surface is level, and one in both coordinates. Quadratics
+/// whose second difference is below `flat` (m) are skipped.
 std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double flat) {
   std::vector<Eigen::Vector2d> steps;
   auto add = [&](const Eigen::Vector2d& step) {
-    const double most = step.lpNorm<Eigen::Infinity>();
-    steps.push_back(most > 1 ? Eigen::Vector2d(step / most) : step);
+    const double max_gap = step.lpNorm<Eigen::Infinity>();
+    steps.push_back(max_gap > 1 ? Eigen::Vector2d(step / max_gap) : step);
   };
   for (const auto& [before, after, axis] : {std::tuple{3, 5, 0}, std::tuple{1, 7, 1}}) {
     const double curvature = h[before] + h[after] - 2 * h[4];
@@ -120,8 +124,8 @@ std::vector<Eigen::Vector2d> steps_to_lowest(const Vec<double, 9>& h, double fla
   return steps;
 }
 
-/// The outermost of some points: the first, the farthest from it, the farthest from that, and the farthest
-/// from the line through them to either side.
+/// Returns the outermost of some points (columns of p): the point farthest from the first one, the point
+/// farthest from that, and the points farthest from the line through these two on either side.
 std::vector<Eigen::Index> outermost(const Eigen::Matrix3Xd& p, const std::vector<Eigen::Index>& some,
                                     double same) {
   std::vector<Eigen::Index> chosen;
@@ -164,18 +168,18 @@ CollisionSurface::CollisionSurface(const Part& part)
     thickness_ = (rest_points().rowwise().maxCoeff() - rest_points().rowwise().minCoeff()).minCoeff();
 }
 
-const CollisionSurface::Laid& CollisionSurface::laid() const {
-  if (!laid_) {
+const CollisionSurface::Samples& CollisionSurface::samples() const {
+  if (!samples_) {
     Surface surface(*part_, kSurfaceResolution);
     Eigen::Matrix3Xd p = part_->s(surface.material(), part_->parameters().rest());
     const double sag = kSurfaceSag * part_->size();
     const Eigen::AlignedBox3d box(p.rowwise().minCoeff().array() - sag, p.rowwise().maxCoeff().array() + sag);
     const double reach = (1 + kSurfaceSag) * p.colwise().norm().maxCoeff();
-    std::vector<Material<double>> few;
-    if (part_->parameters().n_dynamic() > 0) few = Surface(*part_, kFewEdges).material();
-    laid_.emplace(Laid{std::move(surface), std::move(p), box, reach, std::move(few)});
+    std::vector<Material<double>> coarse;
+    if (part_->parameters().n_dynamic() > 0) coarse = Surface(*part_, kCoarseEdges).material();
+    samples_.emplace(Samples{std::move(surface), std::move(p), box, reach, std::move(coarse)});
   }
-  return *laid_;
+  return *samples_;
 }
 
 std::optional<Vec3<double>> CollisionSurface::semi_axes(const ParameterValues<double>& values) const {
@@ -196,14 +200,17 @@ CollisionSurface::LowPoint CollisionSurface::ellipsoid_point(const ParameterValu
 
 double CollisionSurface::reach(const ParameterValues<double>& values) const {
   if (const std::optional<Vec3<double>> axes = semi_axes(values)) return axes->maxCoeff();
-  if (part_->parameters().n_dynamic() == 0) return laid().reach;
-  return kBeyondFew * part_->s(laid().few, values).colwise().norm().maxCoeff();
+  if (part_->parameters().n_dynamic() == 0) return samples().reach;
+  return kCoarseMargin * part_->s(samples().coarse, values).colwise().norm().maxCoeff();
 }
 
+// Above 60 lines: every stage of the pattern search works on the stencil, the best point and the radius,
+// which small functions would have to pass to each other.
 CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<double>& values, Eigen::Index i,
                                                      const Field& field) const {
-  // A stencil of three by three places about the best so far; quadratics through its heights tell the next.
-  const Chart chart(laid().surface.places()[static_cast<std::size_t>(i)],
+  // A stencil of three by three places is around the best point. Quadratics through its heights propose the
+  // next one.
+  const Chart chart(samples().surface.places()[static_cast<std::size_t>(i)],
                     part_->shape().mesh() == MeshPattern::ball);
   auto material = [&](const Vec3<double>& place) {
     return part_->shape().mesh_label(place, values.b.data());
@@ -211,7 +218,7 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
   Eigen::Vector2d at(0, 0);
   LowPoint best;
   std::vector<Material<double>> stencil(9);
-  auto lay = [&](double size) {
+  auto evaluate_stencil = [&](double size) {
     const Stencil places = chart.stencil(at, size);
     for (std::size_t j = 0; j < 9; ++j) stencil[j] = material(places[j]);
     return part_->s(stencil, values);
@@ -222,35 +229,35 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
     for (int k = 0; k < 9; ++k) h[k] = field.descent(p.col(k));
     return h;
   };
-  const double rounding = kRounding * part_->size();
+  const double rounding = kHeightRounding * part_->size();
   const Eigen::Vector2d farthest = spacing_ * chart.farthest();
   double radius = 0.5 * spacing_;
-  // Corners, edges and faces have their lowest points among those of the mesh.
+  // The lowest point of a corner, an edge or a face is often a sample point already.
   auto is_lowest = [&] {
-    const Eigen::Matrix3Xd p = lay(kCorner * spacing_);
+    const Eigen::Matrix3Xd p = evaluate_stencil(kCorner * spacing_);
     const Heights h = heights(p);
     best = {stencil[4], p.col(4), h[4]};
     return h.minCoeff() >= h[4] - rounding;
   };
   if (is_lowest()) return best;
   std::vector<Material<double>> next_materials;
-  for (int k = 0; k < kMostHalvings && radius > kSmallest * spacing_; ++k) {
-    const Eigen::Matrix3Xd p = lay(radius);
+  for (int k = 0; k < kMaxStencilHalvings && radius > kMinStencil * spacing_; ++k) {
+    const Eigen::Matrix3Xd p = evaluate_stencil(radius);
     const Heights h = heights(p);
     Eigen::Vector2d next = at;
     bool good = false;
-    auto take = [&](const Material<double>& m, const Vec3<double>& p_there, double height,
-                    const Eigen::Vector2d& there) {
+    auto accept = [&](const Material<double>& m, const Vec3<double>& p_there, double height,
+                      const Eigen::Vector2d& there) {
       best = {m, p_there, height};
       next = there;
     };
     Eigen::Index lowest = 4;
     h.minCoeff(&lowest);
     if (h[lowest] < best.height - rounding)
-      take(stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest],
-           at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
-                                         static_cast<double>(lowest / 3) - 1));
-    const std::vector<Eigen::Vector2d> steps = steps_to_lowest(h, kFlat * part_->size());
+      accept(stencil[static_cast<std::size_t>(lowest)], p.col(lowest), h[lowest],
+             at + radius * Eigen::Vector2d(static_cast<double>(lowest % 3) - 1,
+                                           static_cast<double>(lowest / 3) - 1));
+    const std::vector<Eigen::Vector2d> steps = steps_to_lowest(h, kFlatStencil * part_->size());
     if (steps.empty() && next == at) break;
     next_materials.clear();
     for (const Eigen::Vector2d& step : steps)
@@ -260,17 +267,17 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
       const auto column = static_cast<Eigen::Index>(j);
       const double height = field.descent(p_next.col(column));
       if (height > best.height + rounding) continue;
-      take(next_materials[j], p_next.col(column), height, at + radius * steps[j]);
+      accept(next_materials[j], p_next.col(column), height, at + radius * steps[j]);
       good = steps[j].lpNorm<Eigen::Infinity>() < 0.5;
     }
     next = next.cwiseMax(-farthest).cwiseMin(farthest);
     const Eigen::Array2d spacings = at / spacing_;
     if (next == at && (spacings == spacings.round()).all() && is_lowest()) return best;
-    const bool stays = (next - at).norm() <= 0.5 * radius;
+    const bool moves_little = (next - at).norm() <= 0.5 * radius;
     at = next;
     if (good)
       radius *= 0.1;
-    else if (stays)
+    else if (moves_little)
       radius *= 0.4;
   }
   return best;
@@ -278,11 +285,12 @@ CollisionSurface::LowPoint CollisionSurface::descend(const ParameterValues<doubl
 
 std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const ParameterValues<double>& values,
                                                                      const Eigen::Matrix3Xd& p,
-                                                                     const VecX<double>& heights, double most,
+                                                                     const VecX<double>& heights,
+                                                                     double max_gap,
                                                                      const Field& field) const {
   const double size = part_->size(), lowest = heights.minCoeff();
   std::vector<LowPoint> found;
-  if (lowest > most + kThinSag * size) return found;
+  if (lowest > max_gap + kThinSag * size) return found;
   auto within = [&](double band) {
     std::vector<Eigen::Index> some;
     for (Eigen::Index i = 0; i < heights.size(); ++i)
@@ -301,27 +309,28 @@ std::vector<CollisionSurface::LowPoint> CollisionSurface::low_points(const Param
   for (const double band : {kSameHeight * size, kSurfaceSag * size})
     for (const Eigen::Index i : outermost(p, within(band), kSamePlace * size))
       if (std::find(seeds.begin(), seeds.end(), i) == seeds.end()) seeds.push_back(i);
-  // On a face the way down would lead to one side of it: what it rests on is its corners, as far as they lie
-  // low enough.
+  // On a flat face the search would move to one side of the face. The part is supported at the corners of the
+  // face, so that a corner that is low enough stays where it is.
   auto on_one_face = [&](const Vec3<double>& a, const Vec3<double>& b) {
     return (a - b).norm() >= kSamePlace * size &&
            thickness_ * part_->inside_outside(0.5 * (a + b), values) > -kFlatChord * size;
   };
   LowPoint deepest;
-  deepest.height = most + size;
+  deepest.height = max_gap + size;
   for (const Eigen::Index i : seeds) {
     LowPoint point = descend(values, i, field);
     point.height = field.height(point.p);
     if (point.height < deepest.height) deepest = point;
-    if (!(heights[i] > most) && on_one_face(p.col(i), point.p))
+    if (!(heights[i] > max_gap) && on_one_face(p.col(i), point.p))
       point = {
-          part_->shape().mesh_label(laid().surface.places()[static_cast<std::size_t>(i)], values.b.data()),
+          part_->shape().mesh_label(samples().surface.places()[static_cast<std::size_t>(i)], values.b.data()),
           p.col(i), heights[i]};
     add(point);
   }
   if (!found.empty()) add(deepest);
-  found.erase(std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > most; }),
-              found.end());
+  found.erase(
+      std::remove_if(found.begin(), found.end(), [&](const LowPoint& q) { return q.height > max_gap; }),
+      found.end());
   return found;
 }
 

@@ -1,7 +1,9 @@
+// Resolution of the names in ContactSettings to the rule of each pair.
 #include <pliant/collision/contact_rules.h>
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -12,9 +14,16 @@ namespace pliant {
 
 namespace {
 
-void check(double friction, double restitution) {
-  if (!(friction >= 0) || !std::isfinite(friction) || !(restitution >= 0 && restitution <= 1))
-    throw std::invalid_argument("contact: friction must be a number >= 0, restitution one from 0 to 1");
+[[noreturn]] void fail_number(const char* what, double value, const char* expected) {
+  std::ostringstream text;
+  text << "contact: " << what << " is " << value << "; expected " << expected;
+  throw std::invalid_argument(text.str());
+}
+
+void check_coefficients(double friction, double restitution) {
+  if (!(friction >= 0) || !std::isfinite(friction)) fail_number("friction", friction, "a number >= 0");
+  if (!(restitution >= 0 && restitution <= 1))
+    fail_number("restitution", restitution, "a number from 0 to 1");
 }
 
 std::pair<int, int> in_order(int a, int b) {
@@ -33,25 +42,25 @@ ContactRules::ContactRules(const Model& model)
       n_parts_(static_cast<int>(model.parts().size())),
       n_planes_(static_cast<int>(model.body().contact.planes.size())) {
   const ContactSettings& settings = model.body().contact;
-  check(settings.friction, settings.restitution);
+  check_coefficients(settings.friction, settings.restitution);
   if (!(settings.longest_step > 0) || !std::isfinite(settings.longest_step))
-    throw std::invalid_argument("contact: the longest step must be a number of seconds > 0");
+    fail_number("the longest step (s)", settings.longest_step, "a number > 0");
   std::map<std::string, int> numbers;
   auto add = [&](const std::string& name, const char* what) {
     if (!numbers.emplace(name, static_cast<int>(numbers.size())).second)
       throw std::invalid_argument(what + (" both called '" + name + "'"));
   };
-  for (const PartModel& m : model.parts()) add(m.part->name(), "two parts are");
-  for (const ContactPlane& plane : settings.planes) add(plane.name, "a part and a plane are");
+  for (const PartModel& m : model.parts()) add(m.part->name(), "contact: two parts are");
+  for (const ContactPlane& plane : settings.planes) add(plane.name, "contact: a plane and another thing are");
   for (const ContactObstacle& obstacle : settings.obstacles)
-    add(obstacle.name, "an obstacle and another thing are");
+    add(obstacle.name, "contact: an obstacle and another thing are");
   const int n_things = static_cast<int>(numbers.size());
-  for (const ContactGroup& group : settings.groups)
-    add(group.name, "a group of contact and another thing are");
+  for (const ContactGroup& group : settings.groups) add(group.name, "contact: a group and another thing are");
   auto number = [&](const std::string& name, const char* what) {
     const auto found = numbers.find(name);
     if (found == numbers.end())
-      throw std::invalid_argument("contact of '" + name + "': there is no " + what + " of that name");
+      throw std::invalid_argument("contact: '" + name + "' is named, but there is no " + what +
+                                  " with this name");
     return found->second;
   };
   groups_of_.resize(at(n_things));
@@ -59,16 +68,18 @@ ContactRules::ContactRules(const Model& model)
     for (const std::string& name : group.members) {
       const int member = number(name, "part, plane or obstacle");
       if (member >= n_things)
-        throw std::invalid_argument("contact: the group '" + name + "' is in the group '" + group.name +
-                                    "'; its members are parts, planes and obstacles");
+        throw std::invalid_argument("contact: the group '" + group.name + "' contains the group '" + name +
+                                    "'; expected parts, planes and obstacles as members");
       groups_of_[at(member)].push_back(number(group.name, "group"));
     }
   for (std::size_t k = 0; k < settings.pairs.size(); ++k) {
     const ContactPair& pair = settings.pairs[k];
-    check(pair.friction.value_or(0), pair.restitution.value_or(0));
+    check_coefficients(pair.friction.value_or(0), pair.restitution.value_or(0));
     const int a = number(pair.a, "part, plane, obstacle or group"),
               b = number(pair.b, "part, plane, obstacle or group");
-    if (a == b && a < n_things) throw std::invalid_argument("contact of '" + pair.a + "' with itself");
+    if (a == b && a < n_things)
+      throw std::invalid_argument("contact: a pair names '" + pair.a +
+                                  "' twice; expected two things, or one group twice");
     last_pair_[in_order(a, b)] = static_cast<int>(k);
   }
   for (const JointModel& joint : model.joints())
@@ -101,7 +112,9 @@ ContactRule ContactRules::on_fixed(int part, int thing) const {
   return rule;
 }
 
-/// The pair that counts for two things; nullptr where none does.
+/// Returns the pair of the settings that applies to two things; nullptr if there is none. A pair that names
+/// both has priority over one that names a group, and that over one that names two groups; later pairs have
+/// priority over earlier ones.
 const ContactPair* ContactRules::pair(int a, int b) const {
   if (last_pair_.empty()) return nullptr;
   const std::vector<int>&of_a = groups_of_[at(a)], &of_b = groups_of_[at(b)];
@@ -116,7 +129,7 @@ const ContactPair* ContactRules::pair(int a, int b) const {
   return last < 0 ? nullptr : &model_->body().contact.pairs[at(last)];
 }
 
-/// The number of the last pair with just these names; -1: there is none.
+/// Returns the number of the last pair with exactly these names; -1 if there is none.
 int ContactRules::number_of(int a, int b) const {
   const auto found = last_pair_.find(in_order(a, b));
   return found == last_pair_.end() ? -1 : found->second;

@@ -1,3 +1,4 @@
+// Relative velocity at a contact, and the largest depth that the search can resolve.
 #include <algorithm>
 #include <limits>
 
@@ -12,7 +13,7 @@ double ContactFinder::thin(const Contact& contact) const {
   double thickness = std::numeric_limits<double>::infinity();
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) thickness = std::min(thickness, surfaces_[at(side->part)]->thickness());
-  return kThinShare * thickness;
+  return kMaxTravelShare * thickness;
 }
 
 Vec3<double> ContactFinder::velocity(const State& state, const Contact& contact) const {

@@ -1,4 +1,4 @@
-// Where the parts and planes of a ContactFinder are at a time, and boxes about them.
+// Poses of the parts and planes of a ContactFinder at a time, and boxes that contain the parts.
 #include <pliant/body/multibody.h>
 #include <pliant/math/index.h>
 
@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Whether the shape stays what it is at rest.
-bool ContactFinder::is_still(int i) const {
+/// Whether the shape never changes.
+bool ContactFinder::has_fixed_shape(int i) const {
   return model_->parts()[at(i)].q0 < 0 || model_->parts()[at(i)].n_s == 0;
 }
 
@@ -15,11 +15,11 @@ void ContactFinder::place(const State& state, double t, int i) const {
   const PartModel& m = model_->parts()[at(i)];
   ParameterValues<double>& values = scratch_->values[at(i)];
   Placed& placed = scratch_->parts[at(i)];
-  if (!is_still(i))
+  if (!has_fixed_shape(i))
     for (int k = 0; k < m.n_s; ++k) {
       const auto parameter = at(m.part->parameters().dynamic()[at(k)]);
       const double value = state.q[m.q0 + 7 + k];
-      if (values.b[parameter] != value) placed.has_points = false;
+      if (values.b[parameter] != value) placed.points_current = false;
       values.b[parameter] = value;
       values.b_dot[parameter] = state.v[m.v0 + 6 + k];
     }
@@ -36,29 +36,30 @@ void ContactFinder::place(const State& state, double t, int i) const {
 }
 
 const Eigen::Matrix3Xd& ContactFinder::points_of(int i) const {
-  if (is_still(i)) return surfaces_[at(i)]->rest_points();
+  if (has_fixed_shape(i)) return surfaces_[at(i)]->rest_points();
   Eigen::Matrix3Xd& points = scratch_->points[at(i)];
-  if (!scratch_->parts[at(i)].has_points) points = surfaces_[at(i)]->points(scratch_->values[at(i)]);
-  scratch_->parts[at(i)].has_points = true;
+  if (!scratch_->parts[at(i)].points_current) points = surfaces_[at(i)]->points(scratch_->values[at(i)]);
+  scratch_->parts[at(i)].points_current = true;
   return points;
 }
 
-/// A box about a part in its own frame.
+/// Returns a box that contains the sample points of a part, or an ellipsoid, in its own frame. For a fixed
+/// shape it contains the surface too.
 Eigen::AlignedBox3d ContactFinder::body_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   if (placed.axes) return {-*placed.axes, *placed.axes};
-  if (is_still(i)) return surfaces_[at(i)]->rest_box();
+  if (has_fixed_shape(i)) return surfaces_[at(i)]->rest_box();
   const Eigen::Matrix3Xd& p = points_of(i);
   return {p.rowwise().minCoeff(), p.rowwise().maxCoeff()};
 }
 
-/// A box about it in the world; of a part that changes the one about its ball.
+/// Returns a box that contains a part in the world; for a part with dynamic parameters the box of its ball.
 Eigen::AlignedBox3d ContactFinder::world_box(int i) const {
   const Placed& placed = scratch_->parts[at(i)];
   Vec3<double> middle = placed.c, half = Vec3<double>::Constant(placed.reach);
   if (placed.axes) {
     half = (placed.R * placed.axes->asDiagonal()).rowwise().norm();
-  } else if (is_still(i)) {
+  } else if (has_fixed_shape(i)) {
     const Eigen::AlignedBox3d& box = surfaces_[at(i)]->rest_box();
     middle += placed.R * box.center();
     half = placed.R.cwiseAbs() * (0.5 * box.sizes());

@@ -1,4 +1,4 @@
-// What a ContactFinder works with from call to call.
+// Scratch storage of a ContactFinder. It is kept from call to call.
 #pragma once
 
 #include <optional>
@@ -12,48 +12,52 @@
 
 namespace pliant {
 
-/// How far the surface may be outside the box of its points, in sizes of the part.
+/// Largest distance of the surface from the box of its sample points, in sizes of the part.
 inline constexpr double kBulge = 0.05;
 
-/// A part where it is.
+/// A part and its pose.
 struct ContactFinder::Placed {
   Vec3<double> c;
   Mat3<double> R;
   Vec3<double> c_dot = Vec3<double>::Zero(), omega = Vec3<double>::Zero();  ///< of a prescribed motion, world
-  double reach;                      ///< radius of a ball about c that it is in, m
-  std::optional<Vec3<double>> axes;  ///< of an ellipsoid
-  std::optional<Vec3<double>> half;  ///< sizes of a box
-  bool has_points = false;           ///< whether those of Scratch are of its parameters now
+  double reach;                      ///< radius of a ball about c that contains the part, m
+  std::optional<Vec3<double>> axes;  ///< semi-axes of an ellipsoid, m
+  std::optional<Vec3<double>> half;  ///< half sizes of a box, m
+  bool points_current = false;       ///< whether Scratch::points belong to the parameters in use
 
-  Vec3<double> carries(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
+  /// Velocity of a point by the prescribed motion, m/s, world.
+  Vec3<double> frame_velocity(const Vec3<double>& point) const { return c_dot + omega.cross(point - c); }
 };
 
 struct ContactFinder::Scratch {
   std::vector<ParameterValues<double>> values;  ///< of each part
   std::vector<Placed> parts;
-  std::vector<Eigen::Matrix3Xd> points;  ///< of parts that change, body frame
+  std::vector<Eigen::Matrix3Xd> points;  ///< sample points of parts with dynamic parameters, body frame
   struct PlaneNow {
     bool acts;
     Vec3<double> point, carried;
   };
   std::vector<PlaneNow> planes;
   MeshSearch mesh_search;
+  /// A ball that contains a part during a step.
   struct Ball {
     Vec3<double> c, c_dot;
-    Vec3<double> c_dot_gained;  ///< in the mean of a step, m/s
-    double speed, gained;       ///< of any point against the frame's origin, m/s
-    double reach;               ///< the ball and the way, m
+    Vec3<double> c_dot_change;   ///< mean of c_dot over the step less c_dot at its start, m/s
+    double speed, speed_change;  ///< bound of the speed of a point relative to the frame's origin, m/s
+    double reach;                ///< radius including the motion in the step, m
 
-    /// Of any point, m/s.
-    double fastest() const { return c_dot.norm() + c_dot_gained.norm() + speed + gained; }
+    /// Bound of the speed of any point, m/s.
+    double fastest() const { return c_dot.norm() + c_dot_change.norm() + speed + speed_change; }
   };
   std::vector<Ball> balls;
   std::vector<Eigen::AlignedBox3d> boxes;
   BoxTree tree;
   std::vector<std::pair<int, int>> pairs;
-  std::vector<Eigen::AlignedBox3d> wide;  ///< of the smooth parts, in which their boxes may move
+  /// Enlarged boxes of the smooth parts, and their pairs, which are valid while all parts stay inside. The
+  /// boxes are larger by wide_reach (for the gap searched) and by at least wide_margin, m.
+  std::vector<Eigen::AlignedBox3d> wide;
   std::vector<std::pair<int, int>> wide_pairs;
-  double wide_reach = 0, wide_margin = 0;  ///< what they were made wider by: to find so far, and at least
+  double wide_reach = 0, wide_margin = 0;
   std::vector<Contact> ours, theirs;
   std::vector<BoxTouch> of_boxes;
   std::vector<Material<double>> material{1};

@@ -1,3 +1,4 @@
+// Reduction of the contacts of one pair to the corners of their convex hull.
 #include "outline.h"
 
 #include <algorithm>
@@ -12,35 +13,36 @@ namespace pliant {
 
 namespace {
 
-/// Normals of one face turn by less than this, and its gaps are those of a plane to this, in sizes.
+/// Contacts belong to one face if their normals differ by less than kOneNormal and their gaps differ from a
+/// plane by at most kOnePlane, in sizes.
 constexpr double kOneNormal = 1e-6, kOnePlane = 1e-7;
-/// A corner stands out by more than this, in sizes.
-constexpr double kStraight = 1e-5;
-/// What is deeper than all corners by more than this, in sizes, matters too.
+/// A corner of the outline is farther than this from the chord of its neighbours, in sizes.
+constexpr double kMinCorner = 1e-5;
+/// A contact that is deeper than all corners by more than this, in sizes, is kept.
 constexpr double kDeeper = 1e-11;
-/// So few contacts are all kept.
-constexpr std::size_t kFew = 4;
+/// Up to this many contacts are all kept.
+constexpr std::size_t kAlwaysKept = 4;
 
 struct Place {
   Eigen::Vector2d p;
   std::size_t number;
 };
 
-/// Twice the area of a triangle, positive where it goes round to the left.
+/// Twice the area of a triangle, positive if it is counter-clockwise.
 double turn(const Place& a, const Place& b, const Place& c) {
   const Eigen::Vector2d ab = b.p - a.p, ac = c.p - a.p;
   return ab.x() * ac.y() - ab.y() * ac.x();
 }
 
-/// How far b is from the line from a to c, which ends there.
-double stands_out(const Place& a, const Place& b, const Place& c) {
+/// Distance of b from the segment from a to c.
+double distance_to_chord(const Place& a, const Place& b, const Place& c) {
   const Eigen::Vector2d ac = c.p - a.p, ab = b.p - a.p;
   const double square = ac.squaredNorm(), along = square > 0 ? std::clamp(ab.dot(ac) / square, 0.0, 1.0) : 0;
   return (ab - along * ac).norm();
 }
 
-/// The convex hull of places, all around, by Andrew's monotone chains (1979): as exact as its numbers, for
-/// sides that are straight but for rounding turn back and forth.
+/// Returns the convex hull of places, counter-clockwise, by Andrew's monotone chains (1979). It keeps points
+/// on sides that are straight except for rounding; keep_outline() removes them.
 std::vector<Place> hull(std::vector<Place> places) {
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
     if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
@@ -54,7 +56,7 @@ std::vector<Place> hull(std::vector<Place> places) {
         around.pop_back();
       around.push_back(*place);
     }
-    around.pop_back();  // the other side begins there
+    around.pop_back();  // first point of the other side
   };
   add_side(places.begin(), places.end());
   add_side(places.rbegin(), places.rend());
@@ -64,7 +66,7 @@ std::vector<Place> hull(std::vector<Place> places) {
 }  // namespace
 
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size) {
-  if (contacts.size() <= first + kFew) return;
+  if (contacts.size() <= first + kAlwaysKept) return;
   const Vec3<double> normal = contacts[first].normal, e1 = normal.unitOrthogonal(), e2 = normal.cross(e1);
   const auto n = static_cast<Eigen::Index>(contacts.size() - first);
   std::vector<Place> places;
@@ -84,7 +86,7 @@ void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size
   for (std::size_t k = 0; k < around.size() && around.size() > 2;) {
     const Place &before = around[(k + around.size() - 1) % around.size()],
                 &after = around[(k + 1) % around.size()];
-    if (stands_out(before, around[k], after) > kStraight * size)
+    if (distance_to_chord(before, around[k], after) > kMinCorner * size)
       ++k;
     else
       around.erase(around.begin() + static_cast<std::ptrdiff_t>(k));

@@ -1,4 +1,4 @@
-// Of contacts where flat faces lie on each other, those that matter: the corners of the outline.
+// Reduces the contacts of two flat faces to the corners of their outline.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace pliant {
 
-/// Takes out contacts, all of one pair, from number `first` on, that lie between others with the same normal
-/// and are not the deepest: what keeps those from going into each other keeps them too. size: of the smaller
-/// part, m.
+/// Removes those contacts from number `first` on that are between others with an equal normal and are not the
+/// deepest. Non-penetration at the others implies it at these. All contacts from `first` on must belong to
+/// one pair. size: of the smaller part, m.
 void keep_outline(std::vector<Contact>& contacts, std::size_t first, double size);
 
 }  // namespace pliant

@@ -10,10 +10,10 @@ namespace pliant {
 
 namespace {
 
-/// Joints hold a contact fast that impulses move by less than this part of what they would move it without.
+/// Joints fix a contact if its response to impulses is below this share of the response without joints.
 constexpr double kFast = 1e-9;
 
-/// Normal and tangents, columns, world.
+/// Returns normal and tangents as columns, world.
 Mat3<double> axes(const Contact& contact) {
   const Vec3<double> t = contact.normal.unitOrthogonal();
   Mat3<double> axes;
@@ -72,7 +72,7 @@ void ContactProblem::add_side(const ContactSide& side, const Contact& contact, d
   sides_.push_back(std::move(s));
 }
 
-/// A side of a part that moves as a whole: zero.
+/// A part that moves as a whole has no local coordinates.
 ContactProblem::Side ContactProblem::side_of(int part) {
   const int mover = movers_.of_part(part);
   Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
@@ -80,7 +80,7 @@ ContactProblem::Side ContactProblem::side_of(int part) {
   return side;
 }
 
-/// What local coordinates move a side by. D: from the body frame to the axes of the contact.
+/// Adds the Jacobian of local coordinates at a side. D: from the body frame to the axes of the contact.
 void ContactProblem::add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const {
   const LocalDeformation& local = *model_.parts()[at(side.part)].local;
   const int first = movers_.first_local(movers_[to.mover], side.part),
@@ -95,7 +95,7 @@ void ContactProblem::add_local(const ContactSide& side, const Mat3<double>& D, S
   }
 }
 
-/// Parameters at their limits do not leave them.
+/// Adds the rows of parameters at their limits.
 void ContactProblem::add_limits() {
   const std::vector<Mover> movers = movers_.all();
   for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
@@ -118,8 +118,8 @@ void ContactProblem::add_limits() {
   }
 }
 
-/// Taut strings of what the contacts push do not grow. Those of parts that deform locally are left to what
-/// settles joints.
+/// Adds the rows of taut strings of the movers. Strings of parts that deform locally are left to the
+/// projection of joints.
 void ContactProblem::add_strings() {
   const std::vector<Mover> movers = movers_.all();
   for (const Mover& mover : movers) {
@@ -142,7 +142,7 @@ void ContactProblem::add_strings() {
   }
 }
 
-/// Gives the contact added last its sides, and what it pushes while joints hold.
+/// Adds the sides of the last contact, and their responses with closed joints.
 void ContactProblem::complete() {
   const int contact = system_.size() - 1, rows = system_.rows(contact);
   while (system_.movers() < static_cast<int>(movers_.all().size()))
@@ -173,7 +173,7 @@ void ContactProblem::complete() {
   sides_.clear();
 }
 
-/// What unit impulses at a side change its mover's velocities by, without joints.
+/// Returns the change of the velocities of the mover by unit impulses at a side, without joints.
 void ContactProblem::add_response(const Mover& mover, const Side& side, int rows,
                                   CoulombSystem::Push& Y) const {
   if (mover.node >= 0) {
@@ -200,14 +200,14 @@ void ContactProblem::add_response(const Mover& mover, const Side& side, int rows
     return;
   }
   for (int r = 0; r < rows; ++r) {
-    VecX<double> force = VecX<double>::Zero(m.n_x());  // and none at points where joints hold it
+    VecX<double> force = VecX<double>::Zero(m.n_x());  // none at the points of joints
     force.head(side.J.cols()) = side.J.row(r).transpose();
     work_.parts[at(side.part)].solve_mass(force);
     Y.col(r).segment(side.first, m.n_x()) += force;
   }
 }
 
-/// Joints of islands hold against the impulses of a contact.
+/// Adds the reactions of the joints of islands to the responses of a contact.
 void ContactProblem::hold_joints(int contact) {
   for (int i = 0; i < system_.pushes(contact); ++i) {
     const Mover& mover = movers_[system_.pushed(contact, i)];
@@ -256,7 +256,7 @@ ContactSolution ContactProblem::solve(double since_of_limits) {
   }
   for (const String& string : strings_) {
     double& along = system_.constant(string.contact)[0];
-    along = 0;  // what its ends are moved by is what is left of its rate
+    along = 0;  // the rest of its rate is that of its prescribed ends
     along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
   }
   const CoulombResult result = system_.solve(after_);

@@ -10,7 +10,7 @@
 #include <pliant/math/index.h>
 #include <pliant/project/project.h>
 
-#include "contact_pairs.h"
+#include <pliant/contact/contact_pairs.h>
 #include "load_work.h"
 #include "touched_parts.h"
 
@@ -18,31 +18,31 @@ namespace pliant {
 
 namespace {
 
-/// Bodies that overlap are parted at most at this speed, in sizes of the smaller a second, or as fast as they
-/// move.
+/// Largest speed of separation, in sizes of the smaller body a second; faster bodies separate at their own
+/// speed.
 constexpr double kSeparationSpeed = 1;
 constexpr int kMaxSeparationRounds = 16;
-/// Most times in a step that bodies which impulses throw meet others.
+/// Most impacts in a chain of ejections in one step.
 constexpr int kMaxChainLinks = 4;
-/// Overlaps below this share of what counts as resting are left.
+/// Allowed overlap, relative to the gap of resting contacts.
 constexpr double kAllowedOverlap = 1e-4;
-/// As are those of so many units of rounding of places.
+/// Allowed overlap in units of rounding of positions.
 constexpr double kUlps = 16;
-/// Meshes may overlap by this many times what counts as resting without being parted.
+/// Allowed overlap of meshes, relative to the gap of resting contacts.
 constexpr double kMeshOverlap = 800;
-/// Contacts within this share of the smaller body's size of each other are the same from step to step.
+/// Contacts within this share of the size of the smaller body are the same from step to step.
 constexpr double kSameContact = 0.05;
-/// So many steps in a row begin at the forces before.
+/// Most steps in a row that warm-start.
 constexpr int kMaxWarmStartAge = 10;
-/// What is parted may overlap by this share of what would be left.
+/// Tolerance of a separation, relative to the allowed overlap.
 constexpr double kSeparationTolerance = 0.03;
 
 bool of_meshes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
 }
 
-/// The number of the support of [first, last) that is nearest to a place of the same part, nearer than
-/// `within` (m) and not taken; `last` if there is none. at and is_taken: of a number.
+/// Returns the number in [first, last) of the cached contact nearest to x, within `within` (m) and not taken,
+/// or `last`. at(i) and is_taken(i) give its point and state.
 template <class At, class IsTaken>
 std::size_t nearest(std::size_t first, std::size_t last, const Vec3<double>& x, double within, At&& at,
                     IsTaken&& is_taken) {
@@ -69,14 +69,13 @@ ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFind
                                      MeshFinder& meshes, RestingContacts& resting, ContactRecord& record)
     : dynamics_(dynamics), finder_(finder), meshes_(meshes), resting_(resting), record_(record) {}
 
-void ContactResolution::reconcile(const std::vector<int>& parts, State& state, double t,
-                                  Workspace<double>& work, StepCounters& counters) const {
-  project_frames(dynamics_, t, parts, state, work);
-  project_joints(dynamics_, t, state, work, counters);
+void ContactResolution::reconcile(StepContext& step, const std::vector<int>& parts) const {
+  project_frames(step, parts);
+  project_joints(step);
 }
 
-/// How far a point of a part that spins leaves its tangent in h seconds, m: it may come round and strike
-/// within a step, and move away at its end.
+/// Returns the deviation of a point of a spinning part from its tangent in h seconds, m: it may strike within
+/// a step and move away at the end.
 double ContactResolution::sweep(const ContactSide& side, const Vec3<double>& x, const State& state,
                                 double h) const {
   if (side.part < 0 || side.at_nodes()) return 0;
@@ -86,8 +85,8 @@ double ContactResolution::sweep(const ContactSide& side, const Vec3<double>& x, 
   return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
 }
 
-/// How far a contact may be parted in a step of h seconds, m: at kSeparationSpeed, and as far as its bodies
-/// go.
+/// Returns the largest separation of a contact in h seconds, m: at kSeparationSpeed, plus the travel of its
+/// bodies.
 double ContactResolution::largest_separation(const Contact& contact, double h) const {
   double most = kSeparationSpeed * h * smaller_size(dynamics_.model(), contact);
   for (const ContactSide* side : {&contact.a, &contact.b})
@@ -95,14 +94,14 @@ double ContactResolution::largest_separation(const Contact& contact, double h) c
   return most;
 }
 
-/// Where a contact is in the frame of its part a, m: what rests stays there, whatever its bodies do.
+/// Returns the point of a contact in the frame of its part a, m: constant for a resting contact.
 Vec3<double> ContactResolution::place(const Contact& contact, const State& state, double t) const {
   const Model& model = dynamics_.model();
   const int part = contact.a.part;
   return model.orientation(state, part, t).conjugate() * (contact.x - model.position(state, part, t));
 }
 
-/// Contacts of a pair that are nearer than this, m, are the same.
+/// Returns the distance within which contacts of a pair are the same, m.
 double ContactResolution::same_within(const Contact& contact) const {
   return kSameContact * smaller_size(dynamics_.model(), contact);
 }
@@ -113,7 +112,7 @@ void ContactResolution::begin_step(const State& state) {
   cold_start_ = state.contact_cache.empty() || state.contact_cache_age >= kMaxWarmStartAge;
 }
 
-/// The search for impulses begins at those of h seconds by the forces of the step before.
+/// Warm-starts the impulses from the forces of the contact cache, over h seconds.
 void ContactResolution::warm_start(const State& state, double t, double h,
                                    const std::vector<Contact>& contacts, ContactProblem& problem) const {
   if (cold_start_) return;
@@ -134,7 +133,7 @@ void ContactResolution::warm_start(const State& state, double t, double h,
   }
 }
 
-/// What contacts took is known as pushed.
+/// Records the impulses of the contacts for the cache.
 void ContactResolution::note_pushed(const State& state, double t, const std::vector<Contact>& contacts,
                                     const ContactProblem& problem,
                                     const std::vector<Vec3<double>>& impulses) {
@@ -150,10 +149,10 @@ void ContactResolution::end_step(double h, State& state) const {
   std::vector<Pushed> sorted = pushed_, merged;
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const Pushed& a, const Pushed& b) { return ByPair{}(a.support, b.support); });
-  std::size_t first = 0;  // of the same pair
+  std::size_t first = 0;  // first contact of the same pair
   for (const Pushed& next : sorted) {
     if (merged.empty() || merged.back().support.between != next.support.between) first = merged.size();
-    // The nearest of an earlier settlement is the same contact.
+    // The nearest contact of an earlier resolution is the same contact.
     const std::size_t same = nearest(
         first, merged.size(), next.support.x, next.same_within,
         [&](std::size_t i) { return merged[i].support.x; },
@@ -172,17 +171,19 @@ void ContactResolution::end_step(double h, State& state) const {
   state.contact_cache_age = cold_start_ || state.contact_cache.empty() ? 0 : state.contact_cache_age + 1;
 }
 
-void ContactResolution::resolve(const State& before, double since_of_limits, double h, State& state, double t,
-                                std::vector<Contact> contacts, Workspace<double>& work,
-                                StepCounters& counters) {
+void ContactResolution::resolve(StepContext& step, const ResolvedMotion& motion,
+                                std::vector<Contact> contacts) {
   fully_separated_.clear();
-  resolve_once(before, since_of_limits, h, state, t, std::move(contacts), h > 0, work, counters);
+  resolve_once(step, motion, std::move(contacts), motion.h > 0);
 }
 
-/// begins: whether the search begins at what took something of the step before.
-void ContactResolution::resolve_once(const State& before, double since_of_limits, double h, State& state,
-                                     double t, std::vector<Contact> contacts, bool begins,
-                                     Workspace<double>& work, StepCounters& counters) {
+/// warm: whether the impulses start from the contact cache.
+void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
+                                     std::vector<Contact> contacts, bool warm) {
+  const State& before = motion.before;
+  const double h = motion.h, t = step.t;
+  State& state = step.state;
+  Workspace<double>& work = step.work;
   if (contacts.empty()) return;
   const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
   const double booked = state.work.sum();
@@ -195,12 +196,12 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
   }
   ContactProblem problem(dynamics_.model(), state, work, contacts);
   const std::vector<Vec3<double>> u_start = problem.velocities(before);
-  if (begins) warm_start(state, t, h, contacts, problem);
-  const ContactSolution solution = problem.solve(since_of_limits);
+  if (warm) warm_start(state, t, h, contacts, problem);
+  const ContactSolution solution = problem.solve(motion.held);
   if (h > 0) note_pushed(state, t, contacts, problem, solution.impulse);
-  counters.contact_sweeps += solution.sweeps;
-  counters.contact_fallbacks += solution.fallbacks;
-  counters.contact_residual = std::max(counters.contact_residual, solution.residual);
+  step.counters.contact_sweeps += solution.sweeps;
+  step.counters.contact_fallbacks += solution.fallbacks;
+  step.counters.contact_residual = std::max(step.counters.contact_residual, solution.residual);
   state.contact_residual = std::max(state.contact_residual, solution.residual);
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const Contact& c = contacts[k];
@@ -210,23 +211,23 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
     state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
   }
   problem.add_joint_impulses(record_.joint_impulses);
-  problem.bound_shifts(since_of_limits, h);
-  // The work of an impulse is that of a constant force over the step, to second order; where a limit or a
-  // string has stopped something within it too, it is what the energy changes by. So is that of hands that
-  // move joints, on which impulses push back, and of impulses at one moment.
+  problem.bound_shifts(motion.held, h);
+  // The work of an impulse is that of a constant force over the step, to second order. If a limit or a string
+  // acted within the step too, if prescribed ends of joints moved, or if the impulse acts at one moment, the
+  // work is the change of the energy.
   const bool hands = are_driven(dynamics_.model(), parts), moment = &before == &state;
   const bool broken = hands || moment || state.at_limit != before.at_limit || state.joints != before.joints;
   const double energy = broken ? dynamics_.energy(t, state.q, state.v, parts, scratch_) : 0;
   LoadWork loads(dynamics_, state);
   ejected_from_ = state.q;
   move_by(problem, dynamics_.model(), work, state);
-  if (h > 0) reconcile(parts, state, t, work, counters);
+  if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // Methods that go by the velocities at a step's end book what forces do by those at its start: to what
-  // rests they do nothing.
-  if (since_of_limits < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
-  if (h > 0) separate_overlaps(h, state, t, work, counters);
-  project_limits(dynamics_, t, state, work, counters);
+  // Methods that use the velocities at the end of a step book the work of forces by those at the start, which
+  // is zero for resting bodies.
+  if (motion.held < h) state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
+  if (h > 0) separate_overlaps(step);
+  project_limits(step);
   if (broken)
     state.work[static_cast<int>(hands ? Work::anchors : Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
@@ -238,18 +239,19 @@ void ContactResolution::resolve_once(const State& before, double since_of_limits
   }
 }
 
-void ContactResolution::resolve_chain(std::vector<Contact> resolved, double h, double slow, State& state,
-                                      double t, Workspace<double>& work, StepCounters& counters) {
+void ContactResolution::resolve_chain(StepContext& step, std::vector<Contact> resolved, double slow) {
+  State& state = step.state;
+  const double t = step.t;
   for (int link = 0; link < kMaxChainLinks && !resolved.empty(); ++link) {
     const Pairs known(resolved);
     std::vector<Contact> contacts = resting_.near(state, t);
-    double earliest = 0;  // how long ago, s
+    double earliest = 0;  // time since the earliest impact, s
     for (Contact& contact : contacts) {
       const double u = finder_.velocity(state, contact).dot(contact.normal);
       if (!(contact.gap < -resting_.gap(contact) && u < -slow) ||
           known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
         continue;
-      contact.since = std::min(h, contact.gap / u);
+      contact.since = std::min(step.h, contact.gap / u);
       if (-contact.restitution * u > slow) contact.rebound = -contact.restitution * u;
       earliest = std::max(earliest, contact.since);
     }
@@ -260,19 +262,19 @@ void ContactResolution::resolve_chain(std::vector<Contact> resolved, double h, d
     meshes_.find(state, t, contacts);
     for (Contact& contact : contacts)
       if (contact.since == 0) contact.since = earliest;
-    resolve_once(state, 0, h, state, t, contacts, false, work, counters);
+    resolve_once(step, {state, 0, step.h}, contacts, false);
     resolved.insert(resolved.end(), contacts.begin(), contacts.end());
   }
-  if (!resolved.empty()) ++counters.contact_cutoffs;
+  if (!resolved.empty()) ++step.counters.contact_cutoffs;
 }
 
-/// Sides of a contact go this much farther, m.
+/// Adds to the travel of the sides of a contact, m.
 void ContactResolution::travel(const Contact& contact, double far) {
   for (const ContactSide* side : {&contact.a, &contact.b})
     if (side->part >= 0) travel_[at(side->part)] = std::max(travel_[at(side->part)], far);
 }
 
-/// Parts go farther by as much as impulses, at all their contacts and joints, have thrown them.
+/// Adds the displacements by impulses at contacts and joints to the travel of parts.
 void ContactResolution::add_ejections(const State& state) {
   for (std::size_t i = 0; i < travel_.size(); ++i) {
     const PartModel& m = dynamics_.model().parts()[i];
@@ -290,7 +292,7 @@ void ContactResolution::add_ejections(const State& state) {
   }
 }
 
-/// How deep a contact may be without being parted, m.
+/// Returns the allowed overlap of a contact, m.
 double ContactResolution::may_overlap(const Contact& contact) const {
   if (of_meshes(contact)) return kMeshOverlap * resting_.tight_gap(contact);
   double size = 0;
@@ -300,8 +302,8 @@ double ContactResolution::may_overlap(const Contact& contact) const {
   return std::max(kAllowedOverlap * resting_.tight_gap(contact), kUlps * rounding);
 }
 
-/// What parting the deep ones of some contacts moves: bodies that move as a whole, with all such that touch
-/// them, and of meshes others of the same pairs.
+/// Keeps the contacts that a separation of deep ones concerns: bodies that move as a whole with all that
+/// touch them, and other contacts of the same pairs of meshes.
 void ContactResolution::keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const {
   const Model& model = dynamics_.model();
   DisjointSets tied(model.parts().size());
@@ -309,7 +311,7 @@ void ContactResolution::keep_concerned(std::vector<Contact>& contacts, const Wor
     return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
            !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
   };
-  // Of what joints tie together the first part.
+  // The first part of each island.
   auto body_of = [&](int part) {
     const int island = model.parts()[at(part)].island;
     return tied.leader(island < 0 ? part : model.islands()[at(island)].parts.front());
@@ -334,10 +336,12 @@ void ContactResolution::keep_concerned(std::vector<Contact>& contacts, const Wor
       contacts.end());
 }
 
-/// Moves bodies that overlap apart, by what a step of h seconds lets them be; those that this pushes into
-/// others wholly.
-void ContactResolution::separate_overlaps(double h, State& state, double t, Workspace<double>& work,
-                                          StepCounters& counters) {
+/// Separates overlapping bodies as far as the step allows. Bodies that this pushes into others separate
+/// wholly.
+void ContactResolution::separate_overlaps(StepContext& step) {
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  const double h = step.h, t = step.t;
   for (int i = 0; i < kMaxSeparationRounds; ++i) {
     std::vector<Contact> found = resting_.near(state, t);
     double deepest = 0, most = 0;
@@ -345,13 +349,13 @@ void ContactResolution::separate_overlaps(double h, State& state, double t, Work
       deepest = std::max(deepest, -contact.gap);
       most = std::max(most, largest_separation(contact, h));
     }
-    // Parted by so much, they may meet what is as near.
+    // The separation may bring them to other bodies at this distance.
     if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, most));
     meshes_.find(state, t, found);
     std::vector<PairKey> deep;
     bool any = false;
     for (Contact& contact : found) {
-      // What has been parted as far as the step lets it comes no nearer, and that is all.
+      // Pairs that were separated as far as the step allows are only kept from approaching.
       if (fully_separated_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
       if (i == 0 && contact.gap < -largest_separation(contact, h)) deep.push_back(key_of(contact));
       any = any || contact.gap < -may_overlap(contact);
@@ -371,12 +375,12 @@ void ContactResolution::separate_overlaps(double h, State& state, double t, Work
     parting.separate_bodies(limits, enough);
     LoadWork loads(dynamics_, state);
     move_by(parting, dynamics_.model(), work, state);
-    reconcile(parts, state, t, work, counters);
+    reconcile(step, parts);
     state.work[static_cast<int>(Work::forces)] += loads.until(t, state);
     state.work[static_cast<int>(Work::contact)] +=
         dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - booked);
   }
-  ++counters.contact_cutoffs;
+  ++step.counters.contact_cutoffs;
 }
 
 }  // namespace pliant

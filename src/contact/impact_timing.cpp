@@ -11,27 +11,26 @@ namespace pliant {
 
 namespace {
 
-/// An impact is told in time when the gap is this small, in sizes, or the time known to this part of the
-/// step.
+/// An impact is located when the gap is this small, in sizes, or the time is known to this share of the step.
 constexpr double kGap = 1e-13, kTime = 1e-15;
-constexpr int kMostTrials = 60;
-/// Sides are apart whose gap is more than this, in sizes: clear of what counts as an impact.
+constexpr int kMaxTrials = 60;
+/// Sides are apart if their gap is more than this, in sizes.
 constexpr double kApart = 100 * kGap;
-/// Sides that touch at the start and are not apart after one in two to this power of the step meet all along.
-constexpr int kMostHalvings = 20;
-/// The path between the ends of the step is followed to this part of the step.
+/// Sides that touch at the start, and are not apart after 2^-kMaxHalvings of the step, do not separate.
+constexpr int kMaxHalvings = 20;
+/// Accuracy of the time on the dense output, relative to the step.
 constexpr double kOfPath = 1e-9;
-/// Rates are of gaps at times that are as far apart, in steps; of nearer ones they are rounding.
+/// Rates of gaps are differences over at least this share of the step; shorter ones are rounding.
 constexpr double kForRate = 1e-6;
-/// Secants that have not led there in so many trials leave it to the bracket.
-constexpr int kMostSecants = 8;
+/// Most secant steps before the bracket takes over.
+constexpr int kMaxSecants = 8;
 
-/// Times between which sides meet, with their gaps: above zero at the lower one, at or below at the higher.
+/// Times that bracket an impact, with their gaps: positive at the lower one, not positive at the higher.
 struct Bracket {
   double low, f_low, high, f_high;
   int side = 0;  ///< that the last trial was on
 
-  /// Where they would meet if the gap went straight, one that stays being halved (Dowell and Jarratt 1971).
+  /// Returns the zero of the secant, by the Illinois rule (Dowell and Jarratt 1971).
   double guess() const {
     const double tau = low + f_low * (high - low) / (f_low - f_high);
     return tau > low && tau < high ? tau : 0.5 * (low + high);
@@ -51,12 +50,13 @@ struct Bracket {
   }
 };
 
-/// When sides meet on a path, and how fast their gap opens then (below zero); h: of the step.
+/// Returns the time of the impact on the dense output, and the rate of the gap then. h: length of the step,
+/// s.
 template <class Gap>
 std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
   double tau = meets.guess(), speed = (meets.f_high - meets.f_low) / (meets.high - meets.low);
   double f = gap(tau);
-  for (int i = 0; i < kMostTrials; ++i) {
+  for (int i = 0; i < kMaxTrials; ++i) {
     meets.narrow(tau, f);
     const double last = tau, f_last = f;
     tau = meets.guess();
@@ -70,10 +70,13 @@ std::pair<double, double> on_path(Bracket meets, double h, Gap&& gap) {
 
 }  // namespace
 
-std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinder& finder, Integrator& method,
-                                    const State& before, double t, double h,
-                                    const std::vector<Contact>& impacts, State& state,
-                                    Workspace<double>& work, StepCounters& counters) {
+// One function above 60 lines: its three searches share the bracket and the state that they move.
+std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
+                                    const FreeMotion& motion, const std::vector<Contact>& impacts) {
+  const Dynamics& dynamics = step.dynamics;
+  const State& before = motion.before;
+  State& state = step.state;
+  const double t = motion.begin, h = motion.h;
   double size = std::numeric_limits<double>::infinity(), largest = 0;
   for (const Contact& contact : impacts) {
     size = std::min(size, smaller_size(dynamics.model(), contact));
@@ -86,13 +89,14 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
       least = std::min(least, finder.least_gap(of, at_time, contact, 4 * largest));
     return least;
   };
-  const StepPath path = method.path(dynamics, before, h, state, counters);
-  double reached = h;  // how far into the step the state is
+  const StepPath path = method.path(dynamics, before, h, state, step.counters);
+  double reached = h;  // time into the step of the state
   auto go_to = [&](double tau) {
     if (tau == reached) return;
     state = before;
     set_step(state, t, tau);
-    method.step(dynamics, state, work, counters);
+    StepContext part(dynamics, state, step.work, step.counters);
+    method.step(part);
     reached = tau;
   };
   auto gap_at = [&](double tau) {
@@ -101,9 +105,9 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
   };
   const double f_start = least_gap(before, t);
   Bracket meets{0, f_start, h, gap_at(h)};
-  // Those that part from a touch were apart after some part of the step, if not at its start.
+  // Sides that separate from a touch are apart after some share of the step.
   if (!(f_start > kApart * size)) meets.f_low = 0;
-  for (int i = 0; i < (f_start > 0 ? kMostTrials : kMostHalvings) && !(meets.f_low > 0); ++i) {
+  for (int i = 0; i < (f_start > 0 ? kMaxTrials : kMaxHalvings) && !(meets.f_low > 0); ++i) {
     const double tau = 0.5 * meets.high, f = gap_at(tau);
     if (f > 0) {
       meets.low = tau;
@@ -117,14 +121,14 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
     go_to(h);
     return std::nullopt;
   }
-  // The path between the ends of the step tells nearly when and how fast, steps then exactly when.
+  // The dense output gives an approximate time and rate; steps then give the exact time.
   auto [tau, speed] = on_path(meets, h, [&, there = before](double into) mutable {
     path.at(into / h, there.q);
     return least_gap(there, t + into);
   });
   double last = 0, f_last = 0;
   for (int i = 0;
-       i < kMostTrials && meets.high - meets.low > kTime * h && !(std::abs(meets.f_high) <= kGap * size);
+       i < kMaxTrials && meets.high - meets.low > kTime * h && !(std::abs(meets.f_high) <= kGap * size);
        ++i) {
     const double f = gap_at(tau);
     if (std::abs(f) <= kGap * size) return tau;
@@ -133,7 +137,7 @@ std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinde
     last = tau;
     f_last = f;
     tau -= f / speed;
-    if (i >= kMostSecants || !(tau > meets.low && tau < meets.high)) tau = meets.guess();
+    if (i >= kMaxSecants || !(tau > meets.low && tau < meets.high)) tau = meets.guess();
   }
   go_to(meets.high);
   return meets.high;
@@ -147,7 +151,7 @@ void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const S
     contact.since = u < 0 && contact.gap < 0 ? std::min(motion.h, contact.gap / u) : motion.held();
     const double u_start = finder.velocity(motion.before, contact).dot(contact.normal);
     if (!(u < 0 && contact.gap < 0 && u_start < -motion.slow)) continue;
-    // What pushes the sides together has done so since then too.
+    // The force that pushes the sides together has acted since then too.
     const double gained = (u - u_start) / motion.h * contact.since, approach = gained - u;
     if (contact.restitution * approach > motion.slow)
       contact.rebound = std::max(0.0, contact.restitution * approach + gained);

@@ -1,4 +1,4 @@
-// What forces and torques do while impulses at contacts, and what parts bodies, move these within a step.
+// The work of forces and torques during displacements by contact impulses and separations within a step.
 #pragma once
 
 #include <vector>
@@ -9,19 +9,19 @@ namespace pliant {
 
 class LoadWork {
  public:
-  /// From where the parts of a state are.
+  /// Starts from the positions of the parts in a state.
   LoadWork(const Dynamics& dynamics, const State& from);
-  /// To where they are in another state at time t (s), J.
+  /// Returns the work up to the positions in another state at time t (s), J.
   double until(double t, const State& to);
 
  private:
   void place(const State& state);
 
   const Dynamics& dynamics_;
-  std::vector<int> loaded_;  // parts that forces and torques act on
+  std::vector<int> loaded_;  // parts with forces and torques
   Workspace<double> work_;
-  std::vector<Vec3<double>> x_;  // of each force
-  std::vector<Mat3<double>> R_;  // of each loaded part
+  std::vector<Vec3<double>> x_;  // position of each force
+  std::vector<Mat3<double>> R_;  // orientation of each loaded part
 };
 
 }  // namespace pliant

@@ -7,21 +7,21 @@
 
 #include <pliant/math/index.h>
 
-#include "contact_pairs.h"
+#include <pliant/contact/contact_pairs.h>
 
 namespace pliant {
 
 namespace {
 
-/// How near surfaces that rest on each other are, in sizes of the smaller part.
+/// Largest gap of resting contacts, in sizes of the smaller part.
 constexpr double kResting = 1e-6;
-/// What was left of the laws of contact may make that so many times as much at most.
+/// Largest factor by which a residual widens this gap.
 constexpr double kMostLoose = 1000;
-/// Up to this share of all parts are looked at by themselves where the others have not moved.
+/// If at most this share of the parts moved, only these are searched again.
 constexpr double kFewParts = 0.7;
-/// Points of one contact at the start and the end of a step are nearer than this, in sizes.
+/// Points of the same contact at the start and the end of a step are within this distance, in sizes.
 constexpr double kSamePoint = 0.2;
-/// Motions that are too long are taken again with ways that are so much of what they may be, or less.
+/// Motions that are too long are repeated with this share of the allowed displacement.
 constexpr double kUnderThin = 0.95;
 
 }  // namespace
@@ -44,7 +44,7 @@ double RestingContacts::tight_gap(const Contact& contact) const {
   return kResting * smaller_size(model_, contact);
 }
 
-/// Marks parts that are not where they were looked at last; whether these are few.
+/// Marks the parts that have moved since the last search. Returns whether they are few.
 bool RestingContacts::few_moved(const State& state) {
   moved_.assign(model_.parts().size(), false);
   int count = 0;
@@ -81,7 +81,7 @@ const std::vector<Contact>& RestingContacts::near(const State& state, double t) 
   return last_;
 }
 
-/// Whether surfaces with this gap between them and this velocity against each other rest there.
+/// Returns whether surfaces with this gap and this relative normal velocity are at rest.
 bool RestingContacts::rests(const Contact& contact, double gap, double velocity, double slow) const {
   const double near = this->gap(contact);
   return gap < -near || (gap <= near && std::abs(velocity) <= slow);
@@ -97,8 +97,8 @@ std::vector<Contact> RestingContacts::at_rest(const State& state, double t, doub
   return resting;
 }
 
-/// Whether a contact at the end of a motion rested at its start, by how its sides have moved in between:
-/// faces that lie on each other may touch at other points of theirs.
+/// Returns whether a contact at the end of a motion was at rest at its start, by the relative motion of its
+/// sides. Faces may touch at other points at the end.
 bool RestingContacts::rested(const Contact& contact, const FreeMotion& motion, const State& state) const {
   const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),
                u = finder_.velocity(state, contact).dot(contact.normal),

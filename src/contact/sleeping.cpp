@@ -12,8 +12,8 @@ namespace pliant {
 
 namespace {
 
-/// Steps begin and end within this part of their length, and so many units of the last place, of each other:
-/// what changes in between counts for both.
+/// Times are equal within this share of a step, and this many units in the last place. A change at the end of
+/// a step counts for both steps.
 constexpr double kBesideStep = 1e-9, kBesideUlps = 16;
 
 bool differs(const TimeVector& x, double t, double h) {
@@ -21,8 +21,8 @@ bool differs(const TimeVector& x, double t, double h) {
   return x.value(t + h) != now || x.value(t + 0.5 * h) != now;
 }
 
-/// Whether hands move a point: one of the world, or of a part that moves as prescribed.
-bool by_hand(const Point& point) {
+/// Returns whether the motion of a point is prescribed: of the world, or of a kinematic part.
+bool is_prescribed(const Point& point) {
   return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
 }
 bool moves(const Part& part, double t, double h) {
@@ -35,8 +35,8 @@ bool moves(const Point& point, double t, double h) {
   return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
 }
 
-/// Whether a torque changes by itself: in time, or with the axes of a part that hands turn.
-bool by_hand(const Torque& torque) {
+/// Returns whether a torque changes in time, or with the axes of a kinematic part.
+bool is_prescribed(const Torque& torque) {
   return !torque.torque.is_constant() || (torque.frame == Frame::body && torque.part->motion() != nullptr);
 }
 bool changes(const Torque& torque, double t, double h) {
@@ -55,8 +55,8 @@ Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& resting, const Mes
   if (!(settings_->speed > 0) || !std::isfinite(settings_->speed) || !(settings_->after > 0) ||
       !std::isfinite(settings_->after)) {
     std::ostringstream message;
-    message << "contact: bodies sleep that are slower than " << settings_->speed << " m/s for "
-            << settings_->after << " s; expected a speed and a time above 0";
+    message << "contact: sleep at speeds below " << settings_->speed << " m/s for " << settings_->after
+            << " s; expected a speed and a time above 0";
     throw std::invalid_argument(message.str());
   }
   for (std::size_t i = 0; i < model_.parts().size(); ++i)
@@ -65,7 +65,7 @@ Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& resting, const Mes
   note_switches();
 }
 
-/// What moves or changes in time by itself and acts on some parts.
+/// Collects the causes of motion that change in time and act on parts.
 void Sleeping::note_drives() {
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];
@@ -85,11 +85,11 @@ void Sleeping::note_drives() {
   }
   for (const TorqueModel& of : model_.torques())
     for (const int end : {of.part, of.against})
-      if (has(end) && by_hand(*of.torque))
+      if (has(end) && is_prescribed(*of.torque))
         drives_.push_back({end, [&of](double t, double h) { return changes(*of.torque, t, h); }});
   for (const SpringModel& s : model_.springs())
     for (const auto& [end, other] : {std::pair(s.a.part, &s.spring->b), std::pair(s.b.part, &s.spring->a)})
-      if (has(end) && by_hand(*other))
+      if (has(end) && is_prescribed(*other))
         drives_.push_back({end, [far = other](double t, double h) { return moves(*far, t, h); }});
   for (const int j : model_.driven_joints()) {
     const JointModel& joint = model_.joints()[at(j)];
@@ -104,7 +104,7 @@ void Sleeping::note_drives() {
         {-1, [this](double t, double h) { return differs(*model_.body().changing_gravity, t, h); }});
 }
 
-/// What appears and goes.
+/// Collects joints, planes and obstacles that begin or cease to act.
 void Sleeping::note_switches() {
   for (const JointModel& joint : model_.joints())
     if (joint.joint->on() > 0 || std::isfinite(joint.joint->off()))
@@ -176,8 +176,8 @@ void Sleeping::wake_moved(State& state) const {
   }
 }
 
-/// A bound of the speed of all points of a part, m/s: rates of parameters without a unit of length, and of
-/// angles, count as that of a point at its size.
+/// Returns a bound of the speed of all points of a part, m/s. Rates of parameters without a unit of length,
+/// and of angles, count as those of a point at the size of the part.
 double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());
@@ -189,7 +189,7 @@ double Sleeping::speed(const State& state, int part) const {
   return speed;
 }
 
-/// How long each part has been at rest, after h seconds more. Whether any has been for long enough.
+/// Adds h seconds to the times at rest. Returns whether any part has been at rest for long enough.
 bool Sleeping::note_rest(double h, State& state) const {
   bool any = false;
   for (const int i : moving_) {
@@ -201,12 +201,12 @@ bool Sleeping::note_rest(double h, State& state) const {
   return any;
 }
 
-bool Sleeping::is_moved_by_hand(const ContactSide& side, int plane) const {
+bool Sleeping::is_kinematic(const ContactSide& side, int plane) const {
   if (side.part >= 0) return model_.parts()[at(side.part)].motion != nullptr;
   return plane >= 0 && !model_.body().contact.planes[at(plane)].point.is_constant();
 }
 
-/// Parts that touch or are tied to each other.
+/// Returns the sets of parts that touch or are tied to each other.
 DisjointSets Sleeping::sets_of(const std::vector<Contact>& contacts) const {
   auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
   DisjointSets sets(model_.parts().size());
@@ -232,10 +232,10 @@ void Sleeping::fall_asleep(const std::vector<Contact>& contacts, double t, doubl
   auto rouse = [&](int part) {
     if (part >= 0) restless[at(sets.leader(part))] = true;
   };
-  // What hands move does not let rest what it touches.
+  // Kinematic parts and moving planes keep the bodies that they touch awake.
   for (const Contact& contact : touching) {
-    if (is_moved_by_hand(contact.b, contact.plane)) rouse(contact.a.part);
-    if (is_moved_by_hand(contact.a, -1)) rouse(contact.b.part);
+    if (is_kinematic(contact.b, contact.plane)) rouse(contact.a.part);
+    if (is_kinematic(contact.a, -1)) rouse(contact.b.part);
   }
   for (const Drive& drive : drives_) {
     if (!drive.changes(t, h)) continue;

@@ -1,4 +1,4 @@
-// The error of steps in which bodies lie on each other, and what is left of it.
+// The error of steps with resting contacts by step doubling, and Richardson extrapolation.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,25 +10,25 @@
 #include <pliant/math/index.h>
 #include <pliant/project/project.h>
 
-#include "contact_pairs.h"
+#include <pliant/contact/contact_pairs.h>
 #include "touched_parts.h"
 
 namespace pliant {
 
 namespace {
 
-/// What lies on each other and moves by less than this in a step, in tolerances, is at rest: that is exact.
-constexpr double kAtRest = 1e-2;
+/// Resting bodies that move less than this in a step, in tolerances, have no error of contact.
+constexpr double kAtRestTolerance = 1e-2;
 
-/// A step and its halves tell that something struck, or that bodies touch at other points, at times that
-/// differ: if one of them has and the other has not yet, rates jump between them however short the step is.
-/// They jump where they differ by more than gravity changes them in so many steps; what counts is then where
-/// that leads in the step, in steps no longer than those of contact that is not controlled.
-constexpr double kFalls = 0.6;
-/// In steps as short as this, s, it is what counts in any case.
-constexpr double kBrief = 2e-5;
+/// A step and its halves may strike, or change contact points, at different times. If one of them has and the
+/// other has not, the rates differ by a jump, however short the step is: more than the change by gravity in
+/// this many steps. Then only the displacement in the step counts, in steps no longer than those of
+/// uncontrolled contact.
+constexpr double kJumpInFalls = 0.6;
+/// In shorter steps, s, only the displacement by differences of velocities counts.
+constexpr double kBriefStep = 2e-5;
 
-/// Whether rates of some part differ by more than so much, m/s.
+/// Returns whether the rates of some part differ by more than `most`, m/s.
 bool jump(const Model& model, const VecX<double>& of_v, double most) {
   return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
     return m.q0 >= 0 &&
@@ -36,7 +36,7 @@ bool jump(const Model& model, const VecX<double>& of_v, double most) {
   });
 }
 
-/// Gravity, m/s^2, as it acts on the velocities of parts that lay on something which they do not touch now.
+/// Returns gravity, m/s^2, on the velocities of parts that lost a resting contact.
 VecX<double> gravity_on_lost(const Model& model, const RestingContacts& resting,
                              const std::vector<Contact>& lay, std::vector<Contact> now, double t) {
   now.erase(std::remove_if(now.begin(), now.end(), [&](const Contact& c) { return c.gap > resting.gap(c); }),
@@ -52,8 +52,8 @@ VecX<double> gravity_on_lost(const Model& model, const RestingContacts& resting,
   return gravity;
 }
 
-/// Whether hands move what touches, or the parts that are tied to it: what is the same at both ends of a step
-/// may have been elsewhere.
+/// Returns whether a touching part, or one tied to it, is kinematic: equal positions at both ends of a step
+/// do not mean that it was at rest.
 bool anything_moved(const Model& model, const std::vector<Contact>& touch) {
   auto moves = [&](const ContactSide& side) {
     return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
@@ -66,7 +66,7 @@ bool anything_moved(const Model& model, const std::vector<Contact>& touch) {
          are_driven(model, parts_touched(model, touch));
 }
 
-/// Whether a step did to parts less than its error may be.
+/// Returns whether a step moved the parts by less than the allowed error.
 bool rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts, const State& begun,
           const State& state) {
   VecX<double> of_q = VecX<double>::Zero(state.q.size()), of_v = VecX<double>::Zero(state.v.size());
@@ -75,7 +75,7 @@ bool rest(const Model& model, const ErrorScale& scale, const std::vector<int>& p
     of_q.segment(m.q0, m.n_q()) = state.q.segment(m.q0, m.n_q()) - begun.q.segment(m.q0, m.n_q());
     of_v.segment(m.v0, m.n_v()) = state.v.segment(m.v0, m.n_v()) - begun.v.segment(m.v0, m.n_v());
   }
-  return scale.norm(of_q, of_v, state.v) <= kAtRest;
+  return scale.norm(of_q, of_v, state.v) <= kAtRestTolerance;
 }
 
 }  // namespace
@@ -85,72 +85,104 @@ bool ContactStepping::few_resting() const {
                                     [](const Contact& c) { return c.a.at_nodes() || c.b.at_nodes(); });
 }
 
-StepError ContactStepping::step_by_doubling(Integrator& method, const ErrorScale& scale, const State& begun,
-                                            double length, long impacts, State& state,
-                                            Workspace<double>& work, StepCounters& counters) {
+StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
+                                            const State& begun, double length, long impacts) {
   constexpr int order = 1;
   const Model& model = dynamics_.model();
-  const std::vector<Contact> lay = rested_;
-  std::vector<Contact> touch = lay;
-  touch.insert(touch.end(), record_.contacts.begin(), record_.contacts.end());
-  if (!anything_moved(model, touch) && rest(model, scale, parts_touched(model, touch), begun, state))
+  State& state = step.state;
+  std::vector<Contact> touching = rested_;
+  touching.insert(touching.end(), record_.contacts.begin(), record_.contacts.end());
+  if (!anything_moved(model, touching) && rest(model, scale, parts_touched(model, touching), begun, state))
     return {0, order, length};
-  const State once = state;
-  const std::size_t touched = record_.contacts.size();
-  const bool struck = counters.impacts > impacts;
-  counters.impacts = impacts;
+  const Whole whole{state, length, rested_, record_.contacts.size(), step.counters.impacts > impacts};
+  step.counters.impacts = impacts;
   undo_step();
   begin_step();
   state = begun;
-  const double start = begun.time(), half = 0.5 * length;
-  auto go = [&](double into, double h) {
+  const Halves halves = take_halves(method, step, whole, begun);
+  const double of_method = method.take_error();
+  if (!halves.finite || !(of_method <= 1))
+    return {std::numeric_limits<double>::infinity(), order, halves.taken};
+  const bool struck = step.counters.impacts > impacts;
+  const bool alike = agree(whole, halves, struck, state);
+  const double of_ends = difference(whole, halves, alike, scale, begun.time(), state);
+  const double error = std::max(of_ends, of_method);
+  if (alike && !whole.struck && error <= 1) {
+    StepContext at_end(dynamics_, state, step.work, step.counters, begun.time() + halves.taken, halves.taken);
+    extrapolate(at_end, whole.state, halves.first_contacts);
+  }
+  return {error, order, halves.taken};
+}
+
+/// Takes the step again from `begun`, in the state, as two halves.
+ContactStepping::Halves ContactStepping::take_halves(Integrator& method, StepContext& step,
+                                                     const Whole& whole, const State& begun) {
+  State& state = step.state;
+  const double start = begun.time(), half = 0.5 * whole.length;
+  auto advance_by = [&](double into, double h) {
     set_step(state, start + into, h);
-    return step(method, state, work, counters, true);
+    StepContext part(dynamics_, state, step.work, step.counters);
+    return this->step(method, part, true);
   };
-  const double first = go(0, half);
-  const std::size_t touched_first = record_.contacts.size();
-  const VecX<double> falls = length * gravity_on_lost(model, resting_, lay, record_.contacts, start);
+  Halves halves;
+  halves.first = halves.taken = advance_by(0, half);
+  halves.first_contacts = record_.contacts.size();
+  halves.falls =
+      whole.length * gravity_on_lost(dynamics_.model(), resting_, whole.rested, record_.contacts, start);
   rested_.clear();
   meets_late_ = false;
-  const bool finite = state.q.allFinite() && state.v.allFinite();
-  const double taken =
-      finite ? first + go(first, (struck && first == half ? begun.h : length) - first) : first;
+  auto finite = [&] { return state.q.allFinite() && state.v.allFinite(); };
+  halves.finite = finite();
+  if (halves.finite) {
+    const double end = whole.struck && halves.first == half ? begun.h : whole.length;
+    halves.taken = halves.first + advance_by(halves.first, end - halves.first);
+    halves.finite = finite();
+  }
   state.start = begun.start;
   state.step = begun.step;
   state.h = begun.h;
-  const double of_method = method.take_error();
-  if (!finite || !state.q.allFinite() || !state.v.allFinite() || !(of_method <= 1))
-    return {std::numeric_limits<double>::infinity(), order, taken};
-  const bool strikes = counters.impacts > impacts;
-  const bool alike =
-      first == half && strikes == struck && (struck || taken == length) && state.at_limit == once.at_limit &&
-      state.joints == once.joints && same_sleepers(state.at_rest, once.at_rest) &&
-      record_.contacts.size() - touched_first == touched && (struck || touched_first == touched);
-  const VecX<double> of_v = state.v - once.v, none = VecX<double>::Zero(state.q.size());
-  VecX<double> rate;
-  dynamics_.coordinate_rates(once.q, once.v, rate);
-  const VecX<double> of_q = state.q - once.q - (taken - length) * rate;
-  const bool jumps = !alike && jump(model, of_v, kFalls * length * model.body().gravity_at(start).norm());
-  // Of rates where they lead in the step.
-  auto led_by = [&](const VecX<double>& rates) {
-    dynamics_.coordinate_rates(state.q, rates, rate);
-    return scale.norm(length * rate);
-  };
-  const bool brief = length <= kBrief,
-             late = brief || (jumps && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
-  const double of_ends = late ? std::max(scale.norm(of_q), led_by(of_v)) : scale.norm(of_q, of_v, state.v),
-               of_lost = brief ? led_by(falls) : scale.norm(none, falls, state.v);
-  const double error = std::max({of_ends, of_lost, of_method});
-  if (alike && !struck && error <= 1)
-    extrapolate(once, touched_first, start + taken, taken, state, work, counters);
-  return {error, order, taken};
+  return halves;
 }
 
-/// once: where a step of h seconds to a time t (s) led; state: where its halves did, and then what both tell
-/// of shorter ones. second: the number of the first contact of the second half in the record.
-void ContactStepping::extrapolate(const State& once, std::size_t second, double t, double h, State& state,
-                                  Workspace<double>& work, StepCounters& counters) {
+/// Whether the whole step and its halves met the same things. struck: whether the halves ended at an impact.
+bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool struck, const State& state) const {
+  return halves.first == 0.5 * whole.length && struck == whole.struck &&
+         (whole.struck || halves.taken == whole.length) && state.at_limit == whole.state.at_limit &&
+         state.joints == whole.state.joints && same_sleepers(state.at_rest, whole.state.at_rest) &&
+         record_.contacts.size() - halves.first_contacts == whole.contacts &&
+         (whole.struck || halves.first_contacts == whole.contacts);
+}
+
+/// Returns the difference between the whole step and its halves, in tolerances.
+double ContactStepping::difference(const Whole& whole, const Halves& halves, bool alike,
+                                   const ErrorScale& scale, double start, const State& state) const {
   const Model& model = dynamics_.model();
+  const double length = whole.length;
+  const VecX<double> of_v = state.v - whole.state.v, none = VecX<double>::Zero(state.q.size());
+  VecX<double> rate;
+  dynamics_.coordinate_rates(whole.state.q, whole.state.v, rate);
+  const VecX<double> of_q = state.q - whole.state.q - (halves.taken - length) * rate;
+  const double jump_speed = kJumpInFalls * length * model.body().gravity_at(start).norm();
+  const bool jumps = !alike && jump(model, of_v, jump_speed);
+  // The displacement by a difference of velocities in the step.
+  auto displacement = [&](const VecX<double>& v) {
+    dynamics_.coordinate_rates(state.q, v, rate);
+    return scale.norm(length * rate);
+  };
+  const bool brief = length <= kBriefStep,
+             late = brief || (jumps && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
+  const double of_ends =
+                   late ? std::max(scale.norm(of_q), displacement(of_v)) : scale.norm(of_q, of_v, state.v),
+               of_lost = brief ? displacement(halves.falls) : scale.norm(none, halves.falls, state.v);
+  return std::max(of_ends, of_lost);
+}
+
+/// Extrapolates the state, to which two halves of a step led, by Richardson. once: the state to which the
+/// whole step led. second: the number of the first contact of the second half in the record.
+void ContactStepping::extrapolate(StepContext& step, const State& once, std::size_t second) {
+  const Model& model = dynamics_.model();
+  State& state = step.state;
+  const double t = step.t;
   const std::vector<int> parts = parts_touched(model, record_.contacts);
   auto energy_of = [&](const State& of) { return dynamics_.energy(t, of.q, of.v, parts, scratch_); };
   const double energy = 2 * energy_of(state) - energy_of(once);
@@ -162,17 +194,17 @@ void ContactStepping::extrapolate(const State& once, std::size_t second, double 
     state.v.segment(m.v0, m.n_v()) += state.v.segment(m.v0, m.n_v()) - once.v.segment(m.v0, m.n_v());
   }
   normalise_rotations(model, state.q);
-  resolution_.reconcile(parts, state, t, work, counters);
-  project_limits(dynamics_, t, state, work, counters);
-  // Gaps are not linear in what was extrapolated: what is left of them counts as resting.
+  resolution_.reconcile(step, parts);
+  project_limits(step);
+  // Gaps are not linear in the extrapolated coordinates: the residual counts as resting.
   for (std::size_t k = second; k < record_.contacts.size(); ++k) {
     const Contact& contact = record_.contacts[k];
     if (!(record_.impulses[k].dot(contact.normal) > 0)) continue;
     const double opens = finder_.velocity(state, contact).dot(contact.normal),
                  gap = finder_.least_gap(state, t, contact, smaller_size(model, contact));
-    state.contact_residual = std::max({state.contact_residual, std::abs(opens), gap / h});
+    state.contact_residual = std::max({state.contact_residual, std::abs(opens), gap / step.h});
   }
-  // Nor are energies.
+  // Energies are not linear either.
   state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - booked);
 }
 

@@ -9,13 +9,13 @@ namespace pliant {
 
 namespace {
 
-/// In order, each once.
+/// Sorts the numbers and removes duplicates.
 void keep_once(std::vector<int>& numbers) {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// act(mover, part, first of its numbers in the mover) for each part of each mover, nodes last.
+/// Calls act(mover, part, first velocity of the part in the mover) for each part of each mover, nodes last.
 template <class F>
 void for_each_part(const std::vector<Mover>& movers, F&& act) {
   for (const Mover& mover : movers) {
@@ -31,14 +31,15 @@ void for_each_part(const std::vector<Mover>& movers, F&& act) {
     if (mover.node >= 0) act(mover, mover.part, 0);
 }
 
-/// Adds to the displacements, or rates, of a node.
+/// Adds d to the displacement, or rate, of a node.
 void move_node(const Model& model, const Mover& mover, const Vec3<double>& d, Eigen::Ref<VecX<double>> q_d) {
   const Eigen::Index n = model.parts()[at(mover.part)].local->mesh().X.rows();
   for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
-/// Gives a part that is moved in all its local coordinates velocities, and moves it. x, shift: of its mover,
-/// in which its v_r begins at `first` and its local coordinates at `local`.
+/// Sets the velocities of a part whose local coordinates all move, and shifts it. x, shift: of its mover,
+/// with its v_r from `first` on and its local coordinates from `local` on. Seven parameters: the part, its
+/// workspace, its place in the mover, and the state.
 void move_locally(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& x,
                   const VecX<double>& shift, int first, int local, State& state) {
   const Eigen::Index n_r = 6 + m.n_s;

@@ -1,4 +1,4 @@
-// The parts that impulses at contacts push.
+// The parts that contacts push.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace pliant {
 
-/// Parts that move and are touched, with those that joints tie to them.
+/// Returns the touched parts that move, with those that joints tie to them.
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts);
-/// Whether hands move joints of some parts.
+/// Returns whether joints of the parts have prescribed ends.
 bool are_driven(const Model& model, const std::vector<int>& parts);
-/// What the contact problem needs: masses of the parts that it does not move node by node.
+/// Evaluates the masses of touched parts, except those whose nodes move one by one.
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work);
-/// Gives a state the velocities that impulses gave, and the ways they went since.
+/// Applies the velocities of the impulses to a state, and the displacements since then.
 void move_by(const ContactProblem& problem, const Model& model, const Workspace<double>& work, State& state);
 
 }  // namespace pliant

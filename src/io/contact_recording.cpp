@@ -1,3 +1,4 @@
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/contact_recording.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
   numbers.insert(numbers.end(), {x[0], x[1], x[2]});
 }
 
+/// Returns the number of rows of a table up to time t (s).
 std::int64_t rows_until(const std::filesystem::path& path, double t) {
   const NpyReader table(path);
   std::vector<double> row(at(table.columns()));
@@ -33,7 +35,7 @@ std::int64_t rows_until(const std::filesystem::path& path, double t) {
   return rows;
 }
 
-/// A table of which `names` columns after the time are numbers of names.
+/// Writes a table as CSV. The `names` columns after the time are indices into names_of and become names.
 void write_table(const std::filesystem::path& from, const std::filesystem::path& to,
                  const std::vector<Column>& columns, const std::vector<std::string>& names_of,
                  std::size_t names) {
@@ -55,7 +57,8 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
         continue;
       }
       if (!(row[k] >= 0 && row[k] < static_cast<double>(names_of.size())))
-        throw RecordingMismatch(from.string() + " is damaged: row " + std::to_string(i) + " names nothing");
+        throw RecordingMismatch(from.string() + " is damaged: row " + std::to_string(i) +
+                                " has the index of a thing that does not exist");
       text += csv_cell(names_of[static_cast<std::size_t>(row[k])]);
     }
     text += '\n';
@@ -72,23 +75,26 @@ void write_table(const std::filesystem::path& from, const std::filesystem::path&
 
 std::vector<Column> contact_columns() {
   std::vector<Column> columns{
-      {"t", "s", "time of the recorded state, which ends the step"},
-      {"a", "1", "part; in the .npy table its number, from 0"},
-      {"b", "1", "part, plane or obstacle; planes are numbered after the parts, obstacles after these"}};
-  add_axes(columns, "point", "m", "where they touch, world");
-  add_axes(columns, "normal", "1", "from b to a, of length 1, world");
-  columns.push_back({"gap", "m", "before overlaps are parted; negative: so deep"});
-  add_axes(columns, "impulse", "N s", "on a, in the step, world");
-  add_axes(columns, "force", "N", "on a, the mean over the step, world");
-  columns.push_back({"sliding", "m/s", "speed of a along b after the impulse"});
+      {"t", "s", "time of the recorded state at the end of the step"},
+      {"a", "1", "part; in the .npy table its index, from 0"},
+      {"b", "1",
+       "part, plane or obstacle; in the .npy table its index, with planes after parts and obstacles after "
+       "planes"}};
+  add_axes(columns, "point", "m", "contact point, world");
+  add_axes(columns, "normal", "1", "unit normal from b to a, world");
+  columns.push_back({"gap", "m", "gap before the correction of overlaps; negative: depth"});
+  add_axes(columns, "impulse", "N s", "impulse on a during the step, world");
+  add_axes(columns, "force", "N", "mean force on a over the step, world");
+  columns.push_back({"sliding", "m/s", "tangential speed of a relative to b after the impulse"});
   return columns;
 }
 
 std::vector<Column> joint_impulse_columns() {
-  std::vector<Column> columns{{"t", "s", "time of the recorded state, which ends the step"},
-                              {"joint", "1", "in the .npy table its number, from 0"}};
-  add_axes(columns, "impulse", "N s", "on its first side, of the step's contacts, world");
-  add_axes(columns, "angular_impulse", "N m s", "on its first side about the joint, world");
+  std::vector<Column> columns{{"t", "s", "time of the recorded state at the end of the step"},
+                              {"joint", "1", "joint; in the .npy table its index, from 0"}};
+  add_axes(columns, "impulse", "N s", "reaction to contact impulses of the step, on its first side, world");
+  add_axes(columns, "angular_impulse", "N m s",
+           "angular reaction to contact impulses of the step, on its first side about the joint, world");
   return columns;
 }
 
@@ -101,7 +107,7 @@ ContactRecordingWriter ContactRecordingWriter::create(const std::filesystem::pat
 }
 
 ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::path& folder, double t) {
-  auto go_on = [&](const char* name, const std::vector<Column>& columns) {
+  auto resume_table = [&](const char* name, const std::vector<Column>& columns) {
     try {
       return NpyWriter::resume(folder / name, static_cast<int>(columns.size()), rows_until(folder / name, t));
     } catch (const std::system_error&) {
@@ -110,13 +116,14 @@ ContactRecordingWriter ContactRecordingWriter::resume(const std::filesystem::pat
       throw RecordingMismatch(fault.what());
     }
   };
-  return {go_on(kContactsFile, contact_columns()), go_on(kJointImpulsesFile, joint_impulse_columns())};
+  return {resume_table(kContactsFile, contact_columns()),
+          resume_table(kJointImpulsesFile, joint_impulse_columns())};
 }
 
 namespace {
 
-/// Of what a part touches, among the parts, planes and obstacles.
-int number_of_b(const Model& model, const Contact& contact) {
+/// Returns the index of the second thing of a contact in the list of parts, planes and obstacles.
+int number_of_other_thing(const Model& model, const Contact& contact) {
   const std::size_t parts = model.parts().size(), planes = model.body().contact.planes.size();
   if (contact.b.part >= 0) return contact.b.part;
   if (contact.plane >= 0) return static_cast<int>(parts) + contact.plane;
@@ -132,7 +139,7 @@ void ContactRecordingWriter::append(const Simulation& simulation) {
   std::vector<double> row;
   for (std::size_t k = 0; k < record.contacts.size(); ++k) {
     const Contact& contact = record.contacts[k];
-    const int b = number_of_b(simulation.model(), contact);
+    const int b = number_of_other_thing(simulation.model(), contact);
     row = {state.time(), static_cast<double>(contact.a.part), static_cast<double>(b)};
     add_vector(row, contact.x);
     add_vector(row, contact.normal);
@@ -150,14 +157,14 @@ void ContactRecordingWriter::append_joints(const Simulation& simulation, const C
   const State& state = simulation.state();
   std::vector<double> row;
   for (const Island& island : model.islands()) {
-    auto takes_up = [&](int j) {
+    auto has_impulse = [&](int j) {
       const JointModel& joint = model.joints()[at(j)];
       return !record.joint_impulses.segment(joint.row, joint.rows).isZero(0);
     };
-    if (std::none_of(island.joints.begin(), island.joints.end(), takes_up)) continue;
+    if (std::none_of(island.joints.begin(), island.joints.end(), has_impulse)) continue;
     simulation.dynamics().evaluate_joints(state.time(), state.q, state.v, state.joints, island, work_);
     for (const int j : island.joints) {
-      if (!takes_up(j)) continue;
+      if (!has_impulse(j)) continue;
       const Wrench wrench = simulation.dynamics().joint_wrench(state.time(), j, work_, record.joint_impulses);
       row = {state.time(), static_cast<double>(j)};
       add_vector(row, wrench.force);

@@ -7,16 +7,16 @@
 namespace pliant {
 
 void throw_file_fault(int error, const char* action, const std::filesystem::path& path, std::size_t needed) {
-  std::string what = std::string("cannot ") + action + " " + path.string();
+  std::string message = std::string("cannot ") + action + " " + path.string();
   if (error == ENOSPC || error == EDQUOT) {
     std::error_code unknown;
     const std::filesystem::space_info space = std::filesystem::space(path.parent_path(), unknown);
-    what += " (";
-    if (needed > 0) what += std::to_string(needed) + " bytes needed";
-    if (!unknown) what += (needed > 0 ? ", " : "") + std::to_string(space.available) + " bytes free";
-    what += ")";
+    message += " (";
+    if (needed > 0) message += std::to_string(needed) + " bytes needed";
+    if (!unknown) message += (needed > 0 ? ", " : "") + std::to_string(space.available) + " bytes free";
+    message += ")";
   }
-  throw std::system_error(error, std::generic_category(), what);
+  throw std::system_error(error, std::generic_category(), message);
 }
 
 }  // namespace pliant

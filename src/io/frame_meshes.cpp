@@ -9,10 +9,10 @@ namespace pliant {
 
 namespace {
 
-/// A rectangle about the origin, across a normal.
+/// Returns a rectangle centred at the origin and normal to `normal`.
 ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   constexpr double kLevel = 1e-9;
-  const Vec3<double> level(-normal[1], normal[0], 0);  // across z and the normal
+  const Vec3<double> level(-normal[1], normal[0], 0);  // perpendicular to z and to the normal
   const Vec3<double> along = level.norm() > kLevel ? level.normalized() : Vec3<double>(Vec3<double>::UnitX());
   const Vec3<double> x = 0.5 * look.width * along, y = 0.5 * look.height * normal.cross(along);
   Eigen::Matrix3Xd corners(3, 4);
@@ -22,7 +22,7 @@ ObstacleMesh rectangle(const PlaneLook& look, const Vec3<double>& normal) {
   return {corners, triangles};
 }
 
-/// The triangles with a normal each; of an open mesh both sides.
+/// Returns the triangles of an obstacle with one normal each; an open mesh gets both sides.
 TriangleMesh faceted(const ObstacleMesh& obstacle) {
   const Eigen::Index n = obstacle.triangles().cols(), all = obstacle.closed() ? n : 2 * n;
   TriangleMesh mesh;
@@ -56,7 +56,7 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
     else
       shown.nodes = surface_nodes(part.local()->mesh());
     if (shown.rigid) shown.body = shown.surface->body_mesh(part, part.parameters().rest());
-    if (!scene.coloring || values == Values::left_out) continue;
+    if (!scene.coloring || values == Values::omitted) continue;
     const ParameterValues<double> rest = part.parameters().rest();
     meshes_.back().by_values = colors(*scene.coloring, part);
     if (shown.surface)
@@ -65,26 +65,26 @@ FrameMeshes::FrameMeshes(const Scene& scene, const Model& model, Values values) 
     else
       shown.values.emplace(scene.coloring->by, shown.nodes.of(part.local()->mesh().X), shown.nodes.triangles);
   }
-  lay_obstacles(scene, values);
-  lay_planes(scene, values);
+  add_obstacles(scene, values);
+  add_planes(scene, values);
 }
 
-void FrameMeshes::lay_obstacles(const Scene& scene, Values values) {
+void FrameMeshes::add_obstacles(const Scene& scene, Values values) {
   const auto& obstacles = model_->body().contact.obstacles;
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     if (!scene.obstacles.at(k).visible) continue;
     const ObstacleMesh mesh(obstacles[k].vertices, obstacles[k].triangles);
     NamedMesh named{obstacles[k].name, scene.obstacles[k].color, faceted(mesh)};
-    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    if (scene.coloring && values == Values::included) named.values = VecX<double>::Zero(named.mesh.x.cols());
     obstacles_.push_back({&obstacles[k], std::move(named)});
   }
 }
 
-void FrameMeshes::lay_planes(const Scene& scene, Values values) {
+void FrameMeshes::add_planes(const Scene& scene, Values values) {
   for (const PlaneLook& look : scene.planes) {
     const ContactPlane& plane = model_->body().contact.planes.at(look.plane);
     NamedMesh named{plane.name, look.color, faceted(rectangle(look, plane.normal))};
-    if (scene.coloring && values == Values::told) named.values = VecX<double>::Zero(named.mesh.x.cols());
+    if (scene.coloring && values == Values::included) named.values = VecX<double>::Zero(named.mesh.x.cols());
     planes_.push_back({&plane, std::move(named)});
   }
 }
@@ -120,7 +120,7 @@ const std::vector<NamedMesh>& FrameMeshes::at(const State& state) {
       mesh.corners = body.corners;
     }
   }
-  std::size_t there = shown_.size();  // obstacles and planes come and go
+  std::size_t there = shown_.size();  // obstacles and planes may appear and disappear
   auto show = [&](const NamedMesh& mesh) -> NamedMesh& {
     if (there == meshes_.size() || meshes_[there].name != mesh.name) {
       meshes_.resize(there);

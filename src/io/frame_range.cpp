@@ -7,7 +7,7 @@
 namespace pliant {
 namespace {
 
-// The whole of a text as a number >= 0.
+// Converts a whole text to a number >= 0.
 std::optional<std::int64_t> number(const std::string& text) {
   std::int64_t value = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -52,7 +52,7 @@ FrameRange FrameRange::parse(const std::string& text) {
   range.stride = piece(2, 1);
   if (range.stride < 1) refuse();
   if (range.end && *range.end <= range.first)
-    throw std::invalid_argument("frames \"" + text + "\" are none: END must be above FIRST");
+    throw std::invalid_argument("frames \"" + text + "\" select no frame: END must be above FIRST");
   return range;
 }
 
@@ -75,11 +75,11 @@ std::int64_t FrameRange::size(std::int64_t count) const {
                                 std::to_string(count) + " frames");
   const std::int64_t chosen = std::max<std::int64_t>(0, end.value_or(count) - first);
   const std::int64_t strided = chosen > 0 ? (chosen - 1) / stride + 1 : 0;
-  const std::int64_t most = shard < strided ? (strided - 1 - shard) / shards + 1 : 0;
-  if (most > kMostFrames)
-    throw std::invalid_argument(std::to_string(most) + " frames are asked for as files; at most " +
-                                std::to_string(kMostFrames) + " can be written at once");
-  return most;
+  const std::int64_t selected = shard < strided ? (strided - 1 - shard) / shards + 1 : 0;
+  if (selected > kMaxFrames)
+    throw std::invalid_argument(std::to_string(selected) + " frames are requested as files; at most " +
+                                std::to_string(kMaxFrames) + " can be written at once");
+  return selected;
 }
 
 std::vector<std::int64_t> FrameRange::frames(std::int64_t count) const {

@@ -10,26 +10,27 @@
 namespace pliant {
 namespace {
 
-constexpr double kMostSteps = 1e12;
-/// Part of a step within which a frame counts as on the step.
+constexpr double kMaxSteps = 1e12;
+/// Tolerance, as a fraction of a step, within which a frame is at the end of the step.
 constexpr double kOnStep = 1e-6;
 
-void require(bool good, const char* what, double value, const char* expected) {
+void require(bool good, const char* name, double value, const char* expected) {
   if (!good)
-    throw std::invalid_argument(std::string(what) + " " + number_text(value) + " must be " + expected);
+    throw std::invalid_argument(std::string(name) + " " + number_text(value) + " must be " + expected);
 }
 
-// end / step rounded up, but to the nearest where that is as good as exact.
+// Returns end / step, rounded to the nearest integer if it is equal up to rounding errors, or else rounded
+// up.
 double steps_between(double end, double step, double rate) {
   require(std::isfinite(end) && end >= 0, "the end time", end, "a number of seconds >= 0");
   require(std::isfinite(step) && step > 0, "the step", step, "a number of seconds > 0");
   require(std::isfinite(rate) && rate > 0, "the frame rate", rate, "a number per second > 0");
   const double exact = end / step, near = std::round(exact);
   const double steps = std::abs(exact - near) <= 1e-9 * std::max(1.0, exact) ? near : std::ceil(exact);
-  if (!(steps <= kMostSteps))
+  if (!(steps <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s in steps of " + number_text(step) +
-                                " s takes " + number_text(steps) + " steps; the limit is 1e12");
-  if (!(end * rate <= kMostSteps))
+                                " s needs " + number_text(steps) + " steps; the limit is 1e12");
+  if (!(end * rate <= kMaxSteps))
     throw std::invalid_argument("a run to " + number_text(end) + " s has " + number_text(end * rate) +
                                 " frames; the limit is 1e12");
   return steps;
@@ -75,7 +76,7 @@ bool FrameSchedule::records(std::int64_t step) const {
 }
 
 bool FrameSchedule::records(double before, double time, double next) const {
-  const double reach = time + 1.02 * next;  // the last step before the end may be a little longer
+  const double reach = time + 1.02 * next;  // the last step before the end may be slightly longer
   return time == 0 || reach >= end_ || frames(reach) != frames(before);
 }
 

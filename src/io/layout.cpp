@@ -1,4 +1,4 @@
-// layout.json: what the columns of the tables are.
+// layout.json: the columns of all tables of a run.
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -48,16 +48,17 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   Json layout;
   layout["format"] = "pliant recording";
   layout["version"] = kRecordingVersion;
-  layout["rows"] = std::string("one state a row, the same row in ") + kTimesFile + ", " + kCoordinatesFile +
-                   ", " + kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
-                   "; the number of states is that of the shortest of the .npy tables among these, less the "
-                   "last ones whose supports are not whole";
+  layout["rows"] = std::string("one row per state; row i of ") + kTimesFile + ", " + kCoordinatesFile + ", " +
+                   kVelocitiesFile + ", " + kModesFile + " and " + kTrajectoryFile +
+                   " is state i; the number of states is the smallest number of rows of these .npy tables, "
+                   "without the last states whose rows of " +
+                   kContactCacheFile + " are missing";
   layout["frames"] = {
       {"rate", schedule.rate()},
       {"count", schedule.frames()},
       {"time",
-       "frame k is taken at k / rate seconds: a recorded state, or interpolated between the two states "
-       "of the step around it"}};
+       "frame k is at time k / rate seconds: a recorded state, or interpolated between the states before and "
+       "after the step that contains it"}};
   Json& tables = layout["tables"];
   tables[kTimesFile] = json_of(std::vector<Column>{{"t", "s", "time: start + step * step_size"}});
   tables[kCoordinatesFile] = part_columns(model, false);
@@ -66,8 +67,9 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
   if (model.body().contact.active) {
     tables[kContactCacheFile] = json_of(contact_cache_columns());
     layout["support_rows"] =
-        "any number of rows a state: from the one that its column supports in modes.npy tells to before "
-        "that of supports_end, counted from 0";
+        "zero or more rows per state: from row `supports` up to, but not including, row `supports_end`, "
+        "which "
+        "are columns of modes.npy; rows are counted from 0";
   }
   tables[kTrajectoryFile] = json_of(trajectory);
   if (contacts) {
@@ -75,8 +77,8 @@ void write_layout(const std::filesystem::path& folder, const Model& model, const
     for (const char* file : {kJointImpulsesFile, kJointImpulsesTable})
       tables[file] = json_of(joint_impulse_columns());
     layout["contact_rows"] =
-        "any number of rows a state, told apart by their times, of the step that ends in it; a step that "
-        "impacts break into parts tells a contact for each of them";
+        "zero or more rows per state, which have its time and describe the step that ends in it; if impacts "
+        "divide the step into parts, a contact has a row for each part";
   }
   const std::string text = layout.dump(1) + "\n";
   write_whole_file(folder / kLayoutFile, text.data(), text.size(), Durable::yes);

@@ -11,9 +11,9 @@ namespace pliant {
 void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene,
                        const Model& model, const Recording& recording, double frame_rate,
                        const std::vector<std::int64_t>& frames, Progress& progress) {
-  // An .obj file has no place for values.
-  FrameMeshes meshes(scene, model,
-                     format == MeshFormat::obj ? FrameMeshes::Values::left_out : FrameMeshes::Values::told);
+  // An .obj file cannot store values.
+  FrameMeshes meshes(
+      scene, model, format == MeshFormat::obj ? FrameMeshes::Values::omitted : FrameMeshes::Values::included);
   progress.begin("meshes", static_cast<double>(frames.size()), "frames");
   double done = 0;
   for (const std::int64_t frame : frames) {

@@ -26,7 +26,7 @@ int mode_count(const Model& model) {
   return static_cast<int>(mode_columns_of(model).size());
 }
 
-// The names of a table's columns must be the model's.
+// Throws RecordingMismatch if the column names of a table in layout.json differ from those of the model.
 void compare_columns(const nlohmann::json& layout, const char* table, int count,
                      const std::filesystem::path& file, const std::function<std::string(int)>& name) {
   const nlohmann::json& columns = layout.at("tables").at(table);
@@ -34,12 +34,13 @@ void compare_columns(const nlohmann::json& layout, const char* table, int count,
     const std::string recorded = columns.at(static_cast<std::size_t>(i)).at("name");
     if (recorded != name(i))
       throw RecordingMismatch(file.string() + " was recorded from another scene: column " +
-                              std::to_string(i) + " of " + table + " is " + recorded + ", the scene has " +
-                              name(i) + " there");
+                              std::to_string(i) + " of " + table + " is " + recorded +
+                              ", and in this scene " + name(i));
   }
   if (static_cast<int>(columns.size()) != count)
     throw RecordingMismatch(file.string() + " was recorded from another scene: " + table + " has " +
-                            std::to_string(columns.size()) + " columns, the scene " + std::to_string(count));
+                            std::to_string(columns.size()) + " columns, and this scene needs " +
+                            std::to_string(count));
 }
 
 void compare_layout(const std::filesystem::path& file, const Model& model) {
@@ -48,8 +49,8 @@ void compare_layout(const std::filesystem::path& file, const Model& model) {
   try {
     const nlohmann::json layout = nlohmann::json::parse(stream);
     if (layout.at("version") != kRecordingVersion)
-      throw RecordingMismatch(file.string() + " is of version " + layout.at("version").dump() +
-                              ", expected " + std::to_string(kRecordingVersion));
+      throw RecordingMismatch(file.string() + " has version " + layout.at("version").dump() + ", expected " +
+                              std::to_string(kRecordingVersion));
     compare_columns(layout, kCoordinatesFile, model.n_q(), file,
                     [&](int i) { return model.coordinate_name(i); });
     compare_columns(layout, kVelocitiesFile, model.n_v(), file,
@@ -64,7 +65,7 @@ NpyReader open_table(const std::filesystem::path& path, int columns) {
     NpyReader reader(path);
     if (reader.columns() != columns)
       throw RecordingMismatch(path.string() + " has " + std::to_string(reader.columns()) +
-                              " columns, the scene needs " + std::to_string(columns));
+                              " columns, and this scene needs " + std::to_string(columns));
     return reader;
   } catch (const std::system_error&) {
     throw;
@@ -83,13 +84,13 @@ int cached_contact_count() {
   return static_cast<int>(contact_cache_columns().size());
 }
 
-/// The rows of supports that are of a state, from the first to before the last; both -1 when its row of modes
-/// is damaged there.
-struct SupportRows {
+/// The range of a state's rows in supports.npy: first, and one past the last. Both are -1 if its row of
+/// modes.npy is damaged.
+struct CachedContactRows {
   std::int64_t first = -1, end = -1;
 };
-SupportRows contact_cache_of(const std::vector<double>& modes) {
-  const double first = modes[kFirstSupport], end = modes[kEndOfSupports];
+CachedContactRows cached_contact_rows(const std::vector<double>& modes) {
+  const double first = modes[kFirstCachedContact], end = modes[kEndOfCachedContacts];
   if (!(0 <= first && first <= end && end < 0x1p53 && first == std::floor(first) && end == std::floor(end)))
     return {};
   return {static_cast<std::int64_t>(first), static_cast<std::int64_t>(end)};
@@ -126,7 +127,7 @@ RecordingWriter RecordingWriter::resume(const std::filesystem::path& folder, con
   if (has_contact_cache(model)) {
     const std::int64_t end =
         rows > 0
-            ? contact_cache_of(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
+            ? cached_contact_rows(read_row(open_table(folder / kModesFile, mode_count(model)), rows - 1)).end
             : 0;
     if (end < 0)
       throw RecordingMismatch((folder / kModesFile).string() + " is damaged at row " +
@@ -144,7 +145,8 @@ void RecordingWriter::append(const State& state) {
   coordinates_.append(state.q.data());
   velocities_.append(state.v.data());
   if (contact_cache_)
-    for (const CachedContact& support : state.contact_cache) contact_cache_->append(row_of(support).data());
+    for (const CachedContact& contact : state.contact_cache)
+      contact_cache_->append(cached_contact_row(contact).data());
   write_modes(state, contact_cache_ ? contact_cache_->rows() : 0, row_);
   modes_.append(row_.data());
   times_.append(&time);
@@ -171,24 +173,24 @@ Recording::Recording(const std::filesystem::path& folder, const Model& model)
   std::int64_t rows = std::min({times.rows(), coordinates_.rows(), velocities_.rows(), modes_.rows()});
   if (has_contact_cache(model)) {
     contact_cache_.emplace(open_table(folder / kContactCacheFile, cached_contact_count()));
-    while (rows > 0 && contact_cache_of(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
+    while (rows > 0 && cached_contact_rows(read_row(modes_, rows - 1)).end > contact_cache_->rows()) --rows;
   }
   times_.resize(static_cast<std::size_t>(rows));
   for (std::int64_t row = 0; row < rows; ++row) times.read(row, &times_[static_cast<std::size_t>(row)]);
   for (std::size_t row = 1; row < times_.size(); ++row)
     if (!(times_[row] > times_[row - 1]))
-      throw RecordingMismatch((folder / kTimesFile).string() + " is damaged: time does not grow at row " +
+      throw RecordingMismatch((folder / kTimesFile).string() + " is damaged: time does not increase at row " +
                               std::to_string(row));
 }
 
 State Recording::state(std::int64_t row) const {
   auto damaged = [&] {
     return RecordingMismatch("the recorded state at row " + std::to_string(row) +
-                             " is damaged: its check number does not fit");
+                             " is damaged: its check number does not match");
   };
   State state;
   const std::vector<double> modes = read_row(modes_, row);
-  const SupportRows rows = contact_cache_of(modes);
+  const CachedContactRows rows = cached_contact_rows(modes);
   if (rows.first < 0 || rows.end > (contact_cache_ ? contact_cache_->rows() : 0)) throw damaged();
   if (rows.end > rows.first) {
     const auto columns = static_cast<std::size_t>(cached_contact_count());
@@ -208,16 +210,19 @@ State Recording::state(std::int64_t row) const {
 
 namespace {
 
-/// Rates that jump by more than this part of what they change by in a step have been struck.
+/// An impact is assumed at the end of a step if the rates jump there by more than this fraction of their
+/// change due to the accelerations.
 constexpr double kJump = 0.5;
-/// Where accelerations at both ends tell neither ways nor rates to this part of them, other forces acted in
-/// between, as of what lies below.
+/// Other forces, such as contact, are assumed within a step if the accelerations at both ends predict neither
+/// the displacements nor the rates to this relative accuracy.
 constexpr double kPushed = 0.2;
-/// What of rates is rounding.
+/// Relative rounding error of rates.
 constexpr double kRounding = 1e-9;
 
-/// q at a part x of the way from one state to another by a polynomial of degree 5, with the accelerations at
-/// both; of degree 3 where other forces acted too.
+/// Returns q at a fraction x of the step from one state to another. Each block of coordinates is interpolated
+/// by a polynomial of degree 5 through q, rates and accelerations of both states. After an impact at the end,
+/// the rate and acceleration there are not used; if other forces acted, the polynomial is the cubic Hermite
+/// one.
 VecX<double> quintic(const Model& model, const State& low, const State& high, double x) {
   const Dynamics dynamics(model);
   Workspace<double> work;
@@ -240,7 +245,7 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
   VecX<double> q(low.q.size());
   auto fill = [&](int first, int count) {
     auto of = [&](auto& all) { return all.segment(first, count); };
-    // What is left of the way at the end, when the rates and accelerations at the start have had their share.
+    // The displacement that rate and acceleration at the start do not explain.
     const VecX<double> rest = of(high.q) - of(low.q) - h * of(a.rate) - 0.5 * h * h * of(a.curvature);
     const double bend = std::max(of(a.curvature).norm(), of(b.curvature).norm());
     const double pushed =
@@ -254,7 +259,7 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
       return;
     }
     const double jump = (of(a.rate) + h * of(a.curvature) + 3 / h * rest - of(b.rate)).norm();
-    if (jump > kJump * h * bend) {  // something struck at the end: the rate there is that after it
+    if (jump > kJump * h * bend) {  // impact at the end: the rate there is that after the impact
       of(q) = of(low.q) + x * h * of(a.rate) + 0.5 * x * x * h * h * of(a.curvature) + x3 * rest;
       return;
     }
@@ -275,14 +280,14 @@ VecX<double> quintic(const Model& model, const State& low, const State& high, do
 }  // namespace
 
 State Recording::at(double t) const {
-  if (times_.empty()) throw std::out_of_range("the recording holds no state");
+  if (times_.empty()) throw std::out_of_range("the recording contains no state");
   const auto next = std::lower_bound(times_.begin(), times_.end(), t);
   const std::int64_t after = next - times_.begin();
   if (after == rows()) return state(rows() - 1);
   if (after == 0) return state(0);
   State low = state(after - 1);
   const State high = state(after);
-  // A frame on a step is that step's state, however the two times were rounded.
+  // A frame at the end of a step uses that state, independent of the rounding of the two times.
   const double span = high.time() - low.time(), tolerance = 1e-6 * std::max(high.h, low.h);
   if (high.time() - t <= tolerance) return high;
   if (t - low.time() <= tolerance) return low;

@@ -8,7 +8,7 @@
 namespace pliant {
 namespace {
 
-/// The hash of a state, cut to 53 bits, which a double holds exactly.
+/// Returns the upper 53 bits of the hash of a state, which a double represents exactly.
 double check_of(const State& state) {
   return static_cast<double>(hash(state) >> 11);
 }
@@ -57,24 +57,23 @@ std::vector<Column> velocity_columns(const Model& model, const PartModel& part) 
 std::vector<Column> mode_columns_of(const Model& model) {
   std::vector<Column> columns{
       {"start", "s", "time of step 0"},
-      {"step_size", "s", "step; where errors are controlled, the next one"},
+      {"step_size", "s", "step; with error control, the next step"},
       {"step", "1", "steps since start"},
-      {"error", "1", "of the last step, in tolerances; 0 where it is not measured"},
-      {"contact_residual", "m/s", "what impulses missed of the laws of contact in the last step"},
-      {"supports", "1", "the first row of supports.npy that is of this state"},
-      {"supports_end", "1", "the row after the last"},
-      {"supports_age", "1", "steps in a row whose search for impulses began at them"}};
+      {"error", "1", "error of the last step / tolerance; 0 without error control"},
+      {"contact_residual", "m/s", "residual of the contact laws in the last step"},
+      {"supports", "1", "first row of this state in supports.npy (its contact cache)"},
+      {"supports_end", "1", "one past the last row of this state in supports.npy"},
+      {"supports_age", "1", "number of consecutive steps with a warm start from the contact cache"}};
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   for (const PartModel& part : model.parts()) {
     if (part.q0 < 0) continue;
     for (int k = 0; k < part.n_s; ++k)
       columns.push_back({"limit." + model.coordinate_name(part.q0 + 7 + k), "1",
-                         "-1 at its lower limit, 1 at its upper, 0 free"});
+                         "-1 at the lower limit, 1 at the upper limit, 0 free"});
   }
   if (model.n_resting() > 0)
     for (const PartModel& part : model.parts())
-      columns.push_back(
-          {"rest." + part.part->name(), "s", "how long it has been at rest; negative: it sleeps"});
+      columns.push_back({"rest." + part.part->name(), "s", "time at rest; negative: the part sleeps"});
   for (const JointModel& joint : model.joints())
     columns.push_back({"joint." + joint.joint->name(), "1", "0 off, 1 closing, 2 closed, 3 slack"});
   columns.push_back({"check", "1", "hash of the bits of the state"});
@@ -82,45 +81,46 @@ std::vector<Column> mode_columns_of(const Model& model) {
 }
 
 std::vector<Column> contact_cache_columns() {
-  return {{"a", "1", "number of the part that the force is on"},
-          {"b", "1", "of the other part; -1: none"},
-          {"plane", "1", "or of the plane"},
-          {"obstacle", "1", "or of the obstacle"},
-          {"x", "m", "where it was, in the frame of part a"},
+  return {{"a", "1", "index of the first part"},
+          {"b", "1", "index of the second part; -1: none"},
+          {"plane", "1", "index of the plane; -1: none"},
+          {"obstacle", "1", "index of the obstacle; -1: none"},
+          {"x", "m", "contact point, in the frame of part a"},
           {"y", "m", ""},
           {"z", "m", ""},
-          {"force_x", "N", "mean of the last step or its second half, on part a, world"},
+          {"force_x", "N", "mean force on part a in the last step (or its second half), world"},
           {"force_y", "N", ""},
           {"force_z", "N", ""}};
 }
 
-std::vector<double> row_of(const CachedContact& support) {
-  std::vector<double> row(support.between.begin(), support.between.end());
-  row.insert(row.end(), support.x.data(), support.x.data() + 3);
-  row.insert(row.end(), support.force.data(), support.force.data() + 3);
+std::vector<double> cached_contact_row(const CachedContact& contact) {
+  std::vector<double> row(contact.between.begin(), contact.between.end());
+  row.insert(row.end(), contact.x.data(), contact.x.data() + 3);
+  row.insert(row.end(), contact.force.data(), contact.force.data() + 3);
   return row;
 }
 
-bool read_cached_contact(const double* row, CachedContact& support) {
-  for (std::size_t i = 0; i < support.between.size(); ++i) {
+bool read_cached_contact(const double* row, CachedContact& contact) {
+  for (std::size_t i = 0; i < contact.between.size(); ++i) {
     if (!(row[i] >= -1 && row[i] <= std::numeric_limits<int>::max() && row[i] == std::floor(row[i])))
       return false;
-    support.between[i] = static_cast<int>(row[i]);
+    contact.between[i] = static_cast<int>(row[i]);
   }
-  support.x = Vec3<double>(row[4], row[5], row[6]);
-  support.force = Vec3<double>(row[7], row[8], row[9]);
+  contact.x = Vec3<double>(row[4], row[5], row[6]);
+  contact.force = Vec3<double>(row[7], row[8], row[9]);
   return true;
 }
 
-void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row) {
+void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row) {
   row.clear();
   row.push_back(state.start);
   row.push_back(state.h);
   row.push_back(static_cast<double>(state.step));
   row.push_back(state.error);
   row.push_back(state.contact_residual);
-  row.push_back(static_cast<double>(end_of_supports) - static_cast<double>(state.contact_cache.size()));
-  row.push_back(static_cast<double>(end_of_supports));
+  row.push_back(static_cast<double>(end_of_cached_contacts) -
+                static_cast<double>(state.contact_cache.size()));
+  row.push_back(static_cast<double>(end_of_cached_contacts));
   row.push_back(state.contact_cache_age);
   row.insert(row.end(), state.work.data(), state.work.data() + kWorks);
   for (const std::int8_t at : state.at_limit) row.push_back(at);
@@ -130,7 +130,8 @@ void write_modes(const State& state, std::int64_t end_of_supports, std::vector<d
 }
 
 bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting, State& state) {
-  constexpr std::size_t age = kEndOfSupports + 1, first_work = age + 1, first_limit = first_work + kWorks;
+  constexpr std::size_t age = kEndOfCachedContacts + 1, first_work = age + 1,
+                        first_limit = first_work + kWorks;
   const std::size_t first_resting = first_limit + static_cast<std::size_t>(n_limits),
                     first_joint = first_resting + n_resting;
   if (row.size() < first_joint + 1 || !(std::abs(row[2]) < 0x1p53)) return false;

@@ -8,7 +8,8 @@
 namespace pliant {
 
 namespace {
-/// How much nearer to the next state a step must lead than interpolation is to it half-way.
+/// Largest ratio of the error of a full explicit step at its end to the difference between explicit step and
+/// interpolation at half the step.
 constexpr double kNearer = 0.1;
 }  // namespace
 
@@ -29,7 +30,8 @@ std::optional<State> step_between(const Model& model, const State& low, const St
     state.start = start;
     state.step = 0;
     state.h = part * (high.time() - start);
-    method.step(dynamics, state, work, counters);
+    StepContext step(dynamics, state, work, counters);
+    method.step(step);
     state.start = start + state.h;
     state.h = low.h;
     return state;
@@ -38,7 +40,7 @@ std::optional<State> step_between(const Model& model, const State& low, const St
     const double off = size.norm(after(1).q - high.q), apart = size.norm(after(0.5).q - between);
     if (!(off <= kNearer * apart)) return {};
     return after(x);
-  } catch (const std::runtime_error&) {  // what no such step can follow
+  } catch (const std::runtime_error&) {  // the explicit step failed
     return {};
   }
 }

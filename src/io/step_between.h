@@ -1,5 +1,5 @@
-// A state between those of long steps, for pictures and meshes: of a step of its own that begins where the
-// step does, so that it is as near to the motion as the states at steps are.
+// A state within a long step, for pictures and meshes. It is computed by a shorter step of order 8 from the
+// start of the long step, so that it is as accurate as the recorded states.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,10 @@
 
 namespace pliant {
 
-/// The state at a part x, from 0 to 1, of the step from one state to the next. between: q half-way as
-/// interpolation has it. None where steps of an explicit method do not lead from one state to the other much
-/// more closely than interpolation follows them, as where something struck or is stiff in between.
+/// Returns the state at a fraction x (0 to 1) of the step from `low` to `high`. between: q interpolated at x
+/// = 0.5. Returns nothing if a part deforms locally, or if the explicit method does not lead from `low` to
+/// `high` much more accurately than interpolation, for example because of an impact or a stiff force within
+/// the step.
 std::optional<State> step_between(const Model& model, const State& low, const State& high, double x,
                                   const VecX<double>& between);
 

@@ -22,7 +22,7 @@ void add_vector(std::vector<double>& numbers, const Vec3<double>& x) {
   numbers.insert(numbers.end(), {x[0], x[1], x[2]});
 }
 
-// Joints that hold more than one point of a side hold its turning too.
+// Returns whether a joint transmits a torque: a joint with several points per side constrains rotation.
 bool has_torque(const JointModel& joint) {
   return joint.joint->n_first() > 1;
 }
@@ -32,10 +32,10 @@ bool has_torque(const JointModel& joint) {
 TrajectoryTable::TrajectoryTable(const Scene& scene, const Simulation& simulation)
     : scene_(&scene),
       simulation_(&simulation),
-      parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMostParts)) {
-  // A part that deforms has its centre of mass somewhere else sooner or later, unless its shape is symmetric:
-  // then the column would only repeat c, which the state at time 0 alone cannot tell. So it is shown for
-  // every such part with links.
+      parts_shown_(scene.every_part.value_or(simulation.model().parts().size() <= kMaxParts)) {
+  // The centre of mass of a deforming part leaves the origin of its frame, unless its shape stays symmetric.
+  // The state at time 0 does not show which, so every part with deformations and dynamic parameters gets the
+  // columns.
   for (const PartModel& part : simulation.model().parts()) {
     const double offset = part.part->rest_inertia().moment.norm();
     const bool moved = offset > 1e-12 * part.part->total_mass() * part.part->size();
@@ -52,7 +52,7 @@ std::vector<Column> TrajectoryTable::columns() const {
   for (std::size_t i = 0; parts_shown_ && i < model.parts().size(); ++i) {
     const PartModel& part = model.parts()[i];
     if (part.q0 < 0) continue;
-    // Nodes are told in q.npy and v.npy only.
+    // Nodes have columns in q.npy and v.npy only.
     add_some(columns, coordinate_columns(model, part), 7 + part.n_s);
     add_some(columns, velocity_columns(model, part), 6 + part.n_s);
     if (centre_shown_[i]) add_axes(columns, part.part->name() + ".com", "m", "centre of mass, world");
@@ -65,15 +65,17 @@ std::vector<Column> TrajectoryTable::columns() const {
     add_axes(columns, name + ".force", "N", "on its first side, world");
     if (has_torque(joint))
       add_axes(columns, name + ".torque", "N m", "on its first side about the joint, world");
-    columns.push_back({name + ".gap", "m", "how far it is open"});
+    columns.push_back({name + ".gap", "m", "distance by which it is open"});
   }
   for (const char* energy : {"kinetic", "gravity", "elastic", "springs"})
     columns.push_back({std::string("energy.") + energy, "J", ""});
-  if (local_shown_) columns.push_back({"energy.local", "J", "elastic, of local deformation"});
+  if (local_shown_) columns.push_back({"energy.local", "J", "elastic energy of local deformation"});
   columns.push_back({"energy.total", "J", "sum of the energies"});
   for (const char* work : kWorkNames) columns.push_back({std::string("work.") + work, "J", "work so far"});
   columns.push_back(
-      {"balance", "J", "energy.total - its value at time 0 - all works: the error of the method"});
+      {"balance", "J",
+       "energy.total - its value at time 0 - all works: the energy error of the method, to be compared with "
+       "the change of the energies"});
   add_axes(columns, "momentum", "kg m/s", "of all moving parts, world");
   add_axes(columns, "angular_momentum", "kg m^2/s", "of all moving parts about the world's origin");
   return columns;

@@ -14,14 +14,15 @@ class EigenFactor final : public SparseFactor {
   void do_analyse(const SparseMatrix& A) override { ldlt_.analyzePattern(A); }
 
   bool do_factor(const SparseMatrix& A) override {
-    ldlt_.factorize(A);  // stops at a pivot that is exactly zero only; the pivots before it are valid
+    ldlt_.factorize(A);  // stops only at a pivot that is exactly zero; the pivots before it are valid
     const Eigen::VectorXd pivots = ldlt_.vectorD();
     for (Eigen::Index k = 0; k < pivots.size(); ++k)
       if (!accept_pivot(ldlt_.permutationPinv().indices()[k], pivots[k])) return false;
     return true;
   }
 
-  /// All right-hand sides together, a row each of y: an entry of L serves all of them.
+  /// Solves for all right-hand sides together. They are the rows of y, so that each entry of L is loaded
+  /// once.
   void do_solve(Eigen::Ref<Eigen::MatrixXd> x) override {
     if (x.cols() == 1) {
       x = ldlt_.solve(x).eval();

@@ -1,3 +1,4 @@
+// Instances of Eigen's eigenvalue solvers.
 #include <pliant/math/eigenvalues.h>
 
 #include <Eigen/Eigenvalues>

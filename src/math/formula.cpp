@@ -1,4 +1,5 @@
-#include <pliant/math/formula.h>
+// Parser of formulas (recursive descent). The evaluation is in formula-inl.h.
+#include <pliant/math/formula-inl.h>
 
 #include <array>
 #include <charconv>
@@ -15,168 +16,9 @@ namespace {
 using Code = Formula::Code;
 using Instruction = Formula::Instruction;
 using Taylor = Taylor2<double>;
+using detail::formula_program::arguments;
 
-constexpr int kSmallStack = 16;
-/// A level of nesting holds at most a sum, a product, a base and two arguments that wait for the level below.
-constexpr int kLargeStack = 5 * (Formula::kMaxDepth + 2);
-
-/// The sign of x just after t: of the first of its value, rate and second derivative that is not zero.
-double sign_ahead(const Taylor& x) {
-  for (const double a : {x.v, x.d, x.dd}) {
-    if (a != 0) return a > 0 ? 1 : -1;
-  }
-  return 0;
-}
-
-Taylor chain(const Taylor& a, double value, double slope, double curvature) {
-  return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
-}
-
-Taylor tan(const Taylor& a) {
-  const double y = math::sin(a.v) / math::cos(a.v);
-  const double slope = 1 + y * y;
-  return chain(a, y, slope, 2 * y * slope);
-}
-
-/// a^n. A factor n or n - 1 that is zero ends the derivatives, whatever a is.
-Taylor power(const Taylor& a, double n) {
-  const double slope = n == 0 ? 0 : n * std::pow(a.v, n - 1);
-  const double curvature = n == 0 || n == 1 ? 0 : n * (n - 1) * std::pow(a.v, n - 2);
-  return chain(a, std::pow(a.v, n), slope, curvature);
-}
-
-Taylor power(const Taylor& a, const Taylor& b) {
-  const Taylor exponent = b * log(a);
-  const double value = std::pow(a.v, b.v);
-  return {value, value * exponent.d, value * (exponent.d * exponent.d + exponent.dd)};
-}
-
-/// The larger argument for `sign` 1, the smaller one for -1; not a number where either is none.
-Taylor choose(const Taylor& x, const Taylor& y, double sign) {
-  const Taylor difference = x - y;
-  if (std::isnan(difference.v)) return difference;
-  return sign * sign_ahead(difference) >= 0 ? x : y;
-}
-
-Taylor step(const Taylor& x, double edge) {
-  if (x.v < edge) return 0.0;
-  return x.v >= edge ? Taylor(1.0) : x;
-}
-
-/// 0 up to a, 1 from b on, between them the quintic whose first and second derivatives vanish at both ends.
-Taylor smoothstep(const Taylor& a, const Taylor& b, const Taylor& x) {
-  if (a.v == b.v) return step(x, a.v);
-  const Taylor s = (x - a) / (b - a);
-  if (s.v <= 0) return 0.0;
-  if (s.v >= 1) return 1.0;
-  return s * s * s * (10.0 + s * (-15.0 + 6.0 * s));
-}
-
-int arguments(Code code) {
-  switch (code) {
-    case Code::kNumber:
-    case Code::kTime:
-      return 0;
-    case Code::kAdd:
-    case Code::kSubtract:
-    case Code::kMultiply:
-    case Code::kDivide:
-    case Code::kPower:
-    case Code::kMin:
-    case Code::kMax:
-      return 2;
-    case Code::kSmoothstep:
-      return 3;
-    default:
-      return 1;
-  }
-}
-
-/// The result of one instruction on its arguments, x[0] the first.
-Taylor apply(const Instruction& instruction, const Taylor& time, const Taylor* x) {
-  switch (instruction.code) {
-    case Code::kNumber:
-      return instruction.number;
-    case Code::kTime:
-      return time;
-    case Code::kAdd:
-      return x[0] + x[1];
-    case Code::kSubtract:
-      return x[0] - x[1];
-    case Code::kMultiply:
-      return x[0] * x[1];
-    case Code::kDivide:
-      return x[0] / x[1];
-    case Code::kNegate:
-      return -x[0];
-    case Code::kPower:
-      return power(x[0], x[1]);
-    case Code::kConstantPower:
-      return power(x[0], instruction.number);
-    case Code::kSin:
-      return sin(x[0]);
-    case Code::kCos:
-      return cos(x[0]);
-    case Code::kTan:
-      return tan(x[0]);
-    case Code::kExp:
-      return exp(x[0]);
-    case Code::kLog:
-      return log(x[0]);
-    case Code::kSqrt:
-      return sqrt(x[0]);
-    case Code::kAbs:
-      return sign_ahead(x[0]) < 0 ? -x[0] : x[0];
-    case Code::kMin:
-      return choose(x[0], x[1], -1);
-    case Code::kMax:
-      return choose(x[0], x[1], 1);
-    case Code::kStep:
-      return step(x[0], 0);
-    case Code::kSmoothstep:
-      return smoothstep(x[0], x[1], x[2]);
-  }
-  return 0.0;
-}
-
-bool has_branches(Code code) {
-  return code == Code::kAbs || code == Code::kMin || code == Code::kMax || code == Code::kStep ||
-         code == Code::kSmoothstep;
-}
-
-/// Which branch an instruction takes on its arguments. Those of a smoothstep join smoothly, unless it is a
-/// step.
-bool branch(const Instruction& instruction, const Taylor* x) {
-  switch (instruction.code) {
-    case Code::kAbs:
-      return sign_ahead(x[0]) < 0;
-    case Code::kMin:
-    case Code::kMax:
-      return sign_ahead(x[0] - x[1]) < 0;
-    case Code::kStep:
-      return x[0].v < 0;
-    case Code::kSmoothstep:
-      return x[0].v == x[1].v && x[2].v < x[0].v;
-    default:
-      return false;
-  }
-}
-
-/// see(instruction, its arguments) is called for each instruction.
-template <int Size, class See>
-Taylor run(const std::vector<Instruction>& program, double t, See&& see) {
-  const Taylor time(t, 1.0, 0.0);
-  std::array<Taylor, Size> stack;
-  Taylor* top = stack.data();
-  for (const Instruction& instruction : program) {
-    top -= arguments(instruction.code);
-    see(instruction, top);
-    *top = apply(instruction, time, top);
-    ++top;
-  }
-  return stack[0];
-}
-
+/// A function of the formula language.
 struct Entry {
   const char* name;
   Code code;
@@ -189,12 +31,13 @@ constexpr Entry kFunctions[] = {
     {"exp", Code::kExp, "exponential"},
     {"log", Code::kLog, "natural logarithm"},
     {"sqrt", Code::kSqrt, "square root"},
-    {"abs", Code::kAbs, "size without sign"},
+    {"abs", Code::kAbs, "absolute value"},
     {"min", Code::kMin, "the smaller of two"},
     {"max", Code::kMax, "the larger of two"},
     {"step", Code::kStep, "step(x): 0 for x < 0, else 1"},
     {"smoothstep", Code::kSmoothstep,
-     "smoothstep(a, b, x): 0 up to a, 1 from b on, between them a quintic with continuous second derivative"},
+     "smoothstep(a, b, x): 0 up to a, 1 from b on, and between them a quintic with continuous second "
+     "derivative"},
 };
 
 bool is_digit(char c) {
@@ -204,7 +47,7 @@ bool is_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// Recursive descent; each function reads its rule of the grammar and appends the program of it.
+/// Recursive descent: each function parses one rule of the grammar (formula.h) and appends its instructions.
 class Parser {
  public:
   explicit Parser(std::string_view text) : text_(text) {}
@@ -220,7 +63,7 @@ class Parser {
   }
 
  private:
-  /// Counts nesting while one rule calls itself.
+  /// Counts the levels of nesting while it exists.
   struct Level {
     explicit Level(Parser* parser) : p(parser) {
       if (++p->depth_ > Formula::kMaxDepth + 1) {
@@ -237,10 +80,10 @@ class Parser {
     product();
     for (;;) {
       const std::size_t place = at_;
-      if (take('+')) {
+      if (accept('+')) {
         product();
         emit({Code::kAdd, 0}, place);
-      } else if (take('-')) {
+      } else if (accept('-')) {
         product();
         emit({Code::kSubtract, 0}, place);
       } else {
@@ -256,10 +99,10 @@ class Parser {
       if (next() == '*' && at_ + 1 < text_.size() && text_[at_ + 1] == '*') {
         throw FormulaError(at_, "unexpected \"**\"; a power is written ^");
       }
-      if (take('*')) {
+      if (accept('*')) {
         unary();
         emit({Code::kMultiply, 0}, place);
-      } else if (take('/')) {
+      } else if (accept('/')) {
         unary();
         emit({Code::kDivide, 0}, place);
       } else {
@@ -272,15 +115,15 @@ class Parser {
     const Level level(this);
     skip_spaces();
     const std::size_t place = at_;
-    if (take('-')) {
+    if (accept('-')) {
       unary();
       emit({Code::kNegate, 0}, place);
-    } else if (take('+')) {
+    } else if (accept('+')) {
       unary();
     } else {
       primary();
       const std::size_t operation = at_;
-      if (take('^')) {
+      if (accept('^')) {
         unary();
         emit_power(operation);
       }
@@ -294,7 +137,7 @@ class Parser {
       number();
     } else if (is_letter(c)) {
       name();
-    } else if (take('(')) {
+    } else if (accept('(')) {
       const std::size_t opening = at_ - 1;
       sum();
       close(opening);
@@ -328,7 +171,7 @@ class Parser {
     }
     for (const Entry& entry : kFunctions) {
       if (word == entry.name) {
-        if (!call) throw FormulaError(at_, "expected \"(\" after \"" + word + "\"" + but_found());
+        if (!call) throw FormulaError(at_, "expected \"(\" after \"" + word + "\"" + found_instead());
         return arguments_of(entry, begin);
       }
     }
@@ -344,10 +187,10 @@ class Parser {
 
   void arguments_of(const Entry& entry, std::size_t place) {
     const std::size_t opening = at_;
-    take('(');
+    accept('(');
     const int wanted = arguments(entry.code);
     for (int i = 0; i < wanted; ++i) {
-      if (i > 0 && !take(',')) {
+      if (i > 0 && !accept(',')) {
         if (next() == ')') throw FormulaError(at_, expects(entry) + ", found " + std::to_string(i));
         fault_expected("\",\" before the next argument of \"" + std::string(entry.name) + "\"");
       }
@@ -365,14 +208,14 @@ class Parser {
   }
 
   void close(std::size_t opening) {
-    if (take(')')) return;
+    if (accept(')')) return;
     if (at_ >= text_.size()) {
       throw FormulaError(at_, "expected \")\" for the \"(\" at character " + std::to_string(opening + 1));
     }
     fault_after_operand();
   }
 
-  /// Appends an instruction; one whose arguments are all numbers is replaced by its result.
+  /// Appends an instruction. If all its arguments are numbers, appends the result in their place.
   void emit(const Instruction& instruction, std::size_t place) {
     const std::size_t n = static_cast<std::size_t>(arguments(instruction.code));
     bool constant = n > 0;
@@ -383,7 +226,7 @@ class Parser {
     }
     std::array<Taylor, 3> x;
     for (std::size_t i = 0; i < n; ++i) x[n - 1 - i] = from_top(i).number;
-    const double value = apply(instruction, Taylor(), x.data()).v;
+    const double value = detail::formula_program::apply(instruction, Taylor(), x.data()).v;
     if (!std::isfinite(value)) throw FormulaError(place, "the value here is not a finite number");
     program_.resize(program_.size() - n);
     program_.push_back({Code::kNumber, value});
@@ -404,33 +247,33 @@ class Parser {
       ++at_;
     }
   }
-  /// The next character that is not a space; 0 at the end.
+  /// Returns the next character that is not a space; 0 at the end.
   char next() {
     skip_spaces();
     return at_ < text_.size() ? text_[at_] : '\0';
   }
-  bool take(char c) {
+  bool accept(char c) {
     if (next() != c || at_ >= text_.size()) return false;
     ++at_;
     return true;
   }
 
-  std::string but_found() {
+  std::string found_instead() {
     next();
     if (at_ >= text_.size()) return ", but the formula ends here";
-    std::size_t length = 1;  // a character of UTF-8 is shown whole
+    std::size_t length = 1;  // bytes of one UTF-8 character
     while (at_ + length < text_.size() && (static_cast<unsigned char>(text_[at_ + length]) & 0xC0) == 0x80)
       ++length;
     return ", found \"" + std::string(text_.substr(at_, length)) + "\"";
   }
   [[noreturn]] void fault_expected(const std::string& what) {
-    const std::string found = but_found();
+    const std::string found = found_instead();
     throw FormulaError(at_, "expected " + what + found);
   }
   [[noreturn]] void fault_after_operand() {
     const char c = next();
     const bool product = is_letter(c) || is_digit(c) || c == '(';
-    const std::string found = but_found();
+    const std::string found = found_instead();
     if (c == ')' && depth_ == 0) throw FormulaError(at_, "\")\" without its \"(\"");
     throw FormulaError(at_, std::string("expected an operator ") + (depth_ > 0 ? "or \")\"" : "or the end") +
                                 found + (product ? "; a product is written with *" : ""));
@@ -463,28 +306,9 @@ Formula::Formula(const std::string& text) : program_(Parser(text).parse()) {
   for (const Instruction& instruction : program_) {
     height += 1 - arguments(instruction.code);
     stack_ = std::max(stack_, height);
-    has_branches_ = has_branches_ || pliant::has_branches(instruction.code);
+    has_branches_ = has_branches_ || detail::formula_program::has_branches(instruction.code);
   }
-  if (stack_ > kLargeStack) throw std::logic_error("a formula needs a larger stack than its depth allows");
+  if (stack_ > detail::formula_program::kLargeStack)
+    throw std::logic_error("a formula needs a larger stack than its depth allows");
 }
-
-Taylor2<double> Formula::at(double t) const {
-  auto unseen = [](const Instruction&, const Taylor*) {};
-  return stack_ <= kSmallStack ? run<kSmallStack>(program_, t, unseen)
-                               : run<kLargeStack>(program_, t, unseen);
-}
-
-std::uint64_t Formula::branches(double t) const {
-  constexpr std::uint64_t prime = 1099511628211U;  // of the hash FNV-1a
-  std::uint64_t all = 14695981039346656037U;
-  run<kLargeStack>(program_, t, [&](const Instruction& instruction, const Taylor* x) {
-    if (pliant::has_branches(instruction.code)) all = (all ^ (branch(instruction, x) ? 1U : 2U)) * prime;
-  });
-  return all;
-}
-
-bool Formula::is_constant() const {
-  return program_.size() == 1 && program_[0].code == Code::kNumber;
-}
-
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// What every sparse factorisation checks: patterns, pivots, the order of calls.
+// The checks that all sparse factorisations share: patterns, pivots, the order of calls.
 #include <pliant/math/sparse_factor.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ bool SparseFactor::factor(const SparseMatrix& A) {
       A.nonZeros() != static_cast<Eigen::Index>(rows_.size()) ||
       !std::equal(columns_.begin(), columns_.end(), A.outerIndexPtr()) ||
       !std::equal(rows_.begin(), rows_.end(), A.innerIndexPtr()))
-    throw std::invalid_argument("sparse factor: the matrix has another pattern than the analysed one");
+    throw std::invalid_argument("sparse factor: the pattern of the matrix differs from the analysed pattern");
   if (columns_.empty()) throw std::invalid_argument("sparse factor: no pattern was analysed");
   for (int j = 0; j < A.cols(); ++j) {
     const auto begin = rows_.begin() + columns_[static_cast<std::size_t>(j)];
@@ -44,8 +44,10 @@ bool SparseFactor::factor(const SparseMatrix& A) {
 
 // NOLINTNEXTLINE(performance-unnecessary-value-param): a Ref is passed by value to be written through
 void SparseFactor::solve(Eigen::Ref<Eigen::MatrixXd> x) {
-  if (!factored_) throw std::logic_error("sparse factor: solve without a factorisation");
-  if (x.rows() != size()) throw std::invalid_argument("sparse factor: the right-hand side has another size");
+  if (!factored_) throw std::logic_error("sparse factor: solve() was called without a successful factor()");
+  if (x.rows() != size())
+    throw std::invalid_argument("sparse factor: the right-hand side has " + std::to_string(x.rows()) +
+                                " rows, the matrix " + std::to_string(size()));
   do_solve(x);
 }
 

@@ -1,3 +1,4 @@
+// Thinning of a quadrature rule by elimination along null vectors of its moment matrix.
 #include <pliant/math/thin_rule.h>
 
 #include <cmath>
@@ -10,12 +11,14 @@ namespace pliant {
 
 namespace {
 
-/// Takes x >= 0 along null vectors (the columns of Z) until as many of its entries are zero.
+/// Moves x >= 0 along the null vectors (columns of Z) until one entry of x per null vector is zero. x stays
+/// >= 0.
 void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
   constexpr double far = std::numeric_limits<double>::infinity();
   for (Eigen::Index left = Z.cols(); left > 0; --left) {
     auto z = Z.col(left - 1);
-    // The first entry to vanish along z and along -z; the one with the larger pivot is the stabler.
+    // The first entries that vanish along z and along -z. The one with the larger pivot is eliminated, which
+    // is the more stable choice.
     Eigen::Index pivot[2] = {-1, -1};
     double reach[2] = {far, far};
     for (Eigen::Index i = 0; i < x.size(); ++i) {
@@ -44,8 +47,8 @@ void eliminate(Eigen::VectorXd& x, Eigen::MatrixXd& Z) {
 
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, double tolerance) {
   const Eigen::Index n = F.rows();
-  // Columns in units of their absolute sums; rows in units of the root of their size, which makes x = d c
-  // behave like the root of a weight.
+  // Scale each column by its absolute sum, and each row by the square root d_i of its norm. The unknown x = d
+  // c then behaves like the square root of a weight.
   Eigen::MatrixXd A = F;
   for (Eigen::Index k = 0; k < A.cols(); ++k) {
     const double sum = A.col(k).cwiseAbs().sum();
@@ -67,7 +70,7 @@ Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found, do
   Eigen::VectorXd x = d;
   eliminate(x, Z);
 
-  // What the eliminations lost to rounding: a correction on the nodes that are left.
+  // Correct the rounding errors of the eliminations on the remaining nodes.
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < n; ++i)
     if (x[i] > 0) kept.push_back(i);

@@ -1,3 +1,4 @@
+// The threads wait for a round of tasks, fetch task numbers from one counter, and report when they are done.
 #include <pliant/math/thread_pool.h>
 
 #include <atomic>
@@ -12,7 +13,7 @@
 namespace pliant {
 
 namespace {
-/// Whether this thread runs a task of a pool.
+/// Whether this thread runs a task of a pool now.
 thread_local bool in_task = false;
 }  // namespace
 
@@ -22,7 +23,7 @@ struct ThreadPool::Impl {
   std::condition_variable wake, done;
   const std::function<void(int)>* task = nullptr;
   int n = 0;
-  bool flush = false;  ///< as in the thread that asks: what is computed does not depend on who does it
+  bool flush = false;  ///< flush mode of the calling thread; all threads use it, so that results are equal
   std::atomic<int> next{0};
   int busy = 0;
   long round = 0;

@@ -31,18 +31,18 @@ double closing_error(double rate, double h, double t) {
 }
 }  // namespace
 
-void Integrator::project(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-                         StepCounters& counters) {
+void Integrator::project(StepContext& step) {
+  const State& state = step.state;
   if (scale_ != nullptr) {
     unprojected_ = state.q;
     joints_before_ = state.joints;
   }
-  project_limits(dynamics, t, state, work, counters);
-  project_joints(dynamics, t, state, work, counters);
+  project_limits(step);
+  project_joints(step);
   if (scale_ == nullptr) return;
   for (std::size_t j = 0; j < joints_before_.size(); ++j)
     if (joints_before_[j] == JointMode::closing && state.joints[j] != JointMode::closing)
-      return note_error(closing_error(dynamics.model().body().stabilization.rate, state.h, t) /
+      return note_error(closing_error(step.model().body().stabilization.rate, state.h, step.t) /
                         scale_->tolerance());
   unprojected_ -= state.q;
   note_error(scale_->norm(unprojected_));

@@ -1,3 +1,4 @@
+// Material points and gauge gradients of shapes that have no functions for them (shape_face.h).
 #include <cmath>
 #include <stdexcept>
 
@@ -9,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// e and [e_u e_v e_w] at the angles (u, v) and radius w.
+/// Computes e and returns [e_u e_v e_w] at the angles (u, v) and radius w.
 Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeParameters a,
                          Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);
@@ -21,6 +22,7 @@ Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeP
   return E;
 }
 
+/// Distance from the poles, in rad, at which derivatives are evaluated instead of at the poles.
 constexpr double kOffPole = 1e-7;
 
 }  // namespace
@@ -31,23 +33,25 @@ Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, Sh
   Material<double> guess = material_towards(x);
   const double reach = shape.e(guess, a).norm();
   const MaterialAngles start = angles(guess);
-  if (std::hypot(x[0], x[1]) <= kOffPole * size) {  // on the axis the direction is the label
+  if (std::hypot(x[0], x[1]) <= kOffPole * size) {  // on the axis the direction gives u and v
     guess.w = size / reach;
     return guess;
   }
+  constexpr double kMaxAngleStep = 0.3;  // rad
   Vec3<double> uvw(start.u, start.v, size / reach), e;
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Mat3<double> E = tangents_at(shape, uvw, a, e);
     const Vec3<double> miss = x - e;
     if (miss.norm() <= 1e-14 * size) break;
     Vec3<double> step = E.partialPivLu().solve(miss);
-    const double turn = std::max(std::abs(step[0]), std::abs(step[1]));
-    if (turn > 0.3) step *= 0.3 / turn;
+    const double angle = std::max(std::abs(step[0]), std::abs(step[1]));
+    if (angle > kMaxAngleStep) step *= kMaxAngleStep / angle;
     uvw += step;
   }
   if (!((x - e).norm() <= 1e-9 * size))
-    throw std::runtime_error(std::string("shape '") + shape.name() +
-                             "' has no material point at a position asked for; give it a label of its own");
+    throw std::runtime_error(
+        std::string("shape '") + shape.name() +
+        "': Newton's method finds no material point at a position; give the shape a label function");
   return material_at(uvw[0], uvw[1], uvw[2]);
 }
 

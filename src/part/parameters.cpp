@@ -1,3 +1,4 @@
+// The list of the parameters of a part.
 #include <pliant/part/parameters.h>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ Parameters::Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& link
   std::map<std::string, int> seen;
   for (const LinkInfo& link : links) {
     std::string type = link.type;
-    const int times = ++seen[type];
-    if (times > 1) type += std::to_string(times);
+    const int number = ++seen[type];
+    if (number > 1) type += std::to_string(number);
     for (int i = 0; i < link.n_parameters; ++i)
       all_.push_back(make_parameter(type + "." + link.parameters[i].name, link.parameters[i]));
   }

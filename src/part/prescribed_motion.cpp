@@ -1,3 +1,4 @@
+// Evaluation of prescribed motions.
 #include <pliant/part/prescribed_motion.h>
 
 #include <algorithm>
@@ -7,7 +8,7 @@ namespace pliant {
 
 MovingFrame PrescribedMotion::at(double t) const {
   const Vec3<Taylor2<double>> x = position.at(t);
-  const Taylor2<double> turn = angle.at(t);
+  const Taylor2<double> phi = angle.at(t);
   MovingFrame frame;
   for (int i = 0; i < 3; ++i) {
     frame.c[i] = x[i].v;
@@ -15,16 +16,17 @@ MovingFrame PrescribedMotion::at(double t) const {
     frame.c_ddot[i] = x[i].dd;
   }
   frame.R = orientation_at(t).toRotationMatrix();
-  frame.omega = turn.d * axis;
-  frame.omega_dot = turn.dd * axis;
+  frame.omega = phi.d * axis;
+  frame.omega_dot = phi.dd * axis;
   return frame;
 }
 
 TimeVector::Passage PrescribedMotion::over(double t, double h, double reach) const {
   TimeVector::Passage passage = position.over(t, h);
-  double turning = 0;
-  for (const double share : kMoments) turning = std::max(turning, std::abs(angle.at(t + share * h).d));
-  passage.beside += reach * turning;
+  double angular_speed = 0;
+  for (const double share : kMoments)
+    angular_speed = std::max(angular_speed, std::abs(angle.at(t + share * h).d));
+  passage.beside += reach * angular_speed;
   return passage;
 }
 

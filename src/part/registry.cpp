@@ -1,3 +1,4 @@
+// The registry of shapes and deformations.
 #include <pliant/part/registry.h>
 
 #include <stdexcept>
@@ -5,7 +6,7 @@
 
 #include <pliant/deform/all_deforms.h>
 
-#include "primitive_factory.h"
+#include "part/instances/primitive_factory.h"
 
 namespace pliant {
 

@@ -1,9 +1,10 @@
-// Frames a box: the camera backs away along a fixed direction until the last corner is inside the picture.
+// The smallest distance along a fixed direction at which all corners of a box are inside the picture.
 #include <pliant/render/camera.h>
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace pliant {
 
@@ -11,14 +12,16 @@ Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect, double
   constexpr double kDegree = 3.14159265358979323846 / 180;
   constexpr double kAzimuth = -58 * kDegree, kElevation = 20 * kDegree, kFill = 0.84;
   if (!(aspect > 0) || !std::isfinite(aspect))
-    throw std::invalid_argument("a camera's aspect must be positive");
+    throw std::invalid_argument("camera: the aspect is " + std::to_string(aspect) +
+                                "; expected a number > 0");
   if (!(field_of_view > 0 && field_of_view < 180))
-    throw std::invalid_argument("a camera's field of view must be between 0 and 180 degrees");
+    throw std::invalid_argument("camera: the field of view is " + std::to_string(field_of_view) +
+                                " degrees; expected a number between 0 and 180");
 
   Eigen::AlignedBox3d box = bounds;
   if (box.isEmpty()) box = Eigen::AlignedBox3d(Eigen::Vector3d(-0.5, -0.5, 0), Eigen::Vector3d(0.5, 0.5, 1));
   if (!box.min().allFinite() || !box.max().allFinite())
-    throw std::invalid_argument("a camera cannot frame a box that is not finite");
+    throw std::invalid_argument("camera: the box to be shown is not finite");
 
   Camera camera;
   camera.field_of_view = field_of_view;
@@ -27,8 +30,9 @@ Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect, double
                              std::cos(kElevation) * std::sin(kAzimuth), std::sin(kElevation));
   const Eigen::Vector3d right = camera.up.cross(back).normalized(), up = back.cross(right);
   const double tan_y = kFill * std::tan(camera.field_of_view * kDegree / 2), tan_x = tan_y * aspect;
-  // A corner at (x, y, z) in the axes right, up, back is inside when |x - cx| <= tan_x (d - z), and likewise
-  // for y: four bounds that are linear in the distance d and the shift (cx, cy) of the target.
+  // A corner at (x, y, z) in the axes right, up, back is inside if |x - cx| <= tan_x (d - z) and
+  // |y - cy| <= tan_y (d - z). These are four bounds, linear in the distance d and the shift (cx, cy) of the
+  // target.
   double right_bound = 0, left_bound = 0, top_bound = 0, bottom_bound = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3d p =

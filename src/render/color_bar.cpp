@@ -1,4 +1,4 @@
-// Sizes are in heights of the digits, which grow with the image.
+// Layout of the colour bar. Lengths are in heights of the digits, which are proportional to the image.
 #include "color_bar.h"
 
 #include <algorithm>
@@ -12,20 +12,20 @@
 namespace pliant {
 namespace {
 
-constexpr int kLeastWidth = 160, kLeastHeight = 120;  // pixels
-constexpr double kDigitHeight = 1.0 / 46;             // of the image's height
+constexpr int kMinImageWidth = 160, kMinImageHeight = 120;  // pixels
+constexpr double kDigitHeight = 1.0 / 46;                   // of the image's height
 constexpr double kPadding = 0.8, kBarWidth = 1.3, kTickLength = 0.4;
 constexpr double kBarHeight = 0.5;  // of the image's height
-constexpr float kPaper = 0.8f;      // how much of what is behind the panel is covered
+constexpr float kPaper = 0.8f;      // opacity of the panels
 const Eigen::Vector3f kWhite(1, 1, 1), kInk(0.16f, 0.17f, 0.2f);
 
-struct Box {
-  int left, top, right, bottom;  // pixels; right and bottom are not in it
+struct PixelRectangle {
+  int left, top, right, bottom;  // pixels; right and bottom are excluded
 };
 
-// share: how much of what was there is covered.
+// Fills a box. share: opacity; color_of_row(y): the colour of a row.
 template <class ColorOfRow>
-void fill(Image& image, const Box& box, float share, ColorOfRow&& color_of_row) {
+void fill(Image& image, const PixelRectangle& box, float share, ColorOfRow&& color_of_row) {
   for (int y = std::max(0, box.top); y < std::min(image.height, box.bottom); ++y) {
     const Eigen::Vector3f color = color_of_row(y);
     for (int x = std::max(0, box.left); x < std::min(image.width, box.right); ++x) {
@@ -36,7 +36,7 @@ void fill(Image& image, const Box& box, float share, ColorOfRow&& color_of_row) 
     }
   }
 }
-void fill(Image& image, const Box& box, const Eigen::Vector3f& color, float share = 1) {
+void fill(Image& image, const PixelRectangle& box, const Eigen::Vector3f& color, float share = 1) {
   fill(image, box, share, [&](int) { return color; });
 }
 
@@ -47,7 +47,7 @@ int pixels(double length) {
 }  // namespace
 
 void draw_color_bar(Image& image, const Picture::Scale& scale) {
-  if (image.width < kLeastWidth || image.height < kLeastHeight) return;
+  if (image.width < kMinImageWidth || image.height < kMinImageHeight) return;
   const double digit = std::max(6.0, kDigitHeight * image.height);
   const int line = std::max(1, pixels(0.12 * digit)), padding = pixels(kPadding * digit);
   const std::vector<Tick> marks = ticks(scale.low, scale.high);
@@ -58,18 +58,18 @@ void draw_color_bar(Image& image, const Picture::Scale& scale) {
             title = pixels(text_width(scale.title) * digit),
             title_height = pixels((1 + 2 * kPadding) * digit);
 
-  // The title's panel over the bar's; both end at the right side of the image.
+  // The panel of the title is above the panel of the bar; both end at the right side of the image.
   const int panel_height = bar_height + 2 * padding, top = (image.height - panel_height - title_height) / 2;
-  const Box title_panel{image.width - title - 2 * padding, top, image.width, top + title_height};
-  const Box panel{image.width - bar_width - 2 * tick - labels - 2 * padding, title_panel.bottom, image.width,
-                  title_panel.bottom + panel_height};
+  const PixelRectangle title_panel{image.width - title - 2 * padding, top, image.width, top + title_height};
+  const PixelRectangle panel{image.width - bar_width - 2 * tick - labels - 2 * padding, title_panel.bottom,
+                             image.width, title_panel.bottom + panel_height};
   fill(image, title_panel, kWhite, kPaper);
   fill(image, panel, kWhite, kPaper);
   draw_text(image, scale.title, title_panel.left + padding, title_panel.bottom - kPadding * digit, digit,
             kInk);
 
-  const Box bar{panel.left + padding, panel.top + padding, panel.left + padding + bar_width,
-                panel.bottom - padding};
+  const PixelRectangle bar{panel.left + padding, panel.top + padding, panel.left + padding + bar_width,
+                           panel.bottom - padding};
   fill(image, {bar.left - line, bar.top - line, bar.right + line, bar.bottom + line}, kInk);
   fill(image, bar, 1, [&](int y) { return mapped_color((bar.bottom - y - 0.5) / bar_height); });
   for (const Tick& mark : marks) {

@@ -1,4 +1,4 @@
-// The bar that tells what the colours of a picture mean.
+// The bar that explains the colours of a picture.
 #pragma once
 
 #include <pliant/io/format/image.h>
@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Draws it over the right side of an image: the colours from bottom to top, ticks at round values, above
-/// them the title.
+/// Draws the bar over the right side of an image: the colours from bottom to top, ticks at round values, and
+/// the title above.
 void draw_color_bar(Image& image, const Picture::Scale& scale);
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// The eleven colours of viridis, in linear light, and their interpolation.
 #include <pliant/render/color_map.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// The parts, tracks, connectors, camera, ground and scale of values of each picture of a run.
 #include <pliant/render/film.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace {
 
 const Eigen::Vector3f kSpringColor(0.25f, 0.27f, 0.3f);
 constexpr float kSpringWidth = 1.5f, kAnchorWidth = 6;  // pixels
-constexpr double kVertical = 1e-5;                      // sine of the angle between view and z
-constexpr double kRounding = 1e-9;                      // strain, or displacement over size, that is none
+constexpr double kVertical = 1e-5;  // a view is vertical if its angle to z has a smaller sine
+constexpr double kNoStrain = 1e-9;  // a strain, or a displacement over the size, below this is rounding
 
 Eigen::Vector3f vector_of(const Color& color) {
   return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
@@ -23,16 +24,16 @@ Eigen::Vector3f vector_of(const Color& color) {
 
 Film::Film(const Scene& scene, const Model& model, const Recording& recording)
     : scene_(&scene), model_(&model), recording_(&recording), meshes_(scene, model) {
-  if (recording.rows() == 0) throw std::out_of_range("the recording holds no state");
-  lay_tracks();
-  lay_ties();
+  if (recording.rows() == 0) throw std::out_of_range("cannot draw the run: the recording has no state");
+  build_tracks();
+  build_connectors();
   choose_view();
   choose_scale();
   if (scene.light.direction) picture_.lights.to_key = scene.light.direction->cast<float>();
   picture_.lights.shadows = scene.light.shadows;
 }
 
-void Film::lay_tracks() {
+void Film::build_tracks() {
   for (const Track& track : scene_->tracks) tracked_.emplace_back(*model_, track.point);
   tracks_.resize(tracked_.size());
   if (tracks_.empty()) return;
@@ -42,30 +43,30 @@ void Film::lay_tracks() {
   }
 }
 
-// What is drawn of springs and joints: a line between two points where it keeps them apart, dots where it
-// holds on to the world.
-void Film::lay_ties() {
+// A spring is drawn as a line. A joint with one equation between two points (a rod or a string) is drawn as a
+// line too. Ends that are attached to the world are drawn as dots.
+void Film::build_connectors() {
   if (!scene_->show_springs) return;
   for (const auto& spring : scene_->body.springs())
-    ties_.push_back({{{*model_, spring->a}, {*model_, spring->b}}, true, nullptr});
+    connectors_.push_back({{{*model_, spring->a}, {*model_, spring->b}}, true, nullptr});
   for (const auto& joint : scene_->body.joints()) {
     const std::vector<Point>& points = joint->points();
-    Tie tie{{{*model_, points.front()}}, joint->rows() == 1 && points.size() == 2, joint.get()};
+    Connector connector{{{*model_, points.front()}}, joint->rows() == 1 && points.size() == 2, joint.get()};
     if (joint->n_points() > joint->n_first())
-      tie.ends.emplace_back(*model_, points[static_cast<std::size_t>(joint->n_first())]);
-    ties_.push_back(std::move(tie));
+      connector.ends.emplace_back(*model_, points[static_cast<std::size_t>(joint->n_first())]);
+    connectors_.push_back(std::move(connector));
   }
 }
 
-// Where springs and joints hold on to the world, as far as that is beside the bodies and not somewhere far
-// away.
+// Returns a box around the ends of springs and joints that are attached to the world, if they are not farther
+// from the bodies than the diagonal of the bodies' box.
 Eigen::AlignedBox3d Film::anchors(const Eigen::AlignedBox3d& bodies) const {
   Eigen::AlignedBox3d box;
   if (bodies.isEmpty()) return box;
   const double reach = bodies.diagonal().norm();
   for (std::int64_t row = 0; row < recording_->rows(); ++row)
-    for (const Tie& tie : ties_)
-      for (const PlacedPoint& end : tie.ends) {
+    for (const Connector& connector : connectors_)
+      for (const PlacedPoint& end : connector.ends) {
         if (end.point().part != nullptr) continue;
         const Eigen::Vector3d x = end.point().world.value(recording_->time(row));
         if (bodies.exteriorDistance(x) <= reach) box.extend(x);
@@ -96,7 +97,7 @@ void Film::choose_view() {
     camera.target = *asked.target;
   }
   if (asked.eye) camera.eye = *asked.eye;
-  // Straight down or up the picture's top is y.
+  // In a vertical view the y axis points to the top of the picture.
   const Eigen::Vector3d view = camera.target - camera.eye;
   if (camera.up.cross(view).norm() <= kVertical * view.norm()) camera.up = Eigen::Vector3d::UnitY();
 }
@@ -105,16 +106,16 @@ void Film::choose_scale() {
   if (!scene_->coloring) return;
   const Coloring& coloring = *scene_->coloring;
   std::optional<double> highest;
-  const std::int64_t rows =
-      coloring.range ? 1 : recording_->rows();  // one tells whether any part is coloured
+  // With a given range one state is enough to find out whether any part has values.
+  const std::int64_t rows = coloring.range ? 1 : recording_->rows();
   for (std::int64_t row = 0; row < rows; ++row) {
     const std::optional<double> here = meshes_.high_value(recording_->state(row));
     if (here) highest = std::max(highest.value_or(0), *here);
   }
   if (!highest) return;
-  double rounding = coloring.by == SurfaceQuantity::strain ? kRounding : 0;
+  double rounding = coloring.by == SurfaceQuantity::strain ? kNoStrain : 0;
   if (coloring.by == SurfaceQuantity::displacement)
-    for (const auto& part : scene_->body.parts()) rounding = std::max(rounding, kRounding * part->size());
+    for (const auto& part : scene_->body.parts()) rounding = std::max(rounding, kNoStrain * part->size());
   const QuantityInfo& quantity = quantity_info(coloring.by);
   const std::string unit = quantity.unit;
   picture_.scale = {unit == "1" ? quantity.name : quantity.name + (" (" + unit + ")"), 0, 1};
@@ -127,17 +128,17 @@ void Film::choose_scale() {
   }
 }
 
-void Film::draw_ties(const State& state) {
-  for (const Tie& tie : ties_) {
-    if (tie.joint != nullptr && !tie.joint->acts_at(state.time())) continue;
-    if (tie.line) {
+void Film::draw_connectors(const State& state) {
+  for (const Connector& connector : connectors_) {
+    if (connector.joint != nullptr && !connector.joint->acts_at(state.time())) continue;
+    if (connector.line) {
       Picture::Track line;
-      line.points = {tie.ends[0].at(state), tie.ends[1].at(state)};
+      line.points = {connector.ends[0].at(state), connector.ends[1].at(state)};
       line.color = kSpringColor;
       line.width = kSpringWidth;
       picture_.tracks.push_back(line);
     }
-    for (const PlacedPoint& end : tie.ends) {
+    for (const PlacedPoint& end : connector.ends) {
       if (end.point().part != nullptr) continue;
       Picture::Track dot;
       dot.points = {end.at(state)};
@@ -155,7 +156,7 @@ const Picture& Film::at(double time) {
     picture_.bodies.push_back(
         {&named.mesh, vector_of(named.color), named.by_values ? &named.values : nullptr});
   picture_.tracks.clear();
-  std::int64_t rows = 0;  // recorded before now
+  std::int64_t rows = 0;  // number of states recorded before this time
   while (rows < recording_->rows() && recording_->time(rows) < state.time()) ++rows;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     Picture::Track track;
@@ -164,16 +165,15 @@ const Picture& Film::at(double time) {
     track.color = vector_of(scene_->tracks[i].color);
     picture_.tracks.push_back(std::move(track));
   }
-  draw_ties(state);
+  draw_connectors(state);
   return picture_;
 }
 
-void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model,
-                   const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
-                   Progress& progress, GlBackend backend) {
+void render_frames(const std::filesystem::path& folder, const FilmSource& source, double frame_rate,
+                   const std::vector<std::int64_t>& frames, Progress& progress, GlBackend backend) {
   if (frames.empty()) return;
-  Film film(scene, model, recording);
-  Renderer renderer(scene.width, scene.height, backend);
+  Film film(source.scene, source.model, source.recording);
+  Renderer renderer(source.scene.width, source.scene.height, backend);
   progress.begin("frames", static_cast<double>(frames.size()), "frames");
   double done = 0;
   for (const std::int64_t frame : frames) {

@@ -1,5 +1,5 @@
-// View, light and ground of a frame: an infinite perspective, an orthographic box around the bodies along the
-// key light, another from below for the ground's contact darkening, and the grid.
+// View, light and ground of a frame: a perspective projection with the far plane at infinity, an orthographic
+// box around the bodies along the key light (shadow map), another one from below (contact map), and the grid.
 #include "frame_block.h"
 
 #include <algorithm>
@@ -20,15 +20,16 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
-constexpr double kNear = 0.01;       // of the distance between eye and target
-constexpr double kShadowReach = 12;  // of that distance: bodies farther out do not widen the shadow map
+constexpr double kNear = 0.01;       // near plane, in distances between eye and target
+constexpr double kShadowReach = 12;  // largest half size of the shadow map, in these distances
+
+// The filter of the shadow map extends 4 texels to each side and 5.7 texels to its corners. With this offset,
+// in texels, a plane does not shadow itself.
+constexpr double kLift = 6;
 
 Vector4f with(const Vector3f& xyz, float w) {
   return {xyz[0], xyz[1], xyz[2], w};
 }
-// The filter of the shadow map reaches 4 texels to each side, its corner 5.7: lifted this far, no plane
-// shades itself.
-constexpr double kLift = 6;
 
 void require(bool good, const char* what) {
   if (!good) throw std::invalid_argument(std::string("picture: ") + what);
@@ -58,7 +59,7 @@ Matrix4d view_projection(const Camera& camera, double aspect) {
   return projection * view;
 }
 
-// Maps the box (in the axes r, u, -b) to the unit cube.
+// Returns the map from the box (in the axes r, u, -b) to the unit cube.
 Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const Vector3d& low,
                  const Vector3d& high) {
   Matrix4d m = Matrix4d::Identity();
@@ -69,13 +70,13 @@ Matrix4f to_unit(const Vector3d& r, const Vector3d& u, const Vector3d& b, const 
   return m.cast<float>();
 }
 
-// The next size upwards of a coarse ladder: a box that breathes a little keeps its shadow texels, and shadows
-// stay quiet.
+// Rounds a size up to a power of 2^(1/4), so that small changes of a box keep the texels of the shadow map
+// and shadows do not flicker.
 double steady_size(double size) {
   return std::exp2(std::ceil(4 * std::log2(size)) / 4);
 }
 
-// Sets shadow and to_key[3].
+// Fits the shadow map to the bodies. Sets shadow and to_key[3].
 void fit_shadow(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, double distance, int shadow_side) {
   const Vector3d b = frame.to_key.head<3>().cast<double>();
   const Vector3d r = (std::abs(b[2]) < 0.9 ? Vector3d::UnitZ() : Vector3d::UnitX()).cross(b).normalized();
@@ -105,7 +106,8 @@ void fit_shadow(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, doubl
   frame.to_key[3] = static_cast<float>(kLift * texel);
 }
 
-// Sets contact, fade[2], fade[3] and sky[3]: a square around the bodies, seen from below.
+// Fits the contact map to a square around the bodies, seen from below. Sets contact, fade[2], fade[3] and
+// sky[3].
 void fit_contact(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, double distance,
                  int contact_side) {
   AlignedBox3f fit;
@@ -135,11 +137,33 @@ void fit_contact(FrameBlock& frame, const std::vector<AlignedBox3f>& boxes, doub
   frame.sky[3] = static_cast<float>(0.4 * size);
 }
 
-// 1, 2 or 5 times a power of ten, near an eighth of what the picture shows at the target.
+// Returns 1, 2 or 5 times a power of ten near an eighth of the height of the view at the target, m.
 double automatic_spacing(double view_height) {
   const double wanted = view_height / 8, decade = std::pow(10.0, std::floor(std::log10(wanted)));
   const double m = wanted / decade;
   return decade * (m < 1.5 ? 1 : m < 3.5 ? 2 : m < 7.5 ? 5 : 10);
+}
+
+// Throws std::invalid_argument for a setting that is out of range. eye: relative to the target, m.
+void check_settings(const Picture& picture, const Vector3d& eye) {
+  const Camera& camera = picture.camera;
+  const Picture::Ground& floor = picture.ground;
+  const Picture::Lights& lights = picture.lights;
+  const double distance = eye.norm();
+  require(camera.eye.allFinite() && camera.target.allFinite() && camera.up.allFinite(),
+          "the camera is not finite");
+  require(distance > 0 && std::isfinite(distance), "the eye and the target of the camera are at one point");
+  require(camera.up.normalized().cross(eye / distance).norm() > 1e-6,
+          "the view is along the up direction of the camera");
+  require(camera.field_of_view >= 0.1 && camera.field_of_view <= 170,
+          "field_of_view must be in [0.1, 170] degrees");
+  require(lights.to_key.allFinite() && lights.to_key.norm() > 0, "to_key must be a direction");
+  require(lights.key_strength >= 0 && lights.key_strength <= 100, "key_strength must be in [0, 100]");
+  require(lights.ambient_strength >= 0 && lights.ambient_strength <= 100,
+          "ambient_strength must be in [0, 100]");
+  require(std::isfinite(floor.height), "the height of the ground is not finite");
+  require(floor.spacing >= 0 && std::isfinite(floor.spacing),
+          "the spacing of the grid must be positive, or 0 for automatic");
 }
 
 }  // namespace
@@ -151,20 +175,7 @@ FrameBlock frame_block(const Picture& picture, const std::vector<AlignedBox3f>& 
   const Picture::Lights& lights = picture.lights;
   const Vector3d eye = camera.eye - camera.target;
   const double distance = eye.norm();
-  require(camera.eye.allFinite() && camera.target.allFinite() && camera.up.allFinite(),
-          "the camera is not finite");
-  require(distance > 0 && std::isfinite(distance), "the camera's eye is its target");
-  require(camera.up.normalized().cross(eye / distance).norm() > 1e-6,
-          "the camera looks along its up direction");
-  require(camera.field_of_view >= 0.1 && camera.field_of_view <= 170,
-          "field_of_view must be in [0.1, 170] degrees");
-  require(lights.to_key.allFinite() && lights.to_key.norm() > 0, "to_key must be a direction");
-  require(lights.key_strength >= 0 && lights.key_strength <= 100, "key_strength must be in [0, 100]");
-  require(lights.ambient_strength >= 0 && lights.ambient_strength <= 100,
-          "ambient_strength must be in [0, 100]");
-  require(std::isfinite(floor.height), "the ground's height is not finite");
-  require(floor.spacing >= 0 && std::isfinite(floor.spacing),
-          "the grid's spacing must be positive, or 0 for automatic");
+  check_settings(picture, eye);
 
   FrameBlock frame;
   const double aspect = static_cast<double>(samples_wide) / samples_high;

@@ -1,6 +1,6 @@
-// The numbers all shaders of one frame share, laid out as the uniform block "Frame" of shaders.cpp (std140).
-// Positions are relative to the camera's target, so that single precision suffices far from the world's
-// origin. Colours are linear.
+// The uniform block "Frame" of shaders.cpp (layout std140), which all shaders of a frame use. Positions are
+// relative to the target of the camera, so that single precision is enough far from the origin of the world.
+// Colours are linear.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,26 +12,27 @@ namespace pliant {
 
 struct FrameBlock {
   Eigen::Matrix4f view_projection;  ///< to clip space, far plane at infinity
-  Eigen::Matrix4f shadow;           ///< to [0, 1]^3: place on the shadow map and depth from the key light
-  Eigen::Matrix4f contact;          ///< to [0, 1]^3: place on the contact map and height over the ground
-  Eigen::Vector4f eye;              ///< w: near distance
-  Eigen::Vector4f to_key;           ///< w: how far bodies look up their shadow outside their surface, metres
+  Eigen::Matrix4f shadow;   ///< to [0, 1]^3: position on the shadow map, and depth along the key light
+  Eigen::Matrix4f contact;  ///< to [0, 1]^3: position on the contact map, and height over the ground
+  Eigen::Vector4f eye;      ///< w: distance of the near plane, m
+  Eigen::Vector4f to_key;   ///< w: offset of shadow lookups along the normal of a body, m
   Eigen::Vector4f key;
-  Eigen::Vector4f sky;  ///< w: height over which the ground darkens what is above it, metres
+  Eigen::Vector4f sky;  ///< w: height up to which the ground darkens bodies, m
   Eigen::Vector4f bounce;
   Eigen::Vector4f background_top;
   Eigen::Vector4f background_bottom;
-  Eigen::Vector4f ground;          ///< w: height
+  Eigen::Vector4f ground;          ///< w: height, m
   Eigen::Vector4f ground_ambient;  ///< share of the ambient light in the ground's colour
   Eigen::Vector4f grid_color;
-  Eigen::Vector4f grid;  ///< x y: the target on the grid, in cells from a strong line; z: cell, metres
-  Eigen::Vector4f fade;  ///< radii between which the ground fades; z: contact texel, w: contact range, metres
-  Eigen::Vector4f viewport;  ///< samples; z: side of a shadow texel on its map
+  Eigen::Vector4f grid;  ///< x y: position of the target, in cells from a strong line; z: cell, m
+  Eigen::Vector4f
+      fade;  ///< x y: radii between which the ground fades, m; z: contact texel, m; w: its range, m
+  Eigen::Vector4f viewport;  ///< x y: size in samples; z: texel of the shadow map, as a share of the map
 };
 
-/// Everything of the frame that follows from the picture, the places of its bodies (boxes relative to the
-/// camera's target) and the sizes of the pictures and maps. Throws std::invalid_argument naming the setting
-/// that makes no sense.
+/// Returns the block for a picture. boxes: of the bodies, relative to the target of the camera; samples_wide,
+/// samples_high: size of the picture in samples; shadow_side, contact_side: sizes of the maps in texels.
+/// Throws std::invalid_argument that names the setting that is out of range.
 FrameBlock frame_block(const Picture& picture, const std::vector<Eigen::AlignedBox3f>& boxes,
                        int samples_wide, int samples_high, int shadow_side, int contact_side);
 

@@ -1,4 +1,4 @@
-// Pairs of position and normal are found once a topology; each frame only gathers them.
+// The pairs of position and normal are found once for each topology. Each frame only collects their values.
 #include "mesh_batch.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarthest = 1e15;  // metres
+constexpr double kMaxVertexDistance = 1e15;  // metres
 constexpr int kFloatsPerVertex = 6;
 
 [[noreturn]] void fail(std::size_t body, const std::string& what) {
@@ -25,22 +25,23 @@ bool same(const Eigen::Matrix3Xi& a, const Eigen::Matrix3Xi& b) {
 
 void check_range(const Eigen::Matrix3Xi& indices, Eigen::Index columns, std::size_t body, const char* what) {
   if (indices.size() > 0 && (indices.minCoeff() < 0 || indices.maxCoeff() >= columns))
-    fail(body, std::string("has triangles with ") + what + " that do not exist");
+    fail(body, std::string("has triangles with ") + what + " that do not exist: expected indices from 0 to " +
+                   std::to_string(columns - 1));
 }
 
 }  // namespace
 
 MeshBatch::MeshBatch(const gl::Functions& gl)
     : gl_(gl), array_(gl), leveled_array_(gl), vertices_(gl), indices_(gl), levels_(gl) {
-  lay_attributes(leveled_array_);
+  set_attributes(leveled_array_);
   gl_.bind_buffer(gl::kArrayBuffer, levels_.name());
   gl_.vertex_attrib_pointer(2, 1, gl::kFloat, 0, sizeof(float), nullptr);
   gl_.enable_vertex_attrib_array(2);
-  lay_attributes(array_);
+  set_attributes(array_);
   gl_.bind_vertex_array(0);
 }
 
-void MeshBatch::lay_attributes(const gl::VertexArray& array) const {
+void MeshBatch::set_attributes(const gl::VertexArray& array) const {
   gl_.bind_vertex_array(array.name());
   gl_.bind_buffer(gl::kElementArrayBuffer, indices_.name());
   gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
@@ -52,13 +53,14 @@ void MeshBatch::lay_attributes(const gl::VertexArray& array) const {
 }
 
 MeshBatch::Topology MeshBatch::make_topology(const TriangleMesh& mesh, std::size_t body) {
-  if (mesh.triangles.cols() != mesh.corners.cols()) fail(body, "has not one triple of normals a triangle");
+  if (mesh.triangles.cols() != mesh.corners.cols())
+    fail(body, "must have one triple of normals for each triangle");
   check_range(mesh.triangles, mesh.x.cols(), body, "vertices");
   check_range(mesh.corners, mesh.normals.cols(), body, "normals");
 
   Topology topology{mesh.triangles, mesh.corners, {}, {}, {}};
   topology.indices.reserve(static_cast<std::size_t>(mesh.triangles.size()));
-  // The pairs of one position form a list: first[position], then next[pair].
+  // The pairs of a position form a linked list: first[position], then next[pair].
   std::vector<int> first(static_cast<std::size_t>(mesh.x.cols()), -1), next;
   for (Eigen::Index k = 0; k < mesh.triangles.size(); ++k) {
     const int position = mesh.triangles.data()[k], normal = mesh.corners.data()[k];
@@ -103,7 +105,7 @@ void MeshBatch::upload_levels(const Picture& picture) {
       continue;
     }
     if (values->size() != picture.bodies[i].mesh->x.cols() || !values->allFinite())
-      fail(i, "has not one finite value a vertex");
+      fail(i, "must have one finite value for each vertex");
     const double low = picture.scale->low, span = picture.scale->high - low;
     for (const int vertex : position)
       scratch_.push_back(static_cast<float>(std::clamp(((*values)[vertex] - low) / span, 0.0, 1.0)));
@@ -113,8 +115,7 @@ void MeshBatch::upload_levels(const Picture& picture) {
                   scratch_.data(), gl::kStreamDraw);
 }
 
-void MeshBatch::update(const Picture& picture) {
-  const std::vector<Picture::Body>& bodies = picture.bodies;
+std::size_t MeshBatch::update_topologies(const std::vector<Picture::Body>& bodies) {
   bool changed = topologies_.size() != bodies.size();
   topologies_.resize(bodies.size());
   std::size_t pairs = 0;
@@ -123,7 +124,7 @@ void MeshBatch::update(const Picture& picture) {
     const TriangleMesh& mesh = *bodies[i].mesh;
     Topology& topology = topologies_[i];
     if (!same(topology.triangles, mesh.triangles) || !same(topology.corners, mesh.corners)) {
-      topology = {};  // should the next line throw, no frame after it may trust what was here
+      topology = {};  // if the next line throws, later frames must not use the old topology
       topology = make_topology(mesh, i);
       changed = true;
     } else if (!topology.position.empty()) {
@@ -136,7 +137,11 @@ void MeshBatch::update(const Picture& picture) {
     ranges_.clear();
     upload_indices();
   }
+  return pairs;
+}
 
+void MeshBatch::upload_vertices(const Picture& picture, std::size_t pairs) {
+  const std::vector<Picture::Body>& bodies = picture.bodies;
   boxes_.clear();
   scratch_.resize(pairs * kFloatsPerVertex);
   float* out = scratch_.data();
@@ -149,8 +154,8 @@ void MeshBatch::update(const Picture& picture) {
     for (std::size_t k = 0; k < topology.position.size(); ++k, out += kFloatsPerVertex) {
       const Eigen::Vector3d p = mesh.x.col(topology.position[k]) - picture.camera.target,
                             n = mesh.normals.col(topology.normal[k]);
-      // Negated, so that a number that is not finite fails.
-      good = good && !(!(p.cwiseAbs().maxCoeff() <= kFarthest) || !(n.cwiseAbs().maxCoeff() <= 2) ||
+      // Each comparison is negated, so that NaN fails.
+      good = good && !(!(p.cwiseAbs().maxCoeff() <= kMaxVertexDistance) || !(n.cwiseAbs().maxCoeff() <= 2) ||
                        p.hasNaN() || n.hasNaN());
       if (!good) break;
       const Eigen::Vector3f single = p.cast<float>();
@@ -166,6 +171,11 @@ void MeshBatch::update(const Picture& picture) {
   gl_.bind_buffer(gl::kArrayBuffer, vertices_.name());
   gl_.buffer_data(gl::kArrayBuffer, static_cast<std::ptrdiff_t>(scratch_.size() * sizeof(float)),
                   scratch_.data(), gl::kStreamDraw);
+}
+
+void MeshBatch::update(const Picture& picture) {
+  const std::size_t pairs = update_topologies(picture.bodies);
+  upload_vertices(picture, pairs);
   if (picture.scale) upload_levels(picture);
 }
 

@@ -1,6 +1,7 @@
-// All bodies of a picture in one vertex and one index buffer. A vertex is a pair (position, normal): where
-// several corners of a mesh vertex carry different normals it appears once for each, so sharp edges stay
-// sharp. Where a body is coloured by values, a second buffer holds the level of every vertex on the scale.
+// All bodies of a picture in one vertex buffer and one index buffer. A vertex of the batch is a pair
+// (position, normal). A mesh vertex whose corners have different normals has one pair for each, so that sharp
+// edges stay sharp. For bodies coloured by values a second buffer contains the level of every vertex on the
+// scale.
 #pragma once
 
 #include <cstdint>
@@ -23,29 +24,33 @@ class MeshBatch {
 
   explicit MeshBatch(const gl::Functions& gl);
 
-  /// Takes the bodies of a frame; the camera's target is subtracted from their places. Bodies with the
-  /// triangles of the frame before keep their indices. Throws std::invalid_argument naming the body whose
-  /// mesh is missing, inconsistent, not finite or farther than 1e15 m from origin, or whose values are not
-  /// one a vertex, finite.
+  /// Sends the bodies of a frame to the buffers, with positions relative to the target of the camera. Bodies
+  /// with the triangles of the previous frame keep their indices. Throws std::invalid_argument that names the
+  /// body whose mesh is missing, inconsistent, not finite or farther than 1e15 m from the target, or that
+  /// does not have one finite value for each vertex.
   void update(const Picture& picture);
 
-  const std::vector<Range>& ranges() const { return ranges_; }              ///< one a body
-  const std::vector<Eigen::AlignedBox3f>& boxes() const { return boxes_; }  ///< one a body that has triangles
+  const std::vector<Range>& ranges() const { return ranges_; }              ///< one for each body
+  const std::vector<Eigen::AlignedBox3f>& boxes() const { return boxes_; }  ///< for bodies with triangles
   int index_count() const { return index_count_; }
-  /// Attribute 0 is the position, 1 the normal.
+  /// Binds the arrays: attribute 0 is the position, 1 the normal.
   void bind() const { gl_.bind_vertex_array(array_.name()); }
-  /// And 2 the level of the value on the picture's scale, which it must have.
+  /// Binds the arrays with attribute 2 in addition: the level of the value on the scale. The picture must
+  /// have a scale.
   void bind_levels() const { gl_.bind_vertex_array(leveled_array_.name()); }
 
  private:
   struct Topology {
     Eigen::Matrix3Xi triangles, corners;
-    std::vector<int> position, normal;   // columns of the mesh, one a batch vertex
+    std::vector<int> position, normal;   // columns of the mesh, one for each batch vertex
     std::vector<std::uint32_t> indices;  // of batch vertices, from 0 in each body
   };
   static Topology make_topology(const TriangleMesh& mesh, std::size_t body);
-  void lay_attributes(const gl::VertexArray& array) const;
+  void set_attributes(const gl::VertexArray& array) const;
+  /// Checks the meshes and rebuilds the changed topologies. Returns the number of batch vertices.
+  std::size_t update_topologies(const std::vector<Picture::Body>& bodies);
   void upload_indices();
+  void upload_vertices(const Picture& picture, std::size_t pairs);
   void upload_levels(const Picture& picture);
 
   const gl::Functions& gl_;

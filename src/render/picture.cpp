@@ -1,4 +1,4 @@
-// Bounds of a picture.
+// The bounding box of a picture.
 #include <pliant/render/picture.h>
 
 namespace pliant {

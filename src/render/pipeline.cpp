@@ -1,5 +1,5 @@
-// Opaque things first and from front to back in kind (bodies, ground, background), so that each sample is
-// shaded about once.
+// Draws the passes of a picture. Opaque objects are drawn first, and their kinds from front to back (bodies,
+// ground, background), so that each sample is shaded about once.
 #include "pipeline.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ Pipeline::Pipeline(const GlContext& context, int width, int height)
       empty_(gl_),
       meshes_(gl_),
       tracks_(gl_) {
-  // Comparisons of the shadow map are filtered over the four nearest texels.
+  // Depth comparisons with the shadow map are filtered over the four nearest texels.
   gl_.bind_texture(gl::kTexture2d, shadow_.texture.name());
   gl_.tex_parameter(gl::kTexture2d, gl::kCompareMode, gl::kCompareToReference);
   gl_.tex_parameter(gl::kTexture2d, gl::kCompareFunction, gl::kLessEqual);
@@ -102,8 +102,9 @@ void Pipeline::check_target() {
   const int wide = 2 * width_, high = 2 * height_;
   const std::string size = std::to_string(width_) + " x " + std::to_string(height_);
   if (wide > largest || high > largest)
-    throw std::runtime_error("a picture of " + size + " pixels is too large for this OpenGL: at most " +
-                             std::to_string(largest / 2) + " a side");
+    throw std::runtime_error("a picture of " + size +
+                             " pixels is too large for this OpenGL; the largest side is " +
+                             std::to_string(largest / 2) + " pixels");
   gl_.bind_renderbuffer(gl::kRenderbuffer, color_.name());
   gl_.renderbuffer_storage(gl::kRenderbuffer, gl::kRgba8, wide, high);
   gl_.bind_renderbuffer(gl::kRenderbuffer, depth_.name());
@@ -115,7 +116,8 @@ void Pipeline::check_target() {
                                      contact_.framebuffer.name()}) {
     gl_.bind_framebuffer(gl::kFramebuffer, framebuffer);
     if (gl_.get_error() != 0 || gl_.check_framebuffer_status(gl::kFramebuffer) != gl::kFramebufferComplete)
-      throw std::runtime_error("OpenGL cannot hold a picture of " + size + " pixels");
+      throw std::runtime_error("this OpenGL cannot allocate a picture of " + size +
+                               " pixels; choose a smaller size");
   }
 }
 
@@ -204,7 +206,7 @@ Image Pipeline::draw(const Picture& picture) {
   check_colors(picture.tracks, "track");
   if (picture.scale &&
       !(std::isfinite(picture.scale->high - picture.scale->low) && picture.scale->low < picture.scale->high))
-    throw std::invalid_argument("picture: the scale of its values must go from a number to a larger one");
+    throw std::invalid_argument("picture: the scale of values must go from a finite number to a larger one");
   meshes_.update(picture);
   const FrameBlock frame =
       frame_block(picture, meshes_.boxes(), 2 * width_, 2 * height_, kShadowSide, kContactSide);

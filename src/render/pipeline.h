@@ -1,5 +1,5 @@
-// The passes of one picture: shadow map, contact map, then bodies, ground, background and tracks at 2x2
-// samples a pixel.
+// The passes of a picture: shadow map, contact map, and then bodies, ground, background and tracks with 2 x 2
+// samples for each pixel.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace pliant {
 
-/// A texture that bodies' depths or shares of light are drawn to.
+/// A square texture that depths of bodies, or shares of light, are drawn to.
 struct MapTarget {
   MapTarget(const gl::Functions& gl, gl::Enum format, int side);
   gl::Texture texture;
   gl::Framebuffer framebuffer;
 };
 
-/// All its calls need the context to be current.
+/// All calls, and the destructor, need a current context.
 class Pipeline {
  public:
   Pipeline(const GlContext& context, int width, int height);
@@ -42,7 +42,7 @@ class Pipeline {
   int width_, height_;
   gl::Program shadow_program_, height_program_, contact_program_, body_program_, ground_program_,
       background_program_, track_program_;
-  std::unique_ptr<gl::Program> leveled_program_;  // of bodies coloured by values; made with the first
+  std::unique_ptr<gl::Program> leveled_program_;  // for bodies coloured by values; created at the first one
   MapTarget shadow_, heights_, contact_;
   gl::Framebuffer target_;
   gl::Renderbuffer color_, depth_;

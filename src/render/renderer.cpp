@@ -1,4 +1,4 @@
-// Ties the context to the passes: every call makes the context current for its duration.
+// Connects the context and the passes: every call makes the context current for its duration.
 #include <pliant/render/renderer.h>
 
 #include <stdexcept>
@@ -29,7 +29,7 @@ class Renderer::Impl {
       const GlContext::Current current(context);
       pipeline.reset();
     } catch (const std::runtime_error&) {
-      // The context takes its objects with it; their names cannot be given back without it.
+      // The objects are destroyed with the context; they cannot be deleted while it is not current.
       pipeline.release();  // NOLINT(bugprone-unused-return-value)
     }
   }

@@ -1,4 +1,4 @@
-// A byte v stands for the light v^2 / 255^2, so four samples add up exactly in whole numbers.
+// A sample byte v means the linear light v^2 / 255^2, so that the sum of four samples is exact in integers.
 #include "resolve.h"
 
 #include <cmath>
@@ -8,13 +8,13 @@
 namespace pliant {
 namespace {
 
-constexpr int kBrightest = 255 * 255;
+constexpr int kMaxLight = 255 * 255;
 
-// sRGB byte of each sum of four squares, in steps of 4.
+// The sRGB byte for each mean of four squares.
 std::vector<std::uint8_t> srgb_table() {
-  std::vector<std::uint8_t> table(kBrightest + 1);
-  for (int i = 0; i <= kBrightest; ++i) {
-    const double light = static_cast<double>(i) / kBrightest;
+  std::vector<std::uint8_t> table(kMaxLight + 1);
+  for (int i = 0; i <= kMaxLight; ++i) {
+    const double light = static_cast<double>(i) / kMaxLight;
     table[i] = static_cast<std::uint8_t>(std::lround(255 * srgb_channel(light)));
   }
   return table;

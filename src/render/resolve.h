@@ -1,4 +1,4 @@
-// From 2x2 samples a pixel to the picture.
+// The image from 2 x 2 samples for each pixel.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 
 namespace pliant {
 
-/// samples: (2 width) x (2 height) x 4 bytes, rows from bottom to top, each channel the square root of linear
-/// light. The mean is taken in linear light, in whole numbers; the image is sRGB, rows from top to bottom.
+/// Returns the sRGB image, rows from top to bottom. samples: (2 width) x (2 height) x 4 bytes, rows from
+/// bottom to top; each channel is the square root of linear light. The mean is computed in linear light, in
+/// integers.
 Image resolve(const std::vector<std::uint8_t>& samples, int width, int height);
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// The transfer function of sRGB (IEC 61966-2-1) and its inverse.
 #include "srgb.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// A glyph is a list of strokes, each a chain of points given by two digits, x and y. Letters stand on y = 2,
-// small ones are as high as 6, digits as high as 8; tails reach down to 0.
+// A glyph is a list of strokes. A stroke is a chain of points, each given by two digits, x and y. The
+// baseline is y = 2; small letters end at y = 6, digits at y = 8, and descenders at y = 0.
 #include "stroke_font.h"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ const char* strokes_of(char letter) {
   return "";
 }
 
-// How far the strokes reach to the right.
+// Returns the largest x of the strokes.
 double reach(std::string_view strokes) {
   if (strokes.empty()) return kBlank;
   int most = 0;
@@ -88,7 +88,7 @@ double distance(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen:
   return (p - a - share * along).norm();
 }
 
-// Distance of a place on the grid to the nearest stroke.
+// Returns the distance of a point of the grid from the nearest stroke.
 double distance(const Eigen::Vector2d& p, std::string_view strokes) {
   double least = 100;
   for (std::size_t i = 0; i + 3 < strokes.size(); i += 2)

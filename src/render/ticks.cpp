@@ -1,3 +1,4 @@
+// Round steps and labels for a scale.
 #include <pliant/render/ticks.h>
 
 #include <algorithm>
@@ -9,21 +10,21 @@
 namespace pliant {
 namespace {
 
-constexpr int kMostDecimals = 4, kMostDigits = 6, kMostTicks = 12;
+constexpr int kMaxDecimals = 4, kMaxDigits = 6, kMaxTicks = 12;
 
-// In the scale's own digits; with a power of ten where they would be many.
+// Returns a value with the digits that the step needs; with a power of ten if these are many.
 std::string label(double value, double step, double largest) {
   const int last = static_cast<int>(std::floor(std::log10(step) + 1e-9));
   const int first = static_cast<int>(std::floor(std::log10(largest) + 1e-9));
   std::array<char, 64> text{};
   if (value == 0) return "0";
-  const bool plain = -last <= kMostDecimals && first < kMostDigits;
+  const bool plain = -last <= kMaxDecimals && first < kMaxDigits;
   const int own = static_cast<int>(std::floor(std::log10(std::abs(value)) + 1e-9));
   const auto end = plain
                        ? std::to_chars(text.data(), text.data() + text.size(), value,
                                        std::chars_format::fixed, std::max(0, -last))
                        : std::to_chars(text.data(), text.data() + text.size(), value,
-                                       std::chars_format::scientific, std::clamp(own - last, 0, kMostDigits));
+                                       std::chars_format::scientific, std::clamp(own - last, 0, kMaxDigits));
   return {text.data(), end.ptr};
 }
 
@@ -40,7 +41,7 @@ std::vector<Tick> ticks(double low, double high) {
   const double largest = std::max(std::abs(low), std::abs(high));
   const double first = std::ceil((low - slack) / step);
   std::vector<Tick> all;
-  for (int i = 0; i < kMostTicks && (first + i) * step <= high + slack; ++i)
+  for (int i = 0; i < kMaxTicks && (first + i) * step <= high + slack; ++i)
     all.push_back({(first + i) * step, label((first + i) * step, step, largest)});
   return all;
 }

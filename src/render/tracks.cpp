@@ -1,5 +1,5 @@
-// A long run records more points than a picture has pixels: a point stays when it is a sample away from the
-// last kept one.
+// Thins out tracks. A long run records more points than a picture has pixels; a point is kept if it is at
+// least one sample away from the last point kept.
 #include "tracks.h"
 
 #include <stdexcept>
@@ -8,8 +8,8 @@
 namespace pliant {
 namespace {
 
-constexpr double kFarthest = 1e15;  // metres
-constexpr float kWidest = 1000;     // pixels
+constexpr double kMaxTrackDistance = 1e15;  // metres
+constexpr float kMaxTrackWidth = 1000;      // pixels
 
 }  // namespace
 
@@ -19,15 +19,16 @@ void TrackBatch::update(const Picture& picture, const FrameBlock& frame) {
   for (std::size_t i = 0; i < picture.tracks.size(); ++i) {
     const Picture::Track& track = picture.tracks[i];
     const std::string name = "picture: track " + std::to_string(i);
-    if (!(track.width > 0 && track.width <= kWidest))
-      throw std::invalid_argument(name + " must have a width in (0, 1000] pixels");
+    if (!(track.width > 0 && track.width <= kMaxTrackWidth))
+      throw std::invalid_argument(name + " must have a width in (0, 1000] pixels, not " +
+                                  std::to_string(track.width));
     Range range{static_cast<int>(scratch_.size() / 3), 0};
     Eigen::Vector2f last_seen = Eigen::Vector2f::Zero();
     bool last_visible = false;
     int kept = 0;
     for (std::size_t k = 0; k < track.points.size(); ++k) {
       const Eigen::Vector3d p = track.points[k] - picture.camera.target;
-      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kFarthest)
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kMaxTrackDistance)
         throw std::invalid_argument(name + " is not finite or farther than 1e15 m from the target");
       const Eigen::Vector3f single = p.cast<float>();
       const Eigen::Vector4f clip = frame.view_projection * single.homogeneous();

@@ -1,4 +1,4 @@
-// The tracks of a picture in one vertex buffer, without the points that a picture cannot tell apart.
+// The tracks of a picture in one vertex buffer, without points that are closer than one sample.
 #pragma once
 
 #include <vector>
@@ -14,16 +14,18 @@ class TrackBatch {
  public:
   struct Range {
     int first = 0;     ///< point
-    int segments = 0;  ///< consecutive pairs of points from there on
+    int segments = 0;  ///< number of consecutive pairs of points
   };
 
   explicit TrackBatch(const gl::Functions& gl) : gl_(gl), array_(gl), points_(gl) {}
 
-  /// Throws std::invalid_argument naming the track that is not finite or has no sensible width.
+  /// Sends the tracks of a frame to the buffer. Throws std::invalid_argument that names the track that is not
+  /// finite, too far away or has a width out of range.
   void update(const Picture& picture, const FrameBlock& frame);
 
-  const std::vector<Range>& ranges() const { return ranges_; }  ///< one a track
-  /// Attribute 0 is the start of a segment, 1 its end, one segment an instance.
+  const std::vector<Range>& ranges() const { return ranges_; }  ///< one for each track
+  /// Binds the array: attribute 0 is the start of a segment and attribute 1 its end, with one instance for
+  /// each segment.
   void bind(const Range& range) const;
 
  private:

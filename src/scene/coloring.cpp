@@ -7,8 +7,8 @@ namespace pliant {
 const std::vector<QuantityInfo>& all_quantities() {
   static const std::vector<QuantityInfo> all{
       {SurfaceQuantity::displacement, "displacement", "m",
-       "how far the surface is from where it is at rest, in the frame of the part"},
-      {SurfaceQuantity::strain, "strain", "1", "the largest principal Green strain of the surface"}};
+       "distance of the surface from its rest position, in the frame of the part"},
+      {SurfaceQuantity::strain, "strain", "1", "largest principal Green strain of the surface"}};
   return all;
 }
 

@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace {
 
-/// Characters that steer a terminal or turn the writing direction of what follows.
+/// Returns whether a character controls a terminal or changes the writing direction of the following text.
 bool is_unsafe(char32_t c) {
   return c < 0x20 || (c >= 0x7F && c <= 0x9F) || c == 0x200E || c == 0x200F || (c >= 0x2028 && c <= 0x202E) ||
          (c >= 0x2066 && c <= 0x2069) || c == 0xFEFF;
@@ -81,10 +81,10 @@ std::vector<Diagnostic> Diagnostics::sorted() const {
   return all;
 }
 
-std::string Diagnostics::text(std::size_t most) const {
+std::string Diagnostics::text(std::size_t max_lines) const {
   std::string lines;
   const std::vector<Diagnostic> all = sorted();
-  const std::size_t printed = std::min(most, all.size());
+  const std::size_t printed = std::min(max_lines, all.size());
   for (std::size_t i = 0; i < printed; ++i) lines += to_string(all[i]) + "\n";
   const std::size_t more = errors_ + warnings_ - printed;
   if (more > 0) lines += "... and " + std::to_string(more) + " more\n";

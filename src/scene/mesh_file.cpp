@@ -21,9 +21,10 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 constexpr std::array<const char*, 5> kEndings{".obj", ".ply", ".stl", ".gltf", ".glb"};
-constexpr const char* kHead = "obstacle_";
-constexpr const char* kTail = ".ply";
+constexpr const char* kPrefix = "obstacle_";
+constexpr const char* kSuffix = ".ply";
 
+/// The vertices and triangles of all meshes of a file.
 struct Corners {
   std::vector<Vec3<double>> vertices;
   std::vector<Eigen::Vector3i> triangles;
@@ -44,14 +45,14 @@ void add_mesh(const aiMesh& mesh, const aiMatrix4x4& place, Corners& all) {
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3)
-      throw std::invalid_argument("it has a point or a line, number " + std::to_string(f) +
-                                  "; expected triangles and polygons");
+      throw std::invalid_argument("face " + std::to_string(f) +
+                                  " is a point or a line; expected triangles and polygons");
     Eigen::Vector3i triangle;
     for (unsigned k = 0; k < 3; ++k) {
       if (face.mIndices[k] >= mesh.mNumVertices)
-        throw std::invalid_argument("triangle " + std::to_string(f) + " has vertex " +
-                                    std::to_string(face.mIndices[k]) + " of " +
-                                    std::to_string(mesh.mNumVertices));
+        throw std::invalid_argument("triangle " + std::to_string(f) + " refers to vertex " +
+                                    std::to_string(face.mIndices[k]) + ", and the mesh has " +
+                                    std::to_string(mesh.mNumVertices) + " vertices");
       triangle[k] = first + static_cast<int>(face.mIndices[k]);
     }
     all.triangles.push_back(triangle);
@@ -71,14 +72,15 @@ MeshFile read_mesh_file(const std::filesystem::path& file) {
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end())
     throw std::invalid_argument("expected a file .obj, .ply, .stl, .gltf or .glb");
-  read_text_file(file.string(), kMaxBytes);  // tells what a file that cannot be read is short of
+  read_text_file(file.string(), kMaxBytes);  // throws FileError with the reason if the file cannot be read
 
   Assimp::Importer importer;
-  // Equal corners are found by ObstacleMesh: the importer would join those that are merely near.
+  // ObstacleMesh merges vertices at equal positions; the importer would also merge vertices that are only
+  // near.
   const aiScene* scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr)
-    throw std::invalid_argument(std::string("it is no mesh: ") + importer.GetErrorString());
+    throw std::invalid_argument(std::string("the file is not a mesh: ") + importer.GetErrorString());
   Corners all;
   add_node(*scene, *scene->mRootNode, aiMatrix4x4(), all);
 
@@ -93,11 +95,11 @@ MeshFile read_mesh_file(const std::filesystem::path& file) {
 }
 
 std::string recorded_mesh_name(const std::string& obstacle) {
-  return kHead + obstacle + kTail;
+  return kPrefix + obstacle + kSuffix;
 }
 
 bool is_recorded_mesh(const std::string& file_name) {
-  const std::string head = kHead, tail = kTail;
+  const std::string head = kPrefix, tail = kSuffix;
   return file_name.size() > head.size() + tail.size() && file_name.compare(0, head.size(), head) == 0 &&
          file_name.compare(file_name.size() - tail.size(), tail.size(), tail) == 0;
 }

@@ -9,8 +9,8 @@ namespace schema {
 
 namespace {
 
-/// Pi, as people write it.
-constexpr double kMostAngle = 3.1416;
+/// Pi rounded up, so that a rounded pi is accepted.
+constexpr double kMaxAngle = 3.1416;
 
 Field radial() {
   return optional("w", number(between(0, 1), "1"), "Radial coordinate: 0 at the centre, 1 on the surface.",
@@ -19,39 +19,39 @@ Field radial() {
 
 Field patch() {
   return optional("patch", number(above(0), "m"),
-                  "Of a part with local deformation: what acts here is spread over the nodes within this "
-                  "radius, and the point is where their mean is. The element around it when not given.");
+                  "For a part with local deformation: radius around the point. A load is spread over the "
+                  "nodes within this radius, and the position of the point is their mean. When absent, the "
+                  "element that contains the point is used.");
 }
 
 Record by_coordinates() {
-  return {"point_at_coordinates",
-          "A material point by its coordinates.",
-          {required("u", number(between(-kMostAngle, kMostAngle), "rad"),
-                    "Latitude of the shape, from -pi/2 to pi/2; round the tube of a torus.", "0"),
-           required("v", number(between(-kMostAngle, kMostAngle), "rad"), "Longitude of the shape.", "0"),
-           radial(), patch()}};
+  return {
+      "point_at_coordinates",
+      "A material point by its coordinates.",
+      {required("u", number(between(-kMaxAngle, kMaxAngle), "rad"),
+                "Latitude of the shape, from -pi/2 to pi/2; for a torus, the angle around the tube.", "0"),
+       required("v", number(between(-kMaxAngle, kMaxAngle), "rad"), "Longitude of the shape.", "0"), radial(),
+       patch()}};
 }
 
 Record by_direction() {
   const Check not_zero = [](const JsonValue& value, const ReportAt& report) {
     if (read_vector3(value).isZero(0)) report(value, "expected a direction that is not zero", kWholeValue);
   };
-  return {
-      "point_in_direction",
-      "The material point of the rest shape that lies in a direction from the origin of the part's frame: "
-      "the outermost one of the surface, and with w the point inside with the same u and v.",
-      {required("direction", vector3("1").checked(not_zero), "Direction in the part's frame, of any length.",
-                "[0, 0, 1]"),
-       radial(), patch()}};
+  return {"point_in_direction",
+          "A material point of the rest shape, given by a direction from the origin of the part's frame: the "
+          "outermost surface point in this direction; with w < 1, the interior point with its u and v.",
+          {required("direction", vector3("1").checked(not_zero),
+                    "Direction in the part's frame; its length does not matter.", "[0, 0, 1]"),
+           radial(), patch()}};
 }
 
 Record by_place() {
   return {
       "point_near",
-      "The material point at a place of the rest shape; for a place outside, at most twice as far out as the "
-      "surface, the surface point with "
-      "the same u and v.",
-      {required("near", vector3("m"), "Place in the part's frame.", "[0, 0, 1]"), patch()}};
+      "A material point of the rest shape, given by its position. For a position outside the part, at most "
+      "twice as far out as the surface, the surface point with the u and v of this position.",
+      {required("near", vector3("m"), "Position in the part's frame.", "[0, 0, 1]"), patch()}};
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ namespace pliant {
 
 namespace {
 
-/// Colours of parts that name none; quiet tones that stay apart.
+/// Returns the colour of the i-th part without a colour of its own: one of eight distinguishable tones.
 Color palette(std::size_t i) {
   static constexpr std::array<Color, 8> tones{{{0.85, 0.47, 0.20},
                                                {0.24, 0.49, 0.70},
@@ -42,6 +42,8 @@ Color palette(std::size_t i) {
   return tones[i % tones.size()];
 }
 
+/// Reads a validated document. Faults found while reading are added to the diagnostics; faulty values are
+/// skipped.
 class SceneReader {
  public:
   SceneReader(const JsonDocument& document, MeshFolder folder, Diagnostics& diagnostics)
@@ -85,22 +87,22 @@ class SceneReader {
     if (time.given("tolerance")) read_tolerance(time);
     if (scene_->integrator == kAutomatic && scene_->tolerance == 0) scene_->tolerance = kStandardTolerance;
     if (scene_->tolerance > 0 && time.given("step"))
-      faults_.warn(time.at("step"), "it has no effect, because steps to a tolerance find their own length");
+      faults_.warn(time.at("step"), "it has no effect, because the tolerance controls the step length");
     scene_->body.joint_solver.choice = joint_solver(time.text("solver"));
     scene_->frame_rate = output.number("frame_rate");
-    constexpr double kMost = 1e12;
-    if (scene_->end / scene_->step > kMost)
+    constexpr double kMax = 1e12;
+    if (scene_->end / scene_->step > kMax)
       faults_.value(time.at(time.given("step") ? "step" : "end"),
-                    "it makes " + brief(scene_->end / scene_->step) + " steps to the end at " +
+                    "this gives " + brief(scene_->end / scene_->step) + " steps until the end at " +
                         brief(scene_->end) + " s; expected at most 1e12");
-    if (scene_->end * scene_->frame_rate > kMost)
+    if (scene_->end * scene_->frame_rate > kMax)
       faults_.value(output.given("frame_rate") ? output.at("frame_rate") : time.at("end"),
-                    "it makes " + brief(scene_->end * scene_->frame_rate) + " frames to the end at " +
+                    "this gives " + brief(scene_->end * scene_->frame_rate) + " frames until the end at " +
                         brief(scene_->end) + " s; expected at most 1e12");
     if (output.given("every_part")) scene_->every_part = output.boolean("every_part");
     scene_->contacts = output.boolean("contacts");
     if (scene_->contacts && !root_.given("contact"))
-      faults_.warn(output.at("contacts"), "it has no effect, because nothing touches without \"contact\"");
+      faults_.warn(output.at("contacts"), "it has no effect, because the scene has no \"contact\"");
     const std::vector<double> size = output.numbers("size");
     scene_->width = static_cast<int>(size[0]);
     scene_->height = static_cast<int>(size[1]);
@@ -114,9 +116,8 @@ class SceneReader {
     if (std::find(controlled.begin(), controlled.end(), scene_->integrator) != controlled.end()) return;
     std::string names = std::string("\"") + kAutomatic + "\"";
     for (const std::string& name : controlled) names += ", \"" + name + "\"";
-    faults_.value(
-        time.at("integrator"),
-        "it does not tell the error of its steps, which \"tolerance\" needs; expected one of " + names);
+    faults_.value(time.at("integrator"),
+                  "it has no error estimate, which \"tolerance\" needs; expected one of " + names);
   }
 
   void read_gravity() {
@@ -136,7 +137,8 @@ class SceneReader {
     if (camera.given("target")) scene_->camera.target = camera.vector3("target");
     if (camera.given("eye") && camera.given("target")) {
       const Vec3<double> look = *scene_->camera.target - *scene_->camera.eye;
-      if (look.isZero(0)) faults_.value(camera.at("target"), "the eye is there too; expected another point");
+      if (look.isZero(0))
+        faults_.value(camera.at("target"), "the eye is at this point too; expected another point");
     }
     scene_->camera.field_of_view = camera.number("field_of_view");
     if (light.given("direction")) scene_->light.direction = read_direction(light.at("direction"), faults_);
@@ -164,28 +166,28 @@ class SceneReader {
     scene_->appearance.push_back(look);
   }
 
-  /// Warns of a mesh that is too coarse to show a twist.
+  /// Warns if the surface mesh of a part is too coarse to show its twist.
   void check_mesh(const Reader& r, const Part& part, int resolution) {
-    double turns = 0;  // from end to end
+    double turns = 0;  // of the twist between the two ends; the twist angle is that of half the length
     for (int i = 0; i < part.parameters().size(); ++i) {
       const Parameter& p = part.parameters()[i];
       if (p.name.rfind("twist", 0) == 0)  // "twist.angle", "twist2.angle"
         turns += std::max(std::abs(p.rest_value()), p.dynamic ? std::abs(p.initial) : 0) / kPi;
     }
-    constexpr double edges_a_turn = 8;
-    const double needed = std::ceil(turns * edges_a_turn / 2);  // a side has two edges for each of resolution
+    constexpr double edges_per_turn = 8;
+    const double needed = std::ceil(turns * edges_per_turn / 2);  // a side has 2 * resolution edges
     if (resolution < needed)
       faults_.warn(
           r.given("resolution") ? r.at("resolution") : r.at("name"),
-          "its mesh has fewer than 8 edges a turn of the twist; " +
-              (needed <= 128 ? "a resolution of " + std::to_string(static_cast<int>(needed)) + " shows it"
-                             : std::string("no resolution shows it")));
+          "its mesh has fewer than 8 edges per turn of the twist; " +
+              (needed <= 128 ? "expected a resolution of at least " + std::to_string(static_cast<int>(needed))
+                             : std::string("no resolution up to 128 is sufficient")));
   }
 
   void check_material(const JsonValue& name) {
     std::vector<std::string> names;
     const JsonValue* materials = document_.root().find("materials");
-    if (materials != nullptr && !materials->is_object()) return;  // told already
+    if (materials != nullptr && !materials->is_object()) return;  // the validation has reported this fault
     if (materials != nullptr)
       for (const JsonValue::Member& member : materials->members())
         if (!schema::is_ignored_key(member.key)) names.push_back(member.key);
@@ -193,7 +195,7 @@ class SceneReader {
       faults_.unknown(name, "material", names);
   }
 
-  /// The objects of a list, of which each may have a name that no other has.
+  /// Returns the objects of a list and reports names that are given twice.
   std::vector<Reader> named(const std::string& list) {
     std::vector<Reader> all = root_.objects(list);
     std::map<std::string, const JsonValue*> names;
@@ -215,8 +217,8 @@ class SceneReader {
     if (length > 0 && (position_at_start(*from) - position_at_start(*to)).norm() <= 1e-9 * length)
       return faults_.value(
           r.at("rest_length"),
-          "both ends are at the same place at time 0, where a spring with a rest length has no direction; "
-          "expected 0, or ends apart");
+          "both ends are at the same place at time 0, so a spring with a rest length has no direction; "
+          "expected 0, or ends at different places");
     scene_->body.spring(name_of(r, "spring", scene_->body.springs().size()), *from, *to,
                         r.number("stiffness"), r.number("damping"), length);
   }
@@ -270,8 +272,8 @@ class SceneReader {
   Scene* scene_ = nullptr;
 };
 
-/// FNV-1a of the document with its overrides, and the meshes it names.
-std::uint64_t hash_of(const std::string& text) {
+/// Returns the FNV-1a hash of a text.
+std::uint64_t fnv1a_hash(const std::string& text) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : text) {
     hash ^= static_cast<unsigned char>(c);
@@ -280,8 +282,10 @@ std::uint64_t hash_of(const std::string& text) {
   return hash;
 }
 
-std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::string>& overrides,
-                                MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
+/// Applies the overrides, validates and reads the document. The hash of the scene is that of the text, the
+/// overrides and the mesh files.
+std::unique_ptr<Scene> make_scene(JsonDocument document, const std::vector<std::string>& overrides,
+                                  MeshFiles files, const JointSolver& solver, Diagnostics& diagnostics) {
   const MeshFolder folder{std::filesystem::path(document.name()).parent_path(), files == MeshFiles::of_a_run};
   for (const std::string& assignment : overrides) document.set(assignment, diagnostics);
   validate(document, scene_record(), diagnostics);
@@ -297,7 +301,7 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
     resolved.append(reinterpret_cast<const char*>(mesh.triangles.data()),
                     static_cast<std::size_t>(mesh.triangles.size()) * sizeof(int));
   }
-  scene->hash = hash_of(resolved);
+  scene->hash = fnv1a_hash(resolved);
   scene->document = document.text();
   scene->overrides = overrides;
   return scene;
@@ -307,13 +311,13 @@ std::unique_ptr<Scene> scene_of(JsonDocument document, const std::vector<std::st
 
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
                                   Diagnostics& diagnostics, const JointSolver& solver, MeshFiles files) {
-  return scene_of(JsonDocument::read(file, diagnostics), overrides, files, solver, diagnostics);
+  return make_scene(JsonDocument::read(file, diagnostics), overrides, files, solver, diagnostics);
 }
 
 std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
                                    const std::vector<std::string>& overrides, Diagnostics& diagnostics) {
-  return scene_of(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named, {},
-                  diagnostics);
+  return make_scene(JsonDocument::parse(name, std::move(text), diagnostics), overrides, MeshFiles::as_named,
+                    {}, diagnostics);
 }
 
 }  // namespace pliant

@@ -10,7 +10,7 @@
 namespace pliant {
 
 void SceneFaults::add(const JsonValue& at, std::string message, Severity severity) {
-  // Those that are only counted need no place, which takes a search.
+  // A fault that is only counted needs no place, whose computation searches the document.
   diagnostics_.add(diagnostics_.full() ? Diagnostic{"", 0, 0, "", "", severity}
                                        : document_.fault(at, std::move(message), severity));
 }
@@ -42,7 +42,7 @@ void SceneFaults::twice(const JsonValue& first, const JsonValue& again) {
 void SceneFaults::unknown(const JsonValue& name, const std::string& kind,
                           const std::vector<std::string>& names) {
   value(name, "unknown " + kind +
-                  (names.empty() ? "; the scene has no " + kind + "s" : among(name.string(), names)));
+                  (names.empty() ? "; the scene has no " + kind + "s" : name_hint(name.string(), names)));
 }
 
 std::string brief(double x) {
@@ -51,14 +51,14 @@ std::string brief(double x) {
   return shortest(std::strtod(text, nullptr));
 }
 
-std::string among(std::string_view word, const std::vector<std::string>& names) {
+std::string name_hint(std::string_view word, const std::vector<std::string>& names) {
   const std::string near = did_you_mean(word, names);
   if (!near.empty()) return near;
-  constexpr std::size_t kMost = 32;
+  constexpr std::size_t kMaxListed = 32;
   std::string list;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i)
+  for (std::size_t i = 0; i < names.size() && i < kMaxListed; ++i)
     list += (i == 0 ? "; expected one of \"" : ", \"") + names[i] + "\"";
-  return names.size() > kMost ? list + ", ..." : list;
+  return names.size() > kMaxListed ? list + ", ..." : list;
 }
 
 }  // namespace pliant

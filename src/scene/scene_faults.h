@@ -1,5 +1,6 @@
-// What a scene asks for and cannot have, found while a validated document is read: told at the value, as
-//   value; what is wrong or what was expected; nearest name
+// Faults found while a validated document is read, for example unknown part names. Each is reported at its
+// value, as
+//   value; the fault; expected ...; nearest name
 #pragma once
 
 #include <string>
@@ -16,21 +17,21 @@ class SceneFaults {
   SceneFaults(const JsonDocument& document, Diagnostics& diagnostics)
       : document_(document), diagnostics_(diagnostics) {}
 
-  /// Faults so far, those of the validation included.
+  /// Number of errors so far, including those of the validation.
   std::size_t errors() const { return diagnostics_.errors(); }
 
-  /// A fault at a value, which is shown before the message.
+  /// Adds an error at a value; the message begins with the value.
   void value(const JsonValue& at, const std::string& message);
-  /// A warning likewise.
+  /// Adds a warning at a value; the message begins with the value.
   void warn(const JsonValue& at, const std::string& message);
-  /// A fault at a value that is named by its place alone: an object, a long array.
+  /// Adds an error at the place of a value that the message does not show: an object, a long array.
   void place(const JsonValue& at, const std::string& message);
-  /// A fault at a key of an object.
+  /// Adds an error at a key of an object.
   void key(const JsonValue& object, const std::string& key, const std::string& message);
 
-  /// "name given twice": `again` has the name that the value `first` has already.
+  /// Adds the error "name given twice" at `again`, a name that the value `first` also has.
   void twice(const JsonValue& first, const JsonValue& again);
-  /// A name that is none of `names`, which are called `kind` ("part").
+  /// Adds the error of a name that is not among `names`; kind: of the names, for example "part".
   void unknown(const JsonValue& name, const std::string& kind, const std::vector<std::string>& names);
 
  private:
@@ -40,10 +41,10 @@ class SceneFaults {
   Diagnostics& diagnostics_;
 };
 
-/// A computed number with the digits that a reader wants.
+/// Returns a computed number with 4 significant digits.
 std::string brief(double x);
 
-/// "; did you mean "NAME"?", or where no name is near "; expected one of "A", "B"".
-std::string among(std::string_view word, const std::vector<std::string>& names);
+/// Returns "; did you mean "NAME"?" for the nearest name, or "; expected one of "A", "B"" if no name is near.
+std::string name_hint(std::string_view word, const std::vector<std::string>& names);
 
 }  // namespace pliant

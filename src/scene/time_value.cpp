@@ -18,7 +18,8 @@ void check_formula(const JsonValue& value, const ReportAt& report) {
   }
 }
 
-/// Times that increase, and as many values as times.
+/// Returns the rule that times increase and that there are as many values as times. values: the key of the
+/// values.
 Check key_rule(const char* values) {
   return [values](const JsonValue& frames, const ReportAt& report) {
     const JsonValue::Array& t = frames.find("t")->array();
@@ -35,7 +36,7 @@ Check key_rule(const char* values) {
 }
 
 Type times() {
-  return array(number(any(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
+  return array(number(unbounded(), "s"), 1).expecting("a non-empty array of increasing numbers (s)");
 }
 
 Type formula() {
@@ -45,23 +46,20 @@ Type formula() {
 Type key_frames() {
   return record({"key_frames",
                  "Key frames: a twice continuously differentiable cubic spline through the values; constant "
-                 "before the "
-                 "first and after the last key.",
+                 "before the first and after the last key.",
                  {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
-                  required("y", array(number(any(), ""), 1), "Values at these times, in the unit of the key.",
-                           "[0, 0.5, 0]"),
-                  optional("end_rates", array(number(any(), ""), 2, 2),
-                           "Rates of change at the first and the last key; without them the second "
-                           "derivative is zero "
-                           "there.")}})
+                  required("y", array(number(unbounded(), ""), 1),
+                           "Values at these times, in the unit of the key.", "[0, 0.5, 0]"),
+                  optional("end_rates", array(number(unbounded(), ""), 2, 2),
+                           "Rates of change at the first and the last key; when absent, the second "
+                           "derivative is zero there.")}})
       .checked(key_rule("y"));
 }
 
 Type point_key_frames() {
   return record({"point_key_frames",
-                 "Key frames of points: a twice continuously differentiable cubic spline through them; "
-                 "constant before "
-                 "the first and after the last key.",
+                 "Key frames of points: a twice continuously differentiable cubic spline through the points; "
+                 "constant before the first and after the last key.",
                  {required("t", times(), "Times of the keys, increasing.", "[0, 1, 2]"),
                   required("points", array(vector3(""), 1),
                            "Points [x, y, z] at these times, in the unit of the key.",
@@ -78,7 +76,7 @@ std::string in(const std::string& unit) {
 Type time_function(std::string unit) {
   const std::string words =
       "a number" + in(unit) + ", a formula of t in quotes, or key frames {\"t\": [...], \"y\": [...]}";
-  return one_of({number(any(), std::move(unit)), formula(), key_frames()})
+  return one_of({number(unbounded(), std::move(unit)), formula(), key_frames()})
       .expecting(words)
       .defined_as("time_function");
 }

@@ -20,11 +20,13 @@ using schema::Type;
 using TypeKind = Type::Kind;
 using ValueKind = JsonValue::Kind;
 
-/// Where each key belongs, as a pattern "/parts/*".
+/// For each key, the records that declare it, as pointer patterns "/parts/*".
 using Places = std::map<std::string, std::vector<std::string>>;
 
+/// Adds the keys of all records inside a type, whose values are at the pointer pattern `at`.
 void collect(const Type& type, const std::string& at, Places* places);
 
+/// Adds the keys of a record; note: appended to the pattern, for example  of type "rod".
 void collect(const Record& record, const std::string& at, const std::string& note, Places* places) {
   for (const Field& field : record.fields) {
     std::vector<std::string>& known = (*places)[field.key];
@@ -45,6 +47,7 @@ void collect(const Type& type, const std::string& at, Places* places) {
   for (const Type& inner : type.inner) collect(inner, many ? at + "/*" : at, places);
 }
 
+/// Returns whether a type has values of this JSON kind.
 bool accepts(const Type& type, ValueKind kind) {
   switch (type.kind) {
     case TypeKind::kNumber:
@@ -73,21 +76,22 @@ bool has_control_byte(const std::string& text) {
                      [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
 }
 
+/// Checks a value against a type, recursively.
 class Validator {
  public:
   Validator(const JsonDocument& document, Diagnostics& faults)
-      : document_(document), faults_(faults), told_(faulty_values(document, faults)) {}
+      : document_(document), faults_(faults), reported_(faulty_values(document, faults)) {}
 
   void run(const JsonValue& value, const Type& type, std::string pointer, bool root) {
-    whole_ = &type;
-    whole_at_ = pointer;
+    root_type_ = &type;
+    root_pointer_ = pointer;
     pointer_ = std::move(pointer);
     root_ = root ? &value : nullptr;
     check(value, type);
   }
 
  private:
-  /// Adds one key to the pointer while it lives.
+  /// Extends the pointer by one key or index during its lifetime.
   struct Step {
     template <class Key>
     Step(Validator* validator, const Key& key) : v(validator), length(v->pointer_.size()) {
@@ -108,7 +112,7 @@ class Validator {
   }
 
   void check(const JsonValue& value, const Type& type) {
-    if (faults_.full() || is_told(value)) return;
+    if (faults_.full() || is_reported(value)) return;
     if (!accepts(type, value.kind())) return wrong_type(value, type);
     const std::size_t before = faults_.errors();
     switch (type.kind) {
@@ -152,9 +156,9 @@ class Validator {
     if (type.check && faults_.errors() == before) run_rule(value, type);
   }
 
-  /// A number or a text in which the parser has found a fault already.
-  bool is_told(const JsonValue& value) const {
-    return !value.is_array() && !value.is_object() && told_.count(&value) > 0;
+  /// Returns whether the parser has already reported a fault of this number or text.
+  bool is_reported(const JsonValue& value) const {
+    return !value.is_array() && !value.is_object() && reported_.count(&value) > 0;
   }
 
   void wrong_type(const JsonValue& value, const Type& type) {
@@ -180,10 +184,10 @@ class Validator {
   }
 
   void check_integer(const JsonValue& value, const Type& type) {
-    constexpr double kExact = 9007199254740992.0;  // 2^53: above it doubles skip integers
+    constexpr double kExact = 9007199254740992.0;  // 2^53: larger doubles do not represent every integer
     const double x = value.number();
     if (x != std::floor(x) || !type.range.contains(x)) return expected(value, type.words());
-    if (std::abs(x) > kExact) expected(value, type.words(), " of at most 9007199254740992 in size");
+    if (std::abs(x) > kExact) expected(value, type.words(), " of at most 9007199254740992 in magnitude");
   }
 
   void check_name(const JsonValue& value, const Type& type) {
@@ -259,7 +263,7 @@ class Validator {
     for (const schema::KeyGroup& group : record.exclusive) check_group(value, group);
   }
 
-  /// "; did you mean" for the first key of an object that is near one of an alternative.
+  /// Returns "; did you mean ...?" for the first key of an object that is similar to a key of an alternative.
   static std::string nearest_key(const JsonValue& object, const Type& alternatives) {
     std::vector<std::string> keys;
     for (const Type& t : alternatives.inner) {
@@ -273,13 +277,13 @@ class Validator {
     }
     return "";
   }
-  /// One of the records of an alternative has the key.
+  /// Returns whether a record of one of the alternatives has the key.
   static bool known_to(const Type& alternatives, const std::string& key) {
     return std::any_of(alternatives.inner.begin(), alternatives.inner.end(), [&](const Type& t) {
       return t.kind == TypeKind::kRecord && t.records[0]->find(key) != nullptr;
     });
   }
-  /// The required keys of a record that an object has.
+  /// Returns the list of the required keys of a record that an object has.
   static std::string given_of(const Record& record, const JsonValue& object) {
     std::string list;
     for (const Field& field : record.fields)
@@ -305,12 +309,12 @@ class Validator {
     }
   }
 
-  /// Returns the key that is probably meant; empty when none is near.
+  /// Reports an unknown key. Returns the key that is probably meant, or an empty text if no key is similar.
   std::string unknown_key(const JsonValue::Member& member, const Record& record, const std::string& tag) {
     std::vector<std::string> keys;
     if (!tag.empty()) keys.push_back(tag);
     for (const Field& field : record.fields) keys.push_back(field.key);
-    if (places_.empty()) collect(*whole_, whole_at_, &places_);
+    if (places_.empty()) collect(*root_type_, root_pointer_, &places_);
     std::string hint;
     const std::string near = nearest_name(member.key, keys);
     const bool slip = !near.empty() && edit_distance(member.key, near) == 1;
@@ -343,15 +347,15 @@ class Validator {
       if (chosen->kind == TypeKind::kRecord) alternatives_ = &type;
       return check(value, *chosen);
     }
-    std::size_t least = 0;
+    std::size_t fewest = 0;
     const Type* nearest = nullptr;
     for (const Type* candidate : candidates) {
       Diagnostics trial;
       Validator(document_, trial).run(value, *candidate, pointer_, false);
       if (trial.errors() == 0) return;
-      if (nearest == nullptr || trial.errors() < least) {
+      if (nearest == nullptr || trial.errors() < fewest) {
         nearest = candidate;
-        least = trial.errors();
+        fewest = trial.errors();
       }
     }
     if (value.is_array()) return check(value, *nearest);
@@ -360,11 +364,12 @@ class Validator {
 
   const JsonDocument& document_;
   Diagnostics& faults_;
-  FaultyValues told_;
-  Places places_;  ///< made when the first unknown key asks for it
-  const Type* whole_ = nullptr;
-  const Type* alternatives_ = nullptr;  ///< of which the record to be checked next is one
-  std::string whole_at_;
+  FaultyValues reported_;
+  Places places_;  ///< filled at the first unknown key
+  const Type* root_type_ = nullptr;
+  const Type* alternatives_ =
+      nullptr;  ///< the alternatives that contain the record to be checked next, or null
+  std::string root_pointer_;
   std::string pointer_;
   const JsonValue* root_ = nullptr;
 };

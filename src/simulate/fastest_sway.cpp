@@ -14,11 +14,11 @@ namespace pliant {
 namespace {
 
 constexpr std::size_t kMostVectors = 30;
-/// A vector that is so small a part of what the map makes is rounding.
+/// A vector below this share of the image of the map is rounding.
 constexpr double kVanished = 1e-9;
 
-/// x -> -da/dq x on the velocities that the joints allow; symmetric in the mass metric where parts rest. Its
-/// eigenvalues are omega^2 of what swings, and are negative for what falls over.
+/// The map x -> -da/dq x on the velocities that the joints allow; it is symmetric in the mass metric for
+/// parts at rest. Its eigenvalues are omega^2 of swinging motions, and negative for falling ones.
 class Sway {
  public:
   Sway(const Dynamics& dynamics, const State& state, Workspace<double>& work)
@@ -28,7 +28,7 @@ class Sway {
         work_(work),
         along_{VecX<double>(), VecX<double>::Zero(state.v.size())} {}
 
-  /// The largest eigenvalue, by Lanczos' method with full orthogonalisation.
+  /// Returns the largest eigenvalue, by Lanczos' method with full orthogonalisation.
   double largest() {
     VecX<double> x(state_.v.size());
     for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + static_cast<double>(i));
@@ -62,7 +62,7 @@ class Sway {
     return dynamics_.jvp(state_.time(), state_.q, state_.v, along_, work_, dual_work_);
   }
 
-  /// Of a change of all velocities what the joints allow of it, for the parts that have joints.
+  /// Projects a change of velocities onto the joints, for parts with joints.
   void keep_allowed(VecX<double>& all) {
     VecX<double> kept = VecX<double>::Zero(all.size()), x, rows;
     for (const Island& island : model_.islands()) {
@@ -78,7 +78,7 @@ class Sway {
     all = kept;
   }
 
-  /// In the mass metric.
+  /// Inner product in the mass metric.
   double product(const VecX<double>& x, const VecX<double>& y) const {
     double sum = 0;
     for (const Island& island : model_.islands())

@@ -1,5 +1,5 @@
-// CHOLMOD: simplicial LDLᵀ, or supernodal LLᵀ for large systems, both with the approximate minimum degree
-// ordering.
+// Factorisation by CHOLMOD: simplicial LDLᵀ, or supernodal LLᵀ for large systems, with the approximate
+// minimum degree ordering.
 #include <pliant/solve/cholmod_factor.h>
 
 #include <cholmod.h>
@@ -14,6 +14,7 @@
 namespace pliant {
 namespace {
 
+/// Limits OpenBLAS, if the process has loaded it, to one thread.
 void use_one_blas_thread() {
   if (void* set_threads = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
     reinterpret_cast<void (*)(int)>(set_threads)(1);
@@ -59,8 +60,7 @@ class CholmodFactor final : public SparseFactor {
     cholmod_factorize(&view, factor_, &common_);
     check("factorisation");
     const int* order = static_cast<const int*>(factor_->Perm);
-    const std::size_t valid =
-        factor_->minor;  // columns done: all, or those before a pivot that cannot be used
+    const std::size_t valid = factor_->minor;  // number of factored columns: all, or those before a bad pivot
     if (factor_->is_super != 0) {
       if (!accept_supernodes(order, valid)) return false;
     } else {
@@ -72,8 +72,8 @@ class CholmodFactor final : public SparseFactor {
     return valid == factor_->n || accept_pivot(order[valid], std::numeric_limits<double>::quiet_NaN());
   }
 
-  /// Supernode s holds the columns super[s] … super[s+1]−1 of L as a dense block, by columns, pivot rows
-  /// first.
+  /// Checks the pivots of a supernodal factor. Supernode s stores the columns super[s] … super[s+1]−1 of L as
+  /// one dense block, by columns, pivot rows first.
   bool accept_supernodes(const int* order, std::size_t valid) {
     const int* super = static_cast<const int*>(factor_->super);
     const int* rows = static_cast<const int*>(factor_->pi);
@@ -103,7 +103,7 @@ class CholmodFactor final : public SparseFactor {
         static_cast<const double*>(x_->x), x.rows(), x.cols(), Eigen::OuterStride<>(static_cast<int>(x_->d)));
   }
 
-  /// The lower triangle of A as CHOLMOD takes it. Nothing is copied, and CHOLMOD does not write to it.
+  /// Returns the lower triangle of A in CHOLMOD's format. Nothing is copied; CHOLMOD does not write to A.
   static cholmod_sparse view_of(const SparseMatrix& A) {
     cholmod_sparse view{};
     view.nrow = static_cast<std::size_t>(A.rows());
@@ -121,6 +121,7 @@ class CholmodFactor final : public SparseFactor {
     return view;
   }
 
+  /// Throws if the last call of CHOLMOD failed.
   void check(const char* stage) const {
     if (common_.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
     if (common_.status < 0)
@@ -138,7 +139,7 @@ class CholmodFactor final : public SparseFactor {
 }  // namespace
 
 std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options) {
-  static std::once_flag once;  // islands make theirs on several threads
+  static std::once_flag once;  // islands make factorisations on several threads
   std::call_once(once, use_one_blas_thread);
   return std::make_unique<CholmodFactor>(options);
 }

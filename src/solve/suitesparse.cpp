@@ -1,3 +1,4 @@
+// The order of AMD, and the choice of SuiteSparse for joint systems.
 #include <pliant/solve/suitesparse.h>
 
 #include <cholmod.h>
@@ -21,7 +22,7 @@ std::vector<int> amd_order(const std::vector<int>& first, const std::vector<int>
         rows.push_back(neighbour[static_cast<std::size_t>(k)]);
     columns.push_back(static_cast<int>(rows.size()));
   }
-  rows.push_back(0);  // never read: a pointer to something
+  rows.push_back(0);  // never read; data() must not be null
   cholmod_sparse graph{};
   graph.nrow = graph.ncol = n;
   graph.nzmax = rows.size();

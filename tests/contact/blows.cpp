@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "draws.h"

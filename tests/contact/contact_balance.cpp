@@ -6,6 +6,7 @@
 #include <functional>
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "motion.h"

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <pliant/contact/contact_stepping.h>
 #include "draws.h"
+
 #include "motion.h"
 
 namespace fast_contacts_test {

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "motion.h"

@@ -9,6 +9,7 @@
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/collision/mesh/mesh_finder.h>
 #include <pliant/contact/contact_problem.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "deepest.h"

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/mesh/surface.h>
 
 #include "draws.h"

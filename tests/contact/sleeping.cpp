@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <pliant/body/joints/string.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 #include <pliant/part/primitive.h>
 #include <pliant/shape/box.h>

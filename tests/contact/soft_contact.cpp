@@ -9,6 +9,7 @@
 #include <pliant/body/joints/all_joints.h>
 #include <pliant/collision/mesh/mesh_touches.h>
 #include <pliant/collision/mesh/obstacle_mesh.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "deepest.h"

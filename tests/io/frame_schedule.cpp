@@ -81,7 +81,7 @@ TEST_CASE("ranges of frames are parsed, and divided into shards") {
     CHECK_THROWS_AS(FrameRange::parse(bad), std::invalid_argument);
   for (const char* beyond : {"10", "0:11", "12:"}) CHECK_THROWS_AS(frames(beyond), std::invalid_argument);
   // Numbers of frames above the limit are refused before memory is allocated.
-  constexpr std::int64_t limit = FrameRange::kMostFrames, many = 1000000000000;
+  constexpr std::int64_t limit = FrameRange::kMaxFrames, many = 1000000000000;
   CHECK(FrameRange().size(limit) == limit);
   CHECK_THROWS_AS(FrameRange().frames(limit + 1), std::invalid_argument);
   CHECK_THROWS_AS(FrameRange().frames(many), std::invalid_argument);

@@ -137,8 +137,8 @@ TEST_CASE("recorded contact caches are read back, and damage in them is detected
   // The range of the cache that belongs to a state: a flipped bit there damages no other state.
   const std::string modes = bytes_of(folder / kModesFile);
   const std::size_t row = (modes.size() - 128) / states.size();
-  for (std::size_t byte = 128 + 2 * row + 8 * kFirstSupport; byte < 128 + 2 * row + 8 * (kEndOfSupports + 2);
-       ++byte) {
+  for (std::size_t byte = 128 + 2 * row + 8 * kFirstCachedContact;
+       byte < 128 + 2 * row + 8 * (kEndOfCachedContacts + 2); ++byte) {
     std::string bytes = modes;
     bytes[byte] = static_cast<char>(bytes[byte] ^ 0x10);
     set_bytes(folder / kModesFile, bytes);

@@ -239,7 +239,7 @@ TEST_CASE("N57: a joint that pulls a part into a plane is named with both") {
   const std::string notes = record_of(folder / "out").at("notes").dump();
   CAPTURE(notes);
   CHECK(notes.find("part 'weight' and the plane 'floor' overlap by") != std::string::npos);
-  CHECK(notes.find("unless ball 'pull' holds them") != std::string::npos);
+  CHECK(notes.find("unless ball 'pull' prevents it") != std::string::npos);
 }
 
 TEST_CASE("I53: a run with resting contacts, resumed from where it was stopped, gives identical files") {
@@ -580,7 +580,7 @@ TEST_CASE("run.json reports once which part rotates too far for elasticity that 
     REQUIRE(run(*scene, folder / name));
     const RunRecord record = read_run_record(folder / name / kRunFile);
     return std::count_if(record.notes.begin(), record.notes.end(), [](const std::string& note) {
-      return note.find("the parameters of part 'tube' turn some of its surface by") != std::string::npos;
+      return note.find("the parameters of part 'tube' rotate some of its surface by") != std::string::npos;
     });
   };
   CHECK(notes("far", "membrane", 0.8) == 1);
@@ -608,7 +608,8 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
       for (const char* name : {"once", "again"})
         body.ball(name, world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
     });
-    CHECK(count(record, "left to the rows of others from which they follow: 3 rows of 1 joint, 'once'") == 1);
+    CHECK(count(record,
+                "redundant constraints, implied by those of other joints: 3 rows of 1 joint, 'once'") == 1);
     CHECK(count(record, "redundant") == 1);
     CHECK(record.open_gap == 0);
   }
@@ -618,8 +619,7 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
       body.ball("once", world(top.c0()[0], top.c0()[1], top.c0()[2]), at);
       body.ball("again", world(top.c0()[0], top.c0()[1], top.c0()[2]), at).during(0.2);
     });
-    CHECK(count(record,
-                "redundant, and left to the rows of others from which they follow: 3 rows of 1 joint") == 1);
+    CHECK(count(record, "redundant constraints, implied by those of other joints: 3 rows of 1 joint") == 1);
   }
   SECTION("a point at two places") {
     const RunRecord record = notes_of("apart", [](MultiBody& body, Part& top) {
@@ -639,8 +639,8 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
       top.velocity({0.5, 0, 0}, {0, 0, 0});
       body.ball("hook", world(top.c0()[0] + 0.1, top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)).during(0.2);
     });
-    CHECK(count(record, "at t = 0.2 s ball 'hook' takes hold with an impulse of ") == 1);
-    CHECK(count(record, "takes hold") == 1);
+    CHECK(count(record, "at t = 0.2 s ball 'hook' engages with an impulse of ") == 1);
+    CHECK(count(record, "engages") == 1);
   }
   SECTION("a joint that stops a spin, and one beside it without effect") {
     const RunRecord record = notes_of("spin", [](MultiBody& body, Part& top) {
@@ -653,7 +653,7 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
       setting.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(1, Vec3<double>::UnitZ()));
       body.join("weld", "stop", setting).during(0.2);
     });
-    CHECK(count(record, "at t = 0.2 s weld 'stop' takes hold with an impulse of ") == 1);
+    CHECK(count(record, "at t = 0.2 s weld 'stop' engages with an impulse of ") == 1);
     CHECK(count(record, " N m s") == 1);
     CHECK(count(record, " N s") == 0);
     CHECK(count(record, "the largest of") == 0);
@@ -665,7 +665,8 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
           "hand", point(top, 0, 0, 0),
           world({c[0], c[1], TimeFunction::formula(std::to_string(c[2]) + " + 0.1 * abs(sin(30 * t))")}));
     });
-    CHECK(count(record, "the rate of a path jumps: ball 'hand' follows with an impulse of ") == 1);
+    CHECK(count(record, "the velocity of a prescribed path jumps: ball 'hand' follows with an impulse of ") ==
+          1);
     CHECK(record.max_balance_error <= 1e-2);
   }
   SECTION("a string that closes against gravity") {
@@ -694,7 +695,7 @@ TEST_CASE("run.json reports once which joint rows are redundant, and which joint
     const RunRecord record = notes_of("rod", [](MultiBody& body, Part& top) {
       body.join("rod", Rod{0.5}, {world(top.c0()[0], top.c0()[1], top.c0()[2]), point(top, 0, 0, 0)});
     });
-    CHECK(count(record, "without direction where they are: 1 row of 1 joint, 'rod'") == 1);
+    CHECK(count(record, "without direction at the present positions: 1 row of 1 joint, 'rod'") == 1);
     CHECK(count(record, "redundant") == 0);
   }
 }

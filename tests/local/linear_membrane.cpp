@@ -78,7 +78,7 @@ TEST_CASE("linear membrane: invalid sheets and meshes are refused", "[local]") {
   CHECK_THROWS_WITH(LinearMembrane(mesh, Sheet{1, 0, 0}), has_text("thickness"));
   CHECK_THROWS_WITH(shell_mesh({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}), has_text("triangle 0"));
   CHECK_THROWS_WITH(shell_mesh({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}),
-                    has_text("triangle 1 of the shell names node 3"));
+                    has_text("triangle 1 of the shell refers to node 3"));
   CHECK_THROWS_WITH(shell_mesh({{0, 0, 0}, {1, 0, 0}, {0, std::nan(""), 0}}, {{0, 1, 2}}),
                     has_text("node 2"));
 }

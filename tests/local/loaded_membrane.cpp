@@ -198,7 +198,7 @@ TEST_CASE("loaded membrane: invalid weights and meshes are refused", "[local]") 
   grid.uv.col(3) = grid.uv.col(4);
   CHECK_THROWS_WITH(LoadedMembrane(grid, {1, 1}), has_text("triangle 1 of the parameter mesh has no area"));
   grid.triangles(2, 5) = 99;
-  CHECK_THROWS_WITH(LoadedMembrane(grid, {1, 1}), has_text("names node 99"));
+  CHECK_THROWS_WITH(LoadedMembrane(grid, {1, 1}), has_text("refers to node 99"));
 }
 
 }  // namespace loaded_membrane_test

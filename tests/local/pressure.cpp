@@ -97,7 +97,7 @@ TEST_CASE("pressure: open, inconsistently oriented and inverted shells are refus
   all_turned.row(0).swap(all_turned.row(1));
   CHECK_THROWS_WITH(ConstantPressure(ShellMesh(closed.X(), triangles.leftCols(19)), 1),
                     has_text("one triangle only"));
-  CHECK_THROWS_WITH(ConstantPressure(ShellMesh(closed.X(), one_turned), 1), has_text("same way round"));
+  CHECK_THROWS_WITH(ConstantPressure(ShellMesh(closed.X(), one_turned), 1), has_text("opposite orientation"));
   CHECK_THROWS_WITH(ConstantPressure(ShellMesh(closed.X(), all_turned), 1), has_text("enclose a volume"));
   CHECK_THROWS_WITH(GasPressure(closed, {1, 0, 1.4}), has_text("V0 > 0"));
 }

@@ -245,7 +245,7 @@ TEST_CASE("inverted elements are refused, or pushed back", "[solid]") {
   const VecX<double> x = affine(mesh.rest, mirror, Vec3<double>::Zero());
   const auto corotated = Kind<LinearTetrahedron, Corotated>::make(mesh);
   CHECK_THROWS_AS(force(corotated, x), InvertedElement);
-  CHECK_THROWS_WITH(force(corotated, x), test::has_text("inside out"));
+  CHECK_THROWS_WITH(force(corotated, x), test::has_text("inverted"));
   ThreadPool pool(2);
   CHECK_THROWS_AS(force(corotated, x, &pool), InvertedElement);
   const auto neo_hookean = Kind<LinearTetrahedron, NeoHookean>::make(mesh);
@@ -274,8 +274,8 @@ TEST_CASE("the nearest rotation of strong deformations", "[solid]") {
 }
 
 TEST_CASE("invalid materials and elements are refused", "[solid]") {
-  CHECK_THROWS_WITH(Elasticity(0, 0.3), test::has_text("not a positive number"));
-  CHECK_THROWS_WITH(Elasticity(kInfinity, 0.3), test::has_text("not a positive number"));
+  CHECK_THROWS_WITH(Elasticity(0, 0.3), test::has_text("must be positive and finite"));
+  CHECK_THROWS_WITH(Elasticity(kInfinity, 0.3), test::has_text("must be positive and finite"));
   CHECK_THROWS_WITH(Elasticity(1, 0.5), test::has_text("averaged dilatation"));
   CHECK_THROWS_WITH(Elasticity(1, 0.51), test::has_text("below 0.5"));
   CHECK_THROWS_WITH(Elasticity(1, -1), test::has_text("above -1"));
@@ -284,7 +284,7 @@ TEST_CASE("invalid materials and elements are refused", "[solid]") {
                     test::has_text("10 nodes"));
   mesh.elements(2, 3) += mesh.n();
   CHECK_THROWS_WITH(LinearSolid<LinearTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),
-                    test::has_text("no node"));
+                    test::has_text("the mesh has nodes 0 to"));
   mesh.elements(2, 3) -= mesh.n();
   std::swap(mesh.elements(0, 5), mesh.elements(1, 5));
   CHECK_THROWS_WITH(LinearSolid<LinearTetrahedron>(mesh.rest, mesh.elements, LinearLaw(kRubber)),

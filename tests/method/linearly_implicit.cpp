@@ -5,6 +5,7 @@
 #include <new>
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 #include <pliant/solve/suitesparse.h>
 

@@ -458,7 +458,7 @@ bool stops(const std::function<void()>& act) {
   }
   if (what.empty()) return false;
   CHECK_THAT(what, test::has_text("part 'needle'"));
-  CHECK_THAT(what, test::has_text("no longer tells its frame and global parameters apart"));
+  CHECK_THAT(what, test::has_text("no longer determines its frame and global parameters"));
   return true;
 }
 

@@ -36,7 +36,8 @@ double error_of(const std::function<void(MultiBody&)>& build, Integrator& method
   high.h = h;
   Workspace<double> work;
   StepCounters counters;
-  method.step(simulation.dynamics(), high, work, counters);
+  StepContext step(simulation.dynamics(), high, work, counters);
+  method.step(step);
   method.measure(nullptr);
   const long before = counters.evaluations;
   const StepPath path = method.path(simulation.dynamics(), low, h, high, counters);

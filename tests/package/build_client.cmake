@@ -4,11 +4,24 @@
 #   absent        find_package with a component that does not exist: must fail and name it
 #   pkg-config    pliant.pc of PREFIX
 #   subdirectory  add_subdirectory(SOURCE); links the existing library CORE, as another build takes minutes
+#   readme        the program and the CMakeLists.txt that SOURCE/README.md shows, with the installation PREFIX
 # GENERATOR, CXX and LAUNCHER are those of the calling build.
 cmake_minimum_required(VERSION 3.25)
 set(work ${WORK}/${WAY})
 file(REMOVE_RECURSE ${work})
-set(configure ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/client -B ${work} -G ${GENERATOR}
+set(client ${CMAKE_CURRENT_LIST_DIR}/client)
+set(program client)
+if(WAY STREQUAL readme)
+  include(${CMAKE_CURRENT_LIST_DIR}/page_block.cmake)
+  set(client ${work}/source)
+  set(program two_parts)
+  page_block(${SOURCE}/README.md "## The library" "```cpp" text)
+  file(WRITE ${client}/two_parts.cpp "${text}")
+  page_block(${SOURCE}/README.md "## The library" "```cmake" text)
+  file(WRITE ${client}/CMakeLists.txt "${text}")
+  page_block(${SOURCE}/README.md "The program prints" "```" shown)
+endif()
+set(configure ${CMAKE_COMMAND} -S ${client} -B ${work} -G ${GENERATOR}
     -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER})
 
 if(WAY STREQUAL subdirectory)
@@ -16,7 +29,7 @@ if(WAY STREQUAL subdirectory)
 else()
   list(APPEND configure -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=Release)
 endif()
-if(WAY STREQUAL find OR WAY STREQUAL subdirectory)
+if(WAY MATCHES "^(find|subdirectory|readme)$")
   foreach(package CHOLMOD nlohmann_json CLI11 PNG ZLIB Catch2 assimp)
     list(APPEND configure -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
@@ -40,4 +53,12 @@ if(WAY STREQUAL subdirectory)
   return()
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${work} COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${work}/client COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${work}/${program} OUTPUT_VARIABLE printed COMMAND_ERROR_IS_FATAL ANY)
+if(WAY STREQUAL readme)
+  # Compare the time and the energy. The rest of the line is rounding, which differs from processor to processor.
+  string(REGEX REPLACE ", balance.*" "" shown "${shown}")
+  string(FIND "${printed}" "${shown}" at)
+  if(NOT at EQUAL 0)
+    message(FATAL_ERROR "the program of README.md prints\n${printed}but README.md shows\n${shown}")
+  endif()
+endif()

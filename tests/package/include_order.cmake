@@ -41,7 +41,7 @@ function(check_file path)
   set(faults "${faults}" PARENT_SCOPE)
 endfunction()
 
-file(GLOB_RECURSE files ${SOURCE}/include/* ${SOURCE}/src/*.h ${SOURCE}/src/*.cpp)
+file(GLOB_RECURSE files ${SOURCE}/include/*.h ${SOURCE}/src/*.h ${SOURCE}/src/*.cpp)
 list(REMOVE_ITEM files ${SOURCE}/include/pliant/pliant.h)  # includes all folders of core
 if(NOT files)
   message(FATAL_ERROR "there are no sources in ${SOURCE}")

@@ -52,7 +52,7 @@ TEST_CASE(
         if (trial == 2) state.omega.setZero();
         Inertia<double> moments, sums;
         Counters counters, unused;
-        part->inertia(state.q_s, state.q_s_dot, state.omega, moments, counters);
+        part->evaluate_inertia(state.q_s, state.q_s_dot, state.omega, moments, counters);
         sum_inertia(*part, part->mass_points(), state.q_s, state.q_s_dot, state.omega, sums, unused);
         CHECK(nearly_equal(moments.M, sums.M));
         CHECK(moments.M == moments.M.transpose());
@@ -67,12 +67,12 @@ TEST_CASE(
         VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>();
         for (Eigen::Index k = 0; k < q_s.size(); ++k) q_s[k].d[0] = 1;
         Inertia<Dual<1>> dual;
-        part->inertia(q_s, VecMax<Dual<1>>(state.q_s_dot.cast<Dual<1>>()), state.omega.cast<Dual<1>>(), dual,
-                      counters);
+        part->evaluate_inertia(q_s, VecMax<Dual<1>>(state.q_s_dot.cast<Dual<1>>()),
+                               state.omega.cast<Dual<1>>(), dual, counters);
         const double step = 1e-5;
         Inertia<double> above, below;
-        part->inertia(state.q_s.array() + step, state.q_s_dot, state.omega, above, unused);
-        part->inertia(state.q_s.array() - step, state.q_s_dot, state.omega, below, unused);
+        part->evaluate_inertia(state.q_s.array() + step, state.q_s_dot, state.omega, above, unused);
+        part->evaluate_inertia(state.q_s.array() - step, state.q_s_dot, state.omega, below, unused);
         for (Eigen::Index i = 0; i < dual.M.size(); ++i) {
           REQUIRE(dual.M.data()[i].v == moments.M.data()[i]);
           REQUIRE(dual.M.data()[i].d[0] == Approx((above.M.data()[i] - below.M.data()[i]) / (2 * step))

@@ -39,7 +39,7 @@ std::unique_ptr<Part> rigid(const std::string& shape, const Part::Named& values,
 Inertia<double> at(const Part& part, const test::RandomState& state) {
   Inertia<double> I;
   Counters counters;
-  part.inertia(state.q_s, state.q_s_dot, state.omega, I, counters);
+  part.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, I, counters);
   return I;
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("given mass and inertia are used", "[mass]") {
       I - 4 * (centre.squaredNorm() * Mat3<double>::Identity() - centre * centre.transpose());
   CHECK(v.dot(part->rest_inertia().M * v) == Approx(4 * about_centre(2, 2)).epsilon(1e-14));
   part->make_dynamic({"a1"});
-  CHECK_THROWS_WITH(part->prepare(), test::has_text("rigid part only"));
+  CHECK_THROWS_WITH(part->prepare(), test::has_text("only a rigid part"));
 }
 
 TEST_CASE("M is symmetric and positive definite, and inertial forces balance the power of the change of M",
@@ -289,7 +289,7 @@ TEST_CASE("M is symmetric and positive definite, and inertial forces balance the
           for (Eigen::Index k = 0; k < q_s.size(); ++k) q_s[k].d[0] = state.q_s_dot[k];
           Inertia<Dual<1>> moving;
           Counters counters;
-          part->inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), moving, counters);
+          part->evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), moving, counters);
           MatX<double> M_dot(n, n);
           for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) M_dot(i, j) = moving.M(i, j).d[0];

@@ -36,15 +36,15 @@ void check_equal_without_links(Part& with_null_links, Part& without_links) {
     const test::RandomState state = test::draw_state(draws, without_links);
     Inertia<double> a, b;
     Counters a_counters, b_counters;
-    with_null_links.inertia(state.q_s, state.q_s_dot, state.omega, a, a_counters);
-    without_links.inertia(state.q_s, state.q_s_dot, state.omega, b, b_counters);
+    with_null_links.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, a, a_counters);
+    without_links.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, b, b_counters);
     CHECK(a.M == b.M);
     CHECK(a.g_q == b.g_q);
     CHECK(a_counters.jacobian_points == b_counters.jacobian_points);
     const VecMax<Dual<1>> q_s = state.q_s.cast<Dual<1>>(), q_s_dot = state.q_s_dot.cast<Dual<1>>();
     Inertia<Dual<1>> da, db;
-    with_null_links.inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), da, a_counters);
-    without_links.inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), db, b_counters);
+    with_null_links.evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), da, a_counters);
+    without_links.evaluate_inertia(q_s, q_s_dot, state.omega.cast<Dual<1>>(), db, b_counters);
     for (Eigen::Index i = 0; i < da.M.size(); ++i) REQUIRE(da.M.data()[i].v == db.M.data()[i].v);
 
     const ParameterValues<double> null_values = test::values_of(with_null_links, state),

@@ -33,8 +33,8 @@ void check_identical_bits() {
     const test::RandomState state = test::draw_state(draws, typed);
     Inertia<double> a, b;
     Counters counters;
-    typed.inertia(state.q_s, state.q_s_dot, state.omega, a, counters);
-    run_time->inertia(state.q_s, state.q_s_dot, state.omega, b, counters);
+    typed.evaluate_inertia(state.q_s, state.q_s_dot, state.omega, a, counters);
+    run_time->evaluate_inertia(state.q_s, state.q_s_dot, state.omega, b, counters);
     CHECK(a.M == b.M);
     CHECK(a.g_q == b.g_q);
     CHECK(a.moment == b.moment);
@@ -43,8 +43,8 @@ void check_identical_bits() {
     VecMax<Dual<1>> moving = q_s;
     for (Eigen::Index i = 0; i < q_s.size(); ++i) moving[i].d[0] = state.q_s_dot[i];
     Inertia<Dual<1>> da, db;
-    typed.inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), da, counters);
-    run_time->inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), db, counters);
+    typed.evaluate_inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), da, counters);
+    run_time->evaluate_inertia(moving, q_s_dot, state.omega.cast<Dual<1>>(), db, counters);
     bool same = true;
     for (Eigen::Index i = 0; i < da.M.size(); ++i)
       same = same && da.M.data()[i].v == db.M.data()[i].v && da.M.data()[i].d[0] == db.M.data()[i].d[0];

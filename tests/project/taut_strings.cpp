@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/contact/contact_stepping.h>
 
 #include "motion.h"
 

@@ -303,7 +303,7 @@ TEST_CASE("invalid pictures are refused with the place of the error, and the ren
   refused([](Picture& p) { p.tracks[0].color[2] = std::nanf(""); }, "the color of track 0");
   refused([](Picture& p) { p.tracks[0].width = 0; }, "track 0 must have a width");
   refused([&](Picture& p) { p.tracks[0].points[3][1] = nan; }, "track 0 is not finite");
-  refused([](Picture& p) { p.camera.eye = p.camera.target; }, "eye is its target");
+  refused([](Picture& p) { p.camera.eye = p.camera.target; }, "are at one point");
   refused([&](Picture& p) { p.camera.eye[0] = huge; }, "camera");
   refused([](Picture& p) { p.camera.up = p.camera.eye - p.camera.target; }, "up direction");
   refused([](Picture& p) { p.camera.field_of_view = 180; }, "field_of_view");
@@ -325,13 +325,13 @@ TEST_CASE("invalid pictures are refused with the place of the error, and the ren
   bad_values([](Picture& p) { p.scale->high = 0; }, "the scale");
   bad_values([&](Picture& p) { p.scale->low = -huge; }, "the scale");
   bad_values([&](Picture& p) { p.scale->high = nan; }, "the scale");
-  bad_values([&](Picture&) { values[3] = nan; }, "body 1 has not one finite value");
-  bad_values([&](Picture&) { values.resize(5); }, "body 1 has not one finite value");
+  bad_values([&](Picture&) { values[3] = nan; }, "body 1 must have one finite value");
+  bad_values([&](Picture&) { values.resize(5); }, "body 1 must have one finite value");
   bad_mesh([](TriangleMesh& m) { m.triangles(0, 5) = static_cast<int>(m.x.cols()); },
            "body 1 has triangles with vertices");
   bad_mesh([](TriangleMesh& m) { m.corners(2, 5) = -1; }, "body 1 has triangles with normals");
   bad_mesh([](TriangleMesh& m) { m.x.conservativeResize(3, 4); }, "body 1 has triangles with vertices");
-  bad_mesh([](TriangleMesh& m) { m.corners.conservativeResize(3, 4); }, "body 1 has not one triple");
+  bad_mesh([](TriangleMesh& m) { m.corners.conservativeResize(3, 4); }, "body 1 must have one triple");
   bad_mesh([&](TriangleMesh& m) { m.x(1, 7) = nan; }, "body 1 is not finite");
   bad_mesh([&](TriangleMesh& m) { m.x(1, 7) = 1e300; }, "body 1 is not finite");
   bad_mesh([&](TriangleMesh& m) { m.normals(0, 7) = nan; }, "body 1 is not finite");

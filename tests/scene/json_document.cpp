@@ -203,9 +203,11 @@ TEST_CASE("I03 syntax errors come with the remedy") {
 
 TEST_CASE("I04 text after the document is refused") {
   CHECK(faults("{}\n{}") ==
-        "s.json:2:1: error: \"{\" after the end of the document; a file holds one value\n");
-  CHECK(faults("{} x") == "s.json:1:4: error: \"x\" after the end of the document; a file holds one value\n");
-  CHECK(faults("{}}") == "s.json:1:3: error: \"}\" after the end of the document; a file holds one value\n");
+        "s.json:2:1: error: \"{\" after the end of the document; a file contains one value\n");
+  CHECK(faults("{} x") ==
+        "s.json:1:4: error: \"x\" after the end of the document; a file contains one value\n");
+  CHECK(faults("{}}") ==
+        "s.json:1:3: error: \"}\" after the end of the document; a file contains one value\n");
 }
 
 TEST_CASE("I05 invalid numbers are refused") {
@@ -220,13 +222,13 @@ TEST_CASE("I05 invalid numbers are refused") {
   CHECK(faults("[-05]") == "s.json:1:2: error: \"-05\"; a number has no leading zero\n");
   CHECK(faults("[0x10]") == "s.json:1:2: error: \"0x10\"; a number has no leading zero\n");
   CHECK(faults("[1.5m]") ==
-        "s.json:1:2: error: \"1.5m\"; expected a number alone; units are fixed and not written\n");
+        "s.json:1:2: error: \"1.5m\"; expected a number without a unit; the unit of each key is fixed\n");
   CHECK(faults("[1e]") == "s.json:1:2: error: \"1e\"; expected a number\n");
   CHECK(faults("[-]") == "s.json:1:2: error: \"-\"; expected a number\n");
 }
 
 TEST_CASE("I06 numbers that are too large are refused") {
-  const std::string tail = "\"; too large for a number; expected at most 1.797e308 in size\n";
+  const std::string tail = "\"; too large for a number; expected at most 1.797e308 in magnitude\n";
   CHECK(faults("{\"a\": 1e400}") == "s.json:1:7: error: \"1e400" + tail);
   CHECK(faults("{\"a\": [0, -1e400]}") == "s.json:1:11: error: \"-1e400" + tail);
   CHECK(faults("[" + std::string(400, '9') + "]") ==
@@ -239,9 +241,9 @@ TEST_CASE("I07 numbers that would be rounded to zero are refused") {
       faults("{\"a\": 1e-400, \"b\": [-1e-999]}") ==
       "s.json:1:7: error: /a: 1e-400; too small for a number, it would become 0; expected 0 or at least "
       "4.95e-324 in "
-      "size\n"
+      "magnitude\n"
       "s.json:1:21: error: /b/0: -1e-999; too small for a number, it would become 0; expected 0 or at least "
-      "4.95e-324 in size\n");
+      "4.95e-324 in magnitude\n");
   CHECK(sound("[0e-999, 5e-324, 0.0, -0.0]").root().array()[1].number() == 5e-324);
 }
 
@@ -293,11 +295,12 @@ TEST_CASE("I20 invalid text is refused") {
   CHECK(faults("[\"\\udc00\"]") ==
         "s.json:1:3: error: \\udc00 is half of a surrogate pair; write the character itself\n");
   CHECK(faults("[\"\\u12\"]") == "s.json:1:3: error: \\u; expected four hexadecimal digits\n");
-  CHECK(faults("[\"C:\\path\"]") ==
-        "s.json:1:5: error: \\p is no escape; expected one of \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a "
-        "backslash is "
-        "\\\\\n");
-  CHECK(faults("{\"a\": \"x\\u0000y\"}") == "s.json:1:9: error: /a: \\u0000; a text cannot hold a NUL\n");
+  CHECK(
+      faults("[\"C:\\path\"]") ==
+      "s.json:1:5: error: \\p is not an escape; expected one of \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a "
+      "backslash is "
+      "\\\\\n");
+  CHECK(faults("{\"a\": \"x\\u0000y\"}") == "s.json:1:9: error: /a: \\u0000; a text cannot contain a NUL\n");
   CHECK(faults("{\"x\\u0000y\": 1}").find("1:4: error") != std::string::npos);
   CHECK(faults(std::string("[\"a\0b\"]", 7)) == "s.json:1:4: error: a NUL byte in a text\n");
   CHECK(faults("[\"a\tb\"]") == "s.json:1:4: error: control byte 0x09 in a text; write it as \\t\n");
@@ -462,13 +465,13 @@ TEST_CASE("every truncated or changed scene is read or refused") {
     INFO(n << " " << cut);
     CHECK(cut.rfind("s.json:1:", 0) == 0);
     CHECK(std::count(cut.begin(), cut.end(), '\n') == 1);
-    CHECK(cut.find("expected other than") == std::string::npos);
+    CHECK(cut.find("unexpected") == std::string::npos);
     for (int byte = 0; byte < 256; ++byte) {
       std::string changed = text;
       changed[n] = static_cast<char>(byte);
       const std::string message = faults(changed);
       CHECK((message.empty() || message.rfind("s.json:", 0) == 0));
-      CHECK(message.find("expected other than") == std::string::npos);
+      CHECK(message.find("unexpected") == std::string::npos);
     }
   }
 }

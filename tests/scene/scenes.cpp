@@ -355,13 +355,12 @@ TEST_CASE("settings without effect give a warning") {
   // Twists finer than the mesh.
   const std::string twist =
       "\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 31.5}, \"resolution\": ";
-  CHECK(
-      warnings(twist + "8") ==
-      "s.json:2:79: warning: /parts/0/resolution: 8; its mesh has fewer than 8 edges a turn of the twist; a "
-      "resolution of 41 shows it\n");
+  CHECK(warnings(twist + "8") ==
+        "s.json:2:79: warning: /parts/0/resolution: 8; its mesh has fewer than 8 edges per turn of the "
+        "twist; expected a resolution of at least 41\n");
   CHECK(warnings(twist + "41").empty());
   CHECK(warnings("\"deformations\": [\"twist\"], \"parameters\": {\"twist.angle\": 600}")
-            .find("no resolution shows it") != std::string::npos);
+            .find("no resolution up to 128 is sufficient") != std::string::npos);
 }
 
 TEST_CASE("colouring of parts is read") {

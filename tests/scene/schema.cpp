@@ -43,28 +43,28 @@ const Record& scene() {
                         optional("ty", number(between(-1, 1), "1"), "Taper of y.", "0")}};
     const Record twist{"twist",
                        "Turns the section in proportion to z.",
-                       {required("angle", number(any(), "rad"), "Angle at the end.", "0.5")}};
+                       {required("angle", number(unbounded(), "rad"), "Angle at the end.", "0.5")}};
     const Record dynamic{"dynamic_parameter",
                          "A parameter that moves.",
-                         {required("value", number(any(), ""), "Value at the start.", "0"),
+                         {required("value", number(unbounded(), ""), "Value at the start.", "0"),
                           optional("stiffness", number(at_least(0), ""), "Stiffness.", "0"),
                           optional("rest", time_function(""), "Rest value; by default the value.")}};
-    const Record part{
-        "part",
-        "A solid.",
-        {required("name", name(), "Name of the part, unique.", "\"arm\""),
-         required("shape", tagged("type", {sphere, ellipsoid}), "Shape of the part.",
-                  "{\"type\": \"sphere\"}"),
-         optional("deformations", array(tagged("type", {taper, twist})), "Chain, applied in this order.",
-                  "[]"),
-         optional("density", number(above(0), "kg/m^3"), "Mass per rest volume."),
-         optional("mass", number(above(0), "kg"), "Mass."),
-         optional("fixed", boolean(), "The part does not move.", "false"),
-         optional("position", vector3("m"), "Place of the frame.", "[0, 0, 0]"),
-         optional("parameters",
-                  map(one_of({number(any(), ""), record(dynamic)}).expecting("a number or {\"value\": ...}")),
-                  "Parameters by name.", "{}")},
-        {{{"density", "mass"}, true}}};
+    const Record part{"part",
+                      "A solid.",
+                      {required("name", name(), "Name of the part, unique.", "\"arm\""),
+                       required("shape", tagged("type", {sphere, ellipsoid}), "Shape of the part.",
+                                "{\"type\": \"sphere\"}"),
+                       optional("deformations", array(tagged("type", {taper, twist})),
+                                "Chain, applied in this order.", "[]"),
+                       optional("density", number(above(0), "kg/m^3"), "Mass per rest volume."),
+                       optional("mass", number(above(0), "kg"), "Mass."),
+                       optional("fixed", boolean(), "The part does not move.", "false"),
+                       optional("position", vector3("m"), "Place of the frame.", "[0, 0, 0]"),
+                       optional("parameters",
+                                map(one_of({number(unbounded(), ""), record(dynamic)})
+                                        .expecting("a number or {\"value\": ...}")),
+                                "Parameters by name.", "{}")},
+                      {{{"density", "mass"}, true}}};
     const Record spring{"spring",
                         "A linear spring.",
                         {required("part", name(), "Part it pulls.", "\"arm\""),
@@ -449,8 +449,8 @@ TEST_CASE("key frames may have end rates") {
 }
 
 TEST_CASE("invalid declarations are errors of the program") {
-  CHECK_THROWS_AS(optional("a", number(any(), "m"), "A.", "[1,"), std::logic_error);
-  CHECK_THROWS_AS(required("a", number(any(), "m"), "A.", "nan"), std::logic_error);
+  CHECK_THROWS_AS(optional("a", number(unbounded(), "m"), "A.", "[1,"), std::logic_error);
+  CHECK_THROWS_AS(required("a", number(unbounded(), "m"), "A.", "nan"), std::logic_error);
   const Record twice{
       "r",
       "R.",

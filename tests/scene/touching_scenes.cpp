@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/run/contact_notes.h>
 #include <pliant/scene/read_scene.h>
 #include <pliant/simulate/simulation.h>

@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include <pliant/contact/contact_stepping.h>
 #include "draws.h"
+
 #include "motion.h"
 
 namespace prescribed_motion_test {

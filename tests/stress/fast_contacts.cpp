@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <pliant/collision/mesh/contact_mesh.h>
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/part/local/local_laws.h>
 
 #include "draws.h"
@@ -192,8 +193,8 @@ TEST_CASE("N53: a step of thousands of lengths is refused, and a hundredth of th
       set_motion(simulation.model().parts()[0], shot, draws, state);
       simulation.set_state(state);
       CHECK_THROWS_WITH(simulation.step(shot.step),
-                        test::has_text("parts move so fast past each other that a step of 50 s would be") &&
-                            test::has_text("a smaller step than 50 s may cure it"));
+                        test::has_text("parts move so fast past each other that a step of 50 s would need") &&
+                            test::has_text("use a smaller step"));
       CHECK(simulation.state().q == state.q);
       CHECK(simulation.state().v == state.v);
       if (soft) continue;

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <pliant/contact/contact_problem.h>
+#include <pliant/contact/contact_stepping.h>
 
 #include "draws.h"
 #include "motion.h"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <pliant/body/joints/all_joints.h>
+#include <pliant/contact/contact_stepping.h>
 
 #include "motion.h"
 

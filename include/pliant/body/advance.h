@@ -1,20 +1,22 @@
-// Moving a state along velocities: positions add, rotations turn by the exponential map.
+// Advancing coordinates along velocities: positions and parameters add, rotations turn by the exponential
+// map.
 #pragma once
 
 #include <pliant/body/constraint/group.h>
 
 namespace pliant {
 
-/// q <- q (+) h v: c and q_s add, theta <- theta o exp(h omega / 2).
+/// q <- q (+) h v for all parts: c, q_s and q_d add, theta <- theta o exp(h omega / 2).
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
-/// The same of one part, with its own velocities (c_dot, omega, q_s_dot).
+/// q <- q (+) h v for the frame and the global parameters of one part; v: (c_dot, omega, q_s_dot) of the
+/// part.
 void advance_part(const PartModel& m, VecX<double>& q, const Eigen::Ref<const VecX<double>>& v, double h);
 
-/// The same of its local coordinates too; v: of all parts.
+/// q <- q (+) h v for all coordinates of one part; v: velocities of all parts.
 void advance_whole_part(const PartModel& m, VecX<double>& q, const VecX<double>& v, double h);
 
-/// The share of a part in the velocities v of all.
+/// The entries (c_dot, omega, q_s_dot) of a part in the velocities v of all parts.
 inline auto share_of(const PartModel& m, VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
@@ -22,22 +24,24 @@ inline auto share_of(const PartModel& m, const VecX<double>& v) {
   return v.segment(m.v0, 6 + m.n_s);
 }
 
-/// (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot), and back; work: of its frame.
+/// Returns v_r = (R^T c_dot, omega, q_s_dot) of a part from (c_dot, omega, q_s_dot); w must contain its
+/// frame.
 VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v);
+/// Returns (c_dot, omega, q_s_dot) of a part from v_r = (R^T c_dot, omega, q_s_dot).
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
-/// Of v what belongs to the velocities x of a part as its group has them (body/group.h): nodes take what the
-/// change of the points at which joints hold them tells.
+/// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). The velocities of
+/// nodes change by the response to the pushes that change the velocities of the points at joints.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
-/// q <- q (+) h x of a part, x as its group has it.
+/// q <- q (+) h x for one part, with its velocities x in a group.
 void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& x,
                   double h, VecX<double>& q);
 
-/// Brings every quaternion back to unit length.
+/// Normalises every quaternion.
 void normalise_rotations(const Model& model, VecX<double>& q);
 
-/// Zero rates for parameters that had no inertia at the last evaluation.
+/// Sets the rates of parameters that had no inertia at the last evaluation to zero.
 void stop_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v);
 
 }  // namespace pliant

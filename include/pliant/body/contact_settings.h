@@ -1,4 +1,4 @@
-// Who touches whom: planes, obstacles, friction and restitution, and pairs that are out of the ordinary.
+// Settings of contact: planes, obstacles, friction, restitution, and pairs with settings of their own.
 #pragma once
 
 #include <algorithm>
@@ -14,81 +14,84 @@
 
 namespace pliant {
 
-/// Whether something that is there from `on` until `off` is so in a step that ends at a time t; steps end at
-/// such times, but for rounding. s.
-inline bool there_before(double t, double on, double off) {
+/// Whether an object that is present from `on` until `off` (s) is present in a step that ends at t (s). Steps
+/// end at the times `on` and `off`, within rounding.
+inline bool present_before(double t, double on, double off) {
   constexpr double kRounding = 1e-12;
   return (on <= 0 || t > on * (1 + kRounding)) && t <= off * (1 + kRounding);
 }
 
-/// An immobile, impenetrable half space below a plane, or one that is moved by hand.
+/// An impenetrable half space below a plane, immobile or with prescribed motion.
 struct ContactPlane {
   std::string name;
-  TimeVector point;                                      ///< on the plane, m, world
-  Vec3<double> normal = {0, 0, 1};                       ///< of length 1, out of the half space, world
-  double on = 0;                                         ///< it is there from this time, s
-  double off = std::numeric_limits<double>::infinity();  ///< until that, s
+  TimeVector point;                                      ///< a point on the plane, m, world
+  Vec3<double> normal = {0, 0, 1};                       ///< unit normal, out of the half space, world
+  double on = 0;                                         ///< the plane is present from this time, s
+  double off = std::numeric_limits<double>::infinity();  ///< until this time, s
 
   bool acts_at(double t) const { return on <= t && t < off; }
-  bool acts_before(double t) const { return there_before(t, on, off); }
-  /// Over h seconds from t on the most of its height along its normal, m, at kMoments.
+  bool acts_before(double t) const { return present_before(t, on, off); }
+  /// Returns the largest height of the plane along its normal, m, in the h seconds after t, sampled at
+  /// kMoments.
   double highest(double t, double h) const {
     if (point.is_constant()) return normal.dot(point.value(t));
-    double most = -std::numeric_limits<double>::infinity();
-    for (const double share : kMoments) most = std::max(most, normal.dot(point.value(t + share * h)));
-    return most;
+    double largest = -std::numeric_limits<double>::infinity();
+    for (const double share : kMoments) largest = std::max(largest, normal.dot(point.value(t + share * h)));
+    return largest;
   }
 };
 
-/// An immobile body whose surface is a triangle mesh, one-sided where it is open (contact/obstacle_mesh.h).
+/// An immobile body whose surface is a triangle mesh; an open mesh is one-sided
+/// (collision/mesh/obstacle_mesh.h).
 struct ContactObstacle {
   std::string name;
   Eigen::Matrix3Xd vertices;   ///< m, world
-  Eigen::Matrix3Xi triangles;  ///< columns of these, counter-clockwise seen from the side that is free
-  double on = 0;               ///< it is there from this time, s
-  double off = std::numeric_limits<double>::infinity();  ///< until that, s
+  Eigen::Matrix3Xi triangles;  ///< columns of `vertices`, counter-clockwise seen from the free side
+  double on = 0;               ///< the obstacle is present from this time, s
+  double off = std::numeric_limits<double>::infinity();  ///< until this time, s
 
   bool acts_at(double t) const { return on <= t && t < off; }
-  bool acts_before(double t) const { return there_before(t, on, off); }
+  bool acts_before(double t) const { return present_before(t, on, off); }
 };
 
-/// Parts, planes and obstacles that pairs can name together.
+/// Parts, planes and obstacles that a pair can name together.
 struct ContactGroup {
   std::string name;
   std::vector<std::string> members;
 };
 
-/// How two things touch that are named: parts, planes, obstacles or groups; a group with itself says it of
-/// its members. Of several pairs that two things are in, that with the fewest groups counts, and of these the
-/// last.
+/// Contact settings of two named parts, planes, obstacles or groups. A group paired with itself sets its
+/// members against each other. If several pairs match, the one with the fewest groups applies, and among
+/// these the last.
 struct ContactPair {
   std::string a, b;
-  bool touch = true;                                ///< false: they pass through each other
-  std::optional<double> friction{}, restitution{};  ///< those of the settings where not given
+  bool touch = true;                                ///< false: the two pass through each other
+  std::optional<double> friction{}, restitution{};  ///< default: the values of ContactSettings
 };
 
-/// Bodies that have been at rest for long enough, and all that they touch and are tied to with them, sleep:
-/// they are neither evaluated nor searched for contacts with each other until an awake body meets them, or
-/// what drives them changes: a joint switches, the end of a spring or joint, a force, a rest value, a plane
-/// or gravity moves.
+/// Sleeping. A body falls asleep when it, and all bodies that it touches or is joined to, have been at rest
+/// for some time. Sleeping bodies are not evaluated, and contacts between them are not searched. They wake
+/// when an awake body meets them, or when their drive changes: a joint switches, or the end of a spring or
+/// joint, a force, a rest value, a plane or gravity changes.
 struct Sleep {
-  double speed = 0;    ///< of the fastest point of a body that counts as resting, m/s; above 0
-  double after = 0.5;  ///< for how long it does, s; above 0
+  double speed = 0;    ///< a body is at rest while its fastest point is slower, m/s; above 0
+  double after = 0.5;  ///< time at rest after which a body falls asleep, s; above 0
 };
 
 struct ContactSettings {
-  bool active = false;        ///< whether anything touches at all
-  bool between_parts = true;  ///< whether parts touch parts, or planes and obstacles alone
+  bool active = false;        ///< whether there is any contact
+  bool between_parts = true;  ///< whether parts touch each other, or planes and obstacles only
   double friction = 0.5;      ///< Coulomb's coefficient mu
-  double restitution = 0;     ///< Newton's coefficient e: speed after an impact over that before
-  /// Parts that a joint ties together touch only where a pair names both.
+  double restitution = 0;     ///< Newton's coefficient e: speed after an impact over speed before
+  /// Pairs with settings of their own. Two parts with a common joint touch only if a pair names both.
   std::vector<ContactPair> pairs;
   std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
-  std::optional<Sleep> sleep{};  ///< not given: nothing sleeps
-  /// Of steps to a tolerance of 5e-4 or less in which many bodies lie on each other, or some that deform
-  /// locally, whose error is not controlled (contact_step.h), or any where forces act, s; above 0.
+  std::optional<Sleep> sleep{};  ///< not given: no body sleeps
+  /// Longest step, s, above 0, in steps to a tolerance of 5e-4 or less whose error is not controlled because
+  /// of resting contacts: with many bodies, with bodies that deform locally, or with point forces
+  /// (contact/longest_contact_step.h).
   double longest_step = 2e-3;
 };
 

@@ -1,4 +1,5 @@
-// The energy ledger and the momenta of a state (design section 5, promise 4).
+// The energy ledger and the momenta of a state: energy - energy at the start = work so far, within the error
+// of the steps.
 #pragma once
 
 #include <pliant/body/state.h>
@@ -6,12 +7,15 @@
 namespace pliant {
 
 struct Ledger {
-  /// Energies, J; elastic: of the global parameters, local: of local deformation.
-  double kinetic = 0, gravity = 0, elastic = 0, local = 0, springs = 0;
-  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< work so far, J
-  Vec3<double> momentum = Vec3<double>::Zero();            ///< P, kg m/s, world
-  Vec3<double> angular_momentum = Vec3<double>::Zero();    ///< L about the world's origin, kg m^2/s
-  double balance = 0;  ///< energy - energy at the start - work: zero but for the step's error
+  double kinetic = 0;                                      ///< kinetic energy, J
+  double gravity = 0;                                      ///< potential energy of gravity, J
+  double elastic = 0;                                      ///< elastic energy of the global parameters, J
+  double local = 0;                                        ///< elastic energy of local deformation, J
+  double springs = 0;                                      ///< elastic energy of the springs, J
+  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< work so far, J, by kind (enum Work)
+  Vec3<double> momentum = Vec3<double>::Zero();            ///< linear momentum P, kg m/s, world
+  Vec3<double> angular_momentum = Vec3<double>::Zero();    ///< L about the origin of the world, kg m^2/s
+  double balance = 0;  ///< energy - energy at the start - work, J: the error of the steps
 
   double energy() const { return kinetic + gravity + elastic + local + springs; }
 };

@@ -1,6 +1,7 @@
-// Directions fixed in the material of a part: a frame at a material point x_0, carried by three points x_1,
-// x_2, x_3 around it. The axes are combinations of the differences x_i - x_0, made orthonormal, the first
-// axis first, so that they follow the part as it turns and deforms. In the world they stand still.
+// Directions that are fixed in the material of a part: a frame at a material point x_0, defined by three
+// points x_1, x_2, x_3 around it. The axes are linear combinations of the differences x_i - x_0,
+// orthonormalised in their order, so that they follow the part when it turns and deforms. The axes of a frame
+// of the world are constant.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@
 
 namespace pliant {
 
-/// A point with axes, the columns of a rotation, world.
+/// A point with axes (the columns of a rotation), world.
 template <class T>
 struct Framed {
   Vec3<T> x;
@@ -19,13 +20,14 @@ struct Framed {
 
 struct MaterialFrame {
   static constexpr int points = 4;
-  Mat3<double> K = Mat3<double>::Identity();  ///< axes = (x_1 - x_0, x_2 - x_0, x_3 - x_0) K + still, 1/m
-  Mat3<double> still = Mat3<double>::Zero();  ///< of a frame of the world
+  /// Coefficients, 1/m: axes = (x_1 - x_0, x_2 - x_0, x_3 - x_0) K before orthonormalisation.
+  Mat3<double> K = Mat3<double>::Identity();
+  Mat3<double> world_axes = Mat3<double>::Zero();  ///< axes of a frame of the world; zero on a part
 
-  /// The axes in the world, as columns. x: the four points.
+  /// Returns the axes in the world, as columns. x: the four points.
   template <class T>
   Mat3<T> at(const Vec3<T>* x) const {
-    if (!still.isZero(0)) return still.cast<T>();
+    if (!world_axes.isZero(0)) return world_axes.cast<T>();
     const Vec3<T> e_1 = edge(x, 0), e_2 = edge(x, 1);
     Mat3<T> axes;
     axes.col(0) = e_1 / length(e_1);
@@ -39,16 +41,17 @@ struct MaterialFrame {
     return {x[0], at(x)};
   }
 
-  /// How the axes A turn as the points move: d A = A [phi]x, d phi = turn dx, 3 x 12.
+  /// Returns the 3 x 12 matrix `turn` with dA = A [dphi]x, dphi = turn dx: the rotation of the axes A when
+  /// the points move by dx.
   template <class T>
   Eigen::Matrix<T, 3, 3 * points> turn(const Vec3<T>* x, const Mat3<T>& A) const {
     Eigen::Matrix<T, 3, 3 * points> turn = Eigen::Matrix<T, 3, 3 * points>::Constant(T(0.0));
-    if (!still.isZero(0)) return turn;
+    if (!world_axes.isZero(0)) return turn;
     const Vec3<T> e_1 = edge(x, 0), e_2 = edge(x, 1);
     const T along = A.col(0).dot(e_2), inverse_1 = T(1.0) / length(e_1),
             inverse_2 = T(1.0) / A.col(1).dot(e_2);
     for (int k = 0; k < 3; ++k) {
-      Mat3<T> d;  // by x_k+1
+      Mat3<T> d;  // derivative by x_k+1
       d.row(2) = A.col(1).transpose() * T(inverse_1 * K(k, 0));
       d.row(1) = A.col(2).transpose() * T(-inverse_1 * K(k, 0));
       d.row(0) = (A.col(2).transpose() * T(K(k, 1)) + d.row(1) * along) * inverse_2;
@@ -59,7 +62,7 @@ struct MaterialFrame {
   }
 
  private:
-  /// An axis as the points have it, neither of length 1 nor square to the others.
+  /// Returns axis c before orthonormalisation.
   template <class T>
   Vec3<T> edge(const Vec3<T>* x, int c) const {
     return (x[1] - x[0]) * T(K(0, c)) + (x[2] - x[0]) * T(K(1, c)) + (x[3] - x[0]) * T(K(2, c));
@@ -75,11 +78,12 @@ struct FramedPoint {
   MaterialFrame frame;
 };
 
-/// The frame at a point whose axes are the columns of a rotation: in the frame of its part at rest, or in the
-/// world. The part must be prepared. Throws std::invalid_argument when the part has no extent there.
+/// Returns the frame at a point whose axes at rest are the columns of a rotation, given in the frame of its
+/// part, or in the world for a point of the world. The part must be prepared. Throws std::invalid_argument if
+/// no three directions around the point are linearly independent.
 FramedPoint framed(const Point& at, const Mat3<double>& axes);
 
-/// A rotation whose first column is a direction, of any length > 0.
+/// Returns a rotation whose first column is along a direction (of any length > 0).
 Mat3<double> axes_along(const Vec3<double>& direction);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Model: a MultiBody made ready to run: constants only, in flat arrays. Every function of the dynamics takes
-// it const.
+// Model: a MultiBody that is prepared for a run. It contains constants only, in flat arrays; the functions of
+// the dynamics do not change it.
 #pragma once
 
 #include <algorithm>
@@ -15,47 +15,49 @@
 
 namespace pliant {
 
-/// A part's place in the flat vectors, its attachment points, its constants.
+/// The entries of a part in the flat vectors q and v, its attachment points, and its constants.
 struct PartModel {
-  // What every stage reads comes first, and lies close together.
+  // Fields that every stage reads come first, close together in memory.
   const Part* part;
-  int q0, v0;  ///< first entries in q and v; -1 for a part that is fixed or moves as prescribed
-  int n_s;
-  int island = -1;                            ///< of the parts that joints tie together; -1 for a part alone
-  int rigid_island = -1;                      ///< likewise of those that are rigid_island.h's; -1: none
-  int limit0;                                 ///< first entry in State::at_limit
-  bool loaded = false;                        ///< whether springs, forces or torques act on it
-  bool actuated = false;                      ///< whether a rest value of a dynamic parameter changes in time
-  const LocalDeformation* local;              ///< nullptr of a part that has none
-  const PrescribedMotion* motion;             ///< likewise
-  std::vector<NodeWeights> shared;            ///< of one that deforms locally: its joints' points, each once
-  std::vector<Material<double>> ports;        ///< material points that forces act on
+  int q0, v0;       ///< first entries in q and v; -1 for a part that is fixed or has a prescribed motion
+  int n_s;          ///< number of dynamic global parameters
+  int island = -1;  ///< number of its island of joined parts; -1: no joints
+  int rigid_island = -1;           ///< number of its rigid island (constraint/rigid_island.h); -1: none
+  int limit0;                      ///< first entry in State::at_limit
+  bool loaded = false;             ///< whether springs, forces or torques act on it
+  bool actuated = false;           ///< whether a rest value of a dynamic parameter changes in time
+  const LocalDeformation* local;   ///< nullptr for a part without local deformation
+  const PrescribedMotion* motion;  ///< nullptr for a part without prescribed motion
+  /// Of a part that deforms locally: the points at which joints act, each once.
+  std::vector<NodeWeights> shared;
+  std::vector<Material<double>> ports;        ///< attachment points: material points at which forces act
   double drag;                                ///< nu, 1/s
-  VecX<double> rest;                          ///< rest values of the dynamic parameters, at time 0
-  VecX<double> inertia_floor;                 ///< see SymmetricFactor
+  VecX<double> rest;                          ///< rest values of the dynamic parameters at time 0
+  VecX<double> inertia_floor;                 ///< smallest inertia of each velocity, see SymmetricFactor
   std::vector<Range> limits;                  ///< of each dynamic parameter
-  std::vector<PointJet<double>> rigid_ports;  ///< constants of the ports of a rigid part
-  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< M^-1 of a rigid part
-  SymmetricFactor<double> rigid_factor;       ///< likewise
+  std::vector<PointJet<double>> rigid_ports;  ///< constant jets of the ports of a rigid part
+  Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
+  SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
   std::vector<NodeWeights> node_weights;      ///< of each port of a part that deforms locally
-  std::vector<int> port_place;                ///< of each of them among `shared`; -1: no joint is there
-  Eigen::Matrix3d R0;                         ///< of a fixed part
-  Part::Use use;                              ///< keeps the part from being changed
+  std::vector<int> port_place;                ///< of each port: its number in `shared`; -1: no joint
+  Eigen::Matrix3d R0;                         ///< orientation of a fixed part
+  Part::Use use;                              ///< locks the part against changes
 
-  /// Rest values of the dynamic parameters at time t (s).
+  /// Returns the rest values of the dynamic parameters at time t (s).
   VecMax<double> rest_at(double t) const {
     VecMax<double> values = rest;
     for (int k = 0; k < n_s && actuated; ++k) values[k] = part->parameters().moving(k).rest.value(t);
     return values;
   }
+  /// Number of local coordinates.
   int n_d() const { return local == nullptr ? 0 : static_cast<int>(local->n_d()); }
-  int n_q() const { return 7 + n_s + n_d(); }  ///< coordinates in q
-  int n_v() const { return 6 + n_s + n_d(); }  ///< velocities in v
-  /// Velocities by which other parts know it (group.h): v_r, and the local ones at its joints.
+  int n_q() const { return 7 + n_s + n_d(); }  ///< number of coordinates in q
+  int n_v() const { return 6 + n_s + n_d(); }  ///< number of velocities in v
+  /// Number of velocities of the part in a group (constraint/group.h): v_r, and d_dot at its joints.
   int n_x() const { return 6 + n_s + 3 * static_cast<int>(shared.size()); }
 };
 
-/// Where an attachment is: a port of a part, or the world.
+/// An attachment: a port of a part, or a point of the world.
 struct PortRef {
   int part = -1;  ///< -1: the world
   int port = -1;
@@ -72,34 +74,35 @@ struct ForceModel {
 struct TorqueModel {
   const Torque* torque;
   int part;
-  int against;  ///< -1: nothing
+  int against;  ///< part with the opposite torque; -1: none
 };
 
-/// A side of a joint that is on a moving part. A joint whose sides are on the same part has one.
+/// A side of a joint on a part with coordinates. A joint whose two sides are on one part has one JointSide.
 struct JointSide {
   int part;
-  int place;   ///< of the part in its island
-  int offset;  ///< of its C_q^T and M^-1 C_q^T, n_v x rows, in the flat arrays of the workspace
+  int place;   ///< number of the part in its island
+  int offset;  ///< start of its C_q^T and M^-1 C_q^T, n_x x rows, in the flat arrays of the workspace
 };
 struct JointModel {
   const Joint* joint;
   int rows;
-  int row;                  ///< first of its rows among those of all joints
-  std::vector<PortRef> at;  ///< of each of its points
+  int row;                  ///< first row in the rows of all joints
+  std::vector<PortRef> at;  ///< attachment of each of its points
   std::vector<JointSide> sides;
-  int island, node;  ///< its node in the system of its island
-  int island_row;    ///< first of its rows there
+  int island, node;  ///< its island, and its node in the system of the island; node -1: a string
+  int island_row;    ///< first row in the rows of the island
   double length;     ///< size of the smaller of its parts, m
-  bool driven;       ///< whether a point of it moves as prescribed
-  /// Of a joint between points of one part: where C_q^T and M^-1 C_q^T of its first side alone are; else -1.
+  bool driven;       ///< whether one of its points has a prescribed motion
+  /// Of a joint between two points of one part: start of C_q^T and M^-1 C_q^T of its first side alone; else
+  /// -1.
   int first_offset = -1;
 };
 
-/// What two sides of joints that share a part add to W_c = C_q M^-1 C_q^T: the block of (row side, column
-/// side).
+/// A block of W_c = C_q M^-1 C_q^T: two sides of joints on one part add C_q (row side) times M^-1 C_q^T
+/// (column side).
 struct Coupling {
   int part;
-  int row_offset, column_offset;  ///< of the sides in the flat arrays
+  int row_offset, column_offset;  ///< starts of the sides in the flat arrays
   int rows, columns;
   int row_joint, column_joint;
   int target;  ///< offset of the block
@@ -107,27 +110,28 @@ struct Coupling {
   int later_joint() const { return std::max(row_joint, column_joint); }
 };
 
-/// Parts that joints tie together, and the system of their joints.
+/// A set of parts that joints connect, and the system of these joints.
 struct Island {
   std::vector<int> parts;
-  std::vector<int> anchors;  ///< parts without coordinates that its joints hold on to
-  std::vector<int> joints;   ///< those that are equations
-  std::vector<int> strings;  ///< those that are one-sided
+  std::vector<int> anchors;  ///< parts without coordinates at its joints
+  std::vector<int> joints;   ///< joints that are equations, C = 0
+  std::vector<int> strings;  ///< one-sided joints, C >= 0
   bool loaded = false;       ///< whether springs, forces or torques act on any of its parts
-  std::vector<int> first;    ///< where each part begins in the vector of the island's velocities
+  std::vector<int> first;    ///< of each part: its first entry in the vector of the velocities of the island
   int n_v = 0;               ///< length of that vector
-  int rows = 0;              ///< of joints
-  int rigid = -1;            ///< its number among the rigid islands; -1: it is none
-  bool augmented = false;    ///< solved as the augmented matrix, not by blocks
-  bool uneven = false;   ///< parts so light among heavy ones that what is left of forces on them is refined
-  BlockPattern pattern;  ///< of the blocks of W_c, when they are used
-  std::vector<Coupling> couplings;  ///< in the order of their later joints
-  long numbers = 0;                 ///< in the factor
+  int rows = 0;              ///< number of rows of `joints`
+  int rigid = -1;            ///< its number among the rigid islands; -1: none
+  bool augmented = false;    ///< whether the augmented matrix of Eq. (14) is factored, not the blocks of W_c
+  bool uneven = false;       ///< whether masses differ so much that solutions are refined
+  BlockPattern pattern;      ///< pattern of the blocks of W_c, if they are factored
+  std::vector<Coupling> couplings;  ///< sorted by their later joints
+  long factor_values = 0;           ///< number of values in the factor
 };
 
 class Model {
  public:
-  /// Prepares all parts. Throws std::invalid_argument naming what is wrong. The body must outlive the model.
+  /// Prepares all parts. Throws std::invalid_argument, naming the part, joint or load at fault. The body must
+  /// outlive the model.
   explicit Model(MultiBody& body);
 
   const MultiBody& body() const { return *body_; }
@@ -135,76 +139,90 @@ class Model {
   const std::vector<SpringModel>& springs() const { return springs_; }
   const std::vector<ForceModel>& forces() const { return forces_; }
   const std::vector<TorqueModel>& torques() const { return torques_; }
-  /// Parts that springs, forces or torques act on.
+  /// Numbers of the parts that springs, forces or torques act on.
   const std::vector<int>& loaded_parts() const { return loaded_parts_; }
   const std::vector<JointModel>& joints() const { return joints_; }
   const std::vector<Island>& islands() const { return islands_; }
-  /// Of the islands that are rigid parts on ball joints.
+  /// The islands of rigid parts on ball joints.
   const std::vector<RigidIsland>& rigid_islands() const { return rigid_islands_; }
-  /// Parts that are in no island.
+  /// Numbers of the parts that are in no island.
   const std::vector<int>& lone_parts() const { return lone_parts_; }
-  /// Times after 0 at which joints, planes and obstacles begin or cease to act, in order, s.
+  /// Times after 0 at which joints, planes and obstacles switch on or off, sorted, s.
   const std::vector<double>& switch_times() const { return switch_times_; }
-  /// Joints that have an end that is moved as prescribed.
+  /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
-  /// The first time, later than one and no later than another (s), at which the rate at which an end of a
-  /// joint is moved jumps while the joint acts; of all joints, or of one.
+  /// Returns the first time, later than `after` and no later than `until` (s), at which the rate of a
+  /// prescribed end of a joint jumps while the joint acts; of all joints, or of one.
   Kink next_kink(double after, double until) const;
   Kink next_kink(const JointModel& joint, double after, double until) const;
-  int n_rows() const { return n_rows_; }          ///< of all joints
-  int n_side_values() const { return n_sides_; }  ///< numbers in C_q^T of all joints
+  int n_rows() const { return n_rows_; }          ///< number of rows of all joints
+  int n_side_values() const { return n_sides_; }  ///< number of values in C_q^T of all joints
   int n_q() const { return n_q_; }
   int n_v() const { return n_v_; }
   int n_limits() const { return n_limits_; }
-  /// Parts whose rest is told in a state (State::at_rest): all where bodies may sleep, else none.
+  /// Size of State::at_rest: the number of parts if bodies may sleep, else 0.
   std::size_t n_resting() const { return body_->contact.active && body_->contact.sleep ? parts_.size() : 0; }
 
-  /// The state at time 0.
+  /// Returns the state at time 0.
   State initial_state() const;
-  /// Parameters are at their limits, or not, as their values say.
+  /// Sets State::at_limit of all parameters from their values.
   void note_limits(State& state) const;
-  /// All parameters of a part in a state.
+  /// Returns all parameters of a part in a state.
   ParameterValues<double> values(const State& state, int part) const;
+  /// Returns the position of the frame of a part (m, world) and its orientation (body to world) in a state.
   Vec3<double> position(const State& state, int part) const { return position(state, part, state.time()); }
   Eigen::Quaterniond orientation(const State& state, int part) const {
     return orientation(state, part, state.time());
   }
-  /// The same with the coordinates of the state taken at time t (s).
+  /// Returns position and orientation for the coordinates of a state at time t (s).
   Vec3<double> position(const State& state, int part, double t) const;
   Eigen::Quaterniond orientation(const State& state, int part, double t) const;
-  /// A point of a part in the world. Asked for again and again it is found faster by its weights among the
-  /// nodes, or as a PlacedPoint.
+  /// Returns the position of a material point of a part, m, world. Repeated calls are faster with the weights
+  /// of the point among the nodes, or as a PlacedPoint.
   Vec3<double> world_point(const State& state, int part, const Material<double>& m) const;
   Vec3<double> world_point(const State& state, int part, const Material<double>& m,
                            const NodeWeights& at) const;
-  /// Where a point is among the nodes of its part, with its patch; none of a part that does not deform
-  /// locally.
+  /// Returns the weights of a point, with its patch, among the nodes of its part; empty for a part without
+  /// local deformation.
   static NodeWeights node_weights(const Point& point);
-  /// Positions of the nodes of the mesh of a part that deforms locally, body frame, m.
+  /// Returns the positions of the nodes of a part that deforms locally, body frame, m.
   Nodes node_positions(const State& state, int part) const;
-  /// Whether a part neither moves nor is moved: it is fixed, or sleeps.
+  /// Whether a part is motionless: it is fixed without prescribed motion, or it sleeps.
   bool lies_still(const State& state, int part) const {
     const PartModel& m = parts_[static_cast<std::size_t>(part)];
     return m.q0 < 0 ? m.motion == nullptr : sleeps(state, part);
   }
-  /// How far a joint is open in a state, m: |C|, of a one-sided one the part below zero.
+  /// Returns the gap of a joint in a state, m: |C|, or max(0, -C) of a one-sided joint.
   double gap(const State& state, int joint) const;
-  /// "upper.c.x", "upper.bend.angle": the name of an entry of v (or of q, where they differ).
+  /// Returns the name of an entry of v, for instance "upper.c_dot.x".
   std::string velocity_name(int i) const;
+  /// Returns the name of an entry of q, for instance "upper.bend.angle".
   std::string coordinate_name(int i) const;
 
  private:
-  /// what: the spring or force that acts there, for messages.
-  PortRef attach(const Point& point, const std::string& what);
-  void add_joint(const Joint& joint);
-  void lay_sides();
-  void make_islands();
-  void note_loaded_parts();
-  void make_rigid_islands();
-  /// A joint and which of its sides is on a part.
+  /// A joint, and the number of its side on a part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
+
+  void add_part(Part& part);
+  void add_springs();
+  void add_forces_and_torques();
+  void add_joint(const Joint& joint);
+  /// Adds a port for a point and returns its attachment. what: the load or joint of the point, for messages.
+  PortRef attach(const Point& point, const std::string& what);
+  void note_switch_times();
+  /// Finds the points of parts that deform locally at which joints act, and the places of C_q^T.
+  void share_joint_points();
+  void assign_side_offsets();
+  void make_islands();
+  /// Numbers the joints of all islands; returns the sides on each part.
+  SidesOfParts number_joints();
+  /// Numbers the parts of all islands.
+  void number_parts(const SidesOfParts& sides_of);
   void choose_solver(Island& island, const SidesOfParts& sides_of);
-  void lay_couplings(Island& island, const SidesOfParts& sides_of);
+  void add_couplings(Island& island, const SidesOfParts& sides_of);
+  void evaluate_rigid_ports();
+  void mark_loaded_parts();
+  void make_rigid_islands();
 
   const MultiBody* body_;
   std::vector<PartModel> parts_;

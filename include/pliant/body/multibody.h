@@ -1,5 +1,4 @@
-// MultiBody: parts, the joints that tie them, and what acts on them. This is what a library user or a scene
-// fills in; Model makes it ready to run.
+// MultiBody: parts, joints and loads. A library user or a scene fills it in; Model prepares it for a run.
 #pragma once
 
 #include <functional>
@@ -22,9 +21,9 @@
 
 namespace pliant {
 
-/// A linear spring and damper between two points. With rest length 0 it pulls with -k d - c d_dot along the
-/// difference d of the points; else with -(k (|d| - length) + c d|d|/dt) along d, and with nothing while |d|
-/// = 0.
+/// A linear spring and damper between two points with difference d. With rest length 0 its force is
+/// -k d - c d_dot. With a rest length > 0 its force is -(k (|d| - length) + c d|d|/dt) along d, and zero
+/// while |d| = 0.
 struct Spring {
   std::string name;
   Point a, b;
@@ -41,30 +40,31 @@ struct PointForce {
   Point at;
   TimeVector force;  ///< N
   Frame frame = Frame::world;
-  /// Library users: a force of their own instead (t, position and velocity in the world -> N in the world).
-  /// Directional derivatives (jvp) take it as constant. Within steps numbers below 2e-308 are zero.
+  /// A force by a function of the library user, which replaces `force`: (t, position and velocity in the
+  /// world) -> N in the world. Directional derivatives (jvp) treat it as constant. Within steps, numbers
+  /// below 2e-308 are zero.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
-/// A torque on the rotation of a part's frame; against another part, on which its opposite acts, it is from
-/// inside, as of a motor or a muscle, and leaves their momenta as they are.
+/// A torque on the rotation of a part's frame. If there is a part `against`, the opposite torque acts on that
+/// part: the torque is internal, like that of a motor or a muscle, and conserves the total momenta.
 struct Torque {
   std::string name;
   const Part* part = nullptr;
   TimeVector torque;              ///< N m
-  Frame frame = Frame::world;     ///< body: of `part`
-  const Part* against = nullptr;  ///< nullptr: it is from outside
+  Frame frame = Frame::world;     ///< Frame::body: the frame of `part`
+  const Part* against = nullptr;  ///< nullptr: an external torque
 };
 
 class MultiBody {
  public:
   Vec3<double> gravity{0, 0, -9.81};           ///< m/s^2
-  std::optional<TimeVector> changing_gravity;  ///< instead of it
+  std::optional<TimeVector> changing_gravity;  ///< gravity that changes in time; it replaces `gravity`
   Stabilization stabilization;
   JointSolver joint_solver;
   ContactSettings contact;
 
-  /// Adds a part; the reference stays valid. Throws std::invalid_argument when the name is taken or empty.
+  /// Adds a part; the reference stays valid. Throws std::invalid_argument if the name is in use or empty.
   template <class P, class... Args>
   P& add(std::string name, Args&&... args) {
     auto part = std::make_unique<P>(std::move(name), std::forward<Args>(args)...);
@@ -74,18 +74,23 @@ class MultiBody {
   }
   Part& add(std::unique_ptr<Part> part);
 
-  /// A spring (N/m), damper (N s/m) and rest length (m) between two points.
+  /// Adds a spring between two points: stiffness (N/m), damping (N s/m) and rest length (m). Throws
+  /// std::invalid_argument if one of these is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
                  double rest_length = 0);
+  /// Adds a force (N) at a material point.
   PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
+  /// Adds a force at a material point by a function, see PointForce::custom.
   PointForce& force(std::string name, Point at,
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
+  /// Adds a torque (N m) on a part.
   Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
 
+  /// Returns gravity at time t (s), m/s^2, world.
   Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
 
-  /// A joint of a formula (body/joints/*.h) over the points of its first side, then those of its second.
-  /// Throws std::invalid_argument when the points of a side are not on one part.
+  /// Adds a joint by its formula (body/joints/*.h) over the points of its first side, then of its second
+  /// side. Throws std::invalid_argument if the points of a side are not on one part.
   template <class F>
   JointOf<F>& join(std::string name, F formula, std::vector<Point> points) {
     auto joint = std::make_unique<JointOf<F>>(std::move(name), std::move(points), std::move(formula));
@@ -94,27 +99,30 @@ class MultiBody {
     return reference;
   }
   Joint& join(std::unique_ptr<Joint> joint);
-  /// The point-to-point joint: two points coincide.
+  /// Adds the point-to-point joint: two points coincide.
   Joint& ball(std::string name, Point a, Point b) {
     return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
   }
-  /// A joint of a type by name, "hinge" say (body/joint_registry.h), over parts as they are by now: their
-  /// rest values and places are to be set before. Throws std::invalid_argument.
+  /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Rest values
+  /// and placements of its parts must be set before. Throws std::invalid_argument for a setting that makes no
+  /// joint.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);
-  /// A hinge whose pin has a direction in the frame of b's part (or of the world), and for a the same as the
-  /// parts are placed; a weld of the parts as they are placed, undeformed.
+  /// Adds a hinge. axis: the direction of its pin in the frame of b's part (or in the world). The direction
+  /// in a's part follows from the placement of the undeformed parts.
   Joint& hinge(std::string name, Point a, Point b, const Vec3<double>& axis);
+  /// Adds a weld, which keeps the relative placement of the undeformed parts.
   Joint& weld(std::string name, Point a, Point b);
 
-  /// An impenetrable plane through a point (m, world), and with it contact. Throws std::invalid_argument when
-  /// the normal has no direction or the name is taken.
+  /// Adds an impenetrable plane through a point (m, world) and activates contact. Throws
+  /// std::invalid_argument if the normal has no direction or the name is in use.
   ContactPlane& plane(std::string name, TimeVector point, const Vec3<double>& normal);
-  /// An immobile triangle mesh (vertices: m, world; triangles: counter-clockwise seen from the side that is
-  /// free), and with it contact. Throws std::invalid_argument when the name is taken; a Model tells what else
-  /// is wrong with it.
+  /// Adds an immobile triangle mesh (vertices: m, world; triangles: counter-clockwise seen from the free
+  /// side) and activates contact. Throws std::invalid_argument if the name is in use; Simulation
+  /// checks the mesh.
   ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
-  /// A rectangle without thickness that is solid from both sides: x and y of its frame run along its edges,
-  /// and it reaches this far along them to either side of its middle (m). Throws std::invalid_argument.
+  /// Adds a rectangle without thickness that is solid from both sides. The x and y axes of its frame run
+  /// along its edges; half_x and half_y are its half extents (m). Throws std::invalid_argument if a half
+  /// extent is not positive.
   ContactObstacle& plate(std::string name, const Vec3<double>& middle, const Eigen::Quaterniond& orientation,
                          double half_x, double half_y);
 
@@ -123,10 +131,10 @@ class MultiBody {
   const std::vector<std::unique_ptr<PointForce>>& forces() const { return forces_; }
   const std::vector<std::unique_ptr<Torque>>& torques() const { return torques_; }
   const std::vector<std::unique_ptr<Joint>>& joints() const { return joints_; }
-  /// The part called name; nullptr if there is none.
+  /// Returns the part with a name; nullptr if there is none.
   Part* find(const std::string& name) const;
   bool has_joint(const std::string& name) const { return joint_names_.count(name) > 0; }
-  /// Number of a part of this body.
+  /// Returns the number of a part of this body. Throws std::invalid_argument for a part of another body.
   int index(const Part& part) const;
 
  private:

@@ -1,4 +1,4 @@
-// A point whose place is asked for at many states: where it is among the nodes of its part is found once.
+// A point whose position is wanted at many states. Its weights among the nodes of its part are computed once.
 #pragma once
 
 #include <pliant/body/model.h>
@@ -7,17 +7,17 @@ namespace pliant {
 
 class PlacedPoint {
  public:
-  /// The model must outlive it.
+  /// The model must outlive the point.
   PlacedPoint(const Model& model, Point point);
 
   const Point& point() const { return point_; }
-  /// m, world.
+  /// Returns the position at a state, m, world.
   Vec3<double> at(const State& state) const;
 
  private:
   const Model* model_;
   Point point_;
-  int part_;  // -1: of the world
+  int part_;  // -1: a point of the world
   NodeWeights among_nodes_;
 };
 

@@ -1,4 +1,4 @@
-// Points that forces, springs and tracks attach to: material points of parts, and points of the world.
+// Points that joints, springs, forces and tracks refer to: material points of parts, and points of the world.
 #pragma once
 
 #include <pliant/math/time_function.h>
@@ -6,18 +6,19 @@
 
 namespace pliant {
 
-/// A material point of a part, or a point of the world that may move in time.
+/// A material point of a part, or a point of the world, which may move in time.
 struct Point {
-  const Part* part = nullptr;  ///< nullptr: the world
-  Material<double> material;
-  TimeVector world;  ///< m; used when part is nullptr
-  /// Of a part that deforms locally: what acts here is spread over the nodes within this radius (m, at rest),
-  /// and the point is where their mean is; 0: the element around it.
+  const Part* part = nullptr;  ///< nullptr: a point of the world
+  Material<double> material;   ///< the material point of the part
+  TimeVector world;            ///< position of a point of the world, m
+  /// Radius of a patch of a part that deforms by nodes, m, at rest. The position of the point is the mean
+  /// over the nodes of the patch, and a force on it is spread over these nodes. 0: the element around the
+  /// point.
   double patch = 0;
 };
 
-/// The first kink, of times later than one and no later than another (s), of how hands move a point: one of
-/// the world, or of a part that moves as prescribed.
+/// Returns the first kink of the prescribed motion of a point, later than `after` and no later than `until`
+/// (s): of a point of the world, or of a part with prescribed motion.
 inline Kink first_kink(const Point& point, double after, double until) {
   if (point.part == nullptr) return point.world.first_kink(after, until);
   const PrescribedMotion* motion = point.part->motion();
@@ -31,7 +32,7 @@ inline Point point(const Part& part, double u, double v, double w = 1) {
 inline Point point(const Part& part, const Material<double>& material, double patch = 0) {
   return {&part, material, {}, patch};
 }
-/// A fixed or moving point of the world.
+/// A fixed or moving point of the world, m.
 inline Point world(double x, double y, double z) {
   return {nullptr, {}, TimeVector(Vec3<double>(x, y, z)), 0};
 }

@@ -1,5 +1,5 @@
-// State: everything that is integrated, and every discrete mode. A step is a function of Model and State
-// only, so a state can be copied, stored and resumed to the last bit.
+// State: all quantities that are integrated, and every discrete mode. A step is a function of Model and State
+// only. A state can be copied, stored and resumed to the last bit.
 #pragma once
 
 #include <array>
@@ -12,76 +12,77 @@ namespace pliant {
 
 /// Kinds of work in the energy ledger, J.
 enum class Work {
-  damping,
-  drag,
-  spring_damping,
-  anchors,  ///< of hands that move the ends of springs and joints
-  actuation,
-  forces,
-  limits,   ///< and of taut strings
-  contact,  ///< of what pushes bodies apart
-  friction,
-  baumgarte,  ///< of joints that close
-  projection  ///< of the impulses that close joints
+  damping,         ///< D of the global parameters, and damping of local deformation
+  drag,            ///< drag nu M v
+  spring_damping,  ///< dampers of the springs
+  anchors,         ///< prescribed motion of ends of springs and joints
+  actuation,       ///< rest values and gravity that change in time
+  forces,          ///< forces at points, and torques
+  limits,          ///< limits of parameters, and taut strings
+  contact,         ///< normal impulses of contacts, and separation of overlapping bodies
+  friction,        ///< friction at contacts
+  baumgarte,       ///< Baumgarte's terms of closing joints
+  projection       ///< projection of joints
 };
 inline constexpr int kWorks = 11;
 inline constexpr std::array<const char*, kWorks> kWorkNames{
     "damping", "drag",    "spring_damping", "anchors",   "actuation", "forces",
     "limits",  "contact", "friction",       "baumgarte", "projection"};
 
-/// What a joint does right now.
+/// The mode of a joint.
 enum class JointMode : std::int8_t {
-  off,      ///< nothing
-  closing,  ///< it is open, and Baumgarte's equation closes it
-  closed,   ///< it holds
-  slack     ///< one-sided, and open: it does nothing
+  off,      ///< outside its times on ... off: no force
+  closing,  ///< open: Baumgarte's equation closes it
+  closed,   ///< C = 0 holds; a string is taut
+  slack     ///< a string with C > 0: no force
 };
 
-/// A contact that shares what it pushes with others, and the force that it took: where the search for its
-/// impulse of the next step begins. Rows of limits and strings, and what shares lone nodes, begin at none.
+/// A contact of the last step. Its force is the start value for the contact impulses of the next step (warm
+/// start). Only contacts that share a moving part with others are stored. The rows of limits and strings, and
+/// contacts on single nodes, start at zero.
 struct CachedContact {
-  std::array<int, 4> between;  ///< part a, part b, plane, obstacle; -1: none
-  Vec3<double> x;              ///< where it was, m, in the frame of part a
-  /// Mean of the last step or, where it was taken in two, its second half; on part a, N, world.
+  std::array<int, 4> between;  ///< numbers of part a, part b, plane, obstacle; -1: none
+  Vec3<double> x;              ///< position of the contact, m, frame of part a
+  /// Mean force on part a, N, world: of the last step, or of its second half if the step was doubled.
   Vec3<double> force;
 };
 
 struct State {
   double start = 0;       ///< time of step 0, s
-  double h = 0;           ///< step, s; where errors are controlled, the next one
-  std::int64_t step = 0;  ///< steps done since start; time is start + step * h
-  double error = 0;       ///< of the last step, in tolerances; 0 where it is not measured
-  /// What the impulses at contacts missed of their laws in the last step, at the worst of them, m/s.
+  double h = 0;           ///< step length, s; of the next step if errors are controlled
+  std::int64_t step = 0;  ///< number of steps since start; time is start + step * h
+  double error = 0;       ///< error of the last step, in tolerances; 0 if it is not measured
+  /// Largest violation of the contact laws by the impulses of the last step, m/s.
   double contact_residual = 0;
-  VecX<double> q;  ///< per part: c (3), quaternion w x y z (4), q_s
-  VecX<double> v;  ///< per part: c_dot (world, 3), omega (body, 3), q_s_dot
-  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< done so far
-  std::vector<std::int8_t>
-      at_limit;                   ///< per dynamic parameter: -1 at its lower limit, 1 at its upper, 0 free
-  std::vector<JointMode> joints;  ///< of each joint
-  /// Per part, where bodies may sleep (else empty): how long it has been at rest, s; negative: it sleeps,
-  /// with those of the same number. Who moves a part that sleeps wakes it.
+  VecX<double> q;  ///< coordinates of all parts: c (3), quaternion w x y z (4), q_s, q_d of each
+  VecX<double> v;  ///< velocities of all parts: c_dot (world, 3), omega (body, 3), q_s_dot, q_d_dot of each
+  Vec<double, kWorks> work = Vec<double, kWorks>::Zero();  ///< work since start, J
+  /// Of each dynamic parameter: -1 at its lower limit, 1 at its upper limit, 0 between.
+  std::vector<std::int8_t> at_limit;
+  std::vector<JointMode> joints;  ///< mode of each joint
+  /// Of each part: time at rest, s. A negative number means that the part sleeps; parts with equal numbers
+  /// fell asleep together. Empty if bodies cannot sleep. Code that moves a sleeping part must wake it.
   std::vector<double> at_rest;
-  std::vector<CachedContact> contact_cache;  ///< in the order of what they are between
-  /// How many steps in a row have begun at those before: after some of them one begins anew, so that forces
-  /// which nothing calls for any more, as in a body between two walls, do not stay.
+  std::vector<CachedContact> contact_cache;  ///< sorted by `between`
+  /// Number of warm-started steps in a row. After a fixed number the search starts cold, so that forces
+  /// without a cause, for instance of a body wedged between two walls, do not persist.
   int contact_cache_age = 0;
 
   double time() const { return start + static_cast<double>(step) * h; }
 };
 
-/// Whether a part sleeps: it stays as it is, to the last bit, and rests.
+/// Whether a part sleeps. A sleeping part is at rest, and its coordinates do not change by a bit.
 inline bool sleeps(const State& state, int part) {
   return !state.at_rest.empty() && state.at_rest[static_cast<std::size_t>(part)] < 0;
 }
 
-/// Whether the same parts sleep, of State::at_rest of two states.
+/// Whether two states have equal sets of sleeping parts; arguments: their State::at_rest.
 bool same_sleepers(const std::vector<double>& one, const std::vector<double>& other);
 
-/// Wakes a part, and all that fell asleep with it.
+/// Wakes a part and all parts that fell asleep with it.
 void wake(State& state, int part);
 
-/// Of all bits of a state.
+/// Returns a hash of all bits of a state.
 std::uint64_t hash(const State& state);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Why a step could not be done. The simulation still holds the last good state.
+// The exceptions of a step that fails. The simulation keeps its last good state.
 #pragma once
 
 #include <new>
@@ -24,7 +24,7 @@ class UnsatisfiableModel : public StepFailure {
   using StepFailure::StepFailure;
 };
 
-/// What a step needs does not fit in memory.
+/// A step needs more memory than there is.
 class OutOfMemory : public std::bad_alloc {
  public:
   explicit OutOfMemory(std::string what) : what_(std::move(what)) {}

@@ -1,6 +1,7 @@
-// Where boxes touch boxes and balls, in closed form: of two boxes the axis along which they overlap least is
-// one of their faces' normals or across an edge of each (Gottschalk, Lin and Manocha 1996); a face of one,
-// cut to what lies over the face of the other, carries it at its corners.
+// Contacts of a box with a box and with a ball, in closed form. Two boxes are tested along the face normals
+// of both and across each pair of their edges (separating axes: Gottschalk, Lin and Manocha 1996). Where the
+// face of one box has the largest gap, the opposite face of the other box is clipped to it, and the corners
+// of the clipped face are the contact points.
 #pragma once
 
 #include <array>
@@ -12,24 +13,26 @@ namespace pliant {
 
 struct PlacedBox {
   Vec3<double> c;     ///< centre, m, world
-  Mat3<double> R;     ///< to the world
+  Mat3<double> R;     ///< box frame to world
   Vec3<double> half;  ///< half sizes, m
 };
 
 struct BoxTouch {
-  Vec3<double> x;       ///< on a, m, world
-  Vec3<double> normal;  ///< from b to a, world
-  double gap;           ///< along the normal, m
+  Vec3<double> x;       ///< point on the surface of a, m, world
+  Vec3<double> normal;  ///< unit vector from b to a, world
+  double gap;           ///< along the normal, m; negative where the boxes overlap
 };
 
-/// Corners of a box of these half sizes in its own frame.
+/// Returns the eight corners of a box with these half sizes, in its own frame.
 std::array<Vec3<double>, 8> box_corners(const Vec3<double>& half);
 
-/// Adds where boxes a and b touch with a gap of at most `most` m: one point of edges that cross or of corners
-/// beside each other, up to eight of a face. Boxes that are apart have the gap between planes that part them.
-void touch_boxes(const PlacedBox& a, const PlacedBox& b, double most, std::vector<BoxTouch>& found);
+/// Appends the contacts of boxes a and b whose gap is at most max_gap (m): one point for two crossing edges,
+/// up to eight points for a face, or the nearest corner if the faces do not overlap. The gap of separated
+/// boxes is the distance between the two parallel planes that separate them along the chosen axis.
+void touch_boxes(const PlacedBox& a, const PlacedBox& b, double max_gap, std::vector<BoxTouch>& found);
 
-/// The point of a ball with this centre and radius (m, world) that is nearest to a box, or deepest in it.
+/// Returns the point of a ball (centre and radius in m, world) that is nearest to a box, or deepest inside
+/// it. The ball is side a.
 BoxTouch touch_ball(const Vec3<double>& centre, double radius, const PlacedBox& box);
 
 }  // namespace pliant

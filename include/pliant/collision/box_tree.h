@@ -1,5 +1,6 @@
-// Which of many boxes are near each other: a tree of boxes over boxes, split at the median along the longest
-// side, O(n log n) for boxes of any sizes that do not crowd.
+// A tree over axis-aligned boxes that finds all pairs of nearby boxes. Each node is split at the median of
+// the box centres along the longest side of their bounds. The cost is O(n log n) for boxes of any sizes
+// unless many boxes overlap each other.
 #pragma once
 
 #include <utility>
@@ -11,16 +12,17 @@ namespace pliant {
 
 class BoxTree {
  public:
-  /// The boxes must outlive what is asked of it.
+  /// Builds the tree. boxes: must outlive all later queries.
   void build(const std::vector<Eigen::AlignedBox3d>& boxes);
-  /// All pairs (i, j), i < j, whose boxes are no farther from each other than `most`, in order.
-  void near_pairs(double most, std::vector<std::pair<int, int>>& pairs) const;
+  /// Computes all pairs (i, j), i < j, whose boxes are at most max_distance (m) apart, sorted. `pairs` is
+  /// overwritten.
+  void near_pairs(double max_distance, std::vector<std::pair<int, int>>& pairs) const;
 
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    int first, last;  ///< its share of order_
-    int right = -1;   ///< its second child; the first one follows it; -1: a leaf
+    int first, last;  ///< range of order_
+    int right = -1;   ///< index of the second child; -1 for a leaf; the first child follows its parent
   };
   int split(int first, int last);
   template <class F>

@@ -1,6 +1,6 @@
-// The surface of a part as contact sees it: points all over it, and the lowest points of a field on it,
-// found among these and then refined on the surface itself, so that round things roll smoothly. Ellipsoids
-// need no points over planes and over each other (ellipsoid_points.h).
+// The surface of a part for contact search: sample points all over it, and the lowest points of a height
+// field on it. The search starts from sample points and is refined on the surface itself, so that round parts
+// roll smoothly. Ellipsoids over planes and over each other need no sample points (ellipsoid_points.h).
 #pragma once
 
 #include <optional>
@@ -16,15 +16,16 @@ class CollisionSurface {
  public:
   explicit CollisionSurface(const Part& part);
 
-  /// What the surface may touch, over points of the body frame.
+  /// A height over a plane or over another part, as a function of points of the body frame.
   class Field {
    public:
     virtual ~Field() = default;
     virtual double height(const Vec3<double>& p) const = 0;  ///< m
-    /// Cheaper, and zero where the height is: what a search goes down along (m, as far as it is small).
+    /// Cheaper function with the zeros of height(), which the search minimises. It is in m and close to
+    /// height() where it is small.
     virtual double descent(const Vec3<double>& p) const = 0;
   };
-  /// The height over a plane: normal, of length 1, in the body frame; offset: of the frame's origin, m.
+  /// The height over a plane. normal: unit vector, body frame; offset: height of the origin of the frame, m.
   class OverPlane final : public Field {
    public:
     OverPlane(const Vec3<double>& normal, double offset) : normal_(normal), offset_(offset) {}
@@ -41,48 +42,47 @@ class CollisionSurface {
     double height = 0;                      ///< m
   };
 
-  /// Of a part that is an ellipsoid at these values: its semi-axes, m.
+  /// Returns the semi-axes (m) if the part is an ellipsoid at these values.
   std::optional<Vec3<double>> semi_axes(const ParameterValues<double>& values) const;
-  /// Of a part that is a box at these values: its half sizes, m.
+  /// Returns the half sizes (m) if the part is a box at these values.
   std::optional<Vec3<double>> half_sizes(const ParameterValues<double>& values) const;
-  /// The point of an ellipsoid in the direction y, of length 1, of its ball; its height is left to the
-  /// caller.
+  /// Returns the point of an ellipsoid for the unit vector y of its unit ball. The caller sets the height.
   LowPoint ellipsoid_point(const ParameterValues<double>& values, const Vec3<double>& axes,
                            const Vec3<double>& y) const;
-  /// Radius of a ball about the frame's origin that the part is in, m.
+  /// Radius of a ball about the frame's origin that contains the part, m.
   double reach(const ParameterValues<double>& values) const;
   /// The least extent of the part at rest along the axes of its frame, m.
   double thickness() const { return thickness_; }
 
-  /// All points, body frame.
+  /// Computes all sample points, body frame, m.
   Eigen::Matrix3Xd points(const ParameterValues<double>& values) const {
-    return part_->s(laid().surface.material(), values);
+    return part_->s(samples().surface.material(), values);
   }
-  /// Those at rest, and a box about the surface then.
-  const Eigen::Matrix3Xd& rest_points() const { return laid().points; }
-  const Eigen::AlignedBox3d& rest_box() const { return laid().box; }
-  /// Points that carry the part on what lies below: the lowest one, and where edges or faces lie flat, the
-  /// outermost ones along them; none higher than `most`. heights: of the field at points p. A face has four,
-  /// so that boxes stand.
+  /// Sample points at the rest shape, and a box that contains the surface there.
+  const Eigen::Matrix3Xd& rest_points() const { return samples().points; }
+  const Eigen::AlignedBox3d& rest_box() const { return samples().box; }
+  /// Returns the points that support the part: the lowest point and, where an edge or a face is level, the
+  /// outermost points along it; none is higher than max_gap (m). A level face has up to four, so that boxes
+  /// stand. p, heights: the sample points and the field at each of them.
   std::vector<LowPoint> low_points(const ParameterValues<double>& values, const Eigen::Matrix3Xd& p,
-                                   const VecX<double>& heights, double most, const Field& field) const;
+                                   const VecX<double>& heights, double max_gap, const Field& field) const;
 
  private:
-  /// The points, laid when they are first asked for.
-  struct Laid {
+  /// Sample points, computed at the first call of samples().
+  struct Samples {
     Surface surface;
     Eigen::Matrix3Xd points;  ///< at rest
     Eigen::AlignedBox3d box;
     double reach;
-    std::vector<Material<double>> few;  ///< that tell the reach of a part that changes
+    std::vector<Material<double>> coarse;  ///< points for the reach of a part with dynamic parameters
   };
-  const Laid& laid() const;
-  /// Goes down from point number i, no further than to its neighbours.
+  const Samples& samples() const;
+  /// Minimises the field from sample point i, at most as far as its neighbours.
   LowPoint descend(const ParameterValues<double>& values, Eigen::Index i, const Field& field) const;
 
   const Part* part_;
-  mutable std::optional<Laid> laid_;
-  double spacing_;  ///< of the points, as mesh_label() counts
+  mutable std::optional<Samples> samples_;
+  double spacing_;  ///< of the sample points, in the coordinates of mesh_label()
   double thickness_;
 };
 

@@ -1,5 +1,5 @@
-// Which parts, planes and obstacles touch, and how: the pairs and groups of ContactSettings, for things by
-// number.
+// The rule of each pair of parts, planes and obstacles: whether they may touch, their friction and their
+// restitution. The rules are those of ContactSettings, resolved from names to numbers.
 #pragma once
 
 #include <map>
@@ -17,18 +17,20 @@ struct ContactRule {
   double friction = 0, restitution = 0;
 };
 
-/// Size (m) of the smaller of the parts that a contact is of.
+/// Returns the size (m) of the part of a contact, or of the smaller of its two parts.
 double smaller_size(const Model& model, const Contact& contact);
 
 class ContactRules {
  public:
-  /// The model must outlive it. Throws std::invalid_argument for numbers out of range, and for names that are
-  /// not there or stand for two things.
+  /// model: must outlive this object. Throws std::invalid_argument for numbers out of range, for unknown
+  /// names, and for names that stand for two things.
   explicit ContactRules(const Model& model);
 
-  /// Of two parts, in any order, and of a part and a plane or an obstacle.
+  /// Returns the rule of two parts, in any order.
   ContactRule of_parts(int a, int b) const;
+  /// Returns the rule of a part and a plane.
   ContactRule on_plane(int part, int plane) const;
+  /// Returns the rule of a part and an obstacle.
   ContactRule on_obstacle(int part, int obstacle) const;
 
  private:
@@ -40,10 +42,10 @@ class ContactRules {
 
   const Model* model_;
   int n_parts_, n_planes_;
-  // Parts, planes, obstacles and groups, in this order, have one number each; of two the lower comes first.
-  std::vector<std::vector<int>> groups_of_;       // of each thing but these
-  std::map<std::pair<int, int>, int> last_pair_;  // of these names, its number in the settings
-  std::set<std::pair<int, int>> joined_;          // parts that a joint ties
+  // Parts, planes, obstacles and groups are numbered together, in this order. Pairs of numbers are sorted.
+  std::vector<std::vector<int>> groups_of_;       // groups of each part, plane and obstacle
+  std::map<std::pair<int, int>, int> last_pair_;  // two numbers -> last pair of the settings that names both
+  std::set<std::pair<int, int>> joined_;          // parts that share a joint
 };
 
 }  // namespace pliant

@@ -1,16 +1,19 @@
-// Where an ellipsoid comes nearest to a plane or to another ellipsoid, in closed form but for one root.
+// The point of an ellipsoid that is nearest to a plane, in closed form, and the point that is nearest to
+// another ellipsoid, in closed form except for one scalar root.
 #pragma once
 
 #include <pliant/math/types.h>
 
 namespace pliant {
 
-/// The direction y, of length 1, of the point axes y that lies farthest against n.
+/// Returns the unit vector y for which n . (axes y) is least, where axes y is the entry-by-entry product with
+/// the semi-axes (m).
 Vec3<double> lowest_direction(const Vec3<double>& axes, const Vec3<double>& n);
 
-/// The direction y, of length 1, for which the point M y + r is nearest to 0: with M = B^-1 R A and r = B^-1
-/// d that of the point A y of an ellipsoid at which w of another is least, which has the semi-axes B and its
-/// frame at distance d, R taking vectors into it. M: not singular.
+/// Returns the unit vector y for which |M y + r| is least. Two ellipsoids have semi-axes A and B (diagonal
+/// matrices). With M = B^-1 R A and r = B^-1 d, A y is the point of the first one at which the radial
+/// coordinate w of the second one is least. R turns vectors of the first frame into the second; d is the
+/// origin of the first frame seen from the second. M must not be singular.
 Vec3<double> nearest_direction(const Mat3<double>& M, const Vec3<double>& r);
 
 }  // namespace pliant

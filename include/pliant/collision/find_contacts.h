@@ -1,5 +1,5 @@
-// Which surfaces meet: a tree of boxes tells which parts are near each other, then the low points of each
-// part over planes, obstacles and other parts.
+// Contact search of parts without local deformation. A tree of boxes finds which parts are near each other.
+// Then the low points of each part over planes, obstacles and other parts are the contacts.
 #pragma once
 
 #include <memory>
@@ -14,91 +14,96 @@
 
 namespace pliant {
 
-/// Not for several threads at once: it keeps what it works with from call to call.
+/// Not thread-safe, not even its const functions: it keeps scratch storage from call to call.
 class ContactFinder {
  public:
-  /// The model must outlive it. Parts that deform locally are MeshFinder's. Throws std::invalid_argument, see
-  /// ContactRules and ObstacleMesh.
+  /// model: must outlive this object. Parts that deform locally are left to MeshFinder. Throws
+  /// std::invalid_argument as ContactRules and ObstacleMesh do.
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
 
-  /// Meshes of the obstacles, in their order; they stay where they are as long as this does.
+  /// Meshes of the obstacles, in the order of the settings; references stay valid as long as this object.
   const std::vector<ObstacleMesh>& obstacles() const { return obstacles_; }
 
-  /// Contacts at a state and a time (s) whose gap is at most `most` (m); of: only those of parts that it
-  /// marks. Of each part in turn those with planes, then with obstacles; after all of them those of pairs.
-  std::vector<Contact> find(const State& state, double t, double most,
-                            const std::vector<bool>* of = nullptr) const;
-  /// Whether one contact comes before another in that order.
+  /// Finds the contacts at a state and a time t (s) whose gap is at most max_gap (m). marked: if given, only
+  /// contacts of marked parts. Order: part by part, first planes and then obstacles; after these
+  /// all pairs of parts.
+  std::vector<Contact> find(const State& state, double t, double max_gap,
+                            const std::vector<bool>* marked = nullptr) const;
+  /// Whether one contact comes before another in the order of find().
   static bool precedes(const Contact& one, const Contact& other);
-  /// Velocity of side a against side b at a contact, m/s, world.
+  /// Velocity of side a relative to side b at a contact, m/s, world.
   Vec3<double> velocity(const State& state, const Contact& contact) const;
-  /// How far sides of a contact may go into each other for it to be told where they touch, m.
+  /// Largest depth (m) of a contact at which the search still finds the side on which the parts touch.
   double thin(const Contact& contact) const;
-  /// Share of the thinner of two parts that they may move against each other in a step.
-  static constexpr double kThinShare = 0.4;
-  /// What a step of h seconds from a state comes near to.
+  /// Largest motion of two parts relative to each other in a step, as a share of the thickness of the thinner
+  /// one.
+  static constexpr double kMaxTravelShare = 0.4;
+  /// The surroundings of a step: whether something can touch during it, and how long it may be.
   struct Neighbourhood {
-    bool empty = true;  ///< nothing touches in it
+    bool empty = true;  ///< nothing can touch during the step
     bool soft = false;  ///< parts that deform locally may touch something
-    double h = 0;       ///< so long that no part passes through another, s
-    /// How much further than foreseen each part may go without that changing, m.
+    double h = 0;       ///< largest step in which no part passes through another, s
+    /// Distance that each part may move beyond the prediction without changing this result, m.
     double spare = 0;
 
-    /// Shortens h where sides go more than `most` against each other in a step of `whole` seconds: by `way`
-    /// at the velocities of its start and by `gained` as these change. In a step that is taken already they
-    /// may do so by a little.
-    void keep_within(double way, double gained, double most, double whole, bool taken);
+    /// Reduces h if two sides move relative to each other by more than max_travel (m) in a step of `whole`
+    /// seconds. travel: their motion at the velocities of the start, m; change: what the change of these
+    /// velocities adds, m. done: the step is already done, and a small excess is tolerated.
+    void limit_travel(double travel, double change, double max_travel, double whole, bool done);
   };
-  /// reach: how far a force moves a body in the step (Integrator); of forces only gravity is foreseen.
+  /// Returns the neighbourhood of a coming step of h seconds. reach: displacement in the step by an
+  /// acceleration, in units of acceleration * h^2 (see Integrator). Of all forces only gravity is
+  /// predicted.
   Neighbourhood neighbourhood(const State& state, double t, double h, double reach = 0.5) const;
-  /// Of a step that has led to `after`; foreseen: what was told of one as long or longer.
+  /// Returns the neighbourhood of a step that has led to the state `after`. foreseen: the result of
+  /// neighbourhood() for this step or a longer one, which is returned where it still holds.
   Neighbourhood neighbourhood_of(const State& state, const State& after, double t, double h, double reach,
                                  const Neighbourhood& foreseen) const;
-  /// The least gap of a part over another, a plane or an obstacle, m; no more than `most`.
-  double least_gap(const State& state, double t, const Contact& of, double most) const;
+  /// Returns the least gap of the part of a contact over its other part, plane or obstacle, m; at most
+  /// max_gap.
+  double least_gap(const State& state, double t, const Contact& contact, double max_gap) const;
 
  private:
   struct Placed;
   struct Scratch;
   class OverPart;
   void place(const State& state, double t, int part) const;
-  bool is_still(int part) const;
+  bool has_fixed_shape(int part) const;
   const Eigen::Matrix3Xd& points_of(int part) const;
-  /// after: of a step that is taken; nullptr of one to come.
+  /// after: the end of a step that is done; nullptr for a coming step.
   Neighbourhood neighbourhood(const State& state, const State* after, double t, double h, double reach) const;
-  std::pair<double, double> speed_seen(const State& state, int part, int from) const;
+  std::pair<double, double> relative_speed(const State& state, int part, int from) const;
   double clearance(int ball, int box) const;
   void place_ball(const State& state, const State* after, double t, double h, double reach, int part) const;
   Eigen::AlignedBox3d body_box(int part) const;
   Eigen::AlignedBox3d world_box(int part) const;
   void place_planes(double t) const;
-  void find_near_pairs(double most, const std::vector<bool>* of) const;
-  void find_on_plane(int a, std::size_t plane, double most, std::vector<Contact>& found) const;
-  void find_on_obstacle(int a, std::size_t obstacle, double t, double most,
+  void find_near_pairs(double max_gap, const std::vector<bool>* marked) const;
+  void find_on_plane(int a, std::size_t plane, double max_gap, std::vector<Contact>& found) const;
+  void find_on_obstacle(int a, std::size_t obstacle, double t, double max_gap,
                         std::vector<Contact>& found) const;
-  bool are_apart(int a, int b, double most) const;
+  bool are_apart(int a, int b, double max_gap) const;
   Contact contact_at(const Vec3<double>& x, const Vec3<double>& normal, double gap, int a, int b,
                      const ContactRule& rule) const;
-  void find_between_boxes(int a, int b, const ContactRule& rule, double most,
+  void find_between_boxes(int a, int b, const ContactRule& rule, double max_gap,
                           std::vector<Contact>& found) const;
-  bool find_ball_on_box(int a, int b, const ContactRule& rule, double most,
+  bool find_ball_on_box(int a, int b, const ContactRule& rule, double max_gap,
                         std::vector<Contact>& found) const;
-  void find_between(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
-  Vec3<double> farthest(int part, const Vec3<double>& direction) const;
-  /// The way out of bodies that hold each other's centres; whether they do.
-  bool find_deep(int a, int b, const ContactRule& rule, std::vector<Contact>& found) const;
-  /// Low points of a over b.
-  void find_on_part(int a, int b, const ContactRule& rule, double most, std::vector<Contact>& found) const;
+  void find_on_pair(int a, int b, const ContactRule& rule, double max_gap, std::vector<Contact>& found) const;
+  Vec3<double> support_point(int part, const Vec3<double>& direction) const;
+  bool find_deep_overlap(int a, int b, const ContactRule& rule, std::vector<Contact>& found) const;
+  /// Appends the low points of a over b.
+  void find_on_part(int a, int b, const ContactRule& rule, double max_gap, std::vector<Contact>& found) const;
 
   const Model* model_;
-  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // of each part that is this class's
+  std::vector<std::unique_ptr<CollisionSurface>> surfaces_;  // nullptr for parts that deform locally
   ContactRules rules_;
-  std::vector<ContactRule> on_planes_;  // part after part, plane after plane
+  std::vector<ContactRule> on_planes_;  // number: part * number of planes + plane
   std::vector<ObstacleMesh> obstacles_;
-  std::vector<ContactRule> on_obstacles_;  // likewise
-  bool any_pairs_;                         // whether parts may touch parts
-  std::vector<int> smooth_;                // numbers of these parts
+  std::vector<ContactRule> on_obstacles_;  // number: part * number of obstacles + obstacle
+  bool has_pairs_;                         // whether parts may touch parts
+  std::vector<int> smooth_parts_;          // numbers of the parts without local deformation
   std::unique_ptr<Scratch> scratch_;
 };
 

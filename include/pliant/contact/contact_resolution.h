@@ -1,4 +1,4 @@
-// Impulses of contact: where bodies meet they are stopped, and what still overlaps is parted.
+// Resolution of contacts: impulses, then separation of the overlaps that remain.
 #pragma once
 
 #include <array>
@@ -12,46 +12,50 @@
 
 namespace pliant {
 
-/// What impulses did in a step: an entry for each time that they acted at a contact. Impacts within a step,
-/// and parts that move far in it, have it made in several parts.
+/// The impulses of a step, one entry for each time that an impulse acted at a contact. Impacts within a step,
+/// and fast parts, divide the step into several motions.
 struct ContactRecord {
   std::vector<Contact> contacts;
-  std::vector<Vec3<double>> impulses;  ///< on their sides a, N s, world
-  std::vector<double> sliding;         ///< speeds along them afterwards, m/s
-  VecX<double> joint_impulses;  ///< that equations of joints took up of them: on the parts act C_q^T of it
+  std::vector<Vec3<double>> impulses;  ///< on side a, N s, world
+  std::vector<double> sliding;         ///< tangential speeds afterwards, m/s
+  VecX<double> joint_impulses;  ///< reactions of the joints, on their rows: C_q^T of it acts on the parts
 
   void clear();
 };
 
+/// The motion that ends where contacts are resolved. `before` is the state itself for an impulse at one
+/// moment.
+struct ResolvedMotion {
+  const State& before;
+  double held;  ///< impulses on limits stand for forces over this time, s (FreeMotion::held)
+  double h;     ///< length of the motion, s; 0 for an impulse at one moment
+};
+
 class ContactResolution {
  public:
-  /// All must outlive it. record: what is added to.
+  /// All arguments must outlive the object. record: receives the contacts and impulses.
   ContactResolution(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                     RestingContacts& resting, ContactRecord& record);
 
-  /// Forgets what took something, and settles whether searches of this step begin at the supports of a state.
+  /// Begins a step: decides whether its resolutions warm-start from the contact cache of the state.
   void begin_step(const State& state);
-  /// What took something of this step, of so many seconds, becomes the supports of a state.
+  /// Stores the mean forces of the step, of h seconds, as the contact cache of the state.
   void end_step(double h, State& state) const;
 
-  /// Impulses at contacts at the end of a step of h seconds from a state before, each as long ago as it says;
-  /// then what still overlaps is parted.
-  void resolve(const State& before, double since_of_limits, double h, State& state, double t,
-               std::vector<Contact> contacts, Workspace<double>& work, StepCounters& counters);
-  /// Impulses of a step of h seconds at some contacts throw bodies against others that were out of their way:
-  /// these impacts are of the same step, and so are those that follow from them.
-  void resolve_chain(std::vector<Contact> resolved, double h, double slow, State& state, double t,
-                     Workspace<double>& work, StepCounters& counters);
+  /// Applies impulses at contacts at step.t, the end of a motion, each for the time that it says, and then
+  /// separates what still overlaps.
+  void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
+  /// Resolves the impacts of bodies that the impulses at these contacts ejected against others, in the motion
+  /// of step.h seconds, and the impacts that follow from them. slow: speeds below it do not rebound, m/s.
+  void resolve_chain(StepContext& step, std::vector<Contact> resolved, double slow);
 
-  /// After velocities and places of some parts have changed: frames follow the nodes, joints hold.
-  void reconcile(const std::vector<int>& parts, State& state, double t, Workspace<double>& work,
-                 StepCounters& counters) const;
+  /// Projects frames and joints after velocities and places of some parts have changed.
+  void reconcile(StepContext& step, const std::vector<int>& parts) const;
 
  private:
   double sweep(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
-  void resolve_once(const State& before, double since_of_limits, double h, State& state, double t,
-                    std::vector<Contact> contacts, bool begins, Workspace<double>& work,
-                    StepCounters& counters);
+  void resolve_once(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts,
+                    bool warm);
   double largest_separation(const Contact& contact, double h) const;
   void travel(const Contact& contact, double far);
   void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
@@ -63,7 +67,7 @@ class ContactResolution {
   void add_ejections(const State& state);
   double may_overlap(const Contact& contact) const;
   void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
-  void separate_overlaps(double h, State& state, double t, Workspace<double>& work, StepCounters& counters);
+  void separate_overlaps(StepContext& step);
 
   const Dynamics& dynamics_;
   const ContactFinder& finder_;
@@ -71,18 +75,18 @@ class ContactResolution {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
-  /// A support whose force is still an impulse, N s, how near another is the same, m, and the number of the
-  /// settlement in the step.
+  /// A cached contact with its impulse in place of a force, N s; the distance within which another contact is
+  /// the same, m; and the number of the resolution in the step.
   struct Pushed {
     CachedContact support;
     double same_within;
     int resolution;
   };
-  std::vector<Pushed> pushed_;  // of the step
+  std::vector<Pushed> pushed_;  // in this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // Of the step: how far parts go in it towards what they meet, or are thrown, m; and what touches what, as
-  // PairKey says, that was too deep to be parted wholly and has been parted by what it may.
+  // In this step: how far parts travel towards contacts, or are ejected, m; and the pairs that were too deep
+  // for a whole separation and have been separated as far as allowed.
   std::vector<double> travel_;
   VecX<double> ejected_from_;
   std::set<std::array<int, 4>> fully_separated_;

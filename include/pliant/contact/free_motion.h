@@ -1,4 +1,4 @@
-// What a method's own step did, before contacts.
+// The motion of a method without contacts.
 #pragma once
 
 #include <pliant/body/state.h>
@@ -8,17 +8,16 @@ namespace pliant {
 struct FreeMotion {
   State before;      ///< at its start
   double begin = 0;  ///< s
-  double h = 0;      ///< how long it is, s
-  double reach = 0;  ///< how far a force moves a body in it, in h^2 times its acceleration (Integrator)
-  /// Speeds below this are none, m/s: what rests has been given as much by rounding, and by gravity in a part
-  /// of a step.
+  double h = 0;      ///< length, s
+  double reach = 0;  ///< displacement by a constant force, in h^2 times the acceleration (Integrator::reach)
+  /// Speeds below this count as zero, m/s: rounding, and gravity in a part of a step, give resting bodies as
+  /// much.
   double slow = 0;
-  double loose =
-      0;  ///< and what rests is no faster than this, m/s: impulses left as much (State::contact_residual)
+  double loose = 0;  ///< largest speed of a resting contact, m/s (State::contact_residual)
 
   double end() const { return begin + h; }
-  /// Impulses at its end that stand for forces over all of it move bodies by their change of velocity times
-  /// this, s.
+  /// Impulses at the end that act as forces over the whole motion displace bodies by their change of velocity
+  /// times this, s.
   double held() const { return reach * h; }
 };
 

@@ -1,4 +1,4 @@
-// When within a step surfaces meet.
+// The time of an impact within a step.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,20 @@
 
 namespace pliant {
 
-/// The step that a method takes next begins at time t and takes h (s).
+/// Sets the start and the length of the next step of a method, s.
 inline void set_step(State& state, double t, double h) {
   state.start = t;
   state.step = 0;
   state.h = h;
 }
 
-/// The time into the step from `before` at which the first of the impacts happens; the state is that of then.
-/// None when they were not apart before.
-std::optional<double> locate_impact(const Dynamics& dynamics, const ContactFinder& finder, Integrator& method,
-                                    const State& before, double t, double h,
-                                    const std::vector<Contact>& impacts, State& state,
-                                    Workspace<double>& work, StepCounters& counters);
+/// Returns the time into the motion at which the first of the impacts happens, s, and sets the state to that
+/// time. Returns none if their sides were not apart before.
+std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
+                                    const FreeMotion& motion, const std::vector<Contact>& impacts);
 
-/// How long ago each contact at the end of a motion began, were its sides to meet at the speed they have now,
-/// and the velocity it leaves them with. Those that have a `since` rest.
+/// Sets the time since each contact at the end of a motion began (at its current speed), and its rebound
+/// velocity. Contacts that have a `since` are at rest.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

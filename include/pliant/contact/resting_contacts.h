@@ -1,4 +1,4 @@
-// Surfaces that lie on each other.
+// Resting contacts: surfaces that touch without moving apart or striking.
 #pragma once
 
 #include <vector>
@@ -10,29 +10,29 @@ namespace pliant {
 
 class RestingContacts {
  public:
-  /// finder: must outlive it, as must its model.
+  /// The model and the finder must outlive the object.
   RestingContacts(const Model& model, const ContactFinder& finder);
 
-  /// What was left of the laws of contact may have parted what rests by so many m more than rounding.
+  /// Widens the gap of resting contacts by the displacement (m) that the residual of the last step allows.
   void loosen(double loose);
-  /// Surfaces that are nearer than this, and do not move apart, rest on each other, m: of this pair, and of
+  /// Returns the gap below which surfaces that do not move apart rest on each other, m: of this pair, and of
   /// the largest part.
   double gap(const Contact& contact) const { return loosened(tight_gap(contact)); }
   double gap() const { return loosened(gap_); }
-  /// Of this pair when nothing was left.
+  /// Returns the gap of this pair without a residual, m.
   double tight_gap(const Contact& contact) const;
-  /// What lies near each other at time t (s), within gap().
+  /// Returns the contacts within gap() at time t, s.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Those of them that neither open nor strike by more than `slow` m/s.
+  /// Returns the near contacts whose normal speed is at most `slow`, m/s.
   std::vector<Contact> at_rest(const State& state, double t, double slow);
-  /// How long a motion may be, s, that has led to `state`, for what rested at its start to have sunk into
-  /// each other, where nothing holds it, by no more than ContactFinder::thin.
+  /// Returns the longest motion, s, that has led to `state`, in which contacts at rest at its start sink in
+  /// by at most ContactFinder::thin if nothing holds them.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
-  /// The same as far as it is foreseen before the motion: by gravity alone, m/s^2.
+  /// Returns its prediction before the motion, by gravity (m/s^2) alone.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// What meets at the end of a motion, where it has led to `state`: sides that overlap, and of what rested
-  /// on each other at its start all that is near, for rounding may have parted it, or the motion, in which
-  /// nothing held it. What rested did so all along (Contact::since).
+  /// Returns the contacts at the end of a motion that has led to `state`: overlaps, and all near contacts of
+  /// pairs that rested at its start, which rounding or the free motion may have separated. Contacts that
+  /// rested have lasted for the whole motion (Contact::since).
   std::vector<Contact> met(const FreeMotion& motion, const std::vector<Contact>& resting,
                            const State& state) const;
 
@@ -45,12 +45,12 @@ class RestingContacts {
   const Model& model_;
   const ContactFinder& finder_;
   double gap_ = 0, loose_ = 0;
-  // Of the state that was looked at last.
+  // The state of the last search.
   VecX<double> last_q_;
   std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<bool> moved_;  // parts that are elsewhere now
+  std::vector<bool> moved_;  // parts that have moved since then
 };
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Sleep of bodies that have come to rest (contact_settings.h): which fall asleep after a step, and what wakes
-// them before one. What sleeps keeps its coordinates to the last bit, and its velocities are zero.
+// Sleeping of bodies at rest (body/contact_settings.h): which bodies fall asleep after a step, and what wakes
+// them before one. A sleeping body keeps its coordinates to the last bit, and its velocities are zero.
 #pragma once
 
 #include <functional>
@@ -14,50 +14,50 @@ namespace pliant {
 
 class Sleeping {
  public:
-  /// All must outlive it. Throws std::invalid_argument for settings out of range.
+  /// All arguments must outlive the object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Before a motion of h seconds from time t (s): those wake that have been given a velocity, or that
-  /// something drives whose value changes by then, with all that sleep with them. What sleeps then is
-  /// remembered.
+  /// Wakes bodies before a motion of h seconds from time t (s): those that have a velocity, or a cause of
+  /// motion that changes by then, with all that sleep with them. Stores the coordinates of those that sleep.
   void begin_motion(double t, double h, State& state);
-  /// After the motion: what sleeps is as it was.
+  /// Restores the sleeping bodies after the motion.
   void restore(State& state) const;
-  /// Whether a sleeper is met at some of these contacts, by what is awake or moved by hand.
+  /// Returns whether a contact touches a sleeping body.
   bool is_met(const std::vector<Contact>& contacts, const State& state) const;
-  /// Those that are met wake, with all that sleep with them.
+  /// Wakes the touched bodies, with all that sleep with them.
   void wake_met(const std::vector<Contact>& contacts, State& state) const;
-  /// So do those that impulses have moved since.
+  /// Wakes the bodies that impulses have moved.
   void wake_moved(State& state) const;
-  /// After h seconds with these contacts, from time t (s) on: bodies that have been at rest for long enough,
-  /// and all that they touch and are tied to, fall asleep. What kinetic energy they had is lost in contact.
+  /// Lets bodies fall asleep after h seconds from time t (s) with these contacts: those that have been at
+  /// rest for long enough, together with all that they touch and are tied to. The kinetic energy that they
+  /// had is lost in contact.
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
-  /// Whether anything sleeps in this motion.
+  /// Returns whether any body sleeps in this motion.
   bool any() const { return q_.size() > 0; }
 
  private:
-  /// What may move a part, and with it its island, though nothing meets it.
+  /// A cause that may move a part, and its island, without a contact.
   struct Drive {
-    int part;                                         ///< -1: all
-    std::function<bool(double t, double h)> changes;  ///< within h seconds of t
+    int part;                                         ///< -1: all parts
+    std::function<bool(double t, double h)> changes;  ///< whether its value changes within h seconds of t
   };
 
   void note_drives();
   void note_switches();
   double speed(const State& state, int part) const;
   bool note_rest(double h, State& state) const;
-  bool is_moved_by_hand(const ContactSide& side, int plane) const;
+  bool is_kinematic(const ContactSide& side, int plane) const;
   DisjointSets sets_of(const std::vector<Contact>& contacts) const;
 
   const Dynamics& dynamics_;
   const Model& model_;
   RestingContacts& resting_;
   const MeshFinder& meshes_;
-  const Sleep* settings_;    // nullptr: nothing sleeps
+  const Sleep* settings_;    // nullptr: bodies do not sleep
   std::vector<int> moving_;  // parts that have coordinates
   std::vector<Drive> drives_;
-  VecX<double> q_;  // what was remembered; empty: nothing sleeps
+  VecX<double> q_;  // coordinates of sleeping bodies; empty: none sleeps
 };
 
 }  // namespace pliant

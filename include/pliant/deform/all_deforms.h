@@ -1,5 +1,6 @@
-// The list of global deformations. A new one is its file and an entry here; registry, schema, `pliant list`
-// and the law tests follow.
+// The list of global deformations. A new deformation needs its own file, included here, and an entry in
+// PLIANT_ALL_DEFORMS. The registry, the explicit instances, the schema, `pliant list` and the law tests
+// follow from it.
 #pragma once
 
 #include <tuple>
@@ -12,6 +13,16 @@
 
 namespace pliant {
 
-using AllDeforms = std::tuple<Taper, Twist, Shear, Bend, BendOffset>;
+/// Expands X(Deform) for each deformation of the list.
+#define PLIANT_ALL_DEFORMS(X) \
+  X(Taper)                    \
+  X(Twist)                    \
+  X(Shear)                    \
+  X(Bend)                     \
+  X(BendOffset)
+
+#define PLIANT_AS_TUPLE(Deform) std::tuple<Deform>(),
+using AllDeforms = decltype(std::tuple_cat(PLIANT_ALL_DEFORMS(PLIANT_AS_TUPLE) std::tuple<>()));
+#undef PLIANT_AS_TUPLE
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// AnyChain: a chain of global deformations put together at run time, as scenes need it. The links run the
-// same kernels as a typed Chain, so the results are the same to the last bit.
+// AnyChain: a chain of global deformations composed at run time, for scenes. Its links use the kernels of a
+// typed Chain, so both give equal bits.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// One link behind a virtual call for all points of a batch.
+/// The interface of one link. One virtual call handles all points of a batch. See link.h for the functions.
 class AnyLink {
  public:
   virtual ~AnyLink() = default;
@@ -24,6 +24,7 @@ class AnyLink {
   virtual Vec3<double> inverse(const Vec3<double>& p, double h, const double* b) const = 0;
 };
 
+/// A link of type Deform behind this interface.
 template <class Deform>
 class AnyLinkOf final : public AnyLink {
  public:
@@ -45,6 +46,7 @@ class AnyLinkOf final : public AnyLink {
   }
 };
 
+/// A chain of links of any type. Its functions are those of Chain (chain.h).
 class AnyChain {
  public:
   AnyChain() = default;

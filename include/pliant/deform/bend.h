@@ -1,7 +1,7 @@
-// Circular bend (Barr 1984, physics 2.2): the z axis becomes an arc of curvature k = angle / h in the plane
-// that contains z and (cos direction, sin direction, 0). With r the coordinate along that direction, g = k z:
+// Circular bend (Barr 1984): the z axis becomes an arc of curvature k = angle / h in the plane that contains
+// z and (cos direction, sin direction, 0). With r the coordinate along this direction and g = k z,
 //   r' = r cos g + (1 - cos g) / k,   z' = (sin g) / k - r sin g
-// written with sinc, so that k = 0 is an ordinary value. Volume changes by 1 - k r.
+// The code uses sinc, so that k = 0 is a regular value. The determinant of the map is 1 - k r.
 #pragma once
 
 #include <pliant/deform/deform.h>
@@ -34,9 +34,9 @@ struct Bend {
     const auto& [s, c] = direction;
     const T r = c * p[0] + s * p[1];
     const T half = b[0] * p[2] / h * 0.5;  // g / 2
-    const math::SinCos<T> of_half = math::sin_cos(half);
-    const auto& [sin_half, cos_half] = of_half;
-    const T sinc_half = sinc(half, of_half);
+    const math::SinCos<T> sin_cos_half = math::sin_cos(half);
+    const auto& [sin_half, cos_half] = sin_cos_half;
+    const T sinc_half = sinc(half, sin_cos_half);
     // (1 - cos g)/k = z sinc(g/2) sin(g/2),  sin(g)/k = z sinc(g/2) cos(g/2),  1 - cos g = 2 sin^2(g/2)
     const T reach = p[2] * sinc_half;
     const T shift = reach * sin_half - r * sin_half * sin_half * 2.0;
@@ -47,13 +47,14 @@ struct Bend {
     const auto [s, c] = math::sin_cos(b[1]);
     const T k = b[0] / h;
     const T r_bent = c * p[0] + s * p[1];
-    // The centre of curvature is at r = 1/k: with q = k z', d = 1 - k r', the angle g = atan2(q, d), rho =
-    // sqrt(q^2 + d^2) is 1 - k r.
+    // The centre of curvature is at r = 1/k. With q = k z' and d = 1 - k r', g = atan2(q, d) and
+    // rho = sqrt(q^2 + d^2) = 1 - k r.
     const T q = k * p[2], d = -(k * r_bent) + 1.0;
     const T rho = math::sqrt(T(q * q + d * d));
     const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
     const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
-    // tan(g/2) = q / (rho + d); beyond a quarter of a turn, where d < 0, by the angle that is left to pi.
+    // tan(g/2) = q / (rho + d). Beyond a quarter turn, where d < 0, the code computes the difference of g
+    // from pi.
     const T reach = rho + math::abs(d) + 1e-300;
     const T half_tan = q / reach, half_angle = atan_over(half_tan);
     const T turned = math::where_positive(q, T(kPi), T(-kPi));

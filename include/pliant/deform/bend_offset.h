@@ -1,6 +1,6 @@
-// The bend of the paper's family (Metaxas & Terzopoulos 1993, physics 2.1): a lateral offset along x,
-//   (x + b1 cos(pi b3 (zeta + b2)), y, z). Right for small bends only: it does not keep the length of the
-//   axis.
+// The bend of Metaxas and Terzopoulos 1993, reference [7] of the paper: a lateral offset along x,
+//   (x + b1 cos(pi b3 (zeta + b2)), y, z)
+// It does not preserve the length of the axis, so it represents small bends only.
 #pragma once
 
 #include <pliant/deform/deform.h>

@@ -1,4 +1,5 @@
-// Chain<Taper, Bend>: a chain of global deformations whose order is part of its type, for library users.
+// Chain<Taper, Bend>: a chain of global deformations T, Eq. (3), whose order is part of its type, for library
+// users.
 #pragma once
 
 #include <string>
@@ -9,22 +10,23 @@
 
 namespace pliant {
 
-/// What is known of a link without its type.
+/// The properties of a link, independent of its type.
 struct LinkInfo {
   const char* type;
   const ParameterSpec* parameters;
   int n_parameters;
-  int amplitudes;  ///< parameters, from the first, that make it the identity while at their defaults
+  int amplitudes;  ///< the link is the identity while its first parameters, this many, have their defaults
   Sections sections;
 };
 
+/// Returns the properties of a link.
 template <class Deform>
 LinkInfo link_info() {
   return {Deform::name, Deform::parameters.data(), deform_size<Deform>, deform_amplitudes<Deform>,
           Deform::sections};
 }
 
-/// The point that one link takes to p.
+/// Returns the point that one link maps to p (m). h: half height (m); b: parameters of the link.
 template <class Deform>
 Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
   if (is_identity<Deform>(b)) return p;
@@ -32,24 +34,27 @@ Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
   return Deform::template inverse<double>(p, h, parameters);
 }
 
+/// A chain of links that are applied in the order of the template arguments.
 template <class... Links>
 class Chain {
  public:
+  /// Returns the properties of the links, in order.
   std::vector<LinkInfo> links() const { return {link_info<Links>()...}; }
 
-  /// Whether any link does anything.
+  /// Returns whether any link acts (link_acts).
   template <class P>
   bool acts([[maybe_unused]] LinkParameters<P> all) const {
     return (one_acts<Links>(all) || ...);
   }
-  /// All links in order. all: the parameters of all links, one after the other.
+  /// Applies all links in order to a batch of jets. all: the parameters of all links, one link after the
+  /// other.
   template <class P, class S>
   void apply([[maybe_unused]] const HalfHeight<P>& half, [[maybe_unused]] LinkParameters<P> all,
              [[maybe_unused]] JetBatch<S>& batch) const {
     (apply_one<Links>(half, all, batch), ...);
   }
 
-  /// The point e that the chain takes to p.
+  /// Returns the point e that the chain maps to p (m). h: half height (m); b: the parameters of all links.
   Vec3<double> inverse(Vec3<double> p, double h, const double* b) const {
     const double* end = b + (0 + ... + deform_size<Links>);
     invert<Links...>(p, h, end);

@@ -1,15 +1,16 @@
-// What a global deformation is (design 1.1): one struct with its names, its parameters and its formula T(p,
-// h; b), Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape, zeta
-// = p_z / h.
+// The interface of a global deformation: one struct with its names, its parameters and its formula T(p, h;
+// b), Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape (m), and
+// zeta = p_z / h.
 //
-//   name, formula      for people and scene files
+//   name, formula      texts for scene files, messages and `pliant list`
 //   parameters         std::array<ParameterSpec, n>
-//   sections           what becomes of the planes z = const, which decides the quadrature of the mass
-//   apply(p, h, b)     T(p, h; b); the identity when all parameters are at their defaults
-//   inverse(p, h, b)   the point that apply takes to p
-//   prepare(b)         optional: what T takes of the parameters alone; apply(p, h, b, that) is then T as well
-//   amplitudes         optional: how many parameters, from the first, make it the identity while at their
-//                      defaults, whatever the others are; all of them unless it says
+//   sections           image of the planes z = const, which decides the quadrature of the mass
+//   apply(p, h, b)     T(p, h; b); the identity if all parameters have their defaults
+//   inverse(p, h, b)   the point that apply maps to p
+//   prepare(b)         optional: returns terms of T that depend on b alone; apply(p, h, b, terms) is then
+//                      required too and returns T(p, h; b)
+//   amplitudes         optional: a number n <= number of parameters. While the first n parameters have their
+//                      defaults, T is the identity for all values of the others. Default: all parameters
 #pragma once
 
 #include <array>
@@ -23,12 +24,15 @@
 
 namespace pliant {
 
+/// The image of the planes z = const under a deformation.
 enum class Sections {
-  stay_affine,  ///< the map is affine in (x, y, z): a quadratic in the rest position stays one
-  stay_plane,   ///< planes z = const stay where they are and move affinely within themselves
-  tilt,         ///< planes z = const move affinely, out of their plane: nothing after it may read z
+  stay_affine,  ///< the map is affine in (x, y, z); quadratic functions of the position remain quadratic
+  stay_plane,   ///< each plane z = const is mapped affinely into itself
+  tilt,         ///< each plane z = const is mapped affinely to a tilted plane; a later link that depends on
+                ///< z does not keep it plane
 };
 
+/// Number of parameters of a deformation.
 template <class Deform>
 inline constexpr int deform_size = static_cast<int>(Deform::parameters.size());
 
@@ -48,15 +52,15 @@ template <class Deform, class T>
 struct Prepared<
     Deform, T,
     std::void_t<decltype(Deform::template prepare<T>(std::declval<Vec<T, deform_size<Deform>>>()))>> {
-  decltype(Deform::template prepare<T>(std::declval<Vec<T, deform_size<Deform>>>())) of_b;
-  explicit Prepared(const Vec<T, deform_size<Deform>>& b) : of_b(Deform::template prepare<T>(b)) {}
+  decltype(Deform::template prepare<T>(std::declval<Vec<T, deform_size<Deform>>>())) terms;
+  explicit Prepared(const Vec<T, deform_size<Deform>>& b) : terms(Deform::template prepare<T>(b)) {}
   Vec3<T> apply(const Vec3<T>& p, const T& h, const Vec<T, deform_size<Deform>>& b) const {
-    return Deform::template apply<T>(p, h, b, of_b);
+    return Deform::template apply<T>(p, h, b, terms);
   }
 };
 }  // namespace detail
 
-/// T(.; b) of a deformation at given h and b, for many points.
+/// The function T(.; b) of a deformation for given h and b, applied to many points.
 template <class Deform, class T>
 class DeformBy {
  public:
@@ -69,11 +73,11 @@ class DeformBy {
   detail::Prepared<Deform, T> prepared_;
 };
 
-/// How many parameters of a deformation, from the first, make it the identity while at their defaults.
+/// The member `amplitudes` of a deformation, or the number of its parameters.
 template <class Deform>
 inline constexpr int deform_amplitudes = detail::amplitudes_of<Deform>;
 
-/// Whether a deformation with parameters b is the identity, to the last bit.
+/// Returns whether a deformation with parameters b is exactly the identity.
 template <class Deform, class P>
 bool is_identity(const P* b) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(deform_amplitudes<Deform>); ++k)

@@ -1,6 +1,7 @@
-// One link of a chain, T(p, h; b), applied to a batch of jets. Its derivatives come from dual numbers of its
-// own few variables and are multiplied into the chain (design 1.2): J <- [F J + T_h dh/da, G_T], F = dT/dp,
-// G_T = dT/db.
+// One link of a chain, T(p, h; b), applied to a batch of jets. Dual numbers in the few variables of the link
+// give its derivatives F = dT/dp, T_h = dT/dh and G_T = dT/db. They are multiplied into the chain (README.md
+// of this folder):
+//   J <- [F J + T_h dh/da, G_T]
 #pragma once
 
 #include <type_traits>
@@ -12,22 +13,23 @@
 
 namespace pliant {
 
-/// The half height of the shape as every link sees it. P is the scalar of the parameters.
+/// The half height of the shape, input of every link. P is the scalar of the parameters.
 template <class P>
 struct HalfHeight {
-  Taylor2<P> h;                 ///< value and derivatives along the motion
-  VecMax<P, kMaxGlobal> slope;  ///< dh/dq_s of the columns of the shape
+  Taylor2<P> h;                 ///< value and time derivatives
+  VecMax<P, kMaxGlobal> slope;  ///< dh/dq_s for the columns of the shape
 };
 
-/// The parameters of one link: values and rates, and which of them are dynamic.
+/// The parameters of one link.
 template <class P>
 struct LinkParameters {
-  const P* b;
-  const P* b_dot;
-  const bool* dynamic;
+  const P* b;           ///< values
+  const P* b_dot;       ///< rates
+  const bool* dynamic;  ///< whether each is a degree of freedom
 };
 
-/// Whether a link does anything: one that is the identity and cannot move is passed by.
+/// Returns whether a link acts: it is not the identity, or one of its parameters is dynamic. Others are
+/// skipped.
 template <class Deform, class P>
 bool link_acts(const LinkParameters<P>& parameters) {
   for (int k = 0; k < deform_size<Deform>; ++k)
@@ -35,12 +37,12 @@ bool link_acts(const LinkParameters<P>& parameters) {
   return !is_identity<Deform>(parameters.b);
 }
 
-/// Of points at rest by the only parameter of a link that moves, number k: one series in it tells s, J and
-/// the rates.
+/// Applies a link whose parameter number k is its only dynamic one, if the shape and all links before it are
+/// frozen. The incoming points are constant, so one Taylor number in this parameter gives s, J and the rates.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                        JetBatch<S>& batch) {
-  auto each = [&](auto along, auto&& take) {
+  auto each = [&](auto along, auto&& store) {
     using T = decltype(along);
     const T h(S(half.h.v));
     Vec<T, deform_size<Deform>> b;
@@ -51,7 +53,7 @@ template <class Deform, class P, class S>
       const Vec3<T> moved = deform({T(jet.s[0]), T(jet.s[1]), T(jet.s[2])});
       for (int r = 0; r < 3; ++r) {
         jet.s[r] = moved[r].v;
-        take(jet, r, moved[r]);
+        store(jet, r, moved[r]);
       }
     }
   };
@@ -68,6 +70,31 @@ template <class Deform, class P, class S>
   batch.n_columns = 1;
 }
 
+/// Multiplies the partial derivatives of one link into the columns of J of one point, Eq. (9). moved: T with
+/// derivatives along p (0 to 2), h (3) and b (from 4 on); n_columns: columns before the link.
+template <int N, class P, class S>
+void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
+                   const LinkParameters<P>& parameters, int n_columns, Jet<S>& jet) {
+  const int n_shape = static_cast<int>(half.slope.size());
+  for (int c = 0; c < n_columns; ++c) {
+    const Vec3<S> column = jet.J[static_cast<std::size_t>(c)];
+    for (int r = 0; r < 3; ++r) {
+      S sum = moved[r].d[0] * column[0] + moved[r].d[1] * column[1] + moved[r].d[2] * column[2];  // F J
+      if (c < n_shape) sum += moved[r].d[3] * S(half.slope[c]);                                   // T_h dh/da
+      jet.J[static_cast<std::size_t>(c)][r] = sum;
+    }
+  }
+  int next = n_columns;
+  for (int k = 0; k < N - 4; ++k) {
+    if (!parameters.dynamic[k]) continue;
+    for (int r = 0; r < 3; ++r)
+      jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(k) + 4];  // G_T
+    ++next;
+  }
+}
+
+/// Applies one link to a batch of jets: s <- T(s, h; b), J <- [F J + T_h dh/da, G_T], and s1, s2 by the chain
+/// rule for the first and second time derivative. Computes the quantities of batch.level only.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link(const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                  JetBatch<S>& batch) {
@@ -92,7 +119,7 @@ template <class Deform, class P, class S>
   if (batch.n_columns == 0 && moving == 1) return apply_link_alone<Deform>(last, half, parameters, batch);
 
   using T = Taylor2<S>;
-  using D = Dual<4 + K, S>;
+  using D = Dual<4 + deform_size<Deform>, S>;
   const T h_t(S(half.h.v), S(half.h.d), S(half.h.dd));
   const D h_d = D::variable(h, 3);
   Vec<T, K> b_t;
@@ -103,8 +130,7 @@ template <class Deform, class P, class S>
   }
   const DeformBy<Deform, T> deform_t(h_t, b_t);
   const DeformBy<Deform, D> deform_d(h_d, b_d);
-  const int n_shape = static_cast<int>(half.slope.size());
-  // Both in one pass: what they have in common is computed once.
+  // One pass for time and partial derivatives: the compiler shares their common terms.
   auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];
@@ -121,21 +147,7 @@ template <class Deform, class P, class S>
           jet.s2[r] = along[r].dd;
         }
       }
-      for (int c = 0; c < batch.n_columns; ++c) {
-        const Vec3<S> column = jet.J[static_cast<std::size_t>(c)];
-        for (int r = 0; r < 3; ++r) {
-          S sum = moved[r].d[0] * column[0] + moved[r].d[1] * column[1] + moved[r].d[2] * column[2];
-          if (c < n_shape) sum += moved[r].d[3] * S(half.slope[c]);
-          jet.J[static_cast<std::size_t>(c)][r] = sum;
-        }
-      }
-      int next = batch.n_columns;
-      for (int k = 0; k < K; ++k) {
-        if (!parameters.dynamic[k]) continue;
-        for (int r = 0; r < 3; ++r)
-          jet.J[static_cast<std::size_t>(next)][r] = moved[r].d[static_cast<std::size_t>(k) + 4];
-        ++next;
-      }
+      chain_columns(moved, half, parameters, batch.n_columns, jet);
     }
   };
   if (batch.level == Level::rates)

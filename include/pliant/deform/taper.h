@@ -1,4 +1,4 @@
-// Taper (Barr 1984, physics 2.1): (x (1 + tx zeta), y (1 + ty zeta), z).
+// Taper (Barr 1984): (x (1 + tx zeta), y (1 + ty zeta), z).
 #pragma once
 
 #include <pliant/deform/deform.h>
@@ -22,16 +22,16 @@ struct Taper {
   template <class T>
   static Vec3<T> inverse(const Vec3<T>& p, const T& h, const Vec<T, 2>& b) {
     const T zeta = p[2] / h;
-    return {p[0] / open(T(b[0] * zeta + 1.0)), p[1] / open(T(b[1] * zeta + 1.0)), p[2]};
+    return {p[0] / bounded_width(T(b[0] * zeta + 1.0)), p[1] / bounded_width(T(b[1] * zeta + 1.0)), p[2]};
   }
 
  private:
-  /// The width of a section relative to the middle, which at the tip of a full taper is nothing; never taken
-  /// as narrower than 1e-10, so that the tip is taken back to the axis.
+  /// Returns the width of a section relative to the middle section, at least 1e-10. The width is zero at the
+  /// tip of a full taper; with the bound, the inverse maps the tip to the axis.
   template <class T>
-  static T open(const T& width) {
-    const T least(1e-10);
-    return math::where_positive(T(math::abs(width) - least), width, least);
+  static T bounded_width(const T& width) {
+    const T min_width(1e-10);
+    return math::where_positive(T(math::abs(width) - min_width), width, min_width);
   }
 };
 

@@ -1,4 +1,4 @@
-// Twist (Barr 1984): sections turn about z by angle * zeta.
+// Twist (Barr 1984): each section z = const is rotated about z by angle * zeta.
 #pragma once
 
 #include <pliant/deform/deform.h>

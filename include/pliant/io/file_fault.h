@@ -1,4 +1,4 @@
-// Faults of the file system as exceptions that say what was tried, where, and why it failed.
+// Faults of the file system as exceptions with the attempted action, the path and the reason.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// Throws std::system_error "cannot ACTION PATH: reason" for a value of errno. Of a full disk the message
-/// tells how much is free, and `needed` bytes when they are known.
+/// Throws std::system_error "cannot ACTION PATH: reason" for a value of errno. For a full disk, the message
+/// also contains the free bytes and, if not 0, the `needed` bytes.
 [[noreturn]] void throw_file_fault(int error, const char* action, const std::filesystem::path& path,
                                    std::size_t needed = 0);
 

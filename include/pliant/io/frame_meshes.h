@@ -1,5 +1,4 @@
-// The surfaces of all visible parts, obstacles and planes at a state: what meshes and pictures of a frame are
-// made of.
+// The surface meshes of all visible parts, obstacles and planes at a state, for pictures and mesh files.
 #pragma once
 
 #include <optional>
@@ -18,48 +17,48 @@ namespace pliant {
 struct NamedMesh {
   std::string name;  ///< of the part, obstacle or plane
   Color color{};
-  TriangleMesh mesh;       ///< world
-  VecX<double> values{};   ///< of its vertices, what the scene's coloring tells; empty without
-  bool by_values = false;  ///< coloured by them
+  TriangleMesh mesh;       ///< m, world
+  VecX<double> values{};   ///< per vertex, the quantity of the scene's coloring; empty without a coloring
+  bool by_values = false;  ///< whether pictures colour the mesh by `values`
 };
 
 class FrameMeshes {
  public:
-  /// Whether the values of vertices are told that the scene's coloring asks for.
-  enum class Values { told, left_out };
+  /// Whether the meshes include the vertex values of the scene's coloring.
+  enum class Values { included, omitted };
 
-  /// Lays the surfaces of the visible parts, obstacles and planes, these from both sides when they are open.
-  /// Both must outlive it. Throws std::invalid_argument on a bad resolution.
-  FrameMeshes(const Scene& scene, const Model& model, Values values = Values::told);
+  /// Makes the surfaces of the visible parts, obstacles and planes. Open obstacles and planes get both sides.
+  /// Scene and model must outlive the object. Throws std::invalid_argument for a bad resolution.
+  FrameMeshes(const Scene& scene, const Model& model, Values values = Values::included);
 
-  /// The meshes at a state, in the order of the parts, the obstacles and planes that are there after them;
-  /// the reference is valid until the next call. Meshes of rigid parts are evaluated once and then only
+  /// Returns the meshes at a state: parts in their order, then the obstacles and planes that act at its time.
+  /// The reference is valid until the next call. The mesh of a rigid part is evaluated once and then only
   /// moved.
   const std::vector<NamedMesh>& at(const State& state);
-  /// The box around all vertices at a state.
+  /// Returns the bounding box of all vertices at a state, m, world.
   Eigen::AlignedBox3d bounds(const State& state) const;
-  /// What 99 of 100 vertices stay below at a state, of the parts that are coloured by values; nothing when
-  /// none is. The rest may be very far above: a force at a point stretches its vertex the more, the finer the
-  /// mesh.
+  /// Returns the 99th percentile of the vertex values of all parts coloured by values, or nothing if there
+  /// are none. The maximum is not useful: at a point force it grows without bound as the mesh is refined.
   std::optional<double> high_value(const State& state) const;
+  /// Returns the number of triangles of all meshes.
   std::int64_t triangles() const;
 
  private:
   struct Shown {
     std::size_t part;
     bool rigid;
-    std::optional<Surface> surface;  // of a part without nodes
-    SurfaceNodes nodes;              // of one with nodes
-    TriangleMesh body;               // of a rigid part, body frame
+    std::optional<Surface> surface;  // for a part without nodes
+    SurfaceNodes nodes;              // for a part with nodes
+    TriangleMesh body;               // for a rigid part: its mesh in the body frame
     std::optional<SurfaceValues> values;
   };
-  void lay_obstacles(const Scene& scene, Values values);
-  void lay_planes(const Scene& scene, Values values);
+  void add_obstacles(const Scene& scene, Values values);
+  void add_planes(const Scene& scene, Values values);
   Eigen::Matrix3Xd vertices(const Shown& shown, const State& state) const;
   TriangleMesh body_mesh(const Shown& shown, const State& state) const;
 
   const Model* model_;
-  /// An obstacle; or a plane, whose mesh is about its point.
+  /// A visible obstacle or plane. The mesh of a plane is relative to the point of the plane.
   template <class Thing>
   struct ShownThing {
     const Thing* thing;

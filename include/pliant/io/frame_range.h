@@ -1,4 +1,4 @@
-// Which frames of a run are wanted.
+// The selection of frames of a run, as given on the command line.
 #pragma once
 
 #include <cstdint>
@@ -8,26 +8,27 @@
 
 namespace pliant {
 
-/// Frames first, first + stride, ... below `end`; of these, for shard i of n, every n-th from the i-th.
+/// The frames first, first + stride, ... below `end`. Shard i of n contains every n-th of these, from the
+/// i-th on.
 struct FrameRange {
-  /// Frames are files with six digits in their names.
-  static constexpr std::int64_t kMostFrames = 1000000;
+  /// File names of frames have six digits.
+  static constexpr std::int64_t kMaxFrames = 1000000;
 
   std::int64_t first = 0;
-  std::optional<std::int64_t> end;  ///< one past the last; all when not given
+  std::optional<std::int64_t> end;  ///< one past the last; when absent, all frames
   std::int64_t stride = 1;
   std::int64_t shard = 0, shards = 1;  ///< 0 <= shard < shards
 
-  /// From "first:end:stride" with any part left out ("10:", ":50:5", "7" for one frame). Throws
-  /// std::invalid_argument.
+  /// Parses "first:end:stride", whose numbers may each be omitted ("10:", ":50:5"), or "7" for one frame.
+  /// Throws std::invalid_argument.
   static FrameRange parse(const std::string& text);
-  /// Takes "i/n" with 1 <= i <= n. Throws std::invalid_argument.
+  /// Parses a shard "i/n" with 1 <= i <= n. Throws std::invalid_argument.
   void parse_shard(const std::string& text);
 
-  /// How many are chosen of `count` frames that there are. Throws std::invalid_argument when the range asks
-  /// for others, or for more than kMostFrames.
+  /// Returns the number of selected frames of a recording with `count` frames. Throws std::invalid_argument
+  /// if the range exceeds the recording or selects more than kMaxFrames.
   std::int64_t size(std::int64_t count) const;
-  /// Their numbers. Throws as size().
+  /// Returns the numbers of the selected frames. Throws as size().
   std::vector<std::int64_t> frames(std::int64_t count) const;
 };
 

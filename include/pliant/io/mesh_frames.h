@@ -1,4 +1,4 @@
-// The meshes of a run's frames as files.
+// Writing the meshes of the frames of a run to files.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,11 @@ namespace pliant {
 
 enum class MeshFormat { obj, ply };
 
-/// Writes frame_000000.obj (with parts.mtl beside) or .ply for each of the frames, which are taken at number
-/// / frame_rate seconds, into an existing folder. Where the scene has a coloring, PLY vertices carry its
-/// values as "strain" or "displacement"; OBJ has no place for them. Throws std::system_error,
-/// RecordingMismatch.
+/// Writes frame_000000.obj (and parts.mtl) or frame_000000.ply for each frame into an existing folder. Frame
+/// k is at time k / frame_rate. If the scene has a coloring, PLY vertices have its values as "strain" or
+/// "displacement"; OBJ cannot store them. Throws std::system_error, RecordingMismatch. The parameters are
+/// independent: both `pliant run` (states being recorded) and `pliant export` (a finished run) call it, with
+/// different sources.
 void write_mesh_frames(const std::filesystem::path& folder, MeshFormat format, const Scene& scene,
                        const Model& model, const Recording& recording, double frame_rate,
                        const std::vector<std::int64_t>& frames, Progress& progress);

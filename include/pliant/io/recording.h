@@ -1,7 +1,8 @@
-// The recording of a run: every entry of the recorded states, in tables of doubles (t.npy, q.npy, v.npy, and
-// modes.npy for step count, works, limit flags and a check number; supports.npy, where bodies may touch, for
-// what contacts begin with). A recorded state is a state after a step, never an interpolated one, and going
-// on from any of them gives the same bits. layout.json names every column.
+// The recording of a run: the complete recorded states in tables of doubles. t.npy, q.npy and v.npy contain
+// time, coordinates and velocities. modes.npy contains the other entries of a state (step, works, limits,
+// joints) and a check number. supports.npy contains the contact cache of scenes with contact. A recorded
+// state is a state after a step, never an interpolated one; a run resumed from it reproduces the bits.
+// layout.json names every column.
 #pragma once
 
 #include <cstdint>
@@ -17,26 +18,27 @@
 
 namespace pliant {
 
-/// A recording that is damaged or belongs to another model; the message names what differs.
+/// Thrown for a recording that is damaged or belongs to another model; the message names the difference.
 class RecordingMismatch : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes the names and units of all columns, those of trajectory.csv (its TrajectoryTable's) too, those of
-/// contacts.csv where there is one, and when frames are taken. Throws std::system_error.
+/// Writes layout.json: names, units and meanings of the columns of all tables, and the times of frames.
+/// trajectory: columns of trajectory.csv. contacts: whether contacts are recorded. Throws std::system_error.
 void write_layout(const std::filesystem::path& folder, const Model& model, const FrameSchedule& schedule,
                   const std::vector<Column>& trajectory, bool contacts = false);
 
 /// Appends states. Members throw std::system_error when a file cannot be written.
 class RecordingWriter {
  public:
-  /// New tables in a folder that holds none.
+  /// Creates new tables in a folder without tables.
   static RecordingWriter create(const std::filesystem::path& folder, const Model& model);
-  /// Goes on after the first `rows` states of the recording in a folder; later ones are cut off.
+  /// Opens the tables in a folder and removes all states after the first `rows` states.
   static RecordingWriter resume(const std::filesystem::path& folder, const Model& model, std::int64_t rows);
 
   void append(const State& state);
-  /// Everything appended so far is in the files: it outlives the process, and with to_disk a power cut.
+  /// Writes all appended states to the files, so that they survive the end of the process; with to_disk, also
+  /// a power cut.
   void flush(bool to_disk = false);
   std::int64_t rows() const { return times_.rows(); }
   std::size_t pending_bytes() const;
@@ -50,23 +52,24 @@ class RecordingWriter {
   std::vector<double> row_;
 };
 
-/// Reads states. The number of rows is fixed when it is opened.
+/// Reads the states of a recording. The number of rows is fixed on opening.
 class Recording {
  public:
-  /// Throws std::system_error when a file cannot be read, RecordingMismatch when the columns are not those of
-  /// the model.
+  /// Opens a recording. Throws std::system_error if a file cannot be read, RecordingMismatch if the columns
+  /// differ from those of the model.
   Recording(const std::filesystem::path& folder, const Model& model);
 
   std::int64_t rows() const { return static_cast<std::int64_t>(times_.size()); }
   double time(std::int64_t row) const { return times_[static_cast<std::size_t>(row)]; }
-  /// A state as it was recorded, to the last bit. Throws RecordingMismatch when its check number does not
-  /// fit.
+  /// Returns a recorded state, exact to the last bit. Throws RecordingMismatch if its check number does not
+  /// match.
   State state(std::int64_t row) const;
-  /// The state at a time (s): the recorded one where there is one, else q by cubic Hermite interpolation from
-  /// q and v of the states around it, v linearly. Of steps to a tolerance it is that of a step of order 8
-  /// from the state before, where such a step leads to the state after it, else q is quintic, from the
-  /// accelerations too. For pictures and meshes, not to go on from. Times outside the recording give its
-  /// first or last state. Throws RecordingMismatch, std::out_of_range when it is empty.
+  /// Returns the state at a time (s), for pictures and meshes (not for resuming). At a recorded time it is
+  /// the recorded state. Between fixed steps, q is the cubic Hermite interpolant of q and v, and v is linear.
+  /// Between steps with error control, the state is that of a shorter step of order 8 from the previous
+  /// state, provided that a full step of that method leads to the next state; otherwise q is the quintic
+  /// interpolant of q, v and the accelerations. Times outside the recording give its first or last state.
+  /// Throws RecordingMismatch; std::out_of_range if the recording is empty.
   State at(double time) const;
 
  private:

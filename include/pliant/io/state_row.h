@@ -1,5 +1,5 @@
-// What a state holds beside t, q and v, as one row of numbers, modes.npy, and some for what rests on
-// contacts: supports.npy.
+// The columns of q.npy and v.npy, and the entries of a state besides t, q and v as rows of numbers: one row
+// of modes.npy per state, and one row of supports.npy per cached contact.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,30 @@
 
 namespace pliant {
 
-/// The columns of a moving part in q.npy, in order.
+/// Returns the columns of a moving part in q.npy, in order.
 std::vector<Column> coordinate_columns(const Model& model, const PartModel& part);
-/// The columns of a moving part in v.npy, in order.
+/// Returns the columns of a moving part in v.npy, in order.
 std::vector<Column> velocity_columns(const Model& model, const PartModel& part);
-/// The columns of modes.npy, in order.
+/// Returns the columns of modes.npy, in order.
 std::vector<Column> mode_columns_of(const Model& model);
 
-/// The columns that tell which rows of supports.npy are of a state: the first, and the one after the last.
-inline constexpr std::size_t kFirstSupport = 5, kEndOfSupports = 6;
-/// The columns of supports.npy, in order.
+/// The columns of modes.npy with the range of a state's rows in supports.npy: the first row and one past the
+/// last.
+inline constexpr std::size_t kFirstCachedContact = 5, kEndOfCachedContacts = 6;
+/// Returns the columns of supports.npy, in order.
 std::vector<Column> contact_cache_columns();
-std::vector<double> row_of(const CachedContact& support);
-/// Of a row. False when one of its numbers is not that of a part, plane or obstacle.
-[[nodiscard]] bool read_cached_contact(const double* row, CachedContact& support);
+/// Returns the row of supports.npy for a cached contact.
+std::vector<double> cached_contact_row(const CachedContact& contact);
+/// Reads a cached contact from a row of supports.npy. Returns false if an index is not an integer >= -1.
+[[nodiscard]] bool read_cached_contact(const double* row, CachedContact& contact);
 
-/// The row of a state whose supports end before a row of theirs. Its last number is a hash of all bits of the
-/// state.
-void write_modes(const State& state, std::int64_t end_of_supports, std::vector<double>& row);
+/// Computes the row of modes.npy for a state. end_of_cached_contacts: one past its last row in supports.npy.
+/// The last number of the row is a hash of all bits of the state.
+void write_modes(const State& state, std::int64_t end_of_cached_contacts, std::vector<double>& row);
 
-/// Fills in the rest of a state whose q, v and supports are set, of a model with so many limits, and parts
-/// whose rest is told. False when the row's hash is not that of the state.
+/// Completes a state whose q, v and contact cache are set, from its row of modes.npy. n_limits: number of
+/// limit flags of the model; n_resting: number of parts with a time at rest. Returns false if the row is
+/// damaged or its hash differs from that of the state.
 [[nodiscard]] bool read_modes(const std::vector<double>& row, int n_limits, std::size_t n_resting,
                               State& state);
 

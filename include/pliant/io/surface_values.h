@@ -1,4 +1,4 @@
-// What colours of a part's surface tell: a quantity of its vertices, which come in the frame of the part.
+// The quantity of the vertices of a part's surface by which pictures colour it.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@ namespace pliant {
 
 class SurfaceValues {
  public:
-  /// X: the vertices at rest, m, one a column.
+  /// X: vertices at rest, m, body frame, 3 x n. triangles: three columns of X each.
   SurfaceValues(SurfaceQuantity quantity, Eigen::Matrix3Xd X, const Eigen::Matrix3Xi& triangles);
 
-  /// Of each vertex, with the vertices at p.
+  /// Returns the value of each vertex for vertices at p (m, body frame, 3 x n).
   VecX<double> at(const Eigen::Matrix3Xd& p) const;
 
  private:

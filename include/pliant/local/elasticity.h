@@ -1,12 +1,13 @@
-// Isotropic elastic material: Young's modulus E (Pa) and Poisson's ratio nu_P;
-//   lambda = E nu_P / ((1 + nu_P)(1 - 2 nu_P)),   mu = E / (2 (1 + nu_P))
+// Constants of an isotropic elastic material: Young's modulus E (Pa) and Poisson's ratio nu_P. Lame's
+// constants (Pa) are
+//   lambda = E nu_P / ((1 + nu_P)(1 - 2 nu_P)),   mu = E / (2 (1 + nu_P)).
 #pragma once
 
 namespace pliant {
 
 class Elasticity {
  public:
-  /// Throws std::invalid_argument unless E > 0 and -1 < nu_P < 1/2.
+  /// Throws std::invalid_argument unless E > 0 is finite and -1 < nu_P < 1/2.
   Elasticity(double E, double nu_P);
   double E() const { return E_; }
   double nu_P() const { return nu_P_; }

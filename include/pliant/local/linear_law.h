@@ -1,5 +1,6 @@
-// Linear elasticity: of the gradient H of displacements, eps = (H + H^T)/2,
-//   W = lambda/2 (tr eps)^2 + mu eps:eps,   P = lambda tr(eps) I + 2 mu eps
+// Linear elasticity. From the displacement gradient H, with eps = (H + H^T)/2,
+//   W = lambda/2 (tr eps)^2 + mu eps:eps,   P = lambda tr(eps) I + 2 mu eps.
+// W: energy for each unit of rest volume, J/m^3. P: stress, Pa.
 #pragma once
 
 #include <pliant/local/elasticity.h>
@@ -8,9 +9,11 @@
 
 namespace pliant {
 
+/// Members of a material law, here and in local/solid: `of`, the argument of the energy; `constant`; the
+/// energy density; the stress P = dW/dF; its derivative along dF. T: double, Pack or a dual number.
 struct LinearLaw {
   static constexpr NodalEnergy::Of of = NodalEnergy::Of::displacement;
-  /// Whether the derivative of P is the same everywhere.
+  /// Whether the derivative of P does not depend on the gradient.
   static constexpr bool constant = true;
   double lambda, mu;
 

@@ -1,6 +1,8 @@
-// The face of an energy of local deformation (design 1.4): E(x) of local coordinates x, see nodes.h. It never
-// forms a matrix to give a force. Elements come in batches of Pack lanes, structure of arrays; a node gathers
-// what its elements push in a fixed order, so that results do not depend on the number of threads.
+// Interface of an elastic energy E(x) of local coordinates x (nodes.h). Its force on the coordinates is
+// -dE/dx, which is -K q_d of Eq. (11) where E is quadratic. An energy evaluates forces element by element and
+// never forms K for them (section 5 of the paper). Elements are processed four at a time, one in each lane of
+// a Pack. Each node sums the forces of its elements in a fixed order, so that results do not depend on the
+// number of threads.
 #pragma once
 
 #include <vector>
@@ -14,45 +16,47 @@ namespace pliant {
 
 class NodalEnergy {
  public:
-  /// What E depends on. Of displacements d it is quadratic, E = 1/2 x K x, and acts on d alone; of positions
-  /// p = s + d it is an energy of the whole map from rest to now, and global parameters feel it too.
+  /// The argument x of E.
+  ///   displacement   E = 1/2 d^T K d is quadratic in the displacements d and acts on d alone
+  ///   position       E depends on the positions p = s + d in the part's frame, Eq. (2); its forces act on
+  ///                  global parameters too
   enum class Of { displacement, position };
 
-  /// What an evaluation needs for itself; kept from call to call, so that a step takes nothing from the heap.
+  /// Scratch storage of an evaluation; its contents are ignored. Keep it between calls to avoid heap
+  /// allocation in a step.
   struct Buffer {
     std::vector<double> numbers;
   };
 
   virtual ~NodalEnergy() = default;
   virtual Of of() const = 0;
-  /// Whether displacements of every direction are alike to it, so that it does not mind how the shape under d
-  /// is turned.
+  /// Returns whether E(Q d) = E(d) for every rotation Q of all displacements. Such an energy stays correct
+  /// where the reference shape under d has rotated.
   virtual bool isotropic() const { return false; }
-  /// Inertia of the coordinates that the energy has of its own; they follow those of the nodes. Most have
-  /// none.
+  /// Returns the inertia of the energy's own coordinates, which follow those of the nodes in x. Empty for
+  /// most energies.
   virtual VecX<double> own_inertia() const { return {}; }
 
-  /// J.
+  /// Returns E, J.
   virtual double energy(const Coordinates& x) const = 0;
-  /// f -= dE/dx, N. pool: may be nullptr.
+  /// Adds the force -dE/dx to f, N. pool may be nullptr.
   virtual void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const = 0;
-  /// f -= K(x) dx with K = d2E/dx2: the derivative of the force along dx.
+  /// Adds the derivative of the force along dx to f: f -= K(x) dx with K = d2E/dx2.
   virtual void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
                               ThreadPool* pool) const = 0;
-  /// f -= what beta = 1 s of Kelvin and Voigt's damping pushes while x moves at x_dot: viscous stresses in
-  /// proportion to the rate of strain, which rigid motion does not make, and which never give power. K x_dot
-  /// of what is quadratic in d, and about rest of the others.
+  /// Adds the Kelvin-Voigt damping force at rates x_dot to f, for beta = 1 s. Its stress is proportional to
+  /// the rate of strain. Rigid motion of the part causes none, and its power is never positive. The force is
+  /// -K x_dot if E is quadratic in d; at rest that holds for the other energies too.
   virtual void add_viscous_force(const Coordinates& x, const Coordinates& x_dot, VecX<double>& f,
                                  Buffer& buffer, ThreadPool* pool) const {
     add_derivative(x, x_dot, f, buffer, pool);
   }
-  /// Adds the entries of K(x), but for w w^T with w = rank_one(x), which ties every coordinate to every
-  /// other.
+  /// Appends the entries of K(x), without the term w w^T of w = rank_one(x), which would fill all of K.
   virtual void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const = 0;
-  /// Empty where add_stiffness leaves nothing out.
+  /// Returns w of the dense term w w^T of K. Empty if add_stiffness appends all of K.
   virtual VecX<double> rank_one(const Coordinates& /*x*/) const { return {}; }
-  /// No less than the largest omega^2 (1/s^2) of K(x) u = omega^2 M u, element by element; M diagonal, over
-  /// all coordinates.
+  /// Returns an upper bound on omega^2 (1/s^2) of K(x) u = omega^2 M u, computed element by element. M:
+  /// diagonal of the mass matrix, for all coordinates.
   virtual double frequency_bound(const Coordinates& x, const VecX<double>& M) const = 0;
 };
 

@@ -1,19 +1,20 @@
-// Local coordinates of a part with a mesh, q_d: the displacements of its nodes, d of all nodes along x, then
-// along y, then along z; after them what some energies have of their own (rotations of edges, say). Positions
-// of nodes, and forces on them, stand in the same order.
+// Storage of the local coordinates q_d of a part with a mesh, Eq. (6). The vector contains the x
+// displacements of all nodes, then all y, then all z displacements. After them follow the own coordinates of
+// energies that have some, for example the edge rotations of bending. Nodal positions and nodal forces use
+// this order too.
 #pragma once
 
 #include <pliant/math/types.h>
 
 namespace pliant {
 
-/// One row a node.
+/// Vectors at nodes, one row for each node.
 using Nodes = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Local coordinates, or their rates, wherever they stand: a column of numbers, of which no copy is made.
+/// Local coordinates or their rates, by reference: a contiguous column of numbers that is not copied.
 using Coordinates = Eigen::Ref<const VecX<double>>;
 
-/// The first 3 n_nodes entries of local coordinates as nodes.
+/// Views the first 3 n_nodes entries of local coordinates as one row for each node.
 inline Eigen::Map<const Nodes> nodes(const Coordinates& q_d, Eigen::Index n_nodes) {
   return {q_d.data(), n_nodes, 3};
 }

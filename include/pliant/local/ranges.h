@@ -1,5 +1,6 @@
-// Loops over elements or nodes in ranges of fixed length, shared among threads. The ranges do not depend on
-// the number of threads, and each writes places of its own.
+// Parallel loops over elements or nodes, in ranges of fixed length. The ranges do not depend on the number of
+// threads, and each range writes only its own memory. Results therefore do not depend on the number of
+// threads.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +10,8 @@
 
 namespace pliant {
 
-/// body(first, last) for [0, n) in ranges of `length`; in the calling thread when pool is nullptr or the work
-/// is no more than a range. Takes nothing from the heap.
+/// Calls body(first, last) for ranges of at most `length` that cover [0, n). Makes a single call in the
+/// calling thread if pool is nullptr or one range is enough. Allocates no heap memory.
 template <class Body>
 void for_ranges(int n, int length, ThreadPool* pool, Body&& body) {
   if (pool == nullptr || n <= length) {
@@ -19,6 +20,18 @@ void for_ranges(int n, int length, ThreadPool* pool, Body&& body) {
   }
   auto task = [&](int i) { body(i * length, std::min(n, (i + 1) * length)); };
   pool->run((n + length - 1) / length, std::ref(task));
+}
+
+/// Calls f(first, last) for every block of `length` numbers in [0, n); the last block may be shorter. Unlike
+/// for_ranges, keeps the blocks apart without a pool too: f may derive the block number from `first`.
+template <class F>
+void for_blocks(int n, int length, ThreadPool* pool, F&& f) {
+  auto task = [&](int block) { f(block * length, std::min(n, (block + 1) * length)); };
+  const int blocks = (n + length - 1) / length;
+  if (pool != nullptr)
+    pool->run(blocks, std::ref(task));
+  else
+    for (int i = 0; i < blocks; ++i) task(i);
 }
 
 }  // namespace pliant

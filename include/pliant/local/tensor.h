@@ -1,4 +1,5 @@
-// 3x3 tensors of any scalar, of Pack above all, in plain loops that compilers unroll.
+// Operations on 3x3 tensors for any scalar type, mainly Pack (four elements at once). The code is plain loops
+// that compilers unroll.
 #pragma once
 
 #include <pliant/math/scalar/pack.h>
@@ -6,7 +7,7 @@
 
 namespace pliant {
 
-/// A B.
+/// Returns A B.
 template <class T>
 Mat3<T> product(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;
@@ -14,7 +15,7 @@ Mat3<T> product(const Mat3<T>& A, const Mat3<T>& B) {
     for (int j = 0; j < 3; ++j) C(i, j) = A(i, 0) * B(0, j) + A(i, 1) * B(1, j) + A(i, 2) * B(2, j);
   return C;
 }
-/// A B^T.
+/// Returns A B^T.
 template <class T>
 Mat3<T> product_transposed(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;
@@ -22,7 +23,7 @@ Mat3<T> product_transposed(const Mat3<T>& A, const Mat3<T>& B) {
     for (int j = 0; j < 3; ++j) C(i, j) = A(i, 0) * B(j, 0) + A(i, 1) * B(j, 1) + A(i, 2) * B(j, 2);
   return C;
 }
-/// A^T B.
+/// Returns A^T B.
 template <class T>
 Mat3<T> transposed_product(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;
@@ -30,7 +31,7 @@ Mat3<T> transposed_product(const Mat3<T>& A, const Mat3<T>& B) {
     for (int j = 0; j < 3; ++j) C(i, j) = A(0, i) * B(0, j) + A(1, i) * B(1, j) + A(2, i) * B(2, j);
   return C;
 }
-/// A : B.
+/// Returns A : B, the sum of A_ij B_ij.
 template <class T>
 T contraction(const Mat3<T>& A, const Mat3<T>& B) {
   T sum = A(0, 0) * B(0, 0);
@@ -43,7 +44,7 @@ template <class T>
 T trace(const Mat3<T>& A) {
   return A(0, 0) + A(1, 1) + A(2, 2);
 }
-/// a A.
+/// Returns a A.
 template <class T>
 Mat3<T> scaled(const T& a, const Mat3<T>& A) {
   Mat3<T> B;
@@ -51,7 +52,8 @@ Mat3<T> scaled(const T& a, const Mat3<T>& A) {
     for (int j = 0; j < 3; ++j) B(i, j) = a * A(i, j);
   return B;
 }
-/// The bilinear form whose value at (A, A) is twice the matrix of cofactors of A.
+/// Returns the derivative of cofactors(A) along B. It is bilinear and symmetric in A and B, and equals twice
+/// cofactors(A) for B = A.
 template <class T>
 Mat3<T> mixed_cofactors(const Mat3<T>& A, const Mat3<T>& B) {
   Mat3<T> C;
@@ -62,7 +64,7 @@ Mat3<T> mixed_cofactors(const Mat3<T>& A, const Mat3<T>& B) {
     }
   return C;
 }
-/// det(A) A^-T.
+/// Returns the cofactors det(A) A^-T of A, also for singular A.
 template <class T>
 Mat3<T> cofactors(const Mat3<T>& A) {
   Mat3<T> C;
@@ -73,13 +75,13 @@ Mat3<T> cofactors(const Mat3<T>& A) {
     }
   return C;
 }
-/// det A from A and its cofactors.
+/// Returns det A, from A and its cofactors.
 template <class T>
 T determinant(const Mat3<T>& A, const Mat3<T>& cofactors_of_A) {
   return A(0, 0) * cofactors_of_A(0, 0) + A(0, 1) * cofactors_of_A(0, 1) + A(0, 2) * cofactors_of_A(0, 2);
 }
 
-/// The least of the numbers that move together; not a number when one is not.
+/// Returns the smallest lane, or NaN if a lane is NaN. A double has one lane.
 inline double least_of(double x) {
   return x;
 }

@@ -1,4 +1,4 @@
-// Eigenvalues of dense matrices, compiled once: Eigen's solvers take long to compile.
+// Eigenvalues of dense matrices. They are compiled once, in src, because Eigen's solvers compile slowly.
 #pragma once
 
 #include <complex>
@@ -7,24 +7,26 @@
 
 namespace pliant {
 
-/// A v = value v with |v| = 1, or A v = value B v with v^T B v = 1.
+/// Eigenvalues and eigenvectors v: A v = value v with |v| = 1, or A v = value B v with v^T B v = 1.
 struct Eigenpairs {
   VecX<double> values;   ///< ascending
-  MatX<double> vectors;  ///< a column each
+  MatX<double> vectors;  ///< one eigenvector per column
 };
 
-/// Of a symmetric matrix, of which the lower triangle is read. What is not finite gives what is not finite.
+/// Returns the eigenvalues and eigenvectors of a symmetric matrix, n x n. Only the lower triangle of A is
+/// read. The results are not finite if an entry of A is not finite.
 Eigenpairs symmetric_eigenpairs(const Eigen::Ref<const MatX<double>>& A);
+/// Returns the eigenvalues of a symmetric matrix, n x n, in ascending order. Only the lower triangle is read.
 VecX<double> symmetric_eigenvalues(const Eigen::Ref<const MatX<double>>& A);
 
-/// Of A v = value B v, both symmetric and B positive definite.
+/// Returns the solutions of A v = value B v, where A and B are symmetric and B is positive definite.
 Eigenpairs symmetric_eigenpairs(const Eigen::Ref<const MatX<double>>& A,
                                 const Eigen::Ref<const MatX<double>>& B);
 
-/// Of any square matrix, in no order.
+/// Returns the eigenvalues of any square matrix, in no particular order.
 VecX<std::complex<double>> eigenvalues(const Eigen::Ref<const MatX<double>>& A);
 
-/// The largest |eigenvalue| of any square matrix.
+/// Returns the largest |eigenvalue| of any square matrix.
 double spectral_radius(const Eigen::Ref<const MatX<double>>& A);
 
 }  // namespace pliant

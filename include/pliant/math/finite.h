@@ -1,11 +1,11 @@
-// Whether numbers are finite, in one sum that runs on vector units.
+// A test for finite numbers: one sum, which compilers map to vector units.
 #pragma once
 
 #include <pliant/math/types.h>
 
 namespace pliant {
 
-/// 0 x is 0 for every finite x, and for no other.
+/// Returns whether all entries of x are finite: 0 * x is 0 exactly if x is finite.
 template <class Derived>
 bool all_finite(const Eigen::DenseBase<Derived>& x) {
   return (0.0 * x.derived().array()).sum() == 0;

@@ -1,5 +1,5 @@
-// Numbers below 2e-308 count as zero while this lives: processors take a hundred times as long for them, and
-// what decays along a chain makes many.
+// A guard that flushes subnormal numbers (below 2e-308) to zero while it exists. Processors are about a
+// hundred times slower on them, and motions that decay along a chain of parts produce many.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,10 @@
 
 namespace pliant {
 
+/// Sets the flush-to-zero mode of the calling thread; the destructor restores the previous mode.
 class FlushSubnormals {
  public:
-  /// Nothing where the processor has no such mode, or on is false.
+  /// Changes nothing if `on` is false or if the processor has no such mode.
   explicit FlushSubnormals(bool on = true) : before_(mode()) {
     if (on) set_mode(before_ | kFlush);
   }
@@ -20,12 +21,12 @@ class FlushSubnormals {
   FlushSubnormals(const FlushSubnormals&) = delete;
   FlushSubnormals& operator=(const FlushSubnormals&) = delete;
 
-  /// Whether they are flushed now, in this thread.
+  /// Returns whether the calling thread flushes subnormal numbers now.
   static bool active() { return (mode() & kFlush) != 0; }
 
  private:
 #if defined(__SSE2__)
-  static constexpr std::uint64_t kFlush = 0x8040;  // of results and of operands
+  static constexpr std::uint64_t kFlush = 0x8040;  // the bits for results and for operands
   static std::uint64_t mode() {
     return _mm_getcsr();
   }

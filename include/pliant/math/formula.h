@@ -1,5 +1,6 @@
-// Formulas of time in scenes, "0.2*sin(2*pi*t)": a text becomes a flat program in postfix order, which runs
-// on second-order Taylor numbers, so that value, rate and second derivative are exact.
+// Formulas of time in scenes, for example "0.2*sin(2*pi*t)". The parser turns the text into a flat program in
+// postfix order. The program runs on second-order Taylor numbers, so value, rate and second derivative are
+// exact.
 //
 //   sum     = product { ("+" | "-") product }          numbers  1  .5  2.5e-3
 //   product = unary { ("*" | "/") unary }              names    t  pi
@@ -18,15 +19,17 @@
 
 namespace pliant {
 
-/// A fault in the text of a formula: where, and what was expected there.
+/// An error in the text of a formula: its place, and the text that was expected there.
 class FormulaError : public std::runtime_error {
  public:
-  /// `reason` reads on its own: what is wrong, what was expected, the nearest name.
+  /// offset: byte of the text, from 0. reason: a complete message (the error, the expectation, the nearest
+  /// name).
   FormulaError(std::size_t offset, const std::string& reason);
 
-  /// Byte of the text at which the fault was found, from 0; the length of the text where it ends too early.
+  /// Returns the byte of the text at which the error was found, from 0; the length of the text if it ends too
+  /// early.
   std::size_t offset() const { return offset_; }
-  /// The fault without its place; what() says "at character N: reason".
+  /// Returns the error without its place; what() returns "at character N: reason".
   const std::string& reason() const { return reason_; }
 
  private:
@@ -34,36 +37,38 @@ class FormulaError : public std::runtime_error {
   std::string reason_;
 };
 
-/// A formula of one variable, t. Parts without t are computed once, when the text is read.
+/// A formula of one variable, t. Subexpressions without t are evaluated once, by the constructor.
 class Formula {
  public:
   static constexpr std::size_t kMaxLength = 4096;  ///< bytes of text
   static constexpr int kMaxDepth = 64;             ///< nesting of parentheses, calls, signs and powers
 
+  /// A function of the formula language.
   struct Function {
     std::string name;
     int arguments;
     std::string meaning;
   };
-  /// What a formula may call.
+  /// Returns the functions that a formula may call.
   static const std::vector<Function>& functions();
 
-  /// Throws FormulaError when the text is not a formula, is too long or too deep, or when a part without t
-  /// has no finite value, as in 1/0.
+  /// Parses a text. Throws FormulaError if the text is not a formula, if it is too long or nested too deeply,
+  /// or if a subexpression without t has no finite value (1/0).
   explicit Formula(const std::string& text);
 
-  /// Value, first and second derivative in t. At a kink (abs, min, max, step, the ends of smoothstep) the
-  /// derivatives are those towards larger t. Not finite where the formula is not, as 1/t at 0: that is left
-  /// to the caller.
+  /// Returns the value and the first and second derivative with respect to t. At a kink (abs, min, max, step,
+  /// the ends of smoothstep) the derivatives are one-sided, towards larger t. The result is not finite where
+  /// the formula is not (1/t at 0); the caller checks this.
   Taylor2<double> at(double t) const;
 
-  /// No t in it.
+  /// Returns whether the formula does not contain t.
   bool is_constant() const;
-  /// Whether abs, min, max or steps are in it, and a number that tells which of their branches are taken at
-  /// t.
+  /// Returns whether the formula contains abs, min, max, step or smoothstep.
   bool has_branches() const { return has_branches_; }
+  /// Returns a hash of the branches that these functions use at t.
   std::uint64_t branches(double t) const;
 
+  /// The operations of the postfix program.
   enum class Code : std::uint8_t {
     kNumber,
     kTime,
@@ -72,8 +77,8 @@ class Formula {
     kMultiply,
     kDivide,
     kNegate,
-    kPower,          ///< both sides vary
-    kConstantPower,  ///< the exponent is the instruction's number
+    kPower,          ///< a variable base and a variable exponent
+    kConstantPower,  ///< a constant exponent, the number of the instruction
     kSin,
     kCos,
     kTan,
@@ -88,12 +93,12 @@ class Formula {
   };
   struct Instruction {
     Code code;
-    double number;
+    double number;  ///< the constant of kNumber, the exponent of kConstantPower
   };
 
  private:
   std::vector<Instruction> program_;
-  int stack_ = 0;  ///< most numbers the program holds at a time
+  int stack_ = 0;  ///< maximum depth of the stack during an evaluation
   bool has_branches_ = false;
 };
 

@@ -1,6 +1,7 @@
-// PLIANT_INLINE marks the functions of the headers *-inl.h, which hold the bodies of functions that foo.h declares.
-// The library compiles each body once, in src. A program that extends pliant, or wants the compiler to inline through
-// it, defines PLIANT_HEADER_ONLY and includes the -inl.h itself: the functions are inline there.
+// The macro PLIANT_INLINE marks the function bodies in the headers *-inl.h; foo.h declares the functions. The
+// library compiles each body once, in src. A program that extends pliant, or that wants the compiler to
+// inline these functions, defines PLIANT_HEADER_ONLY and includes the -inl.h header: its functions are then
+// inline.
 #pragma once
 
 #ifdef PLIANT_HEADER_ONLY

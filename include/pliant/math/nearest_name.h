@@ -1,4 +1,4 @@
-// The name a user probably meant: for messages about unknown keys, functions, shapes.
+// The known name that is nearest to a misspelled one, for messages about unknown keys, functions or shapes.
 #pragma once
 
 #include <string>
@@ -7,15 +7,16 @@
 
 namespace pliant {
 
-/// Number of letters to insert, delete, replace, or of neighbours to swap, that turns one word into the
-/// other; lower and upper case count as equal.
+/// Returns the edit distance of two words: the smallest number of insertions, deletions, replacements and
+/// swaps of neighbouring letters that turn one word into the other. Case is ignored.
 int edit_distance(std::string_view a, std::string_view b);
 
-/// The name at the least edit distance from `wrong`, the first of several; empty when none is within 2
-/// (within 1 for words of at most two letters).
+/// Returns the name with the smallest edit distance from `wrong`, the first one of several. Returns an empty
+/// text if no name is within distance 2 (within 1 for words of at most two letters).
 std::string nearest_name(std::string_view wrong, const std::vector<std::string>& names);
 
-/// "; did you mean "NAME"?" or nothing: the tail of a message about an unknown name.
+/// Returns the end of a message about an unknown name: "; did you mean "NAME"?", or an empty text if no name
+/// is near.
 std::string did_you_mean(std::string_view wrong, const std::vector<std::string>& names);
 
 }  // namespace pliant

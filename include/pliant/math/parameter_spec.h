@@ -1,41 +1,45 @@
-// What a shape or a deformation says about each of its parameters: name, default, ranges, unit, meaning.
+// The description of one parameter of a shape or of a deformation: name, default, ranges, unit, meaning.
 #pragma once
 
 #include <limits>
 
 namespace pliant {
 
+/// A closed interval.
 struct Range {
   double min, max;
   constexpr bool contains(double x) const { return x >= min && x <= max; }
 };
 
-/// How a material point follows a parameter; it decides which quadrature of the mass is exact (design 1.3).
+/// How the position of a material point depends on a parameter. This decides which quadrature of the mass is
+/// exact (include/pliant/part/README.md).
 enum class Follows {
   affine,   ///< its displacement is affine in the rest position
   section,  ///< affine in (x, y) within each section z = const of the rest shape
   ring,     ///< affine in (x, y) along each material ring (u, w) = const
-  free,     ///< none of these
+  free,     ///< none of the above
 };
 
-/// What a parameter measures.
+/// The physical quantity of a parameter.
 enum class Quantity {
-  length,    ///< m; it scales with the body
+  length,    ///< m; scales with the body
   angle,     ///< rad
   exponent,  ///< squareness of a superquadric
   ratio,     ///< any other number without a unit
 };
 
+/// The description of one parameter.
 struct ParameterSpec {
   const char* name;
   double standard;  ///< default value
-  Range frozen;     ///< where it may be held
-  Range dynamic;    ///< where it may move as a degree of freedom (one-sided limits)
-  bool relative;    ///< the dynamic range is in multiples of the rest value
+  Range frozen;     ///< admissible values of a constant parameter
+  Range dynamic;    ///< admissible values of a degree of freedom (one-sided limits)
+  bool relative;    ///< whether the dynamic range is in multiples of the rest value
   Quantity quantity;
   const char* meaning;
   Follows follows;
 
+  /// Returns the unit as text: "m", "rad" or "1".
   constexpr const char* unit() const {
     return quantity == Quantity::length ? "m" : quantity == Quantity::angle ? "rad" : "1";
   }
@@ -43,30 +47,32 @@ struct ParameterSpec {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A positive length; as a degree of freedom it keeps above a thousandth of its rest value.
+/// Returns the description of a positive length (m). As a degree of freedom its range is 1e-3 to 1e3 times
+/// its rest value.
 constexpr ParameterSpec length(const char* name, double standard, const char* meaning,
                                Follows follows = Follows::affine) {
   return {name, standard, {1e-12, 1e12}, {1e-3, 1e3}, true, Quantity::length, meaning, follows};
 }
 
-/// A displacement: a length of either sign, zero unless given.
+/// Returns the description of a displacement (m): a length of either sign, zero by default.
 constexpr ParameterSpec displacement(const char* name, const char* meaning, Follows follows) {
   return {name, 0, {-1e12, 1e12}, {-1e12, 1e12}, false, Quantity::length, meaning, follows};
 }
 
-/// An angle, zero unless given.
+/// Returns the description of an angle (rad), zero by default.
 constexpr ParameterSpec angle(const char* name, Range frozen, Range dynamic, const char* meaning,
                               Follows follows) {
   return {name, 0, frozen, dynamic, false, Quantity::angle, meaning, follows};
 }
 
-/// A number without a unit.
+/// Returns the description of a number without a unit.
 constexpr ParameterSpec ratio(const char* name, double standard, Range frozen, Range dynamic,
                               const char* meaning, Follows follows) {
   return {name, standard, frozen, dynamic, false, Quantity::ratio, meaning, follows};
 }
 
-/// A squareness exponent (design 6).
+/// Returns the description of a squareness exponent of a superquadric. As a degree of freedom it stays in
+/// [0.1, 1.9], the usual range in superquadric fitting; the surface has cusps above 2.
 constexpr ParameterSpec exponent(const char* name, const char* meaning, Follows follows) {
   return {name, 1.0, {0.02, 5.0}, {0.1, 1.9}, false, Quantity::exponent, meaning, follows};
 }

@@ -1,24 +1,25 @@
-// One-dimensional quadrature on [0, 1].
+// One-dimensional quadrature rules on [0, 1].
 #pragma once
 
 #include <vector>
 
 namespace pliant {
 
+/// A node of a rule and its weight.
 struct QuadratureNode {
   double x;    ///< in (0, 1)
   double gap;  ///< 1 - x, accurate near 1
   double weight;
 };
 
-/// Gauss-Legendre with n points: exact for polynomials of degree 2n - 1.
+/// Returns the Gauss-Legendre rule with n points, in ascending order: exact for polynomials of degree 2n - 1.
 std::vector<QuadratureNode> gauss_rule(int n);
 
-/// n points for integrands with an algebraic or logarithmic singularity at 0: Gauss-Legendre in y, x = y^q, q
-/// >= 1.
+/// Returns n points for integrands with an algebraic or logarithmic singularity at 0: Gauss-Legendre in y,
+/// where x = y^q and q >= 1.
 std::vector<QuadratureNode> one_end_rule(int n, double q = 4);
 
-/// 2n points for singularities at both ends: one_end_rule on either half.
+/// Returns 2n points for singularities at both ends: one_end_rule on each half.
 std::vector<QuadratureNode> both_ends_rule(int n);
 
 }  // namespace pliant

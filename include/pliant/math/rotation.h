@@ -1,4 +1,4 @@
-// Rotations: matrices of quaternions, and quaternions of rotation vectors.
+// Rotations: the matrix of a quaternion, and the quaternion of a rotation vector.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,7 +8,7 @@
 
 namespace pliant {
 
-/// R of a quaternion (w, x, y, z), of any length.
+/// Returns the rotation matrix R (body to world) of a quaternion (w, x, y, z) of any nonzero length.
 template <class S>
 Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
   const S two = S(2.0) / (w * w + x * x + y * y + z * z);
@@ -25,13 +25,13 @@ Mat3<S> rotation(const S& w, const S& x, const S& y, const S& z) {
   return R;
 }
 
-/// The unit quaternion of a turn about an axis, by an angle (rad) that is its length.
+/// Returns the unit quaternion of a rotation vector: the axis times the angle (rad).
 inline Eigen::Quaterniond quaternion(const Vec3<double>& turn) {
   const Vec3<double> half = 0.5 * turn;
   const double angle = half.norm();
-  const math::SinCos<double> of_angle = math::sin_cos(angle);
-  const Vec3<double> axis = sinc(angle, of_angle) * half;
-  return {of_angle.cos, axis[0], axis[1], axis[2]};
+  const math::SinCos<double> sin_cos_half = math::sin_cos(angle);
+  const Vec3<double> axis = sinc(angle, sin_cos_half) * half;
+  return {sin_cos_half.cos, axis[0], axis[1], axis[2]};
 }
 
 }  // namespace pliant

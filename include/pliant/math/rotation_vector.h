@@ -1,4 +1,4 @@
-// The rotation vector of a rotation Q: its axis times its angle in [0, pi],
+// The rotation vector of a rotation matrix Q: the axis times the angle theta in [0, pi],
 //   (theta / sin theta) (Q_32 - Q_23, Q_13 - Q_31, Q_21 - Q_12) / 2,   cos theta = (tr Q - 1) / 2
 #pragma once
 
@@ -7,14 +7,15 @@
 
 namespace pliant {
 
-/// theta / sin theta of an angle in [0, pi) by its cosine and the square of its sine.
+/// Returns theta / sin theta for theta in [0, pi), from cos theta and sin^2 theta.
 template <class T>
 T angle_over_sine(const T& cosine, const T& sine2) {
   const T x = (T(1.0) - cosine) * T(0.5);  // sin^2(theta / 2)
   const double size = plain(x);
   if (size > 0.1) {
     const T sine = math::sqrt(sine2);
-    // Near a half turn by the sine, which is exact there; not near a right angle, where its own slope ends.
+    // Near a half turn the sine is exact and the angle comes from it. Near a right angle the angle comes from
+    // the cosine, because the slope of asin is infinite there.
     const T angle = plain(cosine) < -0.7 ? T(T(kPi / 2) + math::acos(sine)) : T(math::acos(cosine));
     return angle / sine;
   }
@@ -25,16 +26,17 @@ T angle_over_sine(const T& cosine, const T& sine2) {
   return sum;
 }
 
-/// A cosine at or below this is that of a half turn, whose axis has no side: rotations are taken a little off
-/// it.
+/// A rotation whose cosine is at or below this value counts as a half turn. The sign of its axis is not
+/// defined, so rotation_vector first turns it by kOffHalfTurn.
 inline constexpr double kHalfTurn = -1 + 1e-12;
 inline constexpr double kOffHalfTurn = 1e-5;  // rad
 
+/// Returns the rotation vector (rad) of a rotation matrix Q.
 template <class T>
 Vec3<T> rotation_vector(const Mat3<T>& Q) {
   auto cosine = [](const Mat3<T>& R) { return T((R(0, 0) + R(1, 1) + R(2, 2) - T(1.0)) * T(0.5)); };
   if (plain(cosine(Q)) <= kHalfTurn) {
-    int k = 0;  // the axis that is nearest to that of the turn
+    int k = 0;  // the coordinate axis that is nearest to the axis of the rotation
     for (int i = 1; i < 3; ++i)
       if (plain(Q(i, i)) > plain(Q(k, k))) k = i;
     const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -45,7 +47,7 @@ Vec3<T> rotation_vector(const Mat3<T>& Q) {
     return rotation_vector(off);
   }
   const Vec3<T> v(T(0.5) * (Q(2, 1) - Q(1, 2)), T(0.5) * (Q(0, 2) - Q(2, 0)),
-                  T(0.5) * (Q(1, 0) - Q(0, 1)));  // of length sin theta
+                  T(0.5) * (Q(1, 0) - Q(0, 1)));  // its length is sin theta
   return v * angle_over_sine(cosine(Q), T(v.dot(v)));
 }
 

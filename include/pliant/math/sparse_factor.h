@@ -1,8 +1,9 @@
-// Sparse Cholesky factorisation of symmetric matrices, behind one face: A = Pᵀ L D Lᵀ P with a fill-reducing
-// ordering P (AMD). A is positive definite, or quasi-definite: positive definite in its first rows, negative
-// definite in the others, as Eq. (14) is with a small -δI below; then D has the signs of these rows. The
-// pattern is analysed once, values are factored as often as they change. Eigen's own factorisation is in
-// core; CHOLMOD's is the library pliant::suitesparse (solve/cholmod_factor.h).
+// An interface for sparse factorisations of symmetric matrices: A = Pᵀ L D Lᵀ P with a fill-reducing ordering
+// P (AMD). A is positive definite, or it is quasi-definite: positive definite in its first rows and negative
+// definite in the others. The matrix of Eq. (14) with a small -δI in its lower block is quasi-definite. The
+// signs of D are the signs of these rows. The pattern is analysed once; the values are factored each time
+// they change. The core library contains Eigen's factorisation; pliant::suitesparse adds CHOLMOD's
+// (solve/cholmod_factor.h).
 #pragma once
 
 #include <functional>
@@ -13,75 +14,79 @@
 
 namespace pliant {
 
-/// Columns compressed; of a symmetric matrix only the lower triangle is read.
+/// Compressed columns; only the lower triangle of a symmetric matrix is read.
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// The pivot at which a factorisation stopped.
 struct BadPivot {
-  Eigen::Index row;  ///< the row and column of A, in A's own order
-  double value;      ///< the pivot, D(row); NaN when the method does not tell
-  double diagonal;   ///< A(row, row), which the pivot is judged by
+  Eigen::Index row;  ///< the row and column of A, in the order of A
+  double value;      ///< the pivot, D(row); NaN if the method does not report it
+  double diagonal;   ///< A(row, row), the scale of the pivot
 };
 
-/// One factorisation. Not for several threads at once: factoring and solving use workspaces of the object.
+/// One factorisation. Not thread-safe: factor() and solve() use workspaces of the object.
 class SparseFactor {
  public:
   virtual ~SparseFactor() = default;
   SparseFactor(const SparseFactor&) = delete;
   SparseFactor& operator=(const SparseFactor&) = delete;
 
-  /// Ordering and symbolic factorisation for the pattern of A; its values are not read. Diagonal entries must
-  /// be there. Throws std::invalid_argument unless A is square, compressed and has its whole diagonal.
+  /// Computes the ordering and the symbolic factorisation for the pattern of a positive definite A. The
+  /// values of A are not read. Throws std::invalid_argument unless A is square and compressed and its pattern
+  /// contains the whole diagonal.
   void analyse(const SparseMatrix& A) { analyse(A, A.rows()); }
-  /// The same of a quasi-definite matrix whose rows from n_positive on are negative definite.
+  /// Analyses a quasi-definite matrix whose rows from n_positive on are negative definite.
   void analyse(const SparseMatrix& A, Eigen::Index n_positive);
 
-  /// Numeric factorisation of A, whose pattern is the analysed one (else std::invalid_argument).
-  /// False when A is not safely definite: a pivot, with the sign that its row is to have, is not above
-  /// kPivotTolerance times the size of the diagonal entry it began as, or is not finite; bad_pivot() then
-  /// names the first in the order of elimination.
+  /// Computes the numeric factorisation of A. Throws std::invalid_argument if A does not have the analysed
+  /// pattern. Returns false if A is not safely definite: a pivot is not finite, or a pivot times the sign of
+  /// its row is not above kPivotTolerance |A(row, row)|. bad_pivot() then returns the first such pivot in the
+  /// order of elimination.
   [[nodiscard]] bool factor(const SparseMatrix& A);
 
-  /// Overwrites each column of x, a right-hand side b, with A⁻¹ b. Throws std::logic_error unless the last
-  /// factor() succeeded, std::invalid_argument when x has not n rows.
+  /// Overwrites each column b of x, n rows, with A⁻¹ b. Throws std::logic_error unless the last factor()
+  /// succeeded, and std::invalid_argument if x does not have n rows.
   void solve(Eigen::Ref<Eigen::MatrixXd> x);
 
-  /// The pivots of a factor() that succeeded, in the order of A's rows.
+  /// Returns the pivots, in the order of the rows of A. Valid after a factor() that succeeded.
   const std::vector<double>& pivots() const { return pivots_; }
-  /// Where the last factor() stopped; meaningless after one that succeeded.
+  /// Returns the pivot at which the last factor() stopped. Valid after a factor() that failed.
   const BadPivot& bad_pivot() const { return bad_pivot_; }
-  /// Rows of the analysed matrix.
+  /// Returns the number of rows of the analysed matrix.
   Eigen::Index size() const { return static_cast<Eigen::Index>(diagonal_.size()); }
-  /// Entries of L, its diagonal included; known after a factor() that succeeded.
+  /// Returns the number of entries of L, including its diagonal. Valid after a factor() that succeeded.
   virtual Eigen::Index nonzeros() const = 0;
 
-  /// Rounding leaves a redundant row a pivot of this size, relative to its diagonal entry, instead of zero.
+  /// Relative size of the pivot of a redundant row: rounding leaves such a pivot at this fraction of the
+  /// diagonal entry, and not at zero.
   static constexpr double kPivotTolerance = 1e-13;
 
  protected:
   SparseFactor() = default;
-  /// Whether a pivot that began as the diagonal entry of a row (of A) is good; keeps it as the bad one
-  /// otherwise.
+  /// Returns whether the pivot of a row of A is large enough; otherwise stores it for bad_pivot().
   bool accept_pivot(Eigen::Index row, double pivot);
   bool quasi_definite() const { return n_positive_ < size(); }
 
  private:
   virtual void do_analyse(const SparseMatrix& A) = 0;
-  /// Calls accept_pivot in the order of elimination until it refuses, and returns whether it never did.
+  /// Factors A and calls accept_pivot in the order of elimination. Returns whether all pivots were accepted;
+  /// stops at the first one that was not.
   virtual bool do_factor(const SparseMatrix& A) = 0;
   virtual void do_solve(Eigen::Ref<Eigen::MatrixXd> x) = 0;
 
   std::vector<int> columns_, rows_;  // the analysed pattern
-  std::vector<double> diagonal_;     // of the matrix last factored
+  std::vector<double> diagonal_;     // the diagonal of the matrix factored last
   std::vector<double> pivots_;
   Eigen::Index n_positive_ = 0;
   BadPivot bad_pivot_{};
   bool factored_ = false;
 };
 
-/// Eigen's simplicial LDLᵀ: the faster one below some thousand unknowns.
+/// Returns a factorisation by Eigen's simplicial LDLᵀ, which is faster than CHOLMOD below some thousand
+/// unknowns.
 std::unique_ptr<SparseFactor> make_eigen_factor();
 
+/// Makes a new, empty factorisation.
 using MakeSparseFactor = std::function<std::unique_ptr<SparseFactor>()>;
 
 }  // namespace pliant

@@ -1,16 +1,16 @@
-// Thinning of a quadrature (Caratheodory, Tchakaloff): a rule of n nodes that is exact for functions spanning
-// r dimensions has a subrule of at most r of its nodes, with positive weights, that gives the same integrals.
+// Thinning of a quadrature rule (theorems of Caratheodory and Tchakaloff): for a set of functions that span r
+// dimensions, a rule with n nodes has a subrule of at most r nodes with positive weights and equal integrals.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace pliant {
 
-/// F(i, k): what node i contributes to the integral of function k. Returns factors c >= 0 of the nodes'
-/// weights, most of them 0, with F^T c = F^T 1 to rounding in units of each column's absolute sum, or to the
-/// tolerance.
-/// The functions should be more than their numerical rank; rank_found (if not null) says what that is, so
-/// that a caller can see whether they were.
+/// Returns factors c >= 0 for the weights of the nodes, n of them, most of them 0.
+/// F: n x functions; F(i, k) is the contribution of node i to the integral of function k. The result
+/// satisfies F^T c = F^T 1 to rounding in units of each column's absolute sum, or to the tolerance.
+/// rank_found (may be null) receives the numerical rank of F. The rule is exact for the whole space of
+/// functions only if F has more columns than this rank; the caller checks this.
 Eigen::VectorXd thin_rule(const Eigen::MatrixXd& F, Eigen::Index* rank_found = nullptr,
                           double tolerance = 1e-15);
 

@@ -1,5 +1,5 @@
-// A pool of threads for loops over parts, or over ranges of the elements of one. Which thread runs what never
-// changes a result: nothing that runs at once adds to the same sum.
+// A pool of threads for loops over parts, or over ranges of the elements of one part. Results do not depend
+// on the number of threads: tasks that run at the same time never add to a shared sum.
 #pragma once
 
 #include <functional>
@@ -7,17 +7,19 @@
 
 namespace pliant {
 
+/// A fixed number of threads that run the tasks of one loop at a time.
 class ThreadPool {
  public:
-  /// threads >= 1; with 1 everything runs in the calling thread.
+  /// threads >= 1. With 1 all tasks run in the calling thread.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   int threads() const;
-  /// task(i) for 0 <= i < n, in any order; returns when all are done. The first exception of the lowest i is
-  /// rethrown. Within a task of a pool everything runs in the calling thread.
+  /// Calls task(i) for 0 <= i < n, in any order, and returns when all calls have ended. If tasks throw, run()
+  /// rethrows the exception with the lowest i. A call from within a task runs all its tasks in the calling
+  /// thread.
   void run(int n, const std::function<void(int)>& task);
 
  private:

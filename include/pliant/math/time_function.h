@@ -1,6 +1,6 @@
-// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. Each gives value,
-// rate and second derivative, so that moving anchors, prescribed paths and actuation enter the equations of
-// motion exactly.
+// Functions of time in a scene: constants, C2 cubic splines through key frames, formulas. Each returns value,
+// rate and second derivative, because moving anchors, prescribed paths and actuation need C_t and C_tt of Eq.
+// (13).
 #pragma once
 
 #include <array>
@@ -15,45 +15,48 @@
 
 namespace pliant {
 
-/// A time (s) at which the rate of a function of time jumps, or its value; infinite: there is none.
+/// A time (s) at which a function of time jumps, or its rate does. Infinite time: no such time.
 struct Kink {
   double time = std::numeric_limits<double>::infinity();
-  bool jumps = false;  ///< whether its value does
+  bool jumps = false;  ///< whether the value jumps, and not only the rate
 
-  /// The earlier one, or both where they are at the same time.
+  /// Returns the earlier kink; at equal times the result jumps if one of the two does.
   Kink or_sooner(const Kink& other) const {
     if (time == other.time) return {time, jumps || other.jumps};
     return time < other.time ? *this : other;
   }
 };
 
-/// A scalar function of time t (s). Cheap to copy.
+/// A scalar function of time t (s). Copies are cheap: they share the spline or the formula.
 class TimeFunction {
  public:
   TimeFunction(double constant = 0) : constant_(constant) {}  // NOLINT(google-explicit-constructor)
 
-  /// The cubic spline through (t_i, y_i), twice continuously differentiable from the first key to the last;
-  /// before and after them it is constant, so that its rate jumps there unless the end rates are zero. Ends
-  /// are natural (second derivative zero). One key is a constant. Throws std::invalid_argument unless all is
-  /// finite, the times strictly increase, and there is a key and as many values as times.
+  /// Returns the cubic spline through the keys (t_i, y_i) with natural ends (second derivative zero). The
+  /// spline is twice continuously differentiable from the first key to the last. Before the first key and
+  /// after the last it is constant, so its rate jumps there unless the end rates are zero. A single key gives
+  /// a constant. Throws std::invalid_argument if there is no key, if the numbers of times and values differ,
+  /// if a number is not finite, or if the times do not strictly increase.
   static TimeFunction key_frames(std::vector<double> t, std::vector<double> y);
-  /// The same with the rates at the first and the last key given (clamped ends); one key is still a constant.
+  /// Returns the cubic spline with given rates at the first and the last key (clamped ends). A single key
+  /// gives a constant. Errors as above; in addition the rates must be finite.
   static TimeFunction key_frames(std::vector<double> t, std::vector<double> y, double first_rate,
                                  double last_rate);
-  /// A formula in t (see Formula in math/formula.h). Throws FormulaError with the offset of the fault.
+  /// Returns a formula in t (see Formula in math/formula.h). Throws FormulaError with the offset of the
+  /// error.
   static TimeFunction formula(const std::string& text);
 
-  /// Value, first and second time derivative at t.
+  /// Returns the value and the first and second time derivative at t (s).
   Taylor2<double> at(double t) const { return impl_ ? impl_->at(t) : Taylor2<double>(constant_); }
   double value(double t) const { return at(t).v; }
   bool is_constant() const { return impl_ == nullptr; }
-  /// The first kink later than a time and no later than another (s). Of a formula those are found that a few
-  /// looks between these times tell: they are to be near each other, as the ends of a step are.
+  /// Returns the first kink in the interval (after, until] (s). The search in a formula samples a few times
+  /// of the interval and can miss kinks in a long one; the two ends of a step are near enough.
   Kink first_kink(double after, double until) const {
     return impl_ && after < until ? impl_->first_kink(after, until) : Kink();
   }
 
-  /// What stands behind a function that is not constant.
+  /// Implementation of a function that is not constant.
   struct Impl {
     virtual ~Impl() = default;
     virtual Taylor2<double> at(double t) const = 0;
@@ -66,7 +69,7 @@ class TimeFunction {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Three functions of time: a moving point, a force, a torque.
+/// Three functions of time, for a moving point, a force or a torque.
 struct TimeVector {
   std::array<TimeFunction, 3> component;
 
@@ -91,15 +94,17 @@ struct TimeVector {
     return component[0].is_constant() && component[1].is_constant() && component[2].is_constant();
   }
 
-  /// Its mean rate over h seconds, and by how much its rate differs from that at most, at kMoments.
+  /// The mean rate over a time interval, and the largest difference of the rate from it, sampled at kMoments.
   struct Passage {
     Vec3<double> rate;
     double beside;
   };
+  /// Returns the passage from t to t + h (s).
   Passage over(double t, double h) const;
 };
 
-/// Shares of a time at which it is looked at what happens in it: what swings to and fro is caught by one.
+/// Fractions of a step at which functions of time are sampled. They are not equally spaced, so that a
+/// periodic motion is not zero at all of them.
 inline constexpr std::array<double, 5> kMoments{0, 0.27, 0.5, 0.77, 1};
 
 }  // namespace pliant

@@ -1,13 +1,13 @@
-// Fixed-size vectors and matrices of the engine.
+// Vectors and matrices of the engine: fixed size, bounded size, run-time size.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace pliant {
 
-/// Most generalised coordinates a part may have beside its six rigid ones (n_s <= kMaxGlobal).
+/// Maximum number of global parameters n_s of a part that are degrees of freedom.
 inline constexpr int kMaxGlobal = 32;
-/// Most velocities of a part without local deformation: 6 + n_s.
+/// Maximum number of velocities of a part without local deformation: 6 + n_s.
 inline constexpr int kMaxVelocities = 6 + kMaxGlobal;
 
 template <class T, int N>
@@ -17,13 +17,13 @@ using Vec3 = Vec<T, 3>;
 template <class T>
 using Mat3 = Eigen::Matrix<T, 3, 3>;
 
-/// Run-time size, bounded at compile time: lives on the stack, no heap.
+/// Run-time size with a bound at compile time: stored on the stack, without heap allocation.
 template <class T, int Max = kMaxVelocities>
 using VecMax = Eigen::Matrix<T, Eigen::Dynamic, 1, 0, Max, 1>;
 template <class T, int Max = kMaxVelocities>
 using MatMax = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, 0, Max, Max>;
 
-/// [a]x, the matrix of the cross product: skew(a) b = a x b.
+/// Returns [a]x, the matrix of the cross product: skew(a) b = a x b.
 template <class T>
 Mat3<T> skew(const Vec3<T>& a) {
   const T zero(0.0);

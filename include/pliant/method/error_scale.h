@@ -1,8 +1,8 @@
-// What errors of a step are measured in: a tolerance times what belongs to each block of a part's numbers.
-// Its place in sizes of the part, its rotation in radians, lengths among its parameters in sizes of the part
-// and others as they are, its local displacement in sizes of the part (root mean square over its nodes).
-// Their rates are measured in the same per second or, where that is more, per the time in which the fastest
-// of the part's rates would move it by as much.
+// The norm of the error of a step, in units of the tolerance. Each block of the coordinates of a part has its
+// own scale: position in sizes of the part, rotation in radians, parameters that are lengths in sizes of the
+// part, other parameters as they are, local displacement (root mean square over the nodes) in sizes of the
+// part. Rates have the same scales per second. If the part moves fast, they are measured per the time in
+// which its fastest rate moves it by one unit.
 #pragma once
 
 #include <string>
@@ -11,21 +11,21 @@
 
 namespace pliant {
 
-/// The least and the greatest tolerance that a simulation takes.
+/// The smallest and the largest tolerance of a simulation.
 inline constexpr double kLeastTolerance = 1e-12, kGreatestTolerance = 0.1;
 
 class ErrorScale {
  public:
-  /// tolerance: > 0. model: must outlive it.
+  /// tolerance: > 0. The model must outlive the scale.
   ErrorScale(const Model& model, double tolerance);
   double tolerance() const { return tolerance_; }
 
-  /// The largest error of a block, in tolerances; of changes of coordinates and of velocities (of quaternions
-  /// their derivatives). v: velocities there.
+  /// Returns the largest error of a block, in tolerances. of_q, of_v: errors of the coordinates (of
+  /// quaternions their components) and of the velocities. v: the velocities.
   double norm(const VecX<double>& of_q, const VecX<double>& of_v, const VecX<double>& v) const;
-  /// The same of coordinates alone.
+  /// Returns the largest error of the coordinates alone.
   double norm(const VecX<double>& of_q) const;
-  /// The block with the largest error, in words: "the velocity of part 'ball'".
+  /// Names the block with the largest error, for example "the velocity of part 'ball'".
   std::string worst(const VecX<double>& of_q, const VecX<double>& of_v, const VecX<double>& v) const;
 
  private:
@@ -36,7 +36,7 @@ class ErrorScale {
 
   const Model* model_;
   double tolerance_;
-  VecX<double> parameter_;  ///< by velocity, 1 / m or 1
+  VecX<double> parameter_;  ///< scale of each velocity, 1/m or 1
 };
 
 }  // namespace pliant

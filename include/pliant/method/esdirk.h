@@ -1,7 +1,7 @@
-// The singly diagonally implicit Runge-Kutta method of order 4 with an explicit first stage by Kennedy and
-// Carpenter (Appl. Numer. Math. 44, 2003: the implicit part of ARK4(3)6L[2]SA), on (q, v, work) with closed
-// joints projected: L-stable and stiffly accurate, its error estimated by a method of order 3. All stages
-// share one matrix, which is only formed where the motion is stiff.
+// The ESDIRK method of order 4 by Kennedy and Carpenter (Appl. Numer. Math. 44, 2003: the implicit part of
+// ARK4(3)6L[2]SA), on (q, v, work), with projection of closed joints: singly diagonally implicit, explicit
+// first stage, L-stable, stiffly accurate. An embedded method of order 3 estimates the error. All stages
+// share one matrix, which is formed only if the motion is stiff.
 #pragma once
 
 #include <memory>
@@ -20,14 +20,14 @@ class Esdirk final : public Integrator {
   const char* name() const override { return "esdirk"; }
   int order() const override { return 4; }
   int error_order() const override { return 3; }
-  /// Throws NumericalFailure where the equations of a stage are not solved.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  /// Throws NumericalFailure if the iteration of a stage does not converge.
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> exactly_;  ///< where errors are not measured
-  MatX<double> q_rates_, v_rates_;       ///< a column a stage
+  std::unique_ptr<ErrorScale> fine_scale_;  ///< residual of the stages if there is no tolerance
+  MatX<double> q_rates_, v_rates_;          ///< one column for each stage
   VecX<double> q_, v_, r_q_, r_v_, q_dot_;
 };
 

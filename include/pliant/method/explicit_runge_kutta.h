@@ -1,7 +1,7 @@
-// Explicit Runge-Kutta methods with an estimate of the error of a step (Hairer, Norsett & Wanner, Solving
-// Ordinary Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers
-// by theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, closed joints are
-// projected: neither costs an order. What oscillates freely does so exactly.
+// Explicit Runge-Kutta methods with an error estimate (Hairer, Norsett & Wanner, Solving Ordinary
+// Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers by
+// theta_dot = 1/2 theta o (0, omega) and normalised after the step; closed joints are projected. Both keep
+// the order. Free oscillators are integrated exactly.
 #pragma once
 
 #include <vector>
@@ -18,31 +18,31 @@ class ExplicitRungeKutta : public Integrator {
   const char* name() const override { return of_->name; }
   int order() const override { return of_->order; }
   int error_order() const override { return of_->error_order; }
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
-  /// By its continuous extension; where something oscillates freely as other methods do.
+  /// Returns the dense output of the method. With free oscillators it is cubic Hermite interpolation.
   StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                 StepCounters& counters) override;
 
  private:
-  /// The rates at (t, q_, v_), in the columns of a stage.
-  void take_rates(const Dynamics& dynamics, double t, int stage, RankRule rank, const State& modes,
-                  Workspace<double>& work, StepCounters& counters);
+  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, into the columns of a stage.
+  void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   StepPath extended(const Dynamics& dynamics, const State& low, double h, const State& high,
                     StepCounters& counters);
   bool ended_at(const Dynamics& dynamics, double t, const State& state) const;
-  /// Of the step that was taken, in tolerances; v: velocities at its start.
+  /// Returns the error of the step, in tolerances. v: the velocities at its start.
   double error_of(double h, const VecX<double>& v);
 
   const ButcherTableau* of_;
   FreeStages free_;
-  // Kept between steps: no heap in a step.
-  MatX<double> q_rates_, v_rates_, powers_;  ///< a column a stage, and one of the rates at the end
+  // Kept between steps, so that a step allocates no memory.
+  MatX<double> q_rates_, v_rates_,
+      powers_;  ///< one column for each stage, and one for the rates at the end of the step
   VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;
-  // Where the rates at the end were taken, which are those at the start of the next step.
+  // The state at which the rates at the end were evaluated: they are the first stage of the next step.
   State last_;
   double last_t_ = 0;
-  Workspace<double> between_work_;  ///< of rates that are taken after a step
+  Workspace<double> between_work_;  ///< of the additional stages of the dense output
 };
 
 }  // namespace pliant

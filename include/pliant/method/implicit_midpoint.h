@@ -1,7 +1,7 @@
-// The implicit midpoint rule on (q, v, work), second order: y+ = y + h f((y + y+) / 2). It keeps what is
-// quadratic in (q, v): the energy and the angular momentum in its frame of a free rigid body, and with them
-// its motion for any number of steps; unit quaternions stay so. Stable for any step where the motion is
-// linear, without damping what it cannot follow.
+// The implicit midpoint rule on (q, v, work), of second order: y+ = y + h f((y + y+) / 2). It conserves
+// quadratic invariants of (q, v): for a free rigid body the energy and the angular momentum in the body
+// frame, for any number of steps. Quaternions keep unit length. It is A-stable and does not damp fast
+// oscillations.
 #pragma once
 
 #include <memory>
@@ -18,13 +18,13 @@ class ImplicitMidpoint final : public Integrator {
   ~ImplicitMidpoint() override;
   const char* name() const override { return "implicit_midpoint"; }
   int order() const override { return 2; }
-  /// Throws NumericalFailure where the equations of the step are not solved.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  /// Throws NumericalFailure if the iteration of the step does not converge.
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> exactly_;
+  std::unique_ptr<ErrorScale> fine_scale_;
   VecX<double> q_, v_, q_dot_;
 };
 

@@ -1,4 +1,4 @@
-// One interface for all methods of time integration, one file a method.
+// The interface of all methods of integration; each method has a file of its own.
 #pragma once
 
 #include <memory>
@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <pliant/body/dynamics.h>
-#include <pliant/body/step_counters.h>
+#include <pliant/body/step_context.h>
 #include <pliant/method/error_scale.h>
 #include <pliant/method/step_path.h>
 
@@ -18,36 +17,35 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual const char* name() const = 0;
   virtual int order() const = 0;
-  /// Advances q, v and work by state.h (> 0, s); the caller counts the step.
-  virtual void step(const Dynamics& dynamics, State& state, Workspace<double>& work,
-                    StepCounters& counters) = 0;
-  /// Largest growth per step, |eigenvalue| of the step map, of x'' + D x' + K x = 0 with unit masses; the
-  /// step is stable while it is at most 1.
+  /// Advances q, v and work of the state by step.h (> 0, s) from step.t on; step.t becomes the end of the
+  /// step. The caller counts the step.
+  virtual void step(StepContext& step) = 0;
+  /// Returns the largest growth in a step, |eigenvalue| of the step map, for x'' + D x' + K x = 0 with unit
+  /// masses. The step is stable while it is at most 1.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
-  /// How far a force moves a body in a step that is constant over it, in steps times what it adds to the
+  /// Returns the displacement by a force that is constant over a step, divided by h times the change of
   /// velocity.
   virtual double reach() const { return 0.5; }
-  /// In the steps from here on parts that deform locally may touch something, or not.
+  /// Says whether parts that deform locally may touch something in the next steps.
   virtual void expect_touch(bool) {}
-  /// Makes what pushes parts do to them what it does over the step taken last, where that is not M^-1
-  /// (LocalResponse), or takes that away; an evaluation needs it away. work: of the end of the step.
+  /// Replaces M^-1 by the response of parts to impulses over the last step, for parts where both differ
+  /// (LocalResponse), or restores M^-1, which an evaluation needs. work: of the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
-  /// Whether elasticity and damping of parts that deform locally, of their nodes and global parameters, leave
-  /// the step free.
+  /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
 
-  /// What the step that was taken last, of h seconds between two states, is in between: as well as the method
-  /// knows, which may take some evaluations; else without one.
+  /// Returns the coordinates between two states `low` and `high` of the last step, h seconds apart: the dense
+  /// output of the method, which may cost evaluations, or else cubic Hermite interpolation.
   virtual StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                         StepCounters&) {
     return {dynamics, low, h, high};
   }
 
-  /// The error that is estimated of a step is O(h^(this + 1)); 0: none is.
+  /// Returns p if the estimated error of a step is O(h^(p + 1)); 0: the method has no error estimate.
   virtual int error_order() const { return 0; }
-  /// From here on errors of steps are measured in this; nullptr: they are not.
+  /// Measures the errors of the next steps by this scale; nullptr: does not measure them.
   void measure(const ErrorScale* scale) { scale_ = scale; }
-  /// The largest error of the steps since it was asked last, in tolerances.
+  /// Returns the largest error of the steps since the last call, in tolerances.
   double take_error() { return std::exchange(error_, 0); }
 
  protected:
@@ -55,11 +53,9 @@ class Integrator {
   void note_error(double error) {
     if (!(error <= error_)) error_ = error;
   }
-  /// What every method does with a state that it has brought to the end of a step, at time t (s): it keeps to
-  /// limits, strings and joints. What that moves is an error of the step too; of joints that close the time
-  /// is.
-  void project(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-               StepCounters& counters);
+  /// Projects limits, strings and joints at the end of a step; every method calls it. The displacement by the
+  /// projection counts as an error of the step; for closing joints the time of closing does.
+  void project(StepContext& step);
 
  private:
   VecX<double> unprojected_;
@@ -68,7 +64,7 @@ class Integrator {
   double error_ = 0;
 };
 
-/// While it lives, pushes do what they do over a step.
+/// While the object lives, impulses on parts act by their response over a step (set_responses).
 class StepResponses {
  public:
   StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)
@@ -92,11 +88,11 @@ struct IntegratorInfo {
   std::unique_ptr<Integrator> (*make)();
 };
 
-/// All methods. A new one is its file and an entry here.
+/// Returns all methods. A new method needs its own file and an entry in this list.
 const std::vector<IntegratorInfo>& all_integrators();
-/// Names of those that tell the error of their steps.
+/// Returns the names of the methods with an error estimate.
 std::vector<std::string> controlled_integrators();
-/// Throws std::invalid_argument listing the names.
+/// Makes the method of this name. Throws std::invalid_argument, with all names, if there is none.
 std::unique_ptr<Integrator> make_integrator(const std::string& name);
 
 }  // namespace pliant

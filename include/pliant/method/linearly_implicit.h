@@ -1,15 +1,15 @@
 // The two-stage Rosenbrock method ROS2 (Verwer, Spee, Blom & Hundsdorfer 1999) on (q, v, work):
 //   (I - gamma h A) k1 = F(u),   (I - gamma h A) k2 = F(u + h k1) - 2 k1,   u+ = u + 3/2 h k1 + 1/2 h k2
-// of second order whatever A is, and L-stable where A is the Jacobian, with gamma = 1 - 1/sqrt(2). A holds
-// q_dot = v for all coordinates, which costs nothing and makes what swings freely neither grow nor die for h
-// omega < 2.26, and of parts that deform locally the elasticity and damping of their nodes or modes
-// and of their global parameters (src/integrate/implicit_part.h). Everything else is explicit. Its error is
-// estimated by u + h k1, of first order; of such parts in place, for velocities as what they move in a step.
+// It is of second order for every A, and L-stable if A is the Jacobian, with gamma = 1 - 1/sqrt(2). A
+// contains q_dot = v for all coordinates, which makes free oscillations neither grow nor decay for h omega
+// < 2.26. For parts that deform locally A also contains the elasticity and damping of their nodes or modes
+// and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. The
+// first-order solution u + h k1 estimates the error.
 //
-// What strikes something stiff needs velocities that are those by which it moved, and the stiff ones of ROS2
-// are not. Where parts that deform locally may touch, or a string or a limit that was loose stops one of
-// them, a step is of Euler's method instead, gamma = 1 and u+ = u + h k1, of first order: then x+ = x + h v+,
-// pushes change v+ by (I - h A)^-1 M^-1 and x+ by h times that, and work as in any inelastic impact.
+// An impact on a stiff part needs the velocities of its actual motion, which the stiff velocities of ROS2 are
+// not. If parts that deform locally may touch, or if a string or a limit stops one of them, the step is one
+// of linearly implicit Euler: gamma = 1 and u+ = u + h k1, of first order. Then x+ = x + h v+, impulses
+// change v+ by (I - h A)^-1 M^-1 and x+ by h times that, and their work is that of an inelastic impact.
 #pragma once
 
 #include <memory>
@@ -28,9 +28,9 @@ class LinearlyImplicit final : public Integrator {
   const char* name() const override { return "linearly_implicit"; }
   int order() const override { return 2; }
   int error_order() const override { return 1; }
-  /// Throws NumericalFailure and OutOfMemory, naming the part, where the stiffness of its nodes cannot be
+  /// Throws NumericalFailure or OutOfMemory, naming the part, if the stiffness of its nodes cannot be
   /// factored.
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
   bool local_is_implicit() const override { return true; }
   double reach() const override { return touching_ ? 1 : 0.5; }
@@ -38,27 +38,26 @@ class LinearlyImplicit final : public Integrator {
   void set_responses(const Model& model, bool on, Workspace<double>& work) const override;
 
  private:
-  /// Of each part; none where nothing is implicit.
+  /// One entry for each part; nullptr for an explicit part.
   using Soft = std::vector<std::unique_ptr<ImplicitPart>>;
-  /// Those of the step that is taken.
+  /// Returns the implicit parts of the current step.
   Soft& soft() { return first_order_ ? of_first_ : of_second_; }
   const Soft& soft() const { return first_order_ ? of_first_ : of_second_; }
-  void take_soft(const Dynamics& dynamics, double t, double c, const Workspace<double>& work,
-                 StepCounters& counters);
+  /// Prepares the implicit parts for a stage with this c = gamma h, s.
+  void prepare_implicit_parts(StepContext& step, double c);
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
-  void second_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
-  void first_order(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters);
-  void end_step(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-                StepCounters& counters);
-  void look_at_strings(const Model& model, const State& state, const Workspace<double>& work);
+  void second_order(StepContext& step);
+  void first_order(StepContext& step);
+  void end_step(StepContext& step);
+  void record_slack_strings(const Model& model, const State& state, const Workspace<double>& work);
   bool was_stopped(const Model& model, const State& now) const;
 
   bool touching_ = false, first_order_ = false, loose_ = false;
-  // Kept between steps: no heap in a step. Factors depend on the model, the step and the state only.
-  Soft of_second_, of_first_;   ///< by the order of the step
-  State before_;                ///< where a step may have to be taken again
-  Workspace<double> filtered_;  ///< parts by what pushes do to their rates
+  // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
+  Soft of_second_, of_first_;   ///< for steps of second and of first order
+  State before_;                ///< to repeat the step from
+  Workspace<double> filtered_;  ///< parts with the metric of the filter
   VecX<double> q_, v_, q_dot_, q_rate1_, v_rate1_, q_rate2_, v_rate2_;
 };
 

@@ -1,6 +1,6 @@
 // The classical Runge-Kutta method of fourth order on (q, v, work). Quaternions are integrated as four
-// numbers by theta_dot = 1/2 theta o (0, omega) and brought back to unit length after the step, which keeps
-// the order. What oscillates freely does so exactly.
+// numbers by theta_dot = 1/2 theta o (0, omega) and normalised after the step, which keeps the order. Free
+// oscillators are integrated exactly.
 #pragma once
 
 #include <pliant/method/free_stages.h>
@@ -12,12 +12,12 @@ class Rk4 final : public Integrator {
  public:
   const char* name() const override { return "rk4"; }
   int order() const override { return 4; }
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   FreeStages free_;
-  VecX<double> q_, v_, q_dot_, q_sum_, v_sum_;  // kept between steps: no heap in a step
+  VecX<double> q_, v_, q_dot_, q_sum_, v_sum_;  // kept between steps, so that a step allocates no memory
 };
 
 }  // namespace pliant

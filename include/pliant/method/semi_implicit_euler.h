@@ -1,12 +1,12 @@
-// Semi-implicit Euler, the paper's method (section 4), first order:
+// Semi-implicit Euler, the method of the paper (section 4), of first order:
 //   v <- v + h vdot(q, v),   q <- q (+) h v
-// What oscillates freely does so exactly under the rest of vdot, and angular momenta turn with
-// the parts by what they turn, not by its first order, which would let parts that tumble gain energy without
-// end.
+// Free oscillators are integrated exactly. Angular momenta rotate with their parts (carry_momenta.h); with
+// the first-order gyroscopic term tumbling parts would gain energy without bound.
 #pragma once
 
 #include <pliant/method/free_stages.h>
 #include <pliant/method/integrator.h>
+#include <pliant/project/project.h>
 
 namespace pliant {
 
@@ -15,14 +15,14 @@ class SemiImplicitEuler final : public Integrator {
   const char* name() const override { return "semi_implicit_euler"; }
   int order() const override { return 1; }
   double reach() const override { return 1; }
-  void step(const Dynamics& dynamics, State& state, Workspace<double>& work, StepCounters& counters) override;
+  void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
 
  private:
   FreeStages free_;
-  // Velocities at the start of a step, coordinates at its end and their joints: kept, for no heap in a step.
-  VecX<double> v_before_, q_end_;
-  Workspace<double> ahead_;
+  // Kept between steps, so that a step allocates no memory.
+  VecX<double> v_before_;  ///< velocities at the start of the step
+  PreStepStorage pre_step_;
 };
 
 }  // namespace pliant

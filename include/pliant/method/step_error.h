@@ -3,11 +3,11 @@
 
 namespace pliant {
 
-/// How wrong a step is, in tolerances, not a finite number where it failed, and the order of that estimate.
+/// The error of a step in tolerances (not finite if the step failed), and the order of the estimate.
 struct StepError {
   double error;
   int order;
-  double length;  ///< of the step as it was taken, s: it may have ended where bodies met
+  double length;  ///< length of the step, s; it may have ended early, at an impact
 };
 
 }  // namespace pliant

@@ -1,9 +1,9 @@
-// Continuum elasticity of a part without nodes (design 1.4): the strain energy of the whole map from rest to
-// now, of its global parameters,
+// Continuum elasticity of the global parameters: the strain energy of the whole map from rest to now,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
-//   f_s = -integral of P : dF/dq_s,   P = dW/dF;   damping: P_v = beta F S(Gdot) beside P (hooke.h)
-// from material constants instead of a table of stiffnesses. F and its derivatives come from dual numbers
-// that carry a direction of the rest body in the material points. The map of rest is that of time 0.
+//   f_s = -integral of P : dF/dq_s,   P = dW/dF
+// Damping adds P_v = beta F S(Gdot) to P (local/solid/hooke.h). The user gives material constants instead of
+// a table of stiffnesses. F and its derivatives come from dual numbers: the material points carry a direction
+// of the rest body. The rest map is that of time 0.
 #pragma once
 
 #include <array>
@@ -23,37 +23,39 @@ namespace pliant {
 class Part;
 struct Counters;
 
-/// Which law, by its name among all_continuum_laws(), and the constants of the material.
+/// A law by its name in all_continuum_laws(), and the constants of the material.
 struct ContinuumSettings {
   std::string law = "neo_hookean";
   double E = 0;          ///< Young's modulus, Pa
-  double nu_P = 0.3;     ///< Poisson's number
-  double thickness = 0;  ///< of a shell, m
+  double nu_P = 0.3;     ///< Poisson's ratio
+  double thickness = 0;  ///< thickness of a shell, m
 };
 
 struct ContinuumLawInfo {
   const char* name;
   const char* meaning;
-  bool shell;  ///< of shells; else of solids
+  bool shell;  ///< whether the law is for shells; else it is for solids
 };
-/// The laws, called as those of local deformation.
+/// Returns the laws. They have the names of the corresponding laws of local deformation.
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
-/// Points of the rest body with derivatives along directions X there; of a shell two tangents and no third.
+/// Quadrature points of the rest body with derivatives along directions X: x, y, z of a solid, two tangents
+/// of a shell.
 struct StrainPoints {
-  std::array<std::vector<Material<Dual<1, Pack>>>, 3> at;  ///< four points each
-  std::vector<Pack> weight;  ///< m^3, of a shell m^2; 0 in lanes without a point
+  std::array<std::vector<Material<Dual<1, Pack>>>, 3>
+      at;                    ///< for each direction all points, in packs of four
+  std::vector<Pack> weight;  ///< m^3 of a solid, m^2 of a shell; 0 in unused lanes
   int n_points = 0;
   int directions = 3;
-  std::string rule;  ///< "affine" one point for all, "rings" of material points
-  /// Relative change of the integrals that doubling the rule still makes.
+  std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
+  /// Relative change of the integrals when the points are doubled once more.
   double settled = 0;
 };
 
-/// Relative change of the energy, its force and its stiffness by doubling at which a rule is fine enough.
+/// A rule is fine enough if doubling it changes energy, force and stiffness by no more than this, relative.
 inline constexpr double kStrainSettled = 1e-6;
 
-/// The law of small strains of the whole map: eps = sym(F - I).
+/// Linear elasticity of the whole map, with the small strain eps = sym(F - I).
 struct SmallStrain {
   LinearLaw law;
   explicit SmallStrain(const Elasticity& material) : law(material) {}
@@ -78,7 +80,7 @@ struct SmallStrain {
   }
 };
 
-/// A law of F beside its damping.
+/// A law of F, with its damping.
 template <class Law>
 struct Damped : Law {
   using Law::Law;
@@ -88,9 +90,9 @@ struct Damped : Law {
   }
 };
 
-/// St. Venant-Kirchhoff's law of a sheet of which F has two columns: W per area.
+/// St. Venant-Kirchhoff's law of a sheet. Its F has two columns, and W is per area.
 struct SheetStrain {
-  double lambda, mu;  ///< of plane stress times the thickness, N/m
+  double lambda, mu;  ///< constants of plane stress times the thickness, N/m
   explicit SheetStrain(const Sheet& sheet)
       : lambda(sheet.thickness * sheet.lambda()), mu(sheet.thickness * sheet.mu()) {}
   template <class T>
@@ -110,37 +112,39 @@ struct SheetStrain {
 
 using ContinuumLaw = std::variant<SmallStrain, Damped<StVenantKirchhoff>, Damped<NeoHookean>, SheetStrain>;
 
-/// Throws std::invalid_argument for constants that make no material.
+/// Returns the law of the settings. Throws std::invalid_argument for an unknown law or impossible constants.
 ContinuumLaw continuum_law(const ContinuumSettings& settings);
 
+/// The strain energy of a part.
 class ContinuumEnergy {
  public:
-  /// volume: of the part at rest, m^3. Throws std::invalid_argument, naming the parameters, where no rule
-  /// gives the energy.
+  /// volume: volume of the part at rest, m^3. Throws std::invalid_argument, which names the parameters, if
+  /// the search for quadrature points does not converge.
   ContinuumEnergy(const Part& part, const ContinuumSettings& settings, double volume);
 
   const ContinuumSettings& settings() const { return settings_; }
   const StrainPoints& points() const { return points_; }
 
-  /// J.
+  /// Returns the energy, J.
   double energy(const Part& part, const VecMax<double>& q_s) const;
-  /// f -= dE/dq_s and beta times the damping; returns the power of the latter, W. Throws InvertedElement
-  /// where the body is turned inside out at one of its points.
+  /// Subtracts dE/dq_s and beta times the viscous force from f. Returns the power of the viscous force, W.
+  /// Throws InvertedElement if the body is turned inside out at a quadrature point.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
-  /// The same with derivatives along the direction that q_s and q_s_dot carry.
+  /// Computes force and power with their derivatives along the direction of the dual parts of q_s and
+  /// q_s_dot.
   Dual<1> add_force(const Part& part, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, double beta,
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
-  /// d2E/dq_s2, exact.
+  /// Returns d2E/dq_s2, exact.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
-  /// The part of it that strains make without the stress: what beta multiplies; never negative.
+  /// Returns the contribution to stiffness() without the stress, which is never negative. beta multiplies it.
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:
   ContinuumSettings settings_;
   ContinuumLaw law_;
   StrainPoints points_;
-  VecMax<double> unit_;  ///< of the dynamic parameters, in which second derivatives are taken
+  VecMax<double> unit_;  // scales of the dynamic parameters, for second derivatives
 };
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
-// Mass matrix and inertial forces of a part without local deformation, Eq. (11), in its body frame
-// (design 1.3):
-//   M = sum m G^T G,   g_q = -sum m G^T b,   G = [I, -[p]x, J],   b = w x (w x p) + 2 w x (J qs_dot) + Jdot
-//   qs_dot
-// ordered (c, omega, q_s); the first block multiplies R^T cddot.
+// The mass matrix and the inertial forces of a part without local deformation, Eq. (11), expressed in its
+// body frame:
+//   M = sum m G^T G,   g_q = -sum m G^T b,   G = [I, -[p]x, J],
+//   b = omega x (omega x p) + 2 omega x (J qs_dot) + Jdot qs_dot,
+// ordered (c, omega, q_s). The first block multiplies R^T c_ddot. inertia-inl.h computes the sums.
 #pragma once
 
 #include <pliant/math/types.h>
@@ -11,14 +11,15 @@ namespace pliant {
 
 template <class S>
 struct Inertia {
-  // On the heap, so that the parts of a chain lie close together.
+  // The matrices are on the heap, so that the other data of the parts of a chain are close together in
+  // memory.
   MatX<S> M;        ///< (6 + n_s) x (6 + n_s)
   VecX<S> g_q;      ///< 6 + n_s
-  Vec3<S> moment;   ///< sum m p: mass times the centre of mass in the body frame
+  Vec3<S> moment;   ///< sum m p: mass times the centre of mass in the body frame, kg m
   double mass = 0;  ///< kg
 };
 
-/// A material point of a part in its body frame, as forces, joints and tracks take it.
+/// A material point of a part in its body frame, for forces, joints and tracks.
 template <class S>
 struct PointJet {
   Vec3<S> p;                              ///< position, m

@@ -1,4 +1,6 @@
-// The global parameters q_s of a part, Eq. (4): of its shape, then of its links; each frozen or dynamic.
+// The global parameters of a part, Eq. (4): those of its shape, then those of the links of its chain of
+// deformations. Each parameter is frozen (a constant) or dynamic (a degree of freedom). The dynamic ones make
+// up q_s.
 #pragma once
 
 #include <array>
@@ -11,23 +13,24 @@
 
 namespace pliant {
 
-/// Most parameters of a part, frozen ones included.
+/// Maximum number of parameters of a part, frozen ones included.
 inline constexpr int kMaxParameters = 64;
 
 struct Parameter {
-  std::string name;  ///< "a1", "taper.tx"
-  const ParameterSpec* spec;
-  TimeFunction rest;        ///< rest value; of a frozen parameter its value (at time 0)
-  double initial;           ///< value at time 0
-  double initial_rate = 0;  ///< rate at time 0, per second
+  std::string name;           ///< "a1", "taper.tx"
+  const ParameterSpec* spec;  ///< name, unit, default and ranges in its shape or deformation
+  TimeFunction rest;          ///< rest value, a function of time; the value of a frozen parameter
+  double initial;             ///< value at time 0
+  double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
-  Range limits;  ///< one-sided limits of a dynamic parameter
-  bool initial_given = false, limits_given = false;
+  Range limits;                                      ///< one-sided limits of a dynamic parameter
+  bool initial_given = false, limits_given = false;  ///< whether the user set them
 
+  /// The rest value at time 0.
   double rest_value() const { return rest.value(0); }
 };
 
-/// All parameters of a part at one scalar: values and rates.
+/// Values and rates of all parameters of a part, with scalar P.
 template <class P>
 struct ParameterValues {
   std::array<P, kMaxParameters> b, b_dot;
@@ -35,15 +38,16 @@ struct ParameterValues {
 
 class Parameters {
  public:
-  /// The parameters of a shape and a chain, at their defaults, all frozen. Links of the same type are called
-  /// by their type, type2, type3 …
+  /// Lists the parameters of a shape and a chain: all at their defaults, all frozen. A parameter of a link is
+  /// named type.name; several links of one type are named type, type2, type3, ... Throws
+  /// std::invalid_argument beyond kMaxParameters.
   Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& links);
 
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }
   int n_dynamic() const { return static_cast<int>(dynamic_.size()); }
-  /// The links of the chain that act, in order: those with a dynamic parameter, and those that are not frozen
-  /// as the identity. The kernels pass by the others, and nothing has to be laid out for them.
+  /// The links of the chain that act, in order: links with a dynamic parameter, and links that are not frozen
+  /// as the identity. The kernels skip the other links.
   const std::vector<LinkInfo>& links() const { return acting_; }
   /// Every link of the chain, in order.
   const std::vector<LinkInfo>& all_links() const { return links_; }
@@ -53,18 +57,22 @@ class Parameters {
   const Parameter& moving(int k) const {
     return all_[static_cast<std::size_t>(dynamic_[static_cast<std::size_t>(k)])];
   }
-  /// Number of the parameter called name, or -1.
+  /// Returns the number of the parameter of this name, or -1.
   int find(const std::string& name) const;
-  /// All names, separated by blanks.
+  /// Returns all names, separated by blanks.
   std::string names() const;
 
-  /// Numbers of the dynamic parameters, in the order of q_s. Call update() after changing which are dynamic,
-  /// or rest values.
+  /// The numbers of the dynamic parameters, in the order of q_s.
   const std::vector<int>& dynamic() const { return dynamic_; }
+  /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
+  /// Brings the lists of dynamic parameters, acting links and frozen values up to date. To be called after
+  /// `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
+  /// parameters.
   void update();
 
-  /// All values from the dynamic ones; frozen ones at their rest values.
+  /// Returns the values of all parameters: the dynamic ones from q_s and q_s_dot, the frozen ones at their
+  /// rest values.
   template <class P, class Q>
   ParameterValues<P> expand(const Q& q_s, const Q& q_s_dot) const {
     ParameterValues<P> values;
@@ -79,7 +87,7 @@ class Parameters {
     }
     return values;
   }
-  /// All at their rest values (time 0).
+  /// Returns all parameters at their rest values of time 0.
   ParameterValues<double> rest() const;
 
  private:

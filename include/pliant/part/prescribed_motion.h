@@ -1,4 +1,4 @@
-// A motion that is prescribed: where a frame is at any time, and how it moves.
+// Prescribed motion: position, orientation, velocity and acceleration of a frame as functions of time.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,33 +7,38 @@
 
 namespace pliant {
 
-/// A frame that moves, at one time; all in the world.
+/// A moving frame at one time, in world coordinates.
 struct MovingFrame {
-  Vec3<double> c, c_dot, c_ddot;  ///< of its origin: m, m/s, m/s^2
+  Vec3<double> c, c_dot, c_ddot;  ///< origin: position (m), velocity (m/s), acceleration (m/s^2)
   Mat3<double> R;                 ///< body to world
-  Vec3<double> omega, omega_dot;  ///< rad/s, rad/s^2
+  Vec3<double> omega, omega_dot;  ///< angular velocity (rad/s) and acceleration (rad/s^2)
 
-  /// Of a point of the frame at c + r.
+  /// Returns the velocity (m/s) of the point of the frame at c + r.
   Vec3<double> velocity(const Vec3<double>& r) const { return c_dot + omega.cross(r); }
+  /// Returns the acceleration (m/s^2) of that point.
   Vec3<double> acceleration(const Vec3<double>& r) const {
     return c_ddot + omega_dot.cross(r) + omega.cross(omega.cross(r));
   }
 };
 
+/// A path of the origin, and a rotation about a fixed axis.
 struct PrescribedMotion {
-  TimeVector position;                                              ///< of the frame's origin, m, world
-  Vec3<double> axis = {0, 0, 1};                                    ///< of length 1, world
+  TimeVector position;                                              ///< of the origin of the frame, m, world
+  Vec3<double> axis = {0, 0, 1};                                    ///< unit vector, world
   TimeFunction angle = 0;                                           ///< rad, right-handed about the axis
-  Eigen::Quaterniond orientation = Eigen::Quaterniond(1, 0, 0, 0);  ///< where the angle is 0, body to world
+  Eigen::Quaterniond orientation = Eigen::Quaterniond(1, 0, 0, 0);  ///< body to world at angle 0
 
+  /// Returns the frame at time t (s).
   MovingFrame at(double t) const;
-  /// See TimeFunction.
+  /// Returns the first kink of position or angle between two times, see TimeFunction::first_kink().
   Kink first_kink(double after, double until) const {
     return position.first_kink(after, until).or_sooner(angle.first_kink(after, until));
   }
+  /// Returns the orientation at time t, body to world.
   Eigen::Quaterniond orientation_at(double t) const;
 
-  /// Over h seconds, of its points as far away from its origin as `reach` (m): m/s.
+  /// Returns the mean velocity of the origin from t to t + h (s), and the largest deviation from it of points
+  /// at most `reach` (m) away from the origin, both in m/s.
   TimeVector::Passage over(double t, double h, double reach) const;
 };
 

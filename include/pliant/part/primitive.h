@@ -1,10 +1,25 @@
-// Primitive<Shape, GlobalDeform>: the class of a part (design section 3). It computes s and J, Eqs. (3) and
-// (4), for batches of material points; everything else is Part.
+// Primitive<Shape, GlobalDeform>: the class of a part, Eq. (3),
+//   s = T(e(u; a); b)
+// Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
+// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; their
+// derivatives J = ds/dq_s and Jdot qs_dot, Eqs. (4) and (7), come from dual numbers. Primitive evaluates s, J
+// and the rates for batches of material points. Everything else is in Part, which does not depend on the
+// types.
+//
+//   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
+//   body.place({0, 0, 1}).rest({{"a3", 2.0}}).stiffness({{"bend.angle", 50.0}});
+//
+// Scenes choose the chain at run time: their parts are Primitive<Shape, AnyChain>, made by make_part()
+// (registry.h).
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
+
 #include <pliant/deform/any_chain.h>
+#include <pliant/part/instances/kernel_instances.h>
 #include <pliant/part/part.h>
-#include <pliant/part/shape_jets.h>
 
 namespace pliant {
 
@@ -16,35 +31,43 @@ class Primitive final : public Part {
       : Part(std::move(name), density, std::make_unique<ShapeFaceOf<Shape>>(), chain.links()),
         chain_(std::move(chain)) {}
 
+  /// Evaluates s, J and rates of a batch of material points at given values of all parameters.
   void jets(const ParameterValues<double>& values, const Material<Pack>* at,
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  using Part::jets;
+  /// Evaluates them with their derivatives along the direction of the dual parts.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);
   }
+  using Part::jets;
 
  private:
   template <class P, class S>
   void evaluate(const ParameterValues<P>& values, const Material<S>* at, JetBatch<S>& batch) const {
     const LinkParameters<P> all{values.b.data(), values.b_dot.data(), parameters().dynamic_flags()};
-    shape_jets<Shape>(all, at, batch);
-    if (chain_.acts(after_shape(all))) chain_.apply(half_height_jet<Shape>(all), after_shape(all), batch);
+    shape_jets<Shape>(all, at, batch);  // e(u; a) and de/da
+    if (chain_.acts(chain_part(all)))   // T(e; b): J <- [F J, G_T], link by link
+      chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
-  template <class P>
-  static LinkParameters<P> after_shape(const LinkParameters<P>& all) {
-    constexpr int n = shape_size<Shape>;
-    return {all.b + n, all.b_dot + n, all.dynamic + n};
-  }
+
+  /// Applies T alone to seeded jets, with all parameters constant.
   void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const override {
     static constexpr bool none[kMaxParameters] = {};
-    const LinkParameters<double> held{values.b.data(), values.b_dot.data(), none};
-    chain_.apply(half_height_jet<Shape>(held), after_shape(held), batch);
+    const LinkParameters<double> constant{values.b.data(), values.b_dot.data(), none};
+    chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
+  /// Applies the inverse of T to a point.
   Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
+  }
+
+  /// The parameters b of the chain, which follow the parameters a of the shape.
+  template <class P>
+  static LinkParameters<P> chain_part(const LinkParameters<P>& all) {
+    constexpr int n = shape_size<Shape>;
+    return {all.b + n, all.b_dot + n, all.dynamic + n};
   }
 
   GlobalDeform chain_;

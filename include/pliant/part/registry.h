@@ -1,4 +1,5 @@
-// Shapes and deformations by name, from the lists AllShapes and AllDeforms.
+// Shapes and deformations by name, from the lists AllShapes (shape/all_shapes.h) and AllDeforms
+// (deform/all_deforms.h).
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@
 
 namespace pliant {
 
-/// Every shape, in the order of the list.
+/// Returns every shape, in the order of the list.
 const std::vector<std::unique_ptr<ShapeFace>>& all_shapes();
 
 struct DeformationInfo {
@@ -18,11 +19,12 @@ struct DeformationInfo {
   const char* formula;
   std::vector<ParameterSpec> parameters;
 };
-/// Every deformation, in the order of the list.
+/// Returns every deformation, in the order of the list.
 const std::vector<DeformationInfo>& all_deformations();
 
-/// A part of the named shape with the named chain of deformations, in that order.
-/// Throws std::invalid_argument listing the names there are.
+/// Makes a part of the named shape with the named chain of deformations, in that order. density: kg/m^3 of a
+/// solid, kg/m^2 of a shell. Throws std::invalid_argument for an unknown name; the message lists the known
+/// ones.
 std::unique_ptr<Part> make_part(const std::string& name, const std::string& shape,
                                 const std::vector<std::string>& deformations, double density);
 

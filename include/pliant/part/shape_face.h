@@ -1,5 +1,6 @@
-// ShapeFace: a shape behind virtual calls, for everything done once, at load or for output. The kernels of a
-// step are templates (shape_jets.h).
+// ShapeFace: a shape behind virtual calls, for work that is done once at load or for output. The kernels of a
+// step are templates (shape_jets.h). shape/shape.h documents the members of a shape; the optional ones have
+// defaults here.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,7 @@
 
 namespace pliant {
 
-/// Parameters a of a shape, as a plain array.
+/// The parameters a of a shape, as an array.
 using ShapeParameters = const double*;
 
 class ShapeFace {
@@ -24,50 +25,63 @@ class ShapeFace {
   virtual int n_parameters() const = 0;
   virtual MeshPattern mesh() const = 0;
 
+  /// Returns e(u; a), m, Eq. (3).
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
+  /// Returns h, half the extent along z, m. Links measure zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
+  /// Returns w of the material point at x: 1 on the surface, below 1 inside.
   virtual double gauge(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Gradient of the gauge, 1/m: along the outward normal.
+  /// Returns the gradient of the gauge, 1/m. It points along the outward normal.
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
+  /// Returns the material point at x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
+  /// Returns the material point of the surface for a direction (or pair of angles) g of the mesh pattern.
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
-  /// Of a shape that is a stretched ball (shape.h).
+  /// Returns the semi-axes of a shape that is an ellipsoid, m.
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
-  /// Of a shape that is a box (shape.h).
+  /// Returns the half sizes of a shape that is a box, m.
   virtual std::optional<Vec3<double>> half_sizes(ShapeParameters a) const = 0;
-  /// e and its derivatives along three material directions carried by the dual parts of m.
+  /// Returns e and its derivatives along the three material directions of the dual parts of m.
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
-  /// Whether a changing exponent strains the material by bounded amounts (physics 1.5).
+  /// Whether a changing exponent strains the material by bounded amounts. The trigonometric map of
+  /// superquadrics does not: with eps/eps_0 = p its deformation gradient grows as |x|^(p - 1) at the
+  /// coordinate planes.
   virtual bool bounded_exponents() const = 0;
-  /// Whether e is linear in the parameters that are lengths.
+  /// Whether e is linear in all parameters that are lengths.
   virtual bool linear_lengths() const = 0;
 
-  // Quadrature. Points are laid with the shape's rest map (its own e, unless it names another with the same
-  // solid).
+  // Quadrature. The rest map places the points: e of the shape itself, or of another shape that covers the
+  // same solid.
+
+  /// Returns tangents() of the rest map.
   virtual Vec3<Dual<3>> rest_tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
-  /// The material point of the shape where the rest map puts m.
+  /// Returns the material point of the shape at the place to which the rest map maps m.
   virtual Material<double> from_rest_map(const Material<double>& m, ShapeParameters a) const = 0;
+  /// Returns the panels of the quadrature along u and along v.
   virtual std::vector<Panel> profile(ShapeParameters a, bool dynamic_exponents) const = 0;
   virtual std::vector<Panel> ring(ShapeParameters a, bool dynamic_exponents) const = 0;
-  /// The exponent of (X, Y) = (C_v^eps, S_v^eps) in which the rings of the rest map are superellipses; 1 for
-  /// round ones.
+  /// Returns the exponent eps of (X, Y) = (C_v^eps, S_v^eps) for which the rings of the rest map are
+  /// superellipses; 1 for round rings.
   virtual double ring_exponent(ShapeParameters a) const = 0;
-  /// Whether the shape knows its plane sections in closed form.
+  /// Whether the shape has its plane sections in closed form.
   virtual bool has_sections() const = 0;
+  /// Returns area and moments of the plane section at zeta = z / h; gap: 1 - |zeta|.
   virtual Section section(double zeta, double gap, ShapeParameters a) const = 0;
+  /// Returns the panels of the quadrature over plane sections along zeta.
   virtual std::vector<SectionPanel> section_panels(ShapeParameters a) const = 0;
 };
 
-/// For shapes that bring no label of their own: Newton's method on e(u, v, w) = x from the direction of x.
-/// Throws std::runtime_error when it finds none (the shape is then not star-shaped and needs its own).
+/// Returns the material point at x of a shape that has no label function, by Newton's method on e(u, v, w) =
+/// x from the direction of x. Throws std::runtime_error if the method does not converge: the shape is not
+/// star-shaped and needs a label function.
 Material<double> generic_label(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
-/// The gradient of w by the same map; at the poles the limit along a meridian.
+/// Returns the gradient of w of that material point, 1/m; at the poles the limit along a meridian.
 Vec3<double> generic_gauge_gradient(const ShapeFace& shape, const Vec3<double>& x, ShapeParameters a);
 
 namespace detail {
 
-// Which of the optional members a shape has.
+// Tests for the optional members of a shape.
 template <class Shape, class = void>
 struct RestMapOf {
   using Map = Shape;
@@ -95,6 +109,7 @@ PLIANT_HAS_MEMBER(linear_lengths)
 
 }  // namespace detail
 
+/// The face of a shape.
 template <class Shape>
 class ShapeFaceOf final : public ShapeFace {
   static constexpr int K = shape_size<Shape>;

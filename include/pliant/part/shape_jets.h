@@ -1,5 +1,5 @@
 // The kernel of a shape: e(u; a), Eq. (3), for a batch of material points, with its Jacobian columns de/da of
-// the dynamic parameters and its rates along a + t a_dot.
+// the dynamic parameters and its first and second derivatives along a + t a_dot.
 #pragma once
 
 #include <type_traits>
@@ -10,11 +10,12 @@
 
 namespace pliant {
 
-/// By the only parameter that moves, number k: one series in it tells e, J and the rates.
+/// Fills the batch if parameter number k is the only dynamic one: a single series in a_k gives e, J and the
+/// rates.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets_alone(int k, const LinkParameters<P>& parameters,
                                        const Material<U>* material, JetBatch<S>& batch) {
-  auto each = [&](auto along, auto&& take) {
+  auto evaluate = [&](auto along, auto&& store) {
     using T = decltype(along);
     Vec<T, shape_size<Shape>> a;
     for (int i = 0; i < shape_size<Shape>; ++i) a[i] = i == k ? along : T(S(parameters.b[i]));
@@ -24,23 +25,25 @@ template <class Shape, class P, class S, class U>
       Jet<S>& jet = batch.jet[i];
       for (int r = 0; r < 3; ++r) {
         jet.s[r] = e[r].v;
-        take(jet, r, e[r]);
+        store(jet, r, e[r]);
       }
     }
   };
   const S a(parameters.b[k]), rate(parameters.b_dot[k]), rate2(rate * rate);
   if (batch.level == Level::rates)
-    each(Taylor2<S>(a, S(1.0), S(0.0)), [&](Jet<S>& jet, int r, const Taylor2<S>& e) {
+    evaluate(Taylor2<S>(a, S(1.0), S(0.0)), [&](Jet<S>& jet, int r, const Taylor2<S>& e) {
       jet.J[0][r] = e.d;
       jet.s1[r] = rate * e.d;
       jet.s2[r] = rate2 * e.dd;
     });
   else
-    each(Dual<1, S>::variable(a, 0), [](Jet<S>& jet, int r, const Dual<1, S>& e) { jet.J[0][r] = e.d[0]; });
+    evaluate(Dual<1, S>::variable(a, 0),
+             [](Jet<S>& jet, int r, const Dual<1, S>& e) { jet.J[0][r] = e.d[0]; });
   batch.n_columns = 1;
 }
 
-/// P: scalar of the parameters; S: scalar of the points; U: scalar of the material points.
+/// Fills the batch with e, J and rates up to its level. P: scalar of the parameters; S: scalar of the jets;
+/// U: scalar of the material points.
 template <class Shape, class P, class S, class U>
 [[gnu::flatten]] void shape_jets(const LinkParameters<P>& parameters, const Material<U>* material,
                                  JetBatch<S>& batch) {
@@ -71,8 +74,8 @@ template <class Shape, class P, class S, class U>
     a_t[k] = parameters.dynamic[k] ? T(a[k], S(parameters.b_dot[k]), S(0.0)) : T(a[k]);
     a_d[k] = D::variable(a[k], k);
   }
-  // Both in one pass: what they have in common is computed once.
-  auto each = [&](auto rates) {
+  // J and the rates in one pass, so that the compiler computes their common subexpressions once.
+  auto evaluate = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       const Material<U> m = material[i];
       Vec3<T> e_t;
@@ -95,13 +98,14 @@ template <class Shape, class P, class S, class U>
     }
   };
   if (batch.level == Level::rates)
-    each(std::true_type{});
+    evaluate(std::true_type{});
   else
-    each(std::false_type{});
+    evaluate(std::false_type{});
   batch.n_columns = n_dynamic;
 }
 
-/// h(a) with its derivatives along the motion and its slopes by the dynamic parameters.
+/// Returns the half height h(a) with its first and second derivatives along a + t a_dot and its derivatives
+/// by the dynamic parameters.
 template <class Shape, class P>
 HalfHeight<P> half_height_jet(const LinkParameters<P>& parameters) {
   constexpr int K = shape_size<Shape>;

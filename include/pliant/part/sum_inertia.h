@@ -1,15 +1,17 @@
-// The sum of Eq. (11) over given mass points, for choosing and judging them, or once for all.
+// The sums of Eq. (11) over given mass points. They serve to choose and to check mass points, and to sum
+// constants once.
 #pragma once
 
 #include <pliant/part/part.h>
 
 namespace pliant {
 
-/// Mass matrix and inertial forces of a part over the given points instead of its own.
+/// Computes mass matrix and inertial forces of a part over the given points instead of those of the part. The
+/// arguments are those of Part::evaluate_inertia(), after part and points.
 void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
                  const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
                  Counters& counters);
-/// The moments of a linear part over its mass points.
+/// Returns the moments of a part whose s is linear in q_s (Part::linear()).
 LinearInertia make_linear_inertia(const Part& part, const MassPoints& points);
 
 }  // namespace pliant

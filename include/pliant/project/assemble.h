@@ -1,8 +1,8 @@
-// Assembly before time 0: a consistent start from parts that lie far apart, turned and misshaped. Without
-// inertia, each step is the least
+// Assembly before time 0: a consistent start from parts that are far apart, rotated and deformed. The flow
+// has no inertia; each step minimises
 //   1/2 (q_s - rest) K_s (q_s - rest) + eps/2 |delta|_M^2   subject to   C = 0
-// linearised, so that rigid motion comes first and global parameters change only as far as their stiffness
-// says; turning is dear while gaps are wide (design 1.5).
+// linearised. Rigid motion comes first, and global parameters change only as far as their stiffness allows.
+// Rotation costs more while gaps are wide.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -10,16 +10,14 @@
 namespace pliant {
 
 struct AssemblyReport {
-  int iterations = 0;  ///< of the island that took most
-  bool converged =
-      true;  ///< whether shapes converged; else gaps closed, but shapes had not in the most iterations
-  double gap_before = 0;  ///< widest, m
-  double gap = 0;         ///< widest that is left, m
+  int iterations = 0;     ///< largest number over the islands
+  bool converged = true;  ///< false if all gaps closed but the shapes did not converge
+  double gap_before = 0;  ///< widest gap before, m
+  double gap = 0;         ///< widest gap after, m
 };
 
-/// Brings the joints that act at the state together, of islands in which one is open. Islands that are
-/// assembled stay as they are, to the last bit. Throws UnsatisfiableModel, naming the joint that cannot
-/// close.
+/// Assembles the islands in which an acting joint is open. Other islands do not change, to the last bit.
+/// Throws UnsatisfiableModel, naming the joint that cannot close.
 AssemblyReport assemble(const Dynamics& dynamics, State& state);
 
 }  // namespace pliant

@@ -1,24 +1,23 @@
-// Joints that begin and cease to act in the course of a run, and joints whose ends follow paths with kinks.
+// Joints that begin or cease to act during a run, and joints whose ends follow prescribed paths with kinks.
 #pragma once
 
 #include <cstddef>
 #include <vector>
 
-#include <pliant/body/dynamics.h>
-#include <pliant/body/step_counters.h>
+#include <pliant/body/step_context.h>
 
 namespace pliant {
 
-/// What a joint does to its first side (a part, or the world) when it, or another of its island, begins to
-/// act on parts whose velocities do not agree with it, or when the rate jumps at which one's ends are moved.
+/// The impulse of a joint on its first side (a part, or the world) when this or another joint of its island
+/// begins to act on parts whose velocities do not agree with it, or when the rate of a prescribed path jumps.
 struct ImpulseOnEngage {
   double time;           ///< s
-  int joint;             ///< its number in the model
+  int joint;             ///< number in the model
   Wrench impulse;        ///< N s and N m s, about its first point
-  bool of_path = false;  ///< whether by a path whose rate jumped
+  bool of_path = false;  ///< whether the rate of a path jumped
 };
 
-/// Steps end and begin beside a kink of a path, on the side that is theirs: times (s) next to it.
+/// Return times (s) just before and just after a kink of a path, where steps end and begin.
 double just_before(double kink);
 double just_after(double kink);
 
@@ -27,28 +26,25 @@ class JointSwitching {
   /// The dynamics must outlive it.
   explicit JointSwitching(const Dynamics& dynamics) : dynamics_(dynamics) {}
 
-  /// A time; where a path has a kink there, or nearer to it than `near`, that just after the kink. s.
+  /// Returns t (s), or the time just after a kink of a path that is within `near` of t.
   double after_kink(double t, double near) const;
-  /// Joints act or do not, as they are to at a time t; times nearer than `near` are the same. s.
-  void switch_at(double t, double near, State& state, Workspace<double>& work, StepCounters& counters);
-  /// Joints begin to act in some islands.
-  void engage(const std::vector<bool>& islands, double t, State& state, Workspace<double>& work,
-              StepCounters& counters);
-  /// Joints follow the paths of their ends, which have a kink at a time or nearer to it than `near`, from a
-  /// time t after it on. Throws UnsatisfiableModel where a closed joint's path jumps in place.
-  void follow_paths(double kink, double near, double t, State& state, Workspace<double>& work,
-                    StepCounters& counters);
-
-  /// In the order of time; those that are mere rounding are left out.
+  /// Engages and releases joints as their times say at step.t; times nearer than `near` (s) count as equal.
+  void switch_at(StepContext& step, double near);
+  /// Engages the joints of the islands that are marked.
+  void engage(StepContext& step, const std::vector<bool>& islands);
+  /// Applies the impulses at a kink (s) of prescribed paths, or at kinks within `near` (s) of it; step.t: a
+  /// time just after the kink. Throws UnsatisfiableModel if the path of a closed joint jumps in place.
+  void follow_paths(StepContext& step, double kink, double near);
+  /// Returns the impulses in the order of time, without those that are rounding.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
-  /// undo_step() takes back those since begin_step(); forget_after(): those after a time, s.
+  /// undo_step() removes the impulses since begin_step(); forget_after() removes those after a time, s.
   void begin_step() { at_begin_ = impulses_.size(); }
   void undo_step();
   void forget_after(double t);
 
  private:
-  void note(const Island& island, double t, bool of_path, const VecX<double>& v_before, const State& state,
-            const VecX<double>& impulses, Workspace<double>& work);
+  void record(StepContext& step, const Island& island, bool of_path, const VecX<double>& v_before,
+              const VecX<double>& impulses);
 
   const Dynamics& dynamics_;
   std::vector<ImpulseOnEngage> impulses_;

@@ -1,59 +1,58 @@
-// What happens between steps: limits stop parameters, strings go taut, open joints become closed when their
-// gap has gone, and closed joints are projected back onto C = 0 and C_dot = 0 in the mass metric, which keeps
-// the order of the method (design 1.5).
+// Projection after a step: limits stop parameters, strings go taut, open joints become closed when their gap
+// is small, and closed joints are projected onto C = 0 and C_dot = 0 in the mass metric, which keeps the
+// order of the method (README.md of this folder).
 #pragma once
 
-#include <pliant/body/dynamics.h>
-#include <pliant/body/step_counters.h>
+#include <vector>
+
+#include <pliant/body/step_context.h>
 
 namespace pliant {
 
-/// Gap, in lengths of the joint's smaller part, up to which a projection closes an open joint; its rate must
-/// be at most kClosedRate lengths times the rate of the stabilization.
+/// Largest gap, in lengths of the joint's smaller part, up to which a projection closes an open joint. The
+/// rate of the gap must be at most kClosedRate lengths times the rate of the stabilization.
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
-/// Where joints begin to act in an island: those with a small enough gap are closed, and the velocities are
-/// made to agree with them by impulses. work: of an evaluation at the state; afterwards of its joints there;
-/// scratch: any, kept from island to island. impulses: those on the rows of all joints are added, N s.
-void engage_joints(const Dynamics& dynamics, double t, const Island& island, State& state,
-                   Workspace<double>& work, Workspace<double>& scratch, StepCounters& counters,
+/// Engages the joints of an island that begin to act: joints with a small gap are closed, and impulses make
+/// the velocities agree with them. On return step.work holds an evaluation of the joints of the island.
+/// scratch: storage kept from island to island; its contents are ignored.
+/// impulses: the impulses on the rows of all joints are added to it, N s.
+void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
-/// Where the rates at which ends of joints are moved have jumped: impulses give an island the velocities that
-/// agree with those of now, and their work is that of the hands (Work::anchors). work, impulses: as in
-/// take_hold.
-void follow_paths(const Dynamics& dynamics, double t, const Island& island, State& state,
-                  Workspace<double>& work, StepCounters& counters, VecX<double>& impulses);
+/// Applies the impulses that make the velocities of an island agree with the new rates of prescribed paths,
+/// where these rates jump. The work goes to Work::anchors. impulses: as for engage_joints.
+void follow_paths(StepContext& step, const Island& island, VecX<double>& impulses);
 
-/// Before the coordinates move by h v: impulses that keep every parameter within its limits, every string
-/// within its length and every closed joint closed at the end of the step. work: of the evaluation at the
-/// start; before: the velocities then; q_end, ahead: any, kept from step to step.
-void pre_step_impulses(const Dynamics& dynamics, Workspace<double>& work, const VecX<double>& before,
-                       State& state, double h, VecX<double>& q_end, Workspace<double>& ahead,
-                       StepCounters& counters);
+/// Storage of pre_step_impulses, kept from step to step; its contents are ignored.
+struct PreStepStorage {
+  VecX<double> q_end;       ///< coordinates at the end of the step
+  Workspace<double> ahead;  ///< joints evaluated there
+};
+/// Applies impulses before the coordinates move by h v: at the end of the step every parameter is within its
+/// limits, every string within its length and every closed joint closed. step.work: the evaluation at the
+/// start of the step. v_start: the velocities there.
+void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
-/// After the coordinates moved: parameters that came to a limit are on it to the last bit.
+/// Sets parameters that reached a limit to the limit, to the last bit.
 void clamp_to_limits(const Model& model, State& state);
 
-/// What ends the motion of a step, at time t (s): velocities that had no inertia rest, quaternions are of
-/// unit length, and reference conditions are met, as project_frames says.
-void end_motion(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
+/// Ends the motion of a step at step.t: velocities without inertia are set to zero, quaternions are
+/// normalised, and frames are projected (project_frames).
+void end_motion(StepContext& step);
 
-/// Parts that deform locally meet their reference conditions again, at time t (s); no node moves by it.
-/// Throws NumericalFailure where the conditions no longer tell the coordinates apart.
-void project_frames(const Dynamics& dynamics, double t, State& state, Workspace<double>& work);
-/// The same of some parts.
-void project_frames(const Dynamics& dynamics, double t, const std::vector<int>& parts, State& state,
-                    Workspace<double>& work);
+/// Projects the frames of parts that deform locally onto their reference conditions W^T d = 0 at step.t. No
+/// node moves in the world. Throws NumericalFailure if the conditions no longer determine the frame.
+void project_frames(StepContext& step);
+/// Projects the frames of the parts with these numbers.
+void project_frames(StepContext& step, const std::vector<int>& parts);
 
-/// After a step, which ends at time t (s): parameters of parts without joints that passed a limit are
-/// projected back in the mass metric, and stopped by impulses.
-void project_limits(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-                    StepCounters& counters);
+/// Projects parameters that passed a limit in the step that ends at step.t back in the mass metric and stops
+/// them by impulses, for parts without joints.
+void project_limits(StepContext& step);
 
-/// The same for parts with joints: open joints close that may, closed ones are projected, and limits and
-/// strings with them.
-void project_joints(const Dynamics& dynamics, double t, State& state, Workspace<double>& work,
-                    StepCounters& counters);
+/// Projects all islands at step.t: open joints with a small gap close, closed joints are projected, and
+/// limits and strings of their parts with them. Throws UnsatisfiableModel if joints contradict each other.
+void project_joints(StepContext& step);
 
 }  // namespace pliant

@@ -1,12 +1,12 @@
-// Where a picture is taken from.
+// The camera of a picture, and an automatic one for a box.
 #pragma once
 
 #include <Eigen/Geometry>
 
 namespace pliant {
 
-/// World frame, metres. The picture's vertical field of view is given; the horizontal one follows from its
-/// aspect.
+/// Positions are in the world frame, m. The vertical field of view is given; the horizontal one follows from
+/// the aspect of the picture.
 struct Camera {
   Eigen::Vector3d eye = {4, -6, 3};
   Eigen::Vector3d target = {0, 0, 0};
@@ -14,10 +14,10 @@ struct Camera {
   double field_of_view = 32;  ///< degrees, from bottom to top
 };
 
-/// A three-quarter view, slightly from above, that holds the whole box with a margin. aspect = width /
-/// height; field_of_view in degrees. An empty box is taken as the unit cube on the origin. Throws
-/// std::invalid_argument when the box is not finite, aspect is not positive or field_of_view is not in (0,
-/// 180).
+/// Returns a three-quarter view, slightly from above, that contains the whole box with a margin. aspect:
+/// width / height; field_of_view: degrees. An empty box is replaced by the unit cube that stands on the
+/// origin. Throws std::invalid_argument if the box is not finite, aspect is not positive or field_of_view is
+/// not in (0, 180).
 Camera automatic_camera(const Eigen::AlignedBox3d& bounds, double aspect,
                         double field_of_view = Camera().field_of_view);
 

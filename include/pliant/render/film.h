@@ -1,4 +1,4 @@
-// The pictures of a run's frames, drawn from its recording.
+// The pictures of the frames of a run, drawn from its recording.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,31 @@
 
 namespace pliant {
 
-/// Makes the picture of any frame: the parts, the tracks up to then, and springs, rods and strings as thin
-/// lines, which end in a dot where they hold on to the world. Camera, ground and the scale of values are the
-/// same in all frames of a run: where the scene leaves them open, they follow from the whole recorded motion.
+/// Makes the picture at any time of a recording: the parts, the tracks up to that time, and springs, rods and
+/// strings as thin lines with a dot at each end that is attached to the world. Camera, ground and the scale
+/// of values are equal in all frames of a run. Where the scene does not set them, they are computed from the
+/// whole recorded motion.
 class Film {
  public:
-  /// All must outlive the film. Throws RecordingMismatch, std::out_of_range when nothing is recorded.
+  /// scene, model, recording: must outlive the film. Throws RecordingMismatch, and std::out_of_range if the
+  /// recording has no state.
   Film(const Scene& scene, const Model& model, const Recording& recording);
 
-  /// The picture at a time (s); valid until the next call.
+  /// Returns the picture at a time (s); valid until the next call.
   const Picture& at(double time);
   const Camera& camera() const { return picture_.camera; }
 
  private:
-  struct Tie {
-    std::vector<PlacedPoint> ends;  ///< one, of a joint that ties no other point, or two
-    bool line;
-    const Joint* joint;  ///< nullptr for a spring
+  /// A spring or a joint as it is drawn.
+  struct Connector {
+    std::vector<PlacedPoint> ends;  ///< two points, or one for a joint without a second point
+    bool line;                      ///< whether a line is drawn between the ends
+    const Joint* joint;             ///< nullptr for a spring
   };
-  void lay_tracks();
-  void lay_ties();
+  void build_tracks();
+  void build_connectors();
   Eigen::AlignedBox3d anchors(const Eigen::AlignedBox3d& bodies) const;
-  void draw_ties(const State& state);
+  void draw_connectors(const State& state);
   void choose_view();
   void choose_scale();
 
@@ -45,15 +48,23 @@ class Film {
   const Recording* recording_;
   FrameMeshes meshes_;
   std::vector<PlacedPoint> tracked_;
-  std::vector<std::vector<Eigen::Vector3d>> tracks_;  // of each track, its point at every recorded state
-  std::vector<Tie> ties_;
+  std::vector<std::vector<Eigen::Vector3d>> tracks_;  // for each track, its point at every recorded state
+  std::vector<Connector> connectors_;
   Picture picture_;
 };
 
-/// Draws frame_000000.png for each of the frames, which are taken at number / frame_rate seconds, into an
-/// existing folder; size: the scene's. Throws as Film, Renderer and write_png do.
-void render_frames(const std::filesystem::path& folder, const Scene& scene, const Model& model,
-                   const Recording& recording, double frame_rate, const std::vector<std::int64_t>& frames,
-                   Progress& progress, GlBackend backend = GlBackend::automatic);
+/// A recorded motion with the scene and the model that it belongs to.
+struct FilmSource {
+  const Scene& scene;
+  const Model& model;
+  const Recording& recording;
+};
+
+/// Draws the given frames into an existing folder, as frame_000000.png and so on; frame i is at the time
+/// i / frame_rate (s). The size of the pictures is that of the scene. Throws as Film, Renderer and write_png
+/// do.
+void render_frames(const std::filesystem::path& folder, const FilmSource& source, double frame_rate,
+                   const std::vector<std::int64_t>& frames, Progress& progress,
+                   GlBackend backend = GlBackend::automatic);
 
 }  // namespace pliant

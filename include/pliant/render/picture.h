@@ -1,4 +1,5 @@
-// What a picture shows: plain data, filled anew for every frame. Colours are sRGB with channels in [0, 1].
+// The content of a picture as plain data, set again for every frame. Colours are sRGB with channels in [0,
+// 1].
 #pragma once
 
 #include <optional>
@@ -15,39 +16,40 @@
 namespace pliant {
 
 struct Picture {
-  /// A closed surface. The mesh holds world coordinates and must outlive the call that draws it.
+  /// A closed surface. The mesh has world coordinates (m) and must outlive the call that draws it.
   struct Body {
     const TriangleMesh* mesh = nullptr;
     Eigen::Vector3f color = {0.8f, 0.8f, 0.8f};
-    const VecX<double>* values = nullptr;  ///< one a vertex; with a scale the body is coloured by them
+    const VecX<double>* values = nullptr;  ///< one for each vertex; with a scale, they set the colours
   };
 
-  /// What the colours of values mean (color_map.h), shown as a bar at the right; values beyond have the first
-  /// or the last colour. A picture less than 160 pixels wide or 120 high has no room for the bar.
+  /// The range of values of the colour map (color_map.h), shown as a bar at the right. Values outside have
+  /// the first or the last colour. Pictures narrower than 160 pixels or lower than 120 have no bar.
   struct Scale {
-    std::string title;  ///< of digits, small letters and . , - + / ( ): "strain", "displacement (m)"
+    std::string title;  ///< digits, small letters and . , - + / ( ), as in "displacement (m)"
     double low = 0, high = 1;
   };
 
-  /// The path of a point, hidden where bodies are in front of it. A path of one point is a dot.
+  /// The path of a point, hidden behind bodies. A path of one point is drawn as a dot.
   struct Track {
-    std::vector<Eigen::Vector3d> points;  ///< world, metres
+    std::vector<Eigen::Vector3d> points;  ///< world, m
     Eigen::Vector3f color = {0.15f, 0.15f, 0.18f};
     float width = 2;  ///< pixels
   };
 
-  /// A floor of constant height that receives shadows and fades into the background far from the camera's
-  /// target.
+  /// A floor of constant height. It receives shadows and fades into the background far from the target of the
+  /// camera.
   struct Ground {
     bool shown = true;
-    double height = 0;  ///< z, metres
-    double spacing =
-        0;  ///< of the grid, metres; 0 picks 1, 2 or 5 times a power of ten; every fifth line is stronger
-    Eigen::Vector3f color = {0.93f, 0.935f, 0.945f};  ///< where the key light reaches it
+    double height = 0;  ///< z, m
+    /// Spacing of the grid, m; 0 chooses 1, 2 or 5 times a power of ten. Every fifth line is stronger.
+    double spacing = 0;
+    Eigen::Vector3f color = {0.93f, 0.935f, 0.945f};  ///< under the full key light
     Eigen::Vector3f grid_color = {0.60f, 0.64f, 0.70f};
   };
 
-  /// One distant key light, which casts shadows, over an ambient light that differs between above and below.
+  /// One distant key light, which casts shadows, and an ambient light with different colours from above and
+  /// below.
   struct Lights {
     Eigen::Vector3f to_key = {-0.28f, -0.52f, 0.81f};  ///< direction towards the key light, any length
     Eigen::Vector3f key = {1.0f, 0.975f, 0.94f};       ///< colour at full strength
@@ -72,7 +74,7 @@ struct Picture {
   Background background;
 };
 
-/// The smallest box around all bodies and tracks; empty when there are none.
+/// Returns the smallest box around all bodies and tracks; empty if there are none.
 Eigen::AlignedBox3d bounds(const Picture& picture);
 
 }  // namespace pliant

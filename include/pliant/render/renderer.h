@@ -1,5 +1,5 @@
-// Draws pictures without a window. The same input gives the same bytes, whichever backend draws and with any
-// number of raster threads.
+// Draws pictures without a window. Equal input gives equal bytes for every backend and any number of
+// rasteriser threads.
 #pragma once
 
 #include <memory>
@@ -11,21 +11,22 @@
 
 namespace pliant {
 
-/// Keeps its GL buffers between frames: bodies whose triangles are those of the frame before only send their
-/// vertices. One thread at a time may draw with a renderer; any number of renderers may exist.
+/// Keeps its GL buffers between frames: for a body with the triangles of the previous frame only the vertices
+/// are sent. One thread at a time may draw with a renderer. Any number of renderers may exist.
 class Renderer {
  public:
   static constexpr int kMaxSide = 8192;  ///< pixels
 
-  /// Opens a GL library (the first moment one is loaded). Throws std::invalid_argument unless both sides are
-  /// in [1, kMaxSide], std::runtime_error when no backend opens or it cannot hold a picture of that size.
+  /// Opens a GL library; none is loaded before. width, height: pixels. Throws std::invalid_argument unless
+  /// both are in [1, kMaxSide], and std::runtime_error if no backend opens or none can draw a picture of this
+  /// size.
   Renderer(int width, int height, GlBackend backend = GlBackend::automatic);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Throws std::invalid_argument that names the body, track or setting which is missing, out of range or not
-  /// finite, std::runtime_error when GL fails.
+  /// Draws a picture. Throws std::invalid_argument that names the body, track or setting that is missing, out
+  /// of range or not finite, and std::runtime_error if GL fails.
   Image draw(const Picture& picture);
 
   int width() const;

@@ -6,14 +6,14 @@
 
 namespace pliant {
 
-/// 1, 2 or 5 times a power of ten, of which about five make the span (> 0).
+/// Returns 1, 2 or 5 times a power of ten, so that about five steps make the span (> 0).
 double tick_step(double span);
 
 struct Tick {
   double value;
-  std::string label;  ///< as many digits as the step needs
+  std::string label;  ///< with as many digits as the step needs
 };
-/// The multiples of the step that lie in [low, high].
+/// Returns the multiples of tick_step(high - low) in [low, high].
 std::vector<Tick> ticks(double low, double high);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Colouring parts in pictures by how they are deformed.
+// Quantities by which pictures colour a deformed part, and the setting of a scene that selects one.
 #pragma once
 
 #include <array>
@@ -10,33 +10,35 @@
 
 namespace pliant {
 
-/// A number at each vertex of a part's surface. Moving and turning as a rigid body changes neither.
+/// A number at each vertex of a part's surface. Rigid motion of the part changes neither quantity.
 enum class SurfaceQuantity {
-  displacement,  ///< |p - X|, m: from where the vertex is at rest, in the part's frame; d and global
-                 ///< parameters
-  strain,        ///< the largest principal Green strain of the surface, from rest to now (SurfaceStrain)
+  displacement,  ///< |p - X|, m: distance of the vertex from its rest position X, both in the frame of the
+                 ///< part; global parameters and local deformation d contribute
+  strain,        ///< largest principal Green strain of the surface relative to rest (SurfaceStrain)
 };
 
 struct QuantityInfo {
   SurfaceQuantity quantity;
   const char* name;
-  const char* unit;  ///< "1" for a plain number
+  const char* unit;  ///< "1" for a dimensionless number
   const char* meaning;
 };
+/// All quantities, in the order of SurfaceQuantity.
 const std::vector<QuantityInfo>& all_quantities();
 const QuantityInfo& quantity_info(SurfaceQuantity quantity);
-/// Nothing when no quantity is called so.
+/// Returns the quantity with this name, or nothing if there is none.
 std::optional<SurfaceQuantity> find_quantity(const std::string& name);
 
 struct Coloring {
   SurfaceQuantity by = SurfaceQuantity::strain;
-  /// Values with the first and the last colour; beyond, colours stay. Where not given it goes from 0 to what
-  /// 99 of 100 vertices stay below in the whole recorded motion, rounded up.
+  /// Values of the first and the last colour; values outside the range get the nearer of these two colours.
+  /// When absent, the range is from 0 to the 99th percentile of all vertices in the whole recorded motion,
+  /// rounded up.
   std::optional<std::array<double, 2>> range;
-  std::vector<const Part*> parts;  ///< which; empty: those that deform
+  std::vector<const Part*> parts;  ///< coloured parts; empty: all parts that deform
 };
 
-/// Whether a part is coloured by its values.
+/// Returns whether the setting colours a part by its values.
 bool colors(const Coloring& coloring, const Part& part);
 
 }  // namespace pliant

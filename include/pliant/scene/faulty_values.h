@@ -1,5 +1,5 @@
-// The values of a document at which, or inside which, a fault was found: the rest of the scene can still be
-// read and judged, so that all faults are told at once.
+// The set of values of a document that are faulty or contain a faulty value. The readers skip these values
+// and check the rest of the scene, so that all faults are reported at once.
 #pragma once
 
 #include <unordered_set>
@@ -10,10 +10,11 @@
 
 namespace pliant {
 
-/// Addresses of values of a document; valid as long as the document is not changed.
+/// Addresses of values of a document; valid until the document changes.
 using FaultyValues = std::unordered_set<const JsonValue*>;
 
-/// Of the errors that are stored; the pointer of each says where it is.
+/// Returns the faulty values of the stored errors: the value at the pointer of each error and all values that
+/// enclose it.
 FaultyValues faulty_values(const JsonDocument& document, const Diagnostics& faults);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Triangle meshes from files, for obstacles: OBJ, PLY, STL, glTF.
+// Reading triangle meshes of obstacles from files: OBJ, PLY, STL, glTF.
 #pragma once
 
 #include <filesystem>
@@ -8,19 +8,19 @@
 
 namespace pliant {
 
-/// A mesh as a file has it, polygons cut into triangles; several corners may be at one place.
+/// A mesh as stored in a file, with polygons split into triangles. Several vertices may have one position.
 struct MeshFile {
   Eigen::Matrix3Xd vertices;   ///< in the units of the file, single precision
-  Eigen::Matrix3Xi triangles;  ///< columns of these
+  Eigen::Matrix3Xi triangles;  ///< three column numbers of `vertices` per triangle
 };
 
-/// Reads all meshes of a file, placed as its nodes say. Throws FileError when it cannot be read,
-/// std::invalid_argument when it is no mesh; ObstacleMesh tells whether the mesh is sound.
+/// Reads all meshes of a file, each transformed by its nodes. Throws FileError if the file cannot be read and
+/// std::invalid_argument if it is not a mesh. ObstacleMesh checks the topology of the result.
 MeshFile read_mesh_file(const std::filesystem::path& file);
 
-/// The name under which a run keeps the mesh of an obstacle beside its scene.
+/// Returns the file name under which a run stores the mesh of an obstacle in its folder.
 std::string recorded_mesh_name(const std::string& obstacle);
-/// Whether a file has such a name.
+/// Returns whether a file name has the form of recorded_mesh_name().
 bool is_recorded_mesh(const std::string& file_name);
 
 }  // namespace pliant

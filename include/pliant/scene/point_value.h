@@ -1,4 +1,4 @@
-// Material points in a scene: {"u", "v", "w"}, {"direction": [x, y, z], "w"} or {"near": [x, y, z]}.
+// The JSON value of a material point: {"u", "v", "w"}, {"direction": [x, y, z], "w"} or {"near": [x, y, z]}.
 #pragma once
 
 #include <pliant/math/types.h>
@@ -7,27 +7,28 @@
 
 namespace pliant {
 
-/// A point of a part as the scene names it, to be resolved at the part's rest shape.
+/// A material point as written in a scene. PointReader resolves it at the rest shape of the part.
 struct MaterialPointValue {
   enum class Form {
-    kCoordinates,  ///< x = (u, v, w)
-    kDirection,    ///< x = a direction from the centre, of any length but zero, and w
-    kNear          ///< x = a place in the body frame (m): the point there; for a place outside, the surface
-                   ///< point with its u and v
+    kCoordinates,  ///< x = (u, v, w); u and v in rad
+    kDirection,    ///< x = direction from the origin of the body frame, not zero, of arbitrary length
+    kNear  ///< x = position in the body frame (m). Inside the part: the material point there. Outside:
+           ///< the surface point with the u and v of this position.
   };
   Form form = Form::kCoordinates;
   Vec3<double> x = Vec3<double>::Zero();
-  double w = 1;      ///< 0 at the centre, 1 on the surface
-  double patch = 0;  ///< radius, m; 0: none
+  double w = 1;      ///< radial coordinate: 0 at the centre, 1 on the surface
+  double patch = 0;  ///< radius over which a load is spread among nodes, m; 0: no patch
 };
 
 namespace schema {
 
+/// The type of a material point.
 Type material_point();
 
 }  // namespace schema
 
-/// The point that a validated value of schema::material_point names.
+/// Returns the point that a validated value of type schema::material_point describes.
 MaterialPointValue read_material_point(const JsonValue& value);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// From a JSON document to a Scene.
+// Reading a scene: from a JSON document to a Scene with its MultiBody.
 #pragma once
 
 #include <memory>
@@ -10,17 +10,19 @@
 
 namespace pliant {
 
-/// Under which names the meshes of obstacles are beside a scene: those it says, or those a run gave them.
+/// File names of the meshes of obstacles: those given in the scene, or those of a recorded run
+/// (recorded_mesh_name).
 enum class MeshFiles { as_named, of_a_run };
 
-/// Reads a scene file ("-" is standard input). overrides: "/json/pointer=value", applied before anything is
-/// checked. Warnings are left in diagnostics. solver: of the joints, and of the modes of meshes (the scene
-/// says which of its two ways is taken). Throws SceneError with all faults at once, FileError.
+/// Reads a scene file ("-" is standard input). overrides: assignments "/json/pointer=value", applied before
+/// the scene is validated. diagnostics: receives the warnings. solver: factorisation for joints and for modes
+/// of meshes; the scene chooses between blocks and augmented matrix. Throws SceneError with all faults of the
+/// scene, FileError if the file cannot be read.
 std::unique_ptr<Scene> read_scene(const std::string& file, const std::vector<std::string>& overrides,
                                   Diagnostics& diagnostics, const JointSolver& solver = {},
                                   MeshFiles files = MeshFiles::as_named);
 
-/// The same for a text, `name` standing for the file in messages.
+/// Reads a scene from a text; `name` replaces the file name in messages.
 std::unique_ptr<Scene> parse_scene(const std::string& name, std::string text,
                                    const std::vector<std::string>& overrides, Diagnostics& diagnostics);
 

@@ -1,5 +1,5 @@
-// A scene: a MultiBody with how long and how to run it, and how to show it. read_scene() makes one from a
-// JSON document.
+// A scene: a MultiBody, the settings of its simulation (end, step, integrator) and the settings of its
+// pictures. read_scene() makes a Scene from a JSON document.
 #pragma once
 
 #include <array>
@@ -18,29 +18,29 @@ namespace pliant {
 /// Red, green, blue in [0, 1], sRGB.
 using Color = std::array<double, 3>;
 
-/// How a part looks; one for each part of the body, in its order.
+/// Appearance of a part. A scene has one per part, in the order of MultiBody::parts().
 struct Appearance {
   Color color{0.8, 0.5, 0.2};
-  int resolution = 8;  ///< of its Surface
+  int resolution = 8;  ///< of the part's Surface: edges along an eighth of a circle
   bool visible = true;
 };
 
-/// How an obstacle looks, and where its surface is from; one for each of the body's, in their order.
+/// Appearance of an obstacle and its mesh file. A scene has one per obstacle, in the order of the MultiBody.
 struct ObstacleLook {
   Color color{0.6, 0.58, 0.53};
   bool visible = true;
-  MeshFile mesh;  ///< as the file has it, neither scaled nor placed; empty of a plate
+  MeshFile mesh;  ///< as stored in the file, before scaling and placement; empty for a plate
 };
 
-/// A rectangle about the point of a plane, which pictures and meshes show while the plane is there. Its width
-/// is level, along x of a level plane.
+/// A rectangle centred at the point of a contact plane; pictures and meshes show it while the plane acts. Its
+/// width is horizontal (along x for a horizontal plane).
 struct PlaneLook {
-  std::size_t plane = 0;         ///< its number among the body's
+  std::size_t plane = 0;         ///< index of the plane in the MultiBody
   double width = 1, height = 1;  ///< m
   Color color{0.6, 0.58, 0.53};
 };
 
-/// A material point whose path is drawn and recorded (the paper's Fig. 6b).
+/// A material point whose path is drawn and recorded (Fig. 6b of the paper).
 struct Track {
   std::string name;
   Point point;
@@ -48,46 +48,50 @@ struct Track {
 };
 
 struct CameraSetting {
-  std::optional<Vec3<double>> eye, target;  ///< m; chosen automatically when not given
+  std::optional<Vec3<double>> eye, target;  ///< positions, m; chosen automatically when absent
   double field_of_view = 35;                ///< vertical, degrees
 };
 
 struct LightSetting {
-  std::optional<Vec3<double>> direction;  ///< towards the light; a default when not given
+  std::optional<Vec3<double>> direction;  ///< unit vector towards the light; a default when absent
   bool shadows = true;
 };
 
 struct GroundSetting {
   bool visible = true;
-  std::optional<double> height;  ///< z of the ground, m; just below the lowest point when not given
+  std::optional<double>
+      height;  ///< z of the ground, m; just below the lowest point of the motion when absent
 };
 
 struct Scene {
-  std::string name;         ///< file name without its ending, or given
-  std::string description;  ///< what the scene must show
+  std::string name;         ///< given in the scene, or the file name without its extension
+  std::string description;  ///< the behaviour that the scene demonstrates
   MultiBody body;
   std::vector<Appearance> appearance;
   std::vector<ObstacleLook> obstacles;
-  std::vector<PlaneLook> planes;  ///< those that are shown
+  std::vector<PlaneLook> planes;  ///< visible planes only
   std::vector<Track> tracks;
 
-  double end = 1;        ///< s
-  double step = 1e-3;    ///< s; of no meaning with a tolerance
-  double tolerance = 0;  ///< of the error of a step, see Simulation; 0: it is not controlled
+  double end = 1;      ///< end time of the run, s
+  double step = 1e-3;  ///< fixed time step, s; ignored if tolerance > 0
+  double tolerance =
+      0;  ///< bound on the error of a step, see Simulation; 0: fixed steps without error control
   std::string integrator = "semi_implicit_euler";
-  double frame_rate = 25;          ///< recorded states and pictures per second
-  std::optional<bool> every_part;  ///< whether the table of a run tells of every part, be they many or few
-  bool contacts = false;           ///< whether a run tells what touches
-  int width = 640, height = 480;   ///< of pictures
+  double frame_rate = 25;  ///< recorded states and pictures per second
+  /// Whether trajectory.csv has columns for every part and joint; when absent, only for up to
+  /// TrajectoryTable::kMaxParts parts.
+  std::optional<bool> every_part;
+  bool contacts = false;          ///< whether a run records contacts and their impulses
+  int width = 640, height = 480;  ///< size of pictures, pixels
   CameraSetting camera;
   LightSetting light;
   GroundSetting ground;
-  std::optional<Coloring> coloring;  ///< parts have their own colours when not given
-  bool show_springs = true;          ///< in pictures, as lines between their points
+  std::optional<Coloring> coloring;  ///< when absent, parts have their own colours
+  bool show_springs = true;          ///< whether pictures show springs as lines between their points
 
-  std::string document;                ///< the file as it was read; a run keeps it beside its recording
-  std::vector<std::string> overrides;  ///< "/json/pointer=value", applied to it
-  std::uint64_t hash = 0;              ///< of the resolved document (overrides included), for resuming
+  std::string document;                ///< text of the file; a run stores it with its recording
+  std::vector<std::string> overrides;  ///< assignments "/json/pointer=value" applied to the document
+  std::uint64_t hash = 0;              ///< hash of document, overrides and mesh files; checked on resume
 };
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// Functions of time in a scene: a number, a formula of t in quotes, or key frames {"t": [...], "y": [...]}.
+// The JSON value of a function of time: a number, a formula of t in quotes, or key frames {"t": [...], "y":
+// [...]}.
 #pragma once
 
 #include <string>
@@ -11,16 +12,17 @@ namespace pliant {
 
 namespace schema {
 
-/// A scalar function of time.
+/// The type of a scalar function of time; unit: of its values.
 Type time_function(std::string unit);
-/// Three functions of time [x, y, z], or key frames of points {"t": [...], "points": [[x, y, z], ...]}.
+/// The type of a vector function of time: three functions [x, y, z], or key frames of points {"t": [...],
+/// "points": [[x, y, z], ...]}; unit: of its components.
 Type time_vector(std::string unit);
 
 }  // namespace schema
 
-/// The function that a validated value of schema::time_function stands for.
+/// Returns the function that a validated value of type schema::time_function describes.
 TimeFunction read_time_function(const JsonValue& value);
-/// The same for schema::time_vector.
+/// Returns the vector function that a validated value of type schema::time_vector describes.
 TimeVector read_time_vector(const JsonValue& value);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Checks a document against the records of a scene: unknown and missing keys, types, ranges, choices, all
-// faults at once.
+// Validation of a document against the records of a scene: unknown and missing keys, types, ranges and
+// choices. All faults are reported at once.
 #pragma once
 
 #include <string>
@@ -10,11 +10,12 @@
 
 namespace pliant {
 
-/// The whole document; "$schema" is allowed at the root. The keys of all records are known to the messages: a
-/// key in the wrong place is told where it belongs.
+/// Validates the whole document; the key "$schema" is allowed at the root. Faults are added to `faults`. For
+/// a key in the wrong place the message names the record to which the key belongs.
 void validate(const JsonDocument& document, const schema::Record& root, Diagnostics& faults);
 
-/// One value of the document, for what a record alone cannot know (the parameters of a shape, say).
+/// Validates one value of the document. Used for types that depend on other values, for example the
+/// parameters of a shape.
 void validate(const JsonDocument& document, const JsonValue& value, const schema::Type& type,
               Diagnostics& faults);
 

@@ -1,5 +1,5 @@
-// The list of shapes. A new one is its file and an entry here; registry, explicit instances, schema, `pliant
-// list` and the law tests follow.
+// The list of shapes. A new shape needs its own file, included here, and an entry in PLIANT_ALL_SHAPES. The
+// registry, the explicit instances, the schema, `pliant list` and the law tests follow from this list.
 #pragma once
 
 #include <tuple>
@@ -16,7 +16,20 @@
 
 namespace pliant {
 
-using AllShapes = std::tuple<Superellipsoid, SuperellipsoidRadial, Ellipsoid, Sphere, Cylinder, Cone,
-                             Supertoroid, Capsule, Box>;
+/// Expands X(Shape) for each shape of the list.
+#define PLIANT_ALL_SHAPES(X) \
+  X(Superellipsoid)          \
+  X(SuperellipsoidRadial)    \
+  X(Ellipsoid)               \
+  X(Sphere)                  \
+  X(Cylinder)                \
+  X(Cone)                    \
+  X(Supertoroid)             \
+  X(Capsule)                 \
+  X(Box)
+
+#define PLIANT_AS_TUPLE(Shape) std::tuple<Shape>(),
+using AllShapes = decltype(std::tuple_cat(PLIANT_ALL_SHAPES(PLIANT_AS_TUPLE) std::tuple<>()));
+#undef PLIANT_AS_TUPLE
 
 }  // namespace pliant

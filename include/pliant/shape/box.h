@@ -1,7 +1,9 @@
-// Box of half sizes a1, a2, a3, a cylinder whose section is the unit square (X, Y) = (C_v, S_v) / max(|C_v|,
-// |S_v|):
-//   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
+// Box with half sizes a1, a2, a3: a cylinder whose section is the unit square,
+//   (X, Y) = (C_v, S_v) / max(|C_v|, |S_v|),   e = w diag(a1, a2, a3) (C_u X, C_u Y, S_u) / max(|C_u|, |S_u|)
 #pragma once
+
+#include <algorithm>
+#include <cmath>
 
 #include <pliant/shape/shape.h>
 
@@ -44,5 +46,29 @@ struct Box {
   static Section section(double zeta, double gap, const Vec<double, 3>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
 };
+
+inline Material<double> Box::label(const Vec3<double>& x, const Vec<double, 3>& a) {
+  const Vec3<double> k{x[0] / a[0], x[1] / a[1], x[2] / a[2]};
+  const double ring = std::max(std::abs(k[0]), std::abs(k[1])), size = std::hypot(ring, k[2]);
+  const double round = std::hypot(k[0], k[1]);
+  if (size == 0) return material_from(0, 1, 1, 0, 0);
+  const double cv = round > 0 ? k[0] / round : 1.0, sv = round > 0 ? k[1] / round : 0.0;
+  return material_from(ring / size, k[2] / size, cv, sv, gauge<double>(x, a));
+}
+inline std::vector<Panel> Box::profile(const Vec<double, 3>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Box::ring(const Vec<double, 3>&, bool) {
+  std::vector<Panel> sides;
+  for (int i = 0; i < 4; ++i)
+    sides.push_back({Panel::Kind::smooth, (2 * i - 1) * detail::kRimAngle, (2 * i + 1) * detail::kRimAngle});
+  return sides;
+}
+inline Section Box::section(double, double, const Vec<double, 3>& a) {
+  return {4 * a[0] * a[1], a[0] * a[0] / 3, a[1] * a[1] / 3};
+}
+inline std::vector<SectionPanel> Box::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 }  // namespace pliant

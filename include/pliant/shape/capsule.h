@@ -1,8 +1,11 @@
-// Capsule: a cylinder of radius r and length l along z between two half balls. With |u| <= pi/4 the side,
-// beyond it the caps, whose polar angle is twice that of the material direction:
-//   side (r C_v, r S_v, (l/2) tan u),   cap (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 -
-//   C_u^2)))
+// Capsule: a cylinder of radius r and length l along z between two half balls. The side is at |u| <= pi/4,
+// the caps beyond. The polar angle on a cap is twice the polar angle of the material direction. The surface
+// points, of which e is the multiple w, are:
+//   side  (r C_v, r S_v, (l/2) tan u)
+//   cap   (2 r C_u |S_u| C_v, 2 r C_u |S_u| S_v, sgn(u) (l/2 + r (S_u^2 - C_u^2)))
 #pragma once
+
+#include <cmath>
 
 #include <pliant/shape/shape.h>
 
@@ -41,8 +44,8 @@ struct Capsule {
     const T ring = math::sqrt_from_zero(ring2);
     const T side = ring / a[0];
     const T on_cap = z - half * side;
-    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0,
-    // smallest w > 0.
+    // Cap: ring^2 + (z - w half)^2 = (w r)^2, i.e. (r^2 - half^2) w^2 + 2 half z w - (ring^2 + z^2) = 0; w is
+    // the smallest positive root.
     const T s2 = ring2 + z * z;
     const T root2 = half * half * z * z + (a[0] * a[0] - half * half) * s2;
     const T off_centre = root2 - T(1e-300);
@@ -60,5 +63,35 @@ struct Capsule {
   static Section section(double zeta, double gap, const Vec<double, 2>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 2>& a);
 };
+
+inline Material<double> Capsule::label(const Vec3<double>& x, const Vec<double, 2>& a) {
+  const double w = gauge<double>(x, a), half = a[1] / 2;
+  const double ring = std::hypot(x[0], x[1]);
+  if (w == 0) return material_from(0, 1, 1, 0, 0);
+  const double cv = ring > 0 ? x[0] / ring : 1.0, sv = ring > 0 ? x[1] / ring : 0.0;
+  const double z = x[2] / w;
+  if (std::abs(z) <= half) {
+    const double size = std::hypot(1.0, z / half);
+    return material_from(1 / size, z / half / size, cv, sv, w);
+  }
+  const double polar = std::atan2(ring / w, std::abs(z) - half) / 2;
+  return material_from(std::sin(polar), std::copysign(std::cos(polar), z), cv, sv, w);
+}
+inline std::vector<Panel> Capsule::profile(const Vec<double, 2>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Capsule::ring(const Vec<double, 2>&, bool) {
+  return detail::round_ring();
+}
+inline Section Capsule::section(double zeta, double gap, const Vec<double, 2>& a) {
+  const double h = a[0] + a[1] / 2, from_end = gap * h;  // distance from the pole
+  const double beyond = std::abs(zeta) * h - a[1] / 2;
+  const double r2 = beyond > 0 ? from_end * (a[0] + beyond) : a[0] * a[0];
+  return {kPi * r2, r2 / 4, r2 / 4};
+}
+inline std::vector<SectionPanel> Capsule::section_panels(const Vec<double, 2>& a) {
+  const double rim = a[1] / 2 / (a[0] + a[1] / 2);
+  return {{-1, -rim, false}, {-rim, rim, false}, {rim, 1, false}};
+}
 
 }  // namespace pliant

@@ -1,7 +1,9 @@
-// Cone and frustum: a cylinder whose section shrinks or grows along z by the factor 1 + t z / a3 (t = -1: a
-// cone with its tip at z = a3). Surface (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z) with k on the unit
-// cylinder; e = w times it.
+// Cone and frustum: a cylinder whose section scales along z by the factor 1 + t z / a3. With t = -1 it is a
+// cone with its tip at z = a3. With k on the surface of the unit cylinder,
+//   e = w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z)
 #pragma once
+
+#include <cmath>
 
 #include <pliant/shape/cylinder.h>
 
@@ -39,12 +41,44 @@ struct Cone {
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
-  /// Of a cone with a tip the side is drawn over the end that has no face.
+  /// If the cone has a tip (|t| = 1), the grid of its missing end face covers the side too.
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);
   static Section section(double zeta, double gap, const Vec<double, 4>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 4>& a);
 };
+
+inline Material<double> Cone::label(const Vec3<double>& x, const Vec<double, 4>& a) {
+  const double w = gauge<double>(x, a);
+  if (w == 0) return material_from(0, 1, 1, 0, 0);
+  const double z = x[2] / (a[2] * w), width = 1 + a[3] * z;
+  const double narrow = width > 1e-14 ? 1 / (width * w) : 0.0;
+  return material_towards({x[0] / a[0] * narrow, x[1] / a[1] * narrow, z}, w);
+}
+inline Material<double> Cone::mesh_label(const Vec3<double>& g, const Vec<double, 4>& a) {
+  const double ring = std::hypot(g[0], g[1]);
+  const double tip = a[3] == -1 ? 1.0 : -1.0;
+  if (std::abs(a[3]) != 1 || ring == 0 || tip * g[2] <= -ring) return material_towards(g);
+  // Map the latitudes from the rim (-45 degrees) to the tip (90 degrees) linearly to z.
+  const double rise = (std::atan2(tip * g[2], ring) + detail::kRimAngle) / (3 * detail::kRimAngle);
+  const double k = tip * (2 * rise - 1), size = std::hypot(1.0, k);
+  return material_from(1 / size, k / size, g[0] / ring, g[1] / ring);
+}
+inline std::vector<Panel> Cone::profile(const Vec<double, 4>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Cone::ring(const Vec<double, 4>&, bool) {
+  return detail::round_ring();
+}
+inline Section Cone::section(double zeta, double gap, const Vec<double, 4>& a) {
+  // width = 1 + t zeta, without cancellation at the tip.
+  const double end = zeta < 0 ? -1.0 : 1.0;
+  const double width = (1 + a[3] * end) - a[3] * end * gap, width2 = width * width;
+  return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
+}
+inline std::vector<SectionPanel> Cone::section_panels(const Vec<double, 4>&) {
+  return {{-1, 1, false}};
+}
 
 }  // namespace pliant

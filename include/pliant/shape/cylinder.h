@@ -1,5 +1,5 @@
-// Elliptic cylinder: e = w diag(a1, a2, a3) k, k the point of the unit cylinder |(k_x, k_y)| <= 1, |k_z| <= 1
-// in the direction n = (C_u C_v, C_u S_v, S_u); the rim is at |u| = pi/4.
+// Elliptic cylinder: e = w diag(a1, a2, a3) k. The point k is on the surface of the unit cylinder,
+// |(k_x, k_y)| <= 1 and |k_z| <= 1, in the direction n = (C_u C_v, C_u S_v, S_u). The rim is at |u| = pi/4.
 #pragma once
 
 #include <pliant/shape/shape.h>
@@ -18,7 +18,7 @@ struct Cylinder {
   static constexpr MeshPattern mesh = MeshPattern::ball;
   static constexpr bool linear_lengths = true;
 
-  /// The point of the unit cylinder in the direction of m.
+  /// Returns the surface point k of the unit cylinder in the direction of m.
   template <class U>
   static Vec3<U> unit_point(const Material<U>& m) {
     const U reach = U(1) / math::max(math::abs(m.cu.x), math::abs(m.su.x));
@@ -48,5 +48,21 @@ struct Cylinder {
   static Section section(double zeta, double gap, const Vec<double, 3>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
 };
+
+inline Material<double> Cylinder::label(const Vec3<double>& x, const Vec<double, 3>& a) {
+  return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
+}
+inline std::vector<Panel> Cylinder::profile(const Vec<double, 3>&, bool) {
+  return detail::rimmed_profile();
+}
+inline std::vector<Panel> Cylinder::ring(const Vec<double, 3>&, bool) {
+  return detail::round_ring();
+}
+inline Section Cylinder::section(double, double, const Vec<double, 3>& a) {
+  return {kPi * a[0] * a[1], a[0] * a[0] / 4, a[1] * a[1] / 4};
+}
+inline std::vector<SectionPanel> Cylinder::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 }  // namespace pliant

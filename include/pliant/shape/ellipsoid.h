@@ -1,6 +1,8 @@
 // Ellipsoid: e = w (a1 C_u C_v, a2 C_u S_v, a3 S_u), -pi/2 <= u <= pi/2.
 #pragma once
 
+#include <cmath>
+
 #include <pliant/shape/shape.h>
 
 namespace pliant {
@@ -39,5 +41,22 @@ struct Ellipsoid {
   static Section section(double zeta, double gap, const Vec<double, 3>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 3>& a);
 };
+
+inline Material<double> Ellipsoid::label(const Vec3<double>& x, const Vec<double, 3>& a) {
+  return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
+}
+inline std::vector<Panel> Ellipsoid::profile(const Vec<double, 3>&, bool) {
+  return {{Panel::Kind::smooth, -detail::kPoleAngle, detail::kPoleAngle}};
+}
+inline std::vector<Panel> Ellipsoid::ring(const Vec<double, 3>&, bool) {
+  return detail::round_ring();
+}
+inline Section Ellipsoid::section(double zeta, double gap, const Vec<double, 3>& a) {
+  const double width2 = gap * (1 + std::abs(zeta));
+  return {kPi * a[0] * a[1] * width2, a[0] * a[0] * width2 / 4, a[1] * a[1] * width2 / 4};
+}
+inline std::vector<SectionPanel> Ellipsoid::section_panels(const Vec<double, 3>&) {
+  return {{-1, 1, false}};
+}
 
 }  // namespace pliant

@@ -1,12 +1,14 @@
-// Pieces of a material angle, or of a section coordinate, on which a shape is smooth: quadrature never
-// crosses a kink.
+// Intervals of a material angle, or of a section coordinate, on which a shape is smooth. Quadrature rules act
+// on one interval each and never cross a kink.
 #pragma once
 
 #include <vector>
 
+#include <pliant/math/scalar/functions.h>
+
 namespace pliant {
 
-/// A piece of an angle (u or v).
+/// An interval of an angle (u or v).
 struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
@@ -20,16 +22,36 @@ struct Panel {
   double eps = 1;                  ///< power panel: exponent
 };
 
-/// The quadrant panels of an exponent: smooth for eps = 1 where the caller says so by using another panel.
+/// Adds the two power panels of one quadrant for an exponent eps. (For eps = 1 callers use a smooth or
+/// periodic panel instead.)
 inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sign_sin, double eps) {
   for (bool along_sin : {true, false})
     panels.push_back({Panel::Kind::power, 0, 0, sign_cos, sign_sin, along_sin, eps});
 }
 
-/// A piece of zeta = z / h.
+/// An interval of zeta = z / h.
 struct SectionPanel {
   double from, to;
-  bool singular;  ///< algebraic singularities at the ends (tanh-sinh), else analytic (Gauss)
+  bool singular;  ///< true: algebraic singularities at the ends (tanh-sinh); false: analytic (Gauss)
 };
+
+namespace detail {
+
+/// Latitudes (rad) of the rims of a cylinder and of the poles.
+inline constexpr double kRimAngle = kPi / 4, kPoleAngle = kPi / 2;
+
+/// Returns the profile panels of shapes with rims.
+inline std::vector<Panel> rimmed_profile() {
+  using K = Panel::Kind;
+  return {{K::smooth, -kPoleAngle, -kRimAngle},
+          {K::smooth, -kRimAngle, kRimAngle},
+          {K::smooth, kRimAngle, kPoleAngle}};
+}
+/// Returns the ring panel of shapes with elliptic sections.
+inline std::vector<Panel> round_ring() {
+  return {{Panel::Kind::periodic, 0, 2 * kPi}};
+}
+
+}  // namespace detail
 
 }  // namespace pliant

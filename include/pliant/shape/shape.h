@@ -1,22 +1,27 @@
-// What a shape is (design 1.1): one struct with its names, its parameters and its formula, e(u; a), Eq. (3).
-//   name, formula     for people and scene files
+// The interface of a shape: one struct with its names, its parameters and its formula e(u; a), Eq. (3).
+//
+// Required members:
+//   name, formula     texts for scene files, messages and `pliant list`
 //   parameters        std::array<ParameterSpec, n>
-//   e(m, a)           the point of the solid at material point m, parameters a; templated on its scalars
-//   half_height(a)    h, half the extent along z, by which deformations measure zeta = z / h
-//   mesh              which grid covers its surface
-// That is all a shape needs. Closed forms for more are faster, and exact at the poles:
+//   e(m, a)           point of the solid (m, body frame) at material point m; templated on both scalars
+//   half_height(a)    h (m), half the extent along z; deformations use zeta = z / h
+//   mesh              grid pattern of the surface
+//
+// Optional members, closed forms that are faster than the general search and exact at the poles:
 //   gauge(x, a)       w of the point x: 0 at the centre, 1 on the surface, above 1 outside; never overflows
-//   label(x, a)       the whole material point of x, the inverse of e; goes with gauge
-//   mesh_label(g, a)  the surface point in the direction g of the mesh pattern
-//   profile(a, moving), ring(a, moving)  panels along u and v between which e is smooth, for quadrature;
-//                     moving: its exponents are dynamic
-//   semi_axes(a)      of a shape that is a stretched ball: its point in the direction y of the mesh pattern,
-//                     of length 1, is y times these, entry by entry
-//   half_sizes(a)     of a shape that is a box about its origin
-//   bounded_exponents true: a changing exponent strains the material by bounded amounts
-//   linear_lengths true: e is linear in the parameters that are lengths, whatever the others are
-//   section(zeta, gap, a), section_panels(a)  area and mean squares of the section at zeta, gap = 1 - |zeta|,
-//                     of the solid, and panels along zeta between which it is smooth
+//   label(x, a)       material point of x, the inverse of e; needs gauge
+//   mesh_label(g, a)  surface point in the direction g of the mesh pattern
+//   profile(a, moving), ring(a, moving)  quadrature panels along u and along v; e is smooth on each panel.
+//                     moving: whether an exponent is a degree of freedom
+//   ring_exponent(a)  exponent of the superellipse that a ring (u, w) = const follows
+//   RestMap           another shape with an equal surface whose material map generates the quadrature points
+//   semi_axes(a)      for an ellipsoid: its point in the unit direction y of the mesh pattern is y times
+//                     these, entry by entry
+//   half_sizes(a)     for a box about the origin: its half sizes
+//   bounded_exponents true if a changing exponent strains the material by bounded amounts
+//   linear_lengths    true if e is linear in the parameters that are lengths, for all values of the others
+//   section(zeta, gap, a), section_panels(a)  area and mean squares of the section of the solid at zeta, with
+//                     gap = 1 - |zeta|; intervals of zeta on which the section is smooth
 #pragma once
 
 #include <array>
@@ -29,19 +34,20 @@
 
 namespace pliant {
 
-/// A plane section of a shape, symmetric about both axes.
+/// A plane section z = const of a shape, symmetric about both axes.
 struct Section {
   double area;    ///< m^2
   double xx, yy;  ///< mean of x^2 and y^2, m^2
 };
 
-/// How a closed surface is covered by a grid.
+/// The grid pattern of a closed surface.
 enum class MeshPattern { ball, torus };
 
+/// Number of parameters of a shape.
 template <class Shape>
 inline constexpr int shape_size = static_cast<int>(Shape::parameters.size());
 
-/// All parameters of a shape at one scalar.
+/// All parameters of a shape, over the scalar T.
 template <class Shape, class T>
 using ShapeVec = Vec<T, shape_size<Shape>>;
 

@@ -1,4 +1,4 @@
-// Sphere of one radius: e = w r (C_u C_v, C_u S_v, S_u), -pi/2 <= u <= pi/2.
+// Sphere of radius r: e = w r (C_u C_v, C_u S_v, S_u), -pi/2 <= u <= pi/2.
 #pragma once
 
 #include <pliant/shape/ellipsoid.h>

@@ -1,5 +1,5 @@
-// The superellipse |x|^(2/eps) + |y|^(2/eps) = 1 of unit axes: its moments and its label, shared by the
-// superquadrics.
+// The superellipse |x|^(2/eps) + |y|^(2/eps) = 1 with unit axes: its moments, its inverse map and its
+// quadrature panels, shared by the superquadrics.
 #pragma once
 
 #include <utility>
@@ -9,21 +9,25 @@
 
 namespace pliant {
 
-/// Area and mean square of a coordinate over the unit superellipse (Beta functions, physics 1.3).
+/// Returns the area and the mean square of a coordinate over the unit superellipse, in closed form: area
+/// eps B(eps/2, eps/2), mean square (eps/2) B(3 eps/2, eps/2) / area, with the Beta function B (Jaklic,
+/// Leonardis and Solina 2000).
 Section superellipse_section(double eps);
 
-/// Cosine and sine of the material angle at which (C^eps, S^eps) points along (x, y); (1, 0) for the origin.
+/// Returns cosine and sine of the material angle at which (C^eps, S^eps) points along (x, y); (1, 0) for the
+/// origin.
 std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, double eps);
 
-/// (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t; gap = 1 - |t| for accuracy
-/// there.
+/// Returns (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t. gap: 1 - |t|,
+/// given separately because rounding would destroy it near the ends.
 double superellipse_width(double t, double gap, double eps);
 
-/// The panels of a whole circle, or of the half -pi/2 .. pi/2.
+/// Returns the panels of a whole circle. dynamic_exponent: whether eps is a degree of freedom.
 std::vector<Panel> circle_panels(double eps, bool dynamic_exponent);
+/// Returns the panels of the half circle -pi/2 ... pi/2.
 std::vector<Panel> half_circle_panels(double eps, bool dynamic_exponent);
 
-/// The panels of a section coordinate whose width follows the superellipse.
+/// Returns the panels of a section coordinate for sections whose width follows the superellipse.
 std::vector<SectionPanel> superellipse_section_panels(double eps);
 
 }  // namespace pliant

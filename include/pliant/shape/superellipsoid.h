@@ -3,6 +3,8 @@
 //   gauge = ((|x/a1|^(2/eps2) + |y/a2|^(2/eps2))^(eps2/eps1) + |z/a3|^(2/eps1))^(eps1/2)
 #pragma once
 
+#include <cmath>
+
 #include <pliant/shape/shape.h>
 #include <pliant/shape/superellipse.h>
 
@@ -39,11 +41,42 @@ struct Superellipsoid {
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
   static std::vector<Panel> profile(const Vec<double, 5>& a, bool dynamic_exponents);
-  /// The exponent with which a ring runs round.
+  /// Returns the exponent of the superellipse that a ring (u, w) = const follows.
   static double ring_exponent(const Vec<double, 5>& a) { return a[4]; }
   static std::vector<Panel> ring(const Vec<double, 5>& a, bool dynamic_exponents);
   static Section section(double zeta, double gap, const Vec<double, 5>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 5>& a);
 };
+
+inline Material<double> Superellipsoid::label(const Vec3<double>& x, const Vec<double, 5>& a) {
+  const Vec3<double> unit{x[0] / a[0], x[1] / a[1], x[2] / a[2]};
+  const double ring = power_norm<double>(std::abs(unit[0]), std::abs(unit[1]), 2 / a[4]);
+  const auto [cv, sv] = superellipse_label(unit[0], unit[1], a[4]);
+  if (ring == 0 && unit[2] == 0) return material_from(0, 1, 1, 0, 0);
+  const auto [cu, su] = superellipse_label(ring, unit[2], a[3]);
+  return {cu, su, cv, sv, gauge<double>(x, a)};
+}
+
+inline Material<double> Superellipsoid::mesh_label(const Vec3<double>& g, const Vec<double, 5>& a) {
+  const auto [cv, sv] = superellipse_label(g[0], g[1], a[4]);
+  const auto [cu, su] = superellipse_label(std::hypot(g[0], g[1]), g[2], a[3]);
+  return {cu, su, cv, sv, 1.0};
+}
+
+inline std::vector<Panel> Superellipsoid::profile(const Vec<double, 5>& a, bool dynamic_exponents) {
+  return half_circle_panels(a[3], dynamic_exponents);
+}
+inline std::vector<Panel> Superellipsoid::ring(const Vec<double, 5>& a, bool dynamic_exponents) {
+  return circle_panels(a[4], dynamic_exponents);
+}
+
+inline Section Superellipsoid::section(double zeta, double gap, const Vec<double, 5>& a) {
+  const double width = superellipse_width(zeta, gap, a[3]), width2 = width * width;
+  const Section unit = superellipse_section(a[4]);
+  return {unit.area * a[0] * a[1] * width2, unit.xx * a[0] * a[0] * width2, unit.yy * a[1] * a[1] * width2};
+}
+inline std::vector<SectionPanel> Superellipsoid::section_panels(const Vec<double, 5>& a) {
+  return superellipse_section_panels(a[3]);
+}
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
 // Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u),
 // and
-//   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1 the gauge of unit axes.
-// A changing exponent strains it by bounded amounts (physics 1.5); same surface as Superellipsoid, other
-// material map.
+//   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1: the gauge for unit axes.
+// The surface is that of Superellipsoid, but the material map differs: a changing exponent strains this one
+// by bounded amounts only (include/pliant/shape/README.md).
 #pragma once
 
 #include <pliant/shape/superellipsoid.h>
@@ -42,7 +42,7 @@ struct SuperellipsoidRadial {
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
-  /// Quadrature points are laid with the trigonometric map, whose sharp edges lie on coordinate lines.
+  /// The trigonometric map generates the quadrature points, because its sharp edges are coordinate lines.
   using RestMap = Superellipsoid;
   static Section section(double zeta, double gap, const Vec<double, 5>& a) {
     return Superellipsoid::section(zeta, gap, a);
@@ -51,5 +51,16 @@ struct SuperellipsoidRadial {
     return Superellipsoid::section_panels(a);
   }
 };
+
+inline Material<double> SuperellipsoidRadial::label(const Vec3<double>& x, const Vec<double, 5>& a) {
+  return material_towards({x[0] / a[0], x[1] / a[1], x[2] / a[2]}, gauge<double>(x, a));
+}
+
+inline Material<double> SuperellipsoidRadial::mesh_label(const Vec3<double>& g, const Vec<double, 5>& a) {
+  Vec<double, 5> unit = a;
+  unit.head<3>().setOnes();
+  const Vec3<double> x = Superellipsoid::e<double>(Superellipsoid::mesh_label(g, unit), unit);
+  return material_towards(x);
+}
 
 }  // namespace pliant

@@ -1,7 +1,9 @@
-// Supertoroid (Barr 1981): a superellipse carried round a superellipse; -pi <= u, v < pi, w = 0 on the core
+// Supertoroid (Barr 1981): a superellipse swept along a superellipse; -pi <= u, v < pi, w = 0 on the core
 // ring:
 //   e = (a1 (a4 + w C_u^eps1) C_v^eps2, a2 (a4 + w C_u^eps1) S_v^eps2, a3 w S_u^eps1)
 #pragma once
+
+#include <cmath>
 
 #include <pliant/shape/shape.h>
 #include <pliant/shape/superellipse.h>
@@ -41,11 +43,40 @@ struct Supertoroid {
   static Material<double> label(const Vec3<double>& x, const Vec<double, 6>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 6>& a);
   static std::vector<Panel> profile(const Vec<double, 6>& a, bool dynamic_exponents);
-  /// The exponent with which a ring runs round.
+  /// Returns the exponent of the superellipse that a ring (u, w) = const follows.
   static double ring_exponent(const Vec<double, 6>& a) { return a[5]; }
   static std::vector<Panel> ring(const Vec<double, 6>& a, bool dynamic_exponents);
   static Section section(double zeta, double gap, const Vec<double, 6>& a);
   static std::vector<SectionPanel> section_panels(const Vec<double, 6>& a);
 };
+
+inline Material<double> Supertoroid::label(const Vec3<double>& x, const Vec<double, 6>& a) {
+  const double ring = power_norm<double>(std::abs(x[0] / a[0]), std::abs(x[1] / a[1]), 2 / a[5]);
+  const auto [cv, sv] = superellipse_label(x[0] / a[0], x[1] / a[1], a[5]);
+  const auto [cu, su] = superellipse_label(ring - a[3], x[2] / a[2], a[4]);
+  return {cu, su, cv, sv, gauge<double>(x, a)};
+}
+inline Material<double> Supertoroid::mesh_label(const Vec3<double>& g, const Vec<double, 6>& a) {
+  const auto [cv, sv] = superellipse_label(std::cos(g[1]), std::sin(g[1]), a[5]);
+  const auto [cu, su] = superellipse_label(std::cos(g[0]), std::sin(g[0]), a[4]);
+  return {cu, su, cv, sv, 1.0};
+}
+inline std::vector<Panel> Supertoroid::profile(const Vec<double, 6>& a, bool dynamic_exponents) {
+  return circle_panels(a[4], dynamic_exponents);
+}
+inline std::vector<Panel> Supertoroid::ring(const Vec<double, 6>& a, bool dynamic_exponents) {
+  return circle_panels(a[5], dynamic_exponents);
+}
+inline Section Supertoroid::section(double zeta, double gap, const Vec<double, 6>& a) {
+  const double q = superellipse_width(zeta, gap, a[4]), inner = a[3] - q, outer = a[3] + q;
+  const Section unit = superellipse_section(a[5]);
+  // The section is between two similar superellipses. In units of the unit superellipse its area is outer^2 -
+  // inner^2 = 4 a4 q, and its mean square is outer^2 + inner^2.
+  const double area = 4 * a[3] * q, spread = inner * inner + outer * outer;
+  return {unit.area * a[0] * a[1] * area, unit.xx * a[0] * a[0] * spread, unit.yy * a[1] * a[1] * spread};
+}
+inline std::vector<SectionPanel> Supertoroid::section_panels(const Vec<double, 6>&) {
+  return {{-1, 0, true}, {0, 1, true}};
+}
 
 }  // namespace pliant

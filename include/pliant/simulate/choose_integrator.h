@@ -1,7 +1,7 @@
-// The method of integration for a model and a tolerance. Where nothing is elastic or damped it is an explicit
-// one of high order; else it is found by trial: each that may be the best goes on from the start for some
-// steps, and the one is taken that comes farthest at the same cost, once its steps have grown. The cost is
-// counted in evaluations of the accelerations, by a fixed model, never by a clock.
+// The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped it is
+// an explicit method of high order. Otherwise each candidate takes some steps from the start, and the one
+// that advances farthest at the same cost is chosen. The cost is counted in evaluations of the accelerations
+// by a fixed model, never by a clock.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace pliant {
 
-/// Stands for the name of a method that is chosen.
+/// The name that asks for this choice.
 inline constexpr const char* kAutomatic = "auto";
-/// Tolerance where it is chosen and none is given.
+/// Tolerance of the choice if none is given.
 inline constexpr double kStandardTolerance = 1e-6;
 
 struct IntegratorChoice {
   std::string integrator;
-  std::string why;  ///< in words
+  std::string why;  ///< the reason, as text
 };
 
-/// start: with joints closed that act.
+/// Returns the choice. start: the state at time 0, with acting joints closed.
 IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale, const State& start);
 
 }  // namespace pliant

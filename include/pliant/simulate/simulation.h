@@ -1,7 +1,6 @@
-// Simulation: a model, its state, and a method that steps it.
+// Simulation: a model, its state, and the method that steps it. simulation-inl.h lists the stages of a step.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -9,9 +8,9 @@
 #include <vector>
 
 #include <pliant/body/step_failure.h>
-#include <pliant/contact/contact_stepping.h>
 #include <pliant/method/error_scale.h>
 #include <pliant/method/integrator.h>
+#include <pliant/method/step_error.h>
 #include <pliant/project/assemble.h>
 #include <pliant/project/joint_switching.h>
 #include <pliant/simulate/choose_integrator.h>
@@ -19,59 +18,63 @@
 
 namespace pliant {
 
+class ContactStepping;  // contact/contact_stepping.h
+
 class Simulation {
  public:
   /// Prepares the body (which must outlive the simulation) and starts at time 0: joints with a small gap are
-  /// closed, and the velocities made to agree with them. integrator: the name of a method, or kAutomatic.
-  /// tolerance: of the error of a step, which then finds its own length (integrate/error_scale.h says what it
-  /// is a part of); 0: steps are as long as they are asked to be, or kStandardTolerance with kAutomatic.
-  /// Throws std::invalid_argument, UnsatisfiableModel.
+  /// closed, and the velocities made consistent. integrator: the name of a method, or kAutomatic. tolerance:
+  /// of the error of a step (method/error_scale.h), which then has its own length; 0: steps have the length
+  /// that the caller asks for, or kStandardTolerance with kAutomatic. Throws std::invalid_argument,
+  /// UnsatisfiableModel.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
-  Simulation(const Simulation&) = delete;  // its dynamics refer to its own model
+  ~Simulation();
+  Simulation(const Simulation&) = delete;  // dynamics_ refers to model_
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Goes on by h seconds (> 0 and finite): by one step, made in several where joints begin or cease to act
-  /// within it; with a tolerance by as many as that needs. Throws NumericalFailure, UnsatisfiableModel,
+  /// Advances by h seconds (> 0 and finite): by one step, with stops where joints begin or cease to act, or
+  /// with a tolerance by as many steps as it needs. Throws NumericalFailure, UnsatisfiableModel,
   /// std::invalid_argument.
   void step(double h);
-  /// With a tolerance: one step of the length that it allows, which ends at a time (s, later than now) at the
-  /// latest, and then exactly there. Throws as step() does, std::logic_error without a tolerance.
+  /// Takes one step of the length that the tolerance allows, which ends at the time `until` (s, later than
+  /// now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
   void step_up_to(double until);
 
   const Model& model() const { return model_; }
   const Dynamics& dynamics() const { return dynamics_; }
   const Integrator& integrator() const { return *integrator_; }
-  /// Which method was chosen with kAutomatic, and why; empty without.
+  /// Returns the method that kAutomatic chose, and why; empty for a named method.
   const IntegratorChoice& choice() const { return choice_; }
-  /// Of the error of a step; 0: it is not controlled.
+  /// Returns the tolerance of the error of a step; 0: the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
-  /// Goes on from another state of the same model.
+  /// Continues from another state of the same model. Throws std::invalid_argument if it does not fit.
   void set_state(State state);
   double time() const { return state_.time(); }
 
-  /// Energies, works, momenta and the balance since the simulation's first state.
+  /// Returns energies, works, momenta and the balance error since the first state.
   Ledger ledger();
-  /// The energy that the balance refers to: at the first state. Set on resuming a recorded run.
+  /// The energy at the first state, to which the balance refers. A resumed run sets it.
   double start_energy() const { return start_energy_; }
   void set_start_energy(double energy) { start_energy_ = energy; }
 
-  /// What assembly before time 0 did, when it was asked for.
+  /// Returns the report of the assembly before time 0, if the body asked for it.
   const AssemblyReport& assembly() const { return assembly_; }
-  /// What touches; nullptr where nothing can.
+  /// Returns the contacts (contact/contact_stepping.h); nullptr if nothing can touch.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// The impulses of joints that took hold of moving parts, or of which a path's rate jumped, in the order of
-  /// time; those that are mere rounding are left out.
+  /// Returns the impulses of joints that engaged moving parts, or whose prescribed path has a kink, in the
+  /// order of time, without those that are rounding.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
-  /// Work of the kernels, summed over parts.
+  /// Returns the counters of the kernels, summed over parts.
   Counters counters() const;
-  /// Parameters that once had no inertia and were held: "part.parameter".
+  /// Returns parameters that had no inertia at some step and were fixed there: "part.parameter".
   std::set<std::string> held() const;
 
  private:
-  void guarded(double h, const std::function<void()>& step);
+  template <class Advance>
+  void guarded(double h, Advance&& step);
   void advance(double h);
   double take_step();
   void set_method(std::unique_ptr<Integrator> method);
@@ -81,7 +84,11 @@ class Simulation {
   bool shorter_steps_pass(double h);
   void begin_step();
   void reject_step();
-  void check(const State& before);
+  void end_step();
+  [[noreturn]] void fail_not_finite(const std::string& where);
+  StepContext context();
+  void switch_joints(double t, double near);
+  void follow_paths(double kink, double near);
   void record_held();
 
   Model model_;
@@ -89,9 +96,9 @@ class Simulation {
   Dynamics dynamics_;
   JointSwitching switching_;
   std::unique_ptr<Integrator> integrator_;
-  std::optional<ErrorScale> scale_;  ///< with a tolerance
+  std::optional<ErrorScale> scale_;  ///< only with a tolerance
   IntegratorChoice choice_;
-  std::unique_ptr<ContactStepping> contact_;  ///< where anything touches
+  std::unique_ptr<ContactStepping> contact_;  ///< nullptr if nothing can touch
   State state_, last_good_, begun_;
   Workspace<double> work_, output_work_;
   StepCounters step_counters_;
@@ -100,14 +107,12 @@ class Simulation {
   double start_energy_ = 0;
 };
 
-/// The largest step (s) for which the method keeps the motion about a state bounded, by the linearised
-/// elasticity and damping of global parameters and springs, by how fast parts with joints sway, by
-/// Baumgarte's terms where a gap is left to them, and by the turning of the parts (half a radian a step);
-/// infinite when nothing is stiff and nothing turns. Parts tied by springs are taken together, as far as that
-/// is cheap; beyond, one by one, each spring counted twice. Elasticity counts as if there were no joints,
-/// which only slow it down. Both are on the safe side. A method that takes local elasticity implicitly is
-/// bounded by neither that nor the stiffness of global parameters of such parts, but by springs at their
-/// nodes as if these were free.
+/// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
+/// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs, the
+/// fastest sway of parts with joints, Baumgarte's terms while a joint is open, and half a radian of rotation
+/// a step. Parts with springs between them are bounded together, or one by one in large groups, with each
+/// spring counted twice. Joints, which only slow the elasticity, are ignored; both are conservative. For a
+/// method that integrates local elasticity implicitly, only springs at nodes count for such parts.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The largest stable step, and what sets it.
+// The largest stable step and its limit.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace pliant {
 struct StableStep {
   double step;  ///< see largest_stable_step(), s
   std::string
-      limit;  ///< what it would be too long for: "the local elasticity of part 'jelly'"; empty: nothing
-  /// What may bound it further down and is not counted, in words; empty: nothing.
+      limit;  ///< what limits it: "the local elasticity of part 'jelly'"; empty if nothing does
+  /// Limits that are not counted and may be lower, as text; empty: none.
   std::string uncounted;
 };
 StableStep stable_step(const Simulation& simulation);

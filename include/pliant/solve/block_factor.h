@@ -1,6 +1,7 @@
-// L D L^T of a symmetric positive semi-definite matrix of small blocks, such as W_c = C_q M^-1 C_q^T: block
-// by block while the matrix is sparse, and dense from where nothing of it is zero any more. Rows that depend
-// on those before them are held. S is double or Dual<1>.
+// Factorisation L D L^T of a symmetric positive semi-definite matrix of small blocks, for example of the
+// joint system W_c = C_q M^-1 C_q^T. The elimination works on blocks while the matrix is sparse, and on one
+// dense matrix when no remaining block is zero. Rows that depend on earlier rows are excluded (pivots.h). S
+// is double or Dual<1>.
 #pragma once
 
 #include <algorithm>
@@ -15,35 +16,37 @@
 
 namespace pliant {
 
+/// The values of a block matrix and then of its factor.
 template <class S>
 class BlockFactor {
  public:
-  /// All blocks zero. The pattern must outlive the factor. RankRule::keep asks for the same pattern as
-  /// before, and decides where it is another.
+  /// Sets all blocks to zero. The pattern must outlive the factor. RankRule::keep has an effect only if the
+  /// pattern is the previous one; otherwise RankRule::decide applies.
   void clear(const BlockPattern& pattern, RankRule rule = RankRule::decide) {
-    const bool another = pattern_ != &pattern;
+    const bool changed = pattern_ != &pattern;
     pattern_ = &pattern;
     values_.assign(at(pattern.values()), S(0.0));
-    pivots_.clear(pattern.rows(), another && rule == RankRule::keep ? RankRule::decide : rule);
+    pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// The pivot of a row, whose diagonal entry is what is left of larger ones, is measured by those.
+  /// Sets the scale of the pivot of a row (see Pivots::measure_by).
   void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
-  /// Numbers of the block at an offset that the pattern gave, by columns.
+  /// Returns the entries of a block, by columns. offset: from BlockPattern::place.
   S* block(int offset) { return values_.data() + offset; }
 
-  /// Factors the blocks that were filled in since clear().
+  /// Factors the matrix whose blocks were written since clear().
   void factor() {
     for (const BlockPattern::Column& c : pattern_->columns())
       for (int k = 0; k < c.size; ++k)
         pivots_.set_entry(c.row + k, values_[at(c.diagonal + k * (c.size + 1))]);
-    pivots_.take_measures();
+    pivots_.apply_measures();
     for (int place = 0; place < pattern_->first_dense(); ++place) eliminate(pattern_->columns()[at(place)]);
     if (pattern_->dense_rows().empty()) return;
     gather_dense();
     dense_.factor(pattern_->dense_rows(), pivots_);
   }
 
-  /// x = A^-1 x, with zeros for held rows. x is in the order of the nodes. One call at a time: it needs room.
+  /// Computes x = A^-1 x, with zeros for excluded rows. x is in the order of the nodes. Not thread-safe:
+  /// solve() uses a workspace of the object.
   void solve(VecX<S>& x) const {
     const auto& columns = pattern_->columns();
     for (int place = 0; place < pattern_->first_dense(); ++place) {
@@ -88,14 +91,15 @@ class BlockFactor {
     }
   }
 
-  /// Whether a row, in the order of the nodes, depends on others.
+  /// Returns whether a row, in the order of the nodes, depends on others and is excluded.
   bool held(int row) const { return pivots_.held(row); }
+  /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
-  /// The smallest pivot that counts, as part of its diagonal entry: digits that the elimination cost.
+  /// Returns the smallest accepted pivot relative to its diagonal entry: a measure of the digits lost.
   double smallest_pivot() const { return pivots_.smallest(); }
 
  private:
-  /// act(n), with the three rows of a ball joint as a constant, so that loops unroll.
+  /// Calls act(n). For n = 3, the rows of a ball joint, n is a compile-time constant, so that loops unroll.
   template <class F>
   static void sized(int n, F&& act) {
     if (n == 3)
@@ -104,12 +108,13 @@ class BlockFactor {
       act(n);
   }
 
+  /// Eliminates one column of blocks and updates the blocks to its right.
   void eliminate(const BlockPattern::Column& c) {
     const auto& columns = pattern_->columns();
     const auto& blocks = pattern_->blocks();
     sized(c.size, [&](auto n) {
       eliminate_diagonal(c, n);
-      // X = L D of the blocks below, while L itself replaces them.
+      // X = L D of the blocks below the diagonal; L overwrites these blocks.
       scaled_.resize(at(c.last - c.first) * kMaxBlock * kMaxBlock);
       for (int b = c.first; b < c.last; ++b)
         sized(columns[at(blocks[at(b)].place)].size,
@@ -128,7 +133,7 @@ class BlockFactor {
     });
   }
 
-  /// The blocks that are left make the lower triangle of the dense matrix.
+  /// Copies the remaining blocks into the lower triangle of the dense matrix.
   void gather_dense() {
     const auto n = static_cast<int>(pattern_->dense_rows().size());
     const auto& columns = pattern_->columns();
@@ -160,15 +165,15 @@ class BlockFactor {
 
   S* scaled(int b) { return scaled_.data() + b * kMaxBlock * kMaxBlock; }
 
-  /// The diagonal block into its L and D, in place. Held rows have no inverse pivot and a zero column, so
-  /// that they take no part in what follows.
+  /// Factors the diagonal block into L and D in place. An excluded row has a zero inverse pivot and a zero
+  /// column, so that it has no effect on later rows.
   template <class Size>
   void eliminate_diagonal(const BlockPattern::Column& c, Size n) {
     S* A = values_.data() + c.diagonal;
     for (int j = 0; j < n; ++j) {
       S d = A[j * n + j];
       for (int k = 0; k < j; ++k) d -= A[k * n + j] * A[k * n + j] * A[k * n + k];
-      if (!pivots_.take(c.row + j, d)) {
+      if (!pivots_.accept(c.row + j, d)) {
         A[j * n + j] = S(1.0);
         for (int i = j + 1; i < n; ++i) A[j * n + i] = S(0.0);
         continue;
@@ -182,7 +187,8 @@ class BlockFactor {
     }
   }
 
-  /// A block B below: X from X L^T = B, then B = X D^-1, with zero columns for held rows.
+  /// Divides a block B below the diagonal: solves X L^T = B, then B = X D^-1, with zero columns for excluded
+  /// rows.
   template <class Size, class Rows>
   void divide(const BlockPattern::Column& c, Size n, int offset, Rows rows, S* X) {
     S* B = values_.data() + offset;
@@ -199,7 +205,7 @@ class BlockFactor {
     }
   }
 
-  /// C -= X L^T.
+  /// Computes C -= X L^T.
   template <class RowsX, class RowsL, class Size>
   static void subtract_product(const S* X, RowsX rows_x, const S* L, RowsL rows_l, Size n, S* C) {
     for (int j = 0; j < rows_l; ++j)
@@ -214,7 +220,7 @@ class BlockFactor {
   std::vector<S> values_, scaled_;
   Pivots<S> pivots_;
   DenseFactor<S> dense_;
-  mutable VecX<S> dense_x_;  ///< the room of solve()
+  mutable VecX<S> dense_x_;  ///< workspace of solve()
 };
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
-// The sparse Cholesky factorisation of SuiteSparse (CHOLMOD), in the library pliant::suitesparse: for large
-// systems. Its supernodal part is under the GNU General Public License; nothing of it is linked by core.
+// The sparse Cholesky factorisation of SuiteSparse (CHOLMOD) for large systems, in the library
+// pliant::suitesparse. Its supernodal part is under the GNU General Public License; the core library does not
+// link it.
 #pragma once
 
 #include <memory>
@@ -9,13 +10,13 @@
 namespace pliant {
 
 struct CholmodOptions {
-  /// Unknowns from which the supernodal method (dense blocks, BLAS) is used instead of the simplicial one,
-  /// which quasi-definite matrices always use.
+  /// Smallest number of unknowns for the supernodal method (dense blocks, BLAS). Smaller matrices, and all
+  /// quasi-definite ones, use the simplicial method.
   Eigen::Index supernodal_from = 4000;
 };
 
-/// Making the first one sets an OpenBLAS that has threads to one thread, for the whole process: more never
-/// help at these sizes, and results would depend on their number.
+/// Returns a factorisation by CHOLMOD. The first call limits a threaded OpenBLAS to one thread for the whole
+/// process: more threads do not help at these sizes, and results would depend on their number.
 std::unique_ptr<SparseFactor> make_cholmod_factor(const CholmodOptions& options = {});
 
 }  // namespace pliant

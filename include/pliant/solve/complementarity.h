@@ -1,27 +1,30 @@
-// The velocity-level complementarity core (design 1.6): one-sided rows, each with an impulse lambda >= 0 that
-// acts only while its row is tight,   0 <= lambda  _|_  W lambda + b >= 0,   W = C M^-1 C^T symmetric
-// positive semi-definite. Parameter limits use it; strings and contacts use the same rows.
+// One-sided constraints at velocity level. Each row has an impulse lambda >= 0, which is zero unless the row
+// is active:
+//   0 <= lambda  _|_  W lambda + b >= 0,   W = C M^-1 C^T symmetric positive semi-definite
+// The limits of parameters and the strings use this problem.
 #pragma once
 
 #include <pliant/math/types.h>
 
 namespace pliant {
 
+/// The solution of the problem.
 template <int Max = Eigen::Dynamic>
 struct ComplementarityResult {
   VecMax<double, Max> lambda;
-  double residual = 0;  ///< worst violation of the three conditions, in units of b
-  int pivots = 0;
+  double residual = 0;  ///< largest violation of the three conditions, in units of b
+  int pivots = 0;       ///< number of linear systems solved
 };
 
-/// Most one-sided rows that the limits of one part make: two a parameter.
+/// Maximum number of one-sided rows from the limits of one part: two for each parameter.
 inline constexpr int kMaxLimitRows = 2 * kMaxGlobal;
 
-/// Solves it as the convex problem it is, min 1/2 lambda W lambda + b lambda over lambda >= 0: rows become
-/// tight one by one, the one most open first, and others come loose on the way; the value falls with every
-/// change, so it ends. Rows that depend on the tight ones (rank-deficient W) need no impulse of their own;
-/// rows that contradict them are left open, which the residual shows. Max: Eigen::Dynamic, or kMaxLimitRows,
-/// which takes nothing from the heap.
+/// Returns the solution of the convex problem min 1/2 lambda^T W lambda + b^T lambda over lambda >= 0, by an
+/// active-set method. W: n x n; b: n. The most violated row becomes active first; other rows can be released
+/// on the way. The objective decreases with every change, so the method terminates. Rows that depend on the
+/// active ones (rank-deficient W) need no impulse of their own. Rows that contradict the active ones remain
+/// violated, and the residual reports them. Max: Eigen::Dynamic, or kMaxLimitRows for a solution without heap
+/// allocation.
 template <int Max>
 ComplementarityResult<Max> solve_complementarity(const MatMax<double, Max>& W, const VecMax<double, Max>& b);
 

@@ -1,5 +1,5 @@
-// Coulomb's law at one contact: what push p = (p_n, p_t) meets the velocity u = W p + b there,
-//   0 <= p_n  _|_  u_n >= 0,   |p_t| <= mu p_n,   and p_t against u_t with |p_t| = mu p_n where it slides.
+// Coulomb's law at one contact: find the impulse p = (p_n, p_t) such that the velocity u = W p + b satisfies
+//   0 <= p_n  _|_  u_n >= 0,   |p_t| <= mu p_n;   if the contact slides, |p_t| = mu p_n and p_t opposes u_t.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,29 +8,32 @@
 
 namespace pliant {
 
-/// The law of one contact, for many b. Exact but for rounding: it lifts off, sticks, or slides, the rate of
-/// sliding found as the root of one equation.
+/// The law of one contact for a given W and many b. The solution is exact to rounding: the contact separates,
+/// sticks or slides, and the rate of sliding is the root of one scalar equation.
 class CoulombLaw {
  public:
   CoulombLaw();
-  /// W: of full rank, symmetric positive definite; rows: normal, then the two tangents.
+  /// W: 3 x 3, symmetric positive definite; rows: normal, then the two tangents. mu: coefficient of friction.
   CoulombLaw(const Mat3<double>& W, double mu);
-  Vec3<double> push(const Vec3<double>& b) const;
+  /// Returns the impulse p for a velocity b without impulse.
+  Vec3<double> impulse(const Vec3<double>& b) const;
 
  private:
-  Vec3<double> slide(const Vec3<double>& b, double p_alone) const;
+  /// Returns the impulse of a sliding contact. p_frictionless: the normal impulse without friction.
+  Vec3<double> slide(const Vec3<double>& b, double p_frictionless) const;
 
   double mu_ = 0, W_n_ = 1;
-  bool even_ = false;  ///< whether W is a multiple of 1, as where points push on points
-  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< of the tangents with the normal
-  // Of the Schur complement A of the normal.
+  bool isotropic_ = false;  ///< whether W is a multiple of the identity, for example between two mass points
+  Eigen::Vector2d coupling_ = Eigen::Vector2d::Zero();  ///< entries of W between the tangents and the normal
+  // Eigenvalues and eigenvectors of A = W_tt - W_tn W_nt / W_nn, the Schur complement of the normal.
   Eigen::Array2d stiffness_ = Eigen::Array2d::Ones();
   Eigen::Matrix2d modes_ = Eigen::Matrix2d::Identity();
-  Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< of W
+  Eigen::LDLT<Mat3<double>> factor_{Mat3<double>(Mat3<double>::Identity())};  ///< factor of W
 };
 
+/// Returns the impulse of one contact for W, b and the coefficient of friction mu.
 inline Vec3<double> solve_coulomb(const Mat3<double>& W, const Vec3<double>& b, double mu) {
-  return CoulombLaw(W, mu).push(b);
+  return CoulombLaw(W, mu).impulse(b);
 }
 
 }  // namespace pliant

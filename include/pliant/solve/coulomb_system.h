@@ -1,8 +1,10 @@
-// Coulomb's law at many contacts at once (design 1.6). What moves as one, a mover, has velocities x of its
-// own; impulses p of the contacts change them, and with them the velocities u at all contacts,
-//   x = x_0 + sum_k Y_k p_k,   u_k = c_k + J_k x,
-// and each p_k meets its law at u_k (solve/coulomb.h). Movers that contacts tie together, and nothing else,
-// are a cluster, which is solved by itself.
+// Coulomb's law at many contacts. A mover is a group of velocities that move together (a part, or parts that
+// joints connect). The impulses p_k of the contacts change the velocities x of the movers and the contact
+// velocities u_k:
+//   x = x_0 + sum_k Y_k p_k,   u_k = c_k + J_k x
+// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, one for each mover at the
+// contact; Y_k consists of pushes, one for each mover that the impulse changes. A cluster is a set of movers
+// that contacts connect; each cluster is solved separately. See README.md of this folder.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +16,18 @@
 
 namespace pliant {
 
+/// The quality and the cost of a solution.
 struct CoulombResult {
-  double residual = 0;  ///< what the law misses at the worst contact, in units of u
-  int sweeps = 0;       ///< over all contacts of a cluster
-  /// Clusters that were left with more than 1e-6 of their fastest velocity of it; of many contacts, or of
-  /// points, which are left with more as a rule, with more than 1e-2.
+  double residual = 0;  ///< largest violation of the law at a contact, in units of u
+  int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
+  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the fastest contact
+  /// velocity (above 1e-2 for clusters with more than 100 contacts or with points, which converge less).
   int fallbacks = 0;
 };
 
 struct CoulombScratch;
 
+/// The contact problem: first add movers and contacts, then call solve(), possibly several times.
 class CoulombSystem {
  public:
   CoulombSystem();
@@ -32,20 +36,21 @@ class CoulombSystem {
   using Side = Eigen::Map<Eigen::Matrix3Xd>;
   using Push = Eigen::Map<MatX<double>>;
 
-  /// Adds a mover of so many velocities, which are zero; returns its number. One of three is a point.
+  /// Adds a mover with `size` velocities and returns its number. A mover of size 3 is a point.
   int add_mover(int size);
-  /// Adds a contact of friction mu, its rows the normal and the tangents, or a lone one-sided row, whose
-  /// other two are zero.
+  /// Adds a contact with coefficient of friction mu. Its rows: normal, two tangents.
   void add_contact(double mu);
+  /// Adds a single one-sided row. It is stored as a contact whose other two rows are zero.
   void add_row();
-  /// J of the contact added last, for so many velocities of a mover from `first` on: to be filled in, before
-  /// anything else is added.
+  /// Adds a side of the last contact: J for `size` velocities of a mover, starting at velocity `first` of
+  /// that mover. Returns the 3 x size matrix, initially zero. The caller fills it before the next add
+  /// function.
   Side add_side(int mover, int first, int size);
-  /// Y of the contact added last, for all velocities of a mover: likewise; zero. A contact without any
-  /// cannot be stopped.
+  /// Adds a push of the last contact: Y for all velocities of a mover. Returns the size x 3 matrix, initially
+  /// zero. The caller fills it before the next add function. The impulse of a contact without pushes is zero.
   Push add_push(int mover);
 
-  /// The contact added last cannot be stopped after all.
+  /// Removes the pushes of the last contact.
   void drop_pushes();
 
   int movers() const { return static_cast<int>(movers_.size()) - 1; }
@@ -53,69 +58,73 @@ class CoulombSystem {
   int rows(int k) const { return contacts_[at(k)].rows; }
   int sides(int k) const { return contacts_[at(k)].last_side - contacts_[at(k)].first_side; }
   int pushes(int k) const { return contacts_[at(k)].last_push - contacts_[at(k)].first_push; }
-  /// Y of a contact that was added, and the mover it is of. Not once solve() was called.
+  /// Returns push number i of contact k. Not valid after solve().
   Push push(int k, int i);
+  /// Returns the mover of push number i of contact k.
   int pushed(int k, int i) const { return pushes_[at(contacts_[at(k)].first_push + i)].mover; }
-  /// c and p of a contact. Before solve(), p is where the search begins, if it is near the solution.
+  /// Returns c (constant) and p (impulse) of contact k. The value of p before solve() is the warm start.
   Vec3<double>& constant(int k) { return contacts_[at(k)].c; }
   const Vec3<double>& constant(int k) const { return contacts_[at(k)].c; }
   Vec3<double>& impulse(int k) { return p_[at(k)]; }
   const Vec3<double>& impulse(int k) const { return p_[at(k)]; }
   void set_friction(int k, double mu) { contacts_[at(k)].mu = mu; }
 
-  /// Where the velocities of a mover begin among those of all, and how many there are.
+  /// Returns the index of the first velocity of a mover in x.
   int first(int mover) const { return movers_[at(mover)]; }
   int mover_size(int mover) const { return movers_[at(mover) + 1] - movers_[at(mover)]; }
   int n_x() const { return movers_.back(); }
-  /// What unit impulses of contact j change the velocity at contact i by.
+  /// Returns J_i Y_j: the change of the velocity at contact i by unit impulses at contact j.
   Mat3<double> effect(int i, int j) const;
-  /// u of a contact at given velocities of all movers.
+  /// Returns u_k for the velocities x of all movers.
   Vec3<double> velocity(int k, const VecX<double>& x) const;
-  /// Adds the changes of x by the impulse of contact k, `factor` times.
+  /// Computes x += factor Y_k p_k.
   void add_change(int k, double factor, VecX<double>& x) const;
 
-  /// Whether a search may begin at the impulse of a contact. Once solve() was called: not where it is the
-  /// only one of its cluster, nor where points are among what is pushed.
-  bool may_warm_start(int k) const { return contacts_[at(k)].begins; }
-  /// Finds the impulses; x: velocities of all movers, before them and after. enough: what the law may miss
-  /// anyhow. Once this is called, no more is added.
+  /// Returns whether solve() can use the impulse of contact k as a warm start. Valid after solve(). False if
+  /// the contact is the only one of its cluster or if the cluster contains points.
+  bool may_warm_start(int k) const { return contacts_[at(k)].warm_start; }
+  /// Finds the impulses. x: velocities of all movers, without contact impulses on input and with them on
+  /// output. enough: a velocity; smaller violations of the law are accepted. No contact or mover can be added
+  /// afterwards.
   CoulombResult solve(VecX<double>& x, double enough = 0);
 
  private:
   friend class CoulombCluster;
-  /// 3 by size or size by 3 numbers for x from `first` on, which is of a mover.
+  /// A side (3 x size) or a push (size x 3): the velocities x[first] ... of a mover, and the index of its
+  /// numbers.
   struct Term {
     int mover, first, size;
     std::size_t numbers;
   };
+  /// A contact.
   struct Point {
     int rows = 3, first_side = 0, last_side = 0, first_push = 0, last_push = 0;
     double mu = 0;
     Vec3<double> c = Vec3<double>::Zero();
     Mat3<double> W = Mat3<double>::Zero();
     CoulombLaw law;
-    bool begins = false;
+    bool warm_start = false;
   };
   void begin_contact(int rows, double mu);
   Term term(int mover, int first, int size);
   void complete();
-  void keep_seen();
+  void select_used();
   void find_clusters();
-  Vec3<double> velocity_at(int k, const std::vector<Term>& of, const VecX<double>& x) const;
-  void add_change_to(int k, double factor, const std::vector<Term>& by, VecX<double>& x) const;
+  Vec3<double> velocity_at(int k, const std::vector<Term>& terms, const VecX<double>& x) const;
+  void add_change_to(int k, double factor, const std::vector<Term>& terms, VecX<double>& x) const;
 
-  std::vector<int> movers_{0};  // where each begins in x
+  std::vector<int> movers_{0};  // first velocity of each mover in x, and the end
   std::vector<Point> contacts_;
   std::vector<Term> sides_, pushes_;
-  std::vector<double> numbers_;  // of all terms
+  std::vector<double> numbers_;  // the entries of all terms
   std::vector<Vec3<double>> p_;
-  // Searches know of those velocities alone that some side depends on: what is large, as a part that deforms
-  // or one with many joints, moves far more than its contacts see.
-  std::vector<int> seen_;         // their numbers in x
-  std::vector<int> seen_movers_;  // where those of each mover begin among them
-  std::vector<Term> seen_sides_, seen_pushes_;
-  VecX<double> x0_, x_;                // they: before the impulses, and by the present ones
-  std::vector<int> order_, clusters_;  // contacts, cluster after cluster; where each begins in it
+  // The search uses only the velocities that a side depends on. A large mover (a deformable part, or parts
+  // with many joints) has many more velocities than its contacts need.
+  std::vector<int> used_;         // indices of these velocities in x
+  std::vector<int> used_movers_;  // index of the first one of each mover, and the end
+  std::vector<Term> used_sides_, used_pushes_;
+  VecX<double> x0_, x_;                // their values: without impulses, and with the present impulses
+  std::vector<int> order_, clusters_;  // contacts sorted by cluster; start of each cluster, and the end
   bool complete_ = false;
   std::unique_ptr<CoulombScratch> scratch_;
 };

@@ -1,4 +1,5 @@
-// L D L^T of a dense symmetric positive semi-definite matrix, in panels of columns. S is double or Dual<1>.
+// Factorisation L D L^T of a dense symmetric positive semi-definite matrix, in panels of columns. S is double
+// or Dual<1>.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +11,14 @@
 
 namespace pliant {
 
+/// A dense matrix and then its factor.
 template <class S>
 class DenseFactor {
  public:
-  /// The matrix to factor, and then its factor; only the lower triangle counts.
+  /// Returns the matrix to factor; after factor() its factor. Only the lower triangle is used.
   MatX<S>& matrix() { return L_; }
 
-  /// Factors the matrix in place. row: the number that each of its rows has among the pivots.
+  /// Factors the matrix in place. row: the index of each of its rows in `pivots`.
   void factor(const std::vector<int>& row, Pivots<S>& pivots) {
     const auto n = static_cast<int>(L_.rows());
     scaled_.resize(n, kPanel);
@@ -27,7 +29,7 @@ class DenseFactor {
         for (int k = first; k < j; ++k)
           L_.col(j).tail(n - j) -= scaled_.col(k - first).tail(n - j) * L_(j, k);
         scaled_.col(j - first).tail(below) = L_.col(j).tail(below);
-        if (!pivots.take(row[at(j)], L_(j, j))) scaled_.col(j - first).tail(below).setZero();
+        if (!pivots.accept(row[at(j)], L_(j, j))) scaled_.col(j - first).tail(below).setZero();
         L_.col(j).tail(below) = scaled_.col(j - first).tail(below) * pivots.inverse(row[at(j)]);
       }
       if (last == n) break;
@@ -37,7 +39,7 @@ class DenseFactor {
     }
   }
 
-  /// x = A^-1 x, with zeros for held rows.
+  /// Computes x = A^-1 x, with zeros for excluded rows.
   void solve(const std::vector<int>& row, const Pivots<S>& pivots, VecX<S>& x) const {
     const auto n = static_cast<int>(L_.rows());
     for (int j = 0; j < n; ++j) x.tail(n - j - 1) -= L_.col(j).tail(n - j - 1) * x[j];
@@ -50,7 +52,8 @@ class DenseFactor {
  private:
   static constexpr int kPanel = 4;
 
-  /// Takes a whole panel from two columns to its right: what is loaded of the panel serves both.
+  /// Subtracts the product of a panel from two columns to its right, so that each load of the panel serves
+  /// both.
   void subtract_panel(int first, int j) {
     const auto rows = static_cast<int>(L_.rows()) - j;
     const S *x0 = &scaled_(j, 0), *x1 = &scaled_(j, 1), *x2 = &scaled_(j, 2), *x3 = &scaled_(j, 3);
@@ -65,7 +68,7 @@ class DenseFactor {
   }
 
   MatX<S> L_;
-  Eigen::Matrix<S, Eigen::Dynamic, kPanel> scaled_;  ///< L D of a panel
+  Eigen::Matrix<S, Eigen::Dynamic, kPanel> scaled_;  ///< L D for one panel
 };
 
 }  // namespace pliant

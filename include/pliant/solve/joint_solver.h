@@ -1,5 +1,5 @@
-// How the system of the joints is solved: by blocks of W_c = C_q M^-1 C_q^T, whose size is the number of
-// rows, or as the augmented matrix of Eq. (14), sparse, for parts that very many joints hold on to.
+// The solver of the joint system: blocks of W_c = C_q M^-1 C_q^T, whose size is the number of constraint
+// rows, or the sparse augmented matrix of Eq. (14), for parts with very many joints.
 #pragma once
 
 #include <functional>
@@ -10,17 +10,20 @@
 
 namespace pliant {
 
+/// The choice of the solver and of its factorisations.
 struct JointSolver {
   enum class Choice { automatic, blocks, augmented };
   Choice choice = Choice::automatic;
-  /// Of the augmented matrix, and of the stiffness of nodes where a method of integration factors it.
+  /// Factorisation of the augmented matrix. Implicit methods of integration use it for the stiffness of nodes
+  /// too.
   MakeSparseFactor make_factor = make_eigen_factor;
-  /// A fill-reducing order for the blocks, beside the cardinality search.
+  /// A fill-reducing order for the blocks. The solver compares it with the cardinality search and uses the
+  /// cheaper one.
   NodeOrder order = minimum_degree_order;
 };
 
-/// Whether the augmented matrix is expected to be faster, for eliminations of both: a fixed model of the cost
-/// of a factorisation, which bench/joint_bench checks.
+/// Returns whether the augmented matrix is expected to be faster than the blocks, from the eliminations of
+/// both. The cost model is fixed; bench/joint_bench checks it.
 bool augmented_is_faster(const Elimination& blocks, const Elimination& augmented);
 
 }  // namespace pliant

@@ -1,6 +1,6 @@
-// The pivots of an L D L^T of a symmetric positive semi-definite matrix. Rows that depend on those before
-// them are found by their vanishing pivot and held: their unknown is 0, and all else is solved as if they
-// were not there. S is double or Dual<1>.
+// The pivots of a factorisation L D L^T of a symmetric positive semi-definite matrix. A row that depends on
+// earlier rows has a vanishing pivot. It is excluded: its unknown is 0, and the other rows are solved without
+// it. S is double or Dual<1>.
 #pragma once
 
 #include <algorithm>
@@ -14,19 +14,28 @@
 
 namespace pliant {
 
-/// How rows that depend on others are told: by a vanished pivot; by the factor before, as where joints are a
-/// little open within a step, which makes such rows seem independent; or only where nothing but rounding is
-/// left of a pivot, next to a singular position.
-enum class RankRule { decide, keep, rounding };
+/// The rule that decides which rows are dependent.
+enum class RankRule {
+  /// Rows whose relative pivot is at most Pivots::kVanished.
+  decide,
+  /// The rows of the previous factorisation, and rows whose relative pivot is at most Pivots::kRounding.
+  /// Within
+  /// a step, joints are slightly open, which makes dependent rows look independent.
+  keep,
+  /// Rows whose relative pivot is at most Pivots::kRounding, for positions next to a singular one.
+  rounding
+};
 
+/// The pivots, their scales and the excluded rows.
 template <class S>
 class Pivots {
  public:
-  /// A pivot at or below this part of its diagonal entry has vanished, and one of which only rounding is
-  /// left.
+  /// Relative size, with respect to the diagonal entry, at or below which a pivot vanishes: by
+  /// RankRule::decide, and by the other rules.
   static constexpr double kVanished = 1e-9, kRounding = 1e-12;
 
-  /// For a matrix of so many rows. RankRule::keep holds what was held before, and takes as many rows.
+  /// Starts a matrix with a number of rows. RankRule::keep keeps the excluded rows; the number of rows must
+  /// not change.
   void clear(int rows, RankRule rule) {
     keep_ = rule == RankRule::keep;
     vanished_ = rule == RankRule::decide ? kVanished : kRounding;
@@ -36,34 +45,39 @@ class Pivots {
     if (!keep_) held_.assign(at(rows), 0);
     measures_.clear();
   }
-  /// The pivot of a row, whose diagonal entry is what is left of larger ones, is measured by those.
+  /// Sets a larger scale for the pivot of a row, for a row whose diagonal entry is a difference of larger
+  /// numbers.
   void measure_by(int row, double entry) { measures_.push_back({row, entry}); }
 
-  /// The diagonal entries, before the elimination, are what pivots are measured by.
+  /// Sets the scale of the pivot of a row: its diagonal entry before the elimination.
   void set_entry(int row, const S& entry) { entry_[at(row)] = plain(entry); }
-  void take_measures() {
+  /// Applies the larger scales of measure_by(). Call it after set_entry() of all rows.
+  void apply_measures() {
     for (const Measure& m : measures_) entry_[at(m.row)] = std::max(entry_[at(m.row)], m.entry);
   }
 
-  /// Takes the pivot of a row; returns whether it counts. Otherwise the row is held.
-  bool take(int row, const S& pivot) {
-    const double from = entry_[at(row)], left = plain(pivot);
-    // What is not a number is left to the finite check.
-    if ((keep_ && held(row)) || (std::isfinite(from) && !(left > vanished_ * from))) {
+  /// Stores the pivot of a row and returns true; or returns false and excludes the row if the pivot vanishes.
+  bool accept(int row, const S& pivot) {
+    const double scale = entry_[at(row)], value = plain(pivot);
+    // A scale that is not finite excludes no row; the check of the solution for finite numbers finds it.
+    if ((keep_ && held(row)) || (std::isfinite(scale) && !(value > vanished_ * scale))) {
       held_[at(row)] = 1;
       inverse_[at(row)] = S(0.0);
       return false;
     }
-    if (left < smallest_ * from) smallest_ = left / from;
+    if (value < smallest_ * scale) smallest_ = value / scale;
     inverse_[at(row)] = S(1.0) / pivot;
     return true;
   }
 
-  /// 1 / pivot, or 0 of a held row.
+  /// Returns 1 / pivot, or 0 for an excluded row.
   const S& inverse(int row) const { return inverse_[at(row)]; }
+  /// Returns whether a row is excluded.
   bool held(int row) const { return held_[at(row)] != 0; }
+  /// Returns the number of rows that are not excluded.
   int rank() const { return static_cast<int>(std::count(held_.begin(), held_.end(), 0)); }
-  /// The smallest pivot that counts, as part of its diagonal entry: digits that the elimination cost.
+  /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost in the
+  /// elimination.
   double smallest() const { return smallest_; }
 
  private:

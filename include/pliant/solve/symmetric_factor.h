@@ -1,6 +1,6 @@
-// L D L^T of a small symmetric mass matrix that may lack inertia in some coordinates (design 1.3): a
-// coordinate whose pivot vanishes moves nothing right now; it is held, and everything else is solved as if it
-// were not there.
+// Factorisation L D L^T of a small symmetric mass matrix M, Eq. (11), in which some coordinates may have no
+// inertia. A coordinate whose pivot vanishes moves no mass at present (for example the direction of a bend
+// with zero angle). It is excluded: its acceleration is 0, and the other coordinates are solved without it.
 #pragma once
 
 #include <array>
@@ -11,13 +11,15 @@
 
 namespace pliant {
 
+/// The factor of a matrix with at most kMaxVelocities rows.
 template <class S>
 class SymmetricFactor {
  public:
-  /// Pivots below this part of their diagonal entry count as vanished.
+  /// Relative size, with respect to the diagonal entry, at or below which a pivot vanishes.
   static constexpr double kVanished = 1e-12;
 
-  /// Factors A. floor_i: a diagonal entry at or below it has no inertia in this model's units.
+  /// Factors A, n x n. floor: n numbers; a coordinate whose diagonal entry is at or below floor_i has no
+  /// inertia in the units of the model.
   template <class Matrix>
   void compute(const Matrix& A, const VecX<double>& floor) {
     n_ = static_cast<int>(A.rows());
@@ -25,10 +27,10 @@ class SymmetricFactor {
     rows_.resize(n_ * (n_ + 1) / 2);
     S* L = rows_.data();
     for (int i = 0; i < n_; L += ++i) {
-      const S* of_j = rows_.data();
-      for (int j = 0; j < i; of_j += ++j) {
+      const S* row_j = rows_.data();
+      for (int j = 0; j < i; row_j += ++j) {
         S sum = A(i, j);
-        for (int k = 0; k < j; ++k) sum -= L[k] * of_j[k];
+        for (int k = 0; k < j; ++k) sum -= L[k] * row_j[k];
         L[j] = held(j) ? S(0.0) : sum;  // L_ij D_j
       }
       S d = A(i, i);
@@ -39,21 +41,21 @@ class SymmetricFactor {
         L[k] = scaled;
       }
       const double entry = plain(A(i, i));
-      // What is not a number is left to the finite check.
-      const bool gone = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
-      L[i] = gone ? S(1.0) : S(1.0) / d;
-      if (!gone) continue;
+      // A NaN excludes no coordinate; the check of the solution for finite numbers finds it.
+      const bool vanished = entry == entry && (!(entry > floor[i]) || !(plain(d) > kVanished * entry));
+      L[i] = vanished ? S(1.0) : S(1.0) / d;
+      if (!vanished) continue;
       held_.set(static_cast<std::size_t>(i));
       for (int k = 0; k < i; ++k) L[k] = S(0.0);
     }
   }
 
-  /// x = A^-1 x, with zeros for held coordinates.
+  /// Computes x = A^-1 x, with zeros for excluded coordinates.
   template <class Vector>
   void solve(Vector&& x) const {
     solve_columns<1>(x.data());
   }
-  /// The same of several columns, which lie one after the other in x.
+  /// Solves for several columns, which are stored one after the other in x.
   template <int Columns>
   void solve_columns(S* x) const {
     const S* L = rows_.data();
@@ -74,13 +76,14 @@ class SymmetricFactor {
     }
   }
 
+  /// Returns whether coordinate i is excluded.
   bool held(int i) const { return held_.test(static_cast<std::size_t>(i)); }
   bool any_held() const { return held_.any(); }
 
  private:
   int n_ = 0;
-  /// L by rows, with 1 / D_i in the place of its unit diagonal. On the heap, so that the parts of a chain lie
-  /// close together.
+  /// L by rows, with 1 / D_i in place of the unit diagonal. It is on the heap, so that the workspaces of the
+  /// parts of a chain are close together in memory.
   VecX<S> rows_;
   std::bitset<kMaxVelocities> held_;
 };

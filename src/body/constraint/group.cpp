@@ -1,14 +1,2 @@
-#include <pliant/body/constraint/group.h>
-
-namespace pliant {
-
-void gather_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
-                     Eigen::Ref<VecX<double>> x) {
-  x.head(6 + m.n_s) = v.segment(m.v0, 6 + m.n_s);
-  x.head<3>() = w.R.transpose() * v.segment<3>(m.v0);
-  if (m.shared.empty()) return;
-  VecX<double> buffer;
-  x.tail(x.size() - 6 - m.n_s) = at_points(m.shared, m.local->at_nodes(v.data() + m.v0 + 6 + m.n_s, buffer));
-}
-
-}  // namespace pliant
+// The compiled bodies of group-inl.h.
+#include <pliant/body/constraint/group-inl.h>

@@ -1,3 +1,4 @@
+// The registry of joints: making a joint from its type and a JointSetting.
 #include <pliant/body/joints/joint_registry.h>
 
 #include <algorithm>
@@ -17,21 +18,22 @@ Eigen::Quaterniond orientation(const Point& point) {
   return point.part == nullptr ? Eigen::Quaterniond::Identity() : point.part->R0();
 }
 
-/// The size of the smaller of the parts of a joint that move, m.
+/// Returns the size of the smallest part with coordinates at a joint, m.
 double smaller_size(const JointSetting& s) {
   double size = std::numeric_limits<double>::infinity();
   for (const Point* point : {&s.from, &s.to})
     if (point->part != nullptr && !point->part->fixed()) size = std::min(size, point->part->size());
-  if (!std::isfinite(size)) throw std::invalid_argument("it ties no part that moves");
+  if (!std::isfinite(size)) throw std::invalid_argument("one of its ends must be on a part that moves");
   return size;
 }
 
 Mat3<double> axes_of(const Vec3<double>& direction) {
-  if (!direction.allFinite() || direction.isZero(0)) throw std::invalid_argument("its axis has no direction");
+  if (!direction.allFinite() || direction.isZero(0))
+    throw std::invalid_argument("its axis needs a finite length > 0");
   return axes_along(direction);
 }
 
-/// The axes of the frames at both points, which coincide when the joint is closed.
+/// Returns the axes of the frames at both points; they coincide when the joint is closed.
 std::pair<Mat3<double>, Mat3<double>> axes_of(JointKeys keys, const JointSetting& s) {
   const Eigen::Quaterniond turn =
       s.rotation ? s.rotation->normalized() : orientation(s.to).conjugate() * orientation(s.from);
@@ -40,6 +42,7 @@ std::pair<Mat3<double>, Mat3<double>> axes_of(JointKeys keys, const JointSetting
   return {turn.toRotationMatrix().transpose() * to, to};
 }
 
+/// Makes a joint of formula F.
 template <class F>
 std::unique_ptr<Joint> make(std::string name, const JointSetting& s) {
   for (const Point* point : {&s.from, &s.to})
@@ -91,7 +94,7 @@ std::unique_ptr<Joint> make_joint(const std::string& type, std::string name, con
       throw std::invalid_argument(type + " '" + name + "': " + fault.what());
     }
   }
-  throw std::invalid_argument("there is no joint of type '" + type + "'; there are " + types);
+  throw std::invalid_argument("there is no joint of type '" + type + "'; the types are " + types);
 }
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// When the rates at which ends of joints are moved jump.
+// The times at which the prescribed rates of the ends of joints jump.
 #include <algorithm>
 #include <limits>
 
@@ -7,7 +7,8 @@
 namespace pliant {
 
 namespace {
-/// A joint that begins so many units of the last place after a time begins then.
+/// A joint that switches on within this number of units in the last place after a time switches on at that
+/// time.
 constexpr double kUlps = 8;
 }  // namespace
 

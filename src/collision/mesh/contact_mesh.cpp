@@ -1,3 +1,4 @@
+// The triangle mesh of a part for contact search, and its edges.
 #include <pliant/collision/mesh/contact_mesh.h>
 
 #include <map>
@@ -8,17 +9,17 @@
 namespace pliant {
 
 namespace {
-/// Edges along an eighth of a great circle, of the mesh over a part that has none of its own.
+/// Edges along an eighth of a great circle, for the mesh of a part without nodes.
 constexpr int kMeshResolution = 6;
-/// The same of few points that tell how far such a part reaches and how fast it changes, and by how much the
-/// others may go beyond them.
-constexpr int kFewMeshEdges = 2;
-constexpr double kBeyondFewVertices = 1.1;
+/// Edges of a coarse mesh from which the reach and the speed of such a part are estimated, and the factor on
+/// the estimates.
+constexpr int kCoarseMeshEdges = 2;
+constexpr double kCoarseMeshMargin = 1.1;
 }  // namespace
 
 std::vector<ContactMesh::Edge> mesh_edges(const Eigen::Matrix3Xi& triangles) {
   std::vector<ContactMesh::Edge> edges;
-  std::map<std::pair<int, int>, std::size_t> known;  // by vertices, the smaller first
+  std::map<std::pair<int, int>, std::size_t> known;  // by vertices, the smaller number first
   for (int t = 0; t < triangles.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int from = triangles(k, t), to = triangles((k + 1) % 3, t);
@@ -53,7 +54,7 @@ ContactMesh::ContactMesh(const PartModel& m) : part_(&m) {
     if (m.n_s == 0 || m.q0 < 0)
       rigid_ = p;
     else
-      few_ = Surface(*m.part, kFewMeshEdges).material();
+      coarse_ = Surface(*m.part, kCoarseMeshEdges).material();
   }
   if (rigid_.cols() > 0) rigid_reach_ = rigid_.colwise().norm().maxCoeff();
   edges_ = mesh_edges(triangles_);
@@ -81,8 +82,9 @@ Eigen::Matrix3Xd ContactMesh::positions(const Model& model, const State& state, 
 
 double ContactMesh::reach(const Model& model, const State& state, int number) const {
   if (rigid_.cols() > 0) return rigid_reach_;
-  if (!few_.empty())
-    return kBeyondFewVertices * part_->part->s(few_, model.values(state, number)).colwise().norm().maxCoeff();
+  if (!coarse_.empty())
+    return kCoarseMeshMargin *
+           part_->part->s(coarse_, model.values(state, number)).colwise().norm().maxCoeff();
   return positions(model, state, number).colwise().norm().maxCoeff();
 }
 
@@ -97,9 +99,9 @@ double ContactMesh::speed(const State& state) const {
       q_s[k].v = state.q[m.q0 + 7 + k];
       q_s[k].d[0] = state.v[m.v0 + 6 + k];
     }
-    speed = (few_.empty() ? 1 : kBeyondFewVertices) *
+    speed = (coarse_.empty() ? 1 : kCoarseMeshMargin) *
             m.part
-                ->s_along(m.local != nullptr ? m.local->mesh().nodes : few_,
+                ->s_along(m.local != nullptr ? m.local->mesh().nodes : coarse_,
                           m.part->parameters().expand<Dual<1>>(q_s, q_s_dot))
                 .colwise()
                 .norm()

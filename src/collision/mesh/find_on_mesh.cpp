@@ -1,3 +1,4 @@
+// Search on the faces, ridges and corners of an obstacle mesh.
 #include <pliant/collision/mesh/find_on_mesh.h>
 
 #include <algorithm>
@@ -12,45 +13,46 @@ namespace pliant {
 
 namespace {
 
-/// How far the surface may lie outside of its points, in sizes of the part.
+/// Largest distance of the surface from its sample points, in sizes of the part.
 constexpr double kSag = 0.02;
-/// How far a low point may lie from the point of the surface that it is found from, in sizes.
+/// Largest distance of a low point from the sample point that its search started from, in sizes.
 constexpr double kSpacing = 0.4;
-/// A face holds up a part that is no deeper behind it than this share of its thickness.
-constexpr double kDeepestOnFace = 0.5;
-/// A point belongs to a triangle that it is in but for this, in sizes.
-constexpr double kWithin = 1e-6;
-/// A face is not what holds a point that is nearer to others, which are turned by less than this (cosine).
-constexpr double kNearer = 0.95, kOtherSide = -0.5;
-/// Sine of an angle by which the normal at a ridge may lie outside of those of its faces.
-constexpr double kBetween = 1e-3;
-/// Points along a ridge that are this near in height, in sizes, lie as low as each other.
-constexpr double kLevel = 3e-6;
-/// Step for the slopes to either side of a point of a ridge, in sizes.
-constexpr double kBeside = 1e-7;
-/// What is flat along a ridge is met this far inside of where it ceases to be, in sizes: there it is as low
-/// as all of it.
-constexpr double kInside = 1e-5;
+/// Largest depth of a part behind a face that supports it, as a share of the thickness of the part.
+constexpr double kMaxFaceDepth = 0.5;
+/// Tolerance for a point inside a triangle, in sizes.
+constexpr double kInsideTolerance = 1e-6;
+/// A face does not support a point whose distance to another face is less than kNearerShare times its depth,
+/// if the cosine between their normals is above kMinCosine.
+constexpr double kNearerShare = 0.95, kMinCosine = -0.5;
+/// Largest angle, as a sine, by which the normal at a ridge may be outside the range of normals of its faces.
+constexpr double kMaxOutsideSine = 1e-3;
+/// Points along a ridge whose heights differ by at most this, in sizes, are equally low.
+constexpr double kLevelAlongRidge = 3e-6;
+/// Step for the one-sided slopes at a point of a ridge, in sizes.
+constexpr double kSideStep = 1e-7;
+/// Where a part is level along a ridge, its two contacts are this far inside the ends of the level range, in
+/// sizes, where the height is still that of the whole range.
+constexpr double kInset = 1e-5;
 constexpr int kSamples = 12, kHalvings = 48;
-/// Contacts nearer than this, in sizes, with normals as near as this, are one.
-constexpr double kSame = 0.02, kSameNormal = 0.01;
+/// Contacts nearer than kSameContact, in sizes, whose normals differ by less than kSameNormal, are merged.
+constexpr double kSameContact = 0.02, kSameNormal = 0.01;
 
-/// The search for one part on one mesh.
+/// The search for the contacts of one part with one mesh.
 class Search {
  public:
-  Search(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& near,
+  Search(const PlacedSurface& a, const ObstacleMesh& mesh, double max_gap, MeshSearch& near,
          std::vector<Contact>& found)
       : a_(a),
         mesh_(mesh),
-        most_(most),
+        max_gap_(max_gap),
         size_(a.part.size()),
-        deepest_(-kDeepestOnFace * a.surface.thickness()),
+        min_gap_(-kMaxFaceDepth * a.surface.thickness()),
         near_(near),
         found_(found),
         first_(found.size()) {}
 
-  void run() {
-    const double reach = std::max(most_, 0.0) + kSag * size_;
+  void search() {
+    const double reach = std::max(max_gap_, 0.0) + kSag * size_;
     box_ = {(a_.box.min().array() - reach).matrix(), (a_.box.max().array() + reach).matrix()};
     if (!box_.intersects(mesh_.box())) return;
     mesh_.query(box_, near_.triangles);
@@ -68,13 +70,13 @@ class Search {
       std::sort(all->begin(), all->end());
       all->erase(std::unique(all->begin(), all->end()), all->end());
     }
-    for (const int f : faces) on_face(f);
-    for (const int e : edges) on_edge(mesh_.edges()[at(e)]);
-    for (const int v : vertices) at_vertex(v);
+    for (const int f : faces) search_face(f);
+    for (const int e : edges) search_edge(mesh_.edges()[at(e)]);
+    for (const int v : vertices) search_vertex(v);
   }
 
  private:
-  void on_face(int number) {
+  void search_face(int number) {
     const ObstacleMesh::Face& face = mesh_.faces()[at(number)];
     const Vec3<double> n = a_.R.transpose() * face.normal;
     const double offset = face.normal.dot(a_.c - face.point);
@@ -83,51 +85,52 @@ class Search {
       const Vec3<double> y = lowest_direction(*a_.axes, n);
       CollisionSurface::LowPoint low = a_.surface.ellipsoid_point(a_.values, *a_.axes, y);
       low.height = field.height(low.p);
-      return add_if_held(number, low);
+      return add_if_supported(number, low);
     }
     const Eigen::Matrix3Xd& p = a_.points();
     const VecX<double> heights = (p.transpose() * n).array() + offset;
     const double lowest = heights.minCoeff();
-    if (lowest > most_ + kSag * size_ || lowest < deepest_ - kSag * size_) return;
-    Eigen::AlignedBox3d low_box, face_box;  // whether the low points may be on this face at all
+    if (lowest > max_gap_ + kSag * size_ || lowest < min_gap_ - kSag * size_) return;
+    Eigen::AlignedBox3d low_box, face_box;  // the low points may be on this face if these are near each other
     for (Eigen::Index i = 0; i < heights.size(); ++i)
       if (heights[i] <= lowest + kSag * size_) low_box.extend(a_.c + a_.R * p.col(i));
     for (const int t : near_.triangles)
       if (mesh_.face_of(t) == number)
         for (int k = 0; k < 3; ++k) face_box.extend(mesh_.vertices().col(mesh_.triangles()(k, t)));
     if (low_box.exteriorDistance(face_box) > kSpacing * size_ + std::max(0.0, -lowest)) return;
-    for (const CollisionSurface::LowPoint& low : a_.surface.low_points(a_.values, p, heights, most_, field))
-      add_if_held(number, low);
+    for (const CollisionSurface::LowPoint& low :
+         a_.surface.low_points(a_.values, p, heights, max_gap_, field))
+      add_if_supported(number, low);
   }
 
-  void add_if_held(int face, const CollisionSurface::LowPoint& low) {
-    if (!(low.height <= most_ && low.height >= deepest_)) return;
+  void add_if_supported(int face, const CollisionSurface::LowPoint& low) {
+    if (!(low.height <= max_gap_ && low.height >= min_gap_)) return;
     const Vec3<double> x = a_.c + a_.R * low.p;
-    if (!is_on(face, x) || is_nearer_to_others(face, x, low.height)) return;
+    if (!projects_onto(face, x) || is_nearer_to_others(face, x, low.height)) return;
     add(low.material, x, mesh_.faces()[at(face)].normal, low.height);
   }
 
-  /// Whether a point lies straight above or below a face.
-  bool is_on(int face, const Vec3<double>& x) const {
+  /// Whether the projection of a point onto the plane of a face is inside the face.
+  bool projects_onto(int face, const Vec3<double>& x) const {
     for (const int t : near_.triangles) {
       if (mesh_.face_of(t) != face) continue;
       bool inside = true;
       for (int k = 0; k < 3 && inside; ++k) {
         const Vec3<double> corner = mesh_.vertices().col(mesh_.triangles()(k, t)),
                            e = mesh_.vertices().col(mesh_.triangles()((k + 1) % 3, t)) - corner;
-        inside = mesh_.normal(t).dot(e.cross(x - corner)) >= -kWithin * size_ * e.norm();
+        inside = mesh_.normal(t).dot(e.cross(x - corner)) >= -kInsideTolerance * size_ * e.norm();
       }
       if (inside) return true;
     }
     return false;
   }
 
-  /// Whether a point behind a face has come in through others.
+  /// Whether a point behind a face has entered the mesh through another face.
   bool is_nearer_to_others(int face, const Vec3<double>& x, double height) const {
-    if (height >= -kLevel * size_) return false;
+    if (height >= -kLevelAlongRidge * size_) return false;
     return std::any_of(near_.triangles.begin(), near_.triangles.end(), [&](int t) {
-      return mesh_.face_of(t) != face && mesh_.normal(t).dot(mesh_.faces()[at(face)].normal) > kOtherSide &&
-             (mesh_.nearest(t, x) - x).norm() < -kNearer * height;
+      return mesh_.face_of(t) != face && mesh_.normal(t).dot(mesh_.faces()[at(face)].normal) > kMinCosine &&
+             (mesh_.nearest(t, x) - x).norm() < -kNearerShare * height;
     });
   }
 
@@ -144,13 +147,13 @@ class Search {
     return a_.R * a_.part.inside_outside_gradient(into_a(x), a_.values);
   }
 
-  /// A point of a ridge or a corner: to first order the distance to the part is w - 1 over the length of its
-  /// gradient, which points into the obstacle.
-  std::optional<Contact> touch(const Vec3<double>& x, const Vec3<double>& gradient) const {
+  /// Returns the contact at a point of a ridge or a corner, if the gap is in range. To first order the gap is
+  /// (w - 1) / |grad w|. The gradient points into the obstacle.
+  std::optional<Contact> contact_at(const Vec3<double>& x, const Vec3<double>& gradient) const {
     const double length = gradient.norm();
     if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
     const double gap = level(x) / length;
-    if (!(gap <= most_ && gap >= deepest_)) return std::nullopt;
+    if (!(gap <= max_gap_ && gap >= min_gap_)) return std::nullopt;
     Contact contact;
     contact.x = x;
     contact.normal = -gradient / length;
@@ -158,12 +161,14 @@ class Search {
     return contact;
   }
 
-  void on_edge(const ObstacleMesh::Edge& edge) {
+  // Above 60 lines: after the closed form for ellipsoids, the steps of the search along the edge share its
+  // parametrisation and the range inside the box.
+  void search_edge(const ObstacleMesh::Edge& edge) {
     const Vec3<double> start = mesh_.vertices().col(edge.vertex[0]),
-                       way = mesh_.vertices().col(edge.vertex[1]) - start;
-    const double length = way.norm();
-    const Vec3<double> e = way / length;
-    double from = 0, to = length;  // of the edge, in the box
+                       edge_vector = mesh_.vertices().col(edge.vertex[1]) - start;
+    const double length = edge_vector.norm();
+    const Vec3<double> e = edge_vector / length;
+    double from = 0, to = length;  // range of the edge inside the box, m
     for (int k = 0; k < 3; ++k) {
       const double low = (box_.min()[k] - start[k]) / e[k], high = (box_.max()[k] - start[k]) / e[k];
       if (e[k] == 0) {
@@ -181,8 +186,8 @@ class Search {
       const double s = -y.dot(rate) / rate.squaredNorm();
       if (!(s >= from && s <= to)) return;
       const Vec3<double> gradient = slope(x(s));
-      if (!mesh_.leads_out(edge, -gradient.normalized(), kBetween)) return;
-      if (const std::optional<Contact> contact = touch(x(s), gradient)) add(*contact);
+      if (!mesh_.points_outward(edge, -gradient.normalized(), kMaxOutsideSine)) return;
+      if (const std::optional<Contact> contact = contact_at(x(s), gradient)) add(*contact);
       return;
     }
     const double step = (to - from) / kSamples;
@@ -196,7 +201,7 @@ class Search {
       }
     }
     double low = from + std::max(best - 1, 0) * step, high = from + std::min(best + 1, kSamples) * step;
-    if (!(least * a_.surface.thickness() <= 2 * std::max(most_, 0.0) + (high - low))) return;
+    if (!(least * a_.surface.thickness() <= 2 * std::max(max_gap_, 0.0) + (high - low))) return;
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (low + high), rate = slope(x(middle)).dot(e);
       if (rate == 0) {
@@ -206,39 +211,41 @@ class Search {
       (rate > 0 ? high : low) = middle;
     }
     const double lowest = 0.5 * (low + high);
-    // The slope along the edge changes its sign there: of those to either side a mean has none.
-    const double beside = kBeside * size_;
-    const Vec3<double> before = slope(x(lowest - beside)), after = slope(x(lowest + beside));
+    // The slope along the edge changes its sign at the minimum. At a kink the weighted mean of the one-sided
+    // gradients has no slope along the edge.
+    const double side_step = kSideStep * size_;
+    const Vec3<double> before = slope(x(lowest - side_step)), after = slope(x(lowest + side_step));
     const double down = before.dot(e), up = after.dot(e);
     Vec3<double> gradient = slope(x(lowest));
     if (down < 0 && up > 0) gradient = (up * before - down * after) / (up - down);
-    if (std::abs(gradient.dot(e)) > kBetween * gradient.norm()) return;  // it goes on down beyond the end
-    if (!mesh_.leads_out(edge, -gradient.normalized(), kBetween)) return;
-    const std::optional<Contact> deepest = touch(x(lowest), gradient);
+    if (std::abs(gradient.dot(e)) > kMaxOutsideSine * gradient.norm())
+      return;  // the minimum is beyond the end
+    if (!mesh_.points_outward(edge, -gradient.normalized(), kMaxOutsideSine)) return;
+    const std::optional<Contact> deepest = contact_at(x(lowest), gradient);
     if (!deepest) return;
-    // Where the part is flat along the edge both ends of that carry it.
-    const double flat = level(x(lowest)) + kLevel * size_ * gradient.norm();
-    auto end_of_flat = [&](double out) {
-      if (level(x(out)) <= flat) return out;
+    // Where the part is level along the edge, both ends of the level range support it.
+    const double level_height = level(x(lowest)) + kLevelAlongRidge * size_ * gradient.norm();
+    auto end_of_level = [&](double out) {
+      if (level(x(out)) <= level_height) return out;
       double in = lowest;
       for (int i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (in + out);
-        (level(x(middle)) <= flat ? in : out) = middle;
+        (level(x(middle)) <= level_height ? in : out) = middle;
       }
       return in;
     };
-    const double first = end_of_flat(from) + kInside * size_, last = end_of_flat(to) - kInside * size_;
-    if (last - first < kSame * size_) return add(*deepest);
+    const double first = end_of_level(from) + kInset * size_, last = end_of_level(to) - kInset * size_;
+    if (last - first < kSameContact * size_) return add(*deepest);
     for (const double s : {first, last})
-      if (const std::optional<Contact> contact = touch(x(s), gradient)) add(*contact);
+      if (const std::optional<Contact> contact = contact_at(x(s), gradient)) add(*contact);
   }
 
-  void at_vertex(int v) {
+  void search_vertex(int v) {
     const Vec3<double> x = mesh_.vertices().col(v);
-    if (!box_.contains(x) || !(level(x) * a_.surface.thickness() <= 2 * std::max(most_, 0.0))) return;
-    const std::optional<Contact> contact = touch(x, slope(x));
+    if (!box_.contains(x) || !(level(x) * a_.surface.thickness() <= 2 * std::max(max_gap_, 0.0))) return;
+    const std::optional<Contact> contact = contact_at(x, slope(x));
     if (!contact) return;
-    if (mesh_.leads_out(v, contact->normal, kBetween)) add(*contact);
+    if (mesh_.points_outward(v, contact->normal, kMaxOutsideSine)) add(*contact);
   }
 
   void add(Contact contact) {
@@ -256,7 +263,7 @@ class Search {
   void add_one(const Contact& contact) {
     for (std::size_t k = first_; k < found_.size(); ++k) {
       Contact& other = found_[k];
-      if ((other.x - contact.x).norm() > kSame * size_ ||
+      if ((other.x - contact.x).norm() > kSameContact * size_ ||
           (other.normal - contact.normal).norm() > kSameNormal)
         continue;
       if (contact.gap < other.gap) other = contact;
@@ -267,7 +274,7 @@ class Search {
 
   const PlacedSurface& a_;
   const ObstacleMesh& mesh_;
-  const double most_, size_, deepest_;
+  const double max_gap_, size_, min_gap_;
   MeshSearch& near_;
   std::vector<Contact>& found_;
   const std::size_t first_;
@@ -276,9 +283,9 @@ class Search {
 
 }  // namespace
 
-void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& search,
+void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double max_gap, MeshSearch& search,
                   std::vector<Contact>& found) {
-  Search(a, mesh, most, search, found).run();
+  Search(a, mesh, max_gap, search, found).search();
 }
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// Contact search of parts that deform locally, and their part of a neighbourhood.
 #include <pliant/collision/mesh/mesh_finder.h>
 
 #include <algorithm>
@@ -14,39 +15,41 @@ namespace pliant {
 
 namespace {
 
-/// An obstacle holds what is no deeper behind it than this share of the part's thickness: beyond may be the
-/// far side of the part, over a plate that it lies on. In a step it moves by less.
-constexpr double kDeepest = 0.25, kStepShare = 0.2;
+/// Largest depth of a vertex behind an obstacle, as a share of the thickness of the part. A deeper vertex may
+/// be on the far side of the part, over a plate that supports it. The motion in a step is limited to
+/// kMaxStepShare.
+constexpr double kMaxDepthInObstacle = 0.25, kMaxStepShare = 0.2;
 
 }  // namespace
 
 MeshFinder::MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles)
     : model_(&model), rules_(model) {
   const int n = static_cast<int>(model.parts().size());
-  auto need = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
+  auto add_mesh = [&](int i) { meshes_.try_emplace(i, model.parts()[at(i)]); };
   for (int i = 0; i < n; ++i) {
-    if (!is_soft(i)) continue;
+    if (!deforms_locally(i)) continue;
     for (std::size_t k = 0; k < model.body().contact.planes.size(); ++k) {
       const ContactRule rule = rules_.on_plane(i, static_cast<int>(k));
       if (!rule.touch) continue;
-      need(i);
+      add_mesh(i);
       planes_.push_back({i, k, rule});
     }
     for (std::size_t k = 0; k < obstacles.size(); ++k) {
       const ContactRule rule = rules_.on_obstacle(i, static_cast<int>(k));
       if (!rule.touch) continue;
-      need(i);
+      add_mesh(i);
       on_obstacles_.push_back({i, k, &obstacles[k], rule});
     }
     for (int j = 0; j < n; ++j) {
-      if (j == i || (j < i && is_soft(j)) || !rules_.of_parts(std::min(i, j), std::max(i, j)).touch) continue;
-      need(i);
-      need(j);
+      if (j == i || (j < i && deforms_locally(j)) || !rules_.of_parts(std::min(i, j), std::max(i, j)).touch)
+        continue;
+      add_mesh(i);
+      add_mesh(j);
     }
   }
 }
 
-bool MeshFinder::is_soft(int part) const {
+bool MeshFinder::deforms_locally(int part) const {
   return model_->parts()[at(part)].local != nullptr;
 }
 
@@ -64,7 +67,7 @@ void MeshFinder::each_pair(const State& state, const std::map<int, Thing>& all, 
   tree.near_pairs(0, pairs);
   for (const auto& [i, j] : pairs) {
     const Thing &one = *things[at(i)], &other = *things[at(j)];
-    if ((!is_soft(one.part) && !is_soft(other.part)) ||
+    if ((!deforms_locally(one.part) && !deforms_locally(other.part)) ||
         (model_->lies_still(state, one.part) && model_->lies_still(state, other.part)) ||
         (one.c - other.c).norm() > one.reach + other.reach)
       continue;
@@ -73,11 +76,11 @@ void MeshFinder::each_pair(const State& state, const std::map<int, Thing>& all, 
   }
 }
 
-std::map<int, MeshFinder::Around> MeshFinder::balls(const State& state, double t) const {
-  std::map<int, Around> all;
+std::map<int, MeshFinder::BoundingBall> MeshFinder::balls(const State& state, double t) const {
+  std::map<int, BoundingBall> all;
   for (const auto& [part, mesh] : meshes_) {
-    Around ball{part, model_->position(state, part, t), 0, {}};
-    if (!mesh.reach_takes_all()) {
+    BoundingBall ball{part, model_->position(state, part, t), 0, {}};
+    if (!mesh.reach_uses_all_vertices()) {
       ball.reach = mesh.reach(*model_, state, part);
     } else {
       ball.p = mesh.positions(*model_, state, part);
@@ -88,15 +91,15 @@ std::map<int, MeshFinder::Around> MeshFinder::balls(const State& state, double t
   return all;
 }
 
-PlacedMesh MeshFinder::place(const State& state, double t, const Around& ball) const {
+PlacedMesh MeshFinder::place(const State& state, double t, const BoundingBall& ball) const {
   const ContactMesh& mesh = meshes_.at(ball.part);
   const Mat3<double> R = model_->orientation(state, ball.part, t).toRotationMatrix();
   auto placed = [&](const Eigen::Matrix3Xd& p) { return PlacedMesh(mesh, (R * p).colwise() + ball.c); };
   return placed(ball.p.cols() > 0 ? ball.p : mesh.positions(*model_, state, ball.part));
 }
 
-/// Velocity that a prescribed motion gives a point of a part, m/s.
-Vec3<double> MeshFinder::carries(int part, double t, const Vec3<double>& x) const {
+/// Velocity of a point of a part by its prescribed motion, m/s, world.
+Vec3<double> MeshFinder::frame_velocity(int part, double t, const Vec3<double>& x) const {
   const PrescribedMotion* motion = model_->parts()[at(part)].motion;
   if (motion == nullptr) return Vec3<double>::Zero();
   const MovingFrame frame = motion->at(t);
@@ -120,9 +123,10 @@ ContactSide MeshFinder::side(const PlacedMesh& placed, int part, const State& st
   return side;
 }
 
+// Above 60 lines: planes, obstacles and pairs share the placed meshes.
 void MeshFinder::find(const State& state, double t, std::vector<Contact>& found) const {
-  // Meshes are placed when they are first asked for; balls about them tell which pairs need none.
-  const std::map<int, Around> balls = this->balls(state, t);
+  // A mesh is placed at its first use. Bounding balls exclude most pairs without it.
+  const std::map<int, BoundingBall> balls = this->balls(state, t);
   std::map<int, PlacedMesh> placed;
   auto mesh_of = [&](int part) -> const PlacedMesh& {
     const auto known = placed.find(part);
@@ -134,7 +138,7 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
     if (!plane.acts_before(t) || (sleeps(state, on.part) && plane.point.is_constant())) continue;
     const Vec3<Taylor2<double>> moving = plane.point.at(t);
     const Vec3<double> point(moving[0].v, moving[1].v, moving[2].v);
-    const Around& ball = balls.at(on.part);
+    const BoundingBall& ball = balls.at(on.part);
     if (plane.normal.dot(ball.c - point) > ball.reach) continue;
     const PlacedMesh& m = mesh_of(on.part);
     const VecX<double> height = (m.x.colwise() - point).transpose() * plane.normal;
@@ -156,10 +160,10 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   for (const OnObstacle& on : on_obstacles_) {
     if (!model_->body().contact.obstacles[on.obstacle].acts_before(t) || sleeps(state, on.part)) continue;
     touches.clear();
-    const Around& ball = balls.at(on.part);
+    const BoundingBall& ball = balls.at(on.part);
     if (!on.mesh->comes_near(ball.c, ball.reach)) continue;
     const PlacedMesh& m = mesh_of(on.part);
-    find_touches(m, *on.mesh, kDeepest * m.mesh->thickness(), touches);
+    find_touches(m, *on.mesh, kMaxDepthInObstacle * m.mesh->thickness(), touches);
     for (const MeshTouch& touch : touches) {
       Contact contact;
       contact.a = side(m, on.part, state, touch.a, touch.x);
@@ -172,17 +176,18 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
       found.push_back(contact);
     }
   }
-  each_pair(state, balls, [&](const Around& one, const Around& other, const ContactRule& rule) {
+  each_pair(state, balls, [&](const BoundingBall& one, const BoundingBall& other, const ContactRule& rule) {
     touches.clear();
     const PlacedMesh &a = mesh_of(one.part), &b = mesh_of(other.part);
     find_touches(a, b, touches);
     auto add = [&](Contact contact) {
-      contact.carried = carries(other.part, t, contact.x) - carries(one.part, t, contact.x);
+      contact.carried = frame_velocity(other.part, t, contact.x) - frame_velocity(one.part, t, contact.x);
       contact.friction = rule.friction;
       contact.restitution = rule.restitution;
       found.push_back(contact);
     };
-    if (are_deep(state, t, one, other, a, b, touches)) return add(way_out(state, t, one, other, a, b));
+    if (is_deep_overlap(state, t, one, other, a, b, touches))
+      return add(separation_contact(state, t, one, other, a, b));
     for (const MeshTouch& touch : touches) {
       Contact contact;
       contact.a = side(a, one.part, state, touch.a, touch.x);
@@ -195,14 +200,16 @@ void MeshFinder::find(const State& state, double t, std::vector<Contact>& found)
   });
 }
 
+// Above 60 lines: the bounds of the motion are computed once and used for planes, obstacles and pairs.
 void MeshFinder::approach(const State& state, const State* after, double t, double h, double reach,
                           ContactFinder::Neighbourhood& near) const {
   struct Swept {
     int part;
     Vec3<double> c;
-    double way, gained;  // of any point in the world, m: at the velocities of the start, and as they change
-    Vec3<double> fall;   // what gravity adds to that, m
-    double reach;        // about c, with the way, m
+    double travel;         // bound of the motion of any point at the velocities of the start, m, world
+    double travel_change;  // and of its change by the change of these velocities, m
+    Vec3<double> fall;     // displacement by gravity, m
+    double reach;          // radius of a ball about c, including the motion, m
   };
   const Vec3<double> g = model_->body().gravity_at(t);
   std::map<int, Swept> all;
@@ -216,14 +223,16 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
         return (v.head<3>() - fallen).norm() + swept.reach * v.segment<3>(3).norm() + mesh.speed(of);
       };
       const bool falls = !sleeps(state, part);
-      swept.way = h * speed(state, Vec3<double>::Zero());
+      swept.travel = h * speed(state, Vec3<double>::Zero());
       if (falls) swept.fall = reach * h * h * g;
-      if (after != nullptr && falls) swept.gained = std::max(0.0, h * speed(*after, h * g) - swept.way);
-      swept.reach += swept.way + swept.gained + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
+      if (after != nullptr && falls)
+        swept.travel_change = std::max(0.0, h * speed(*after, h * g) - swept.travel);
+      swept.reach +=
+          swept.travel + swept.travel_change + (after == nullptr ? h * h * g.norm() : swept.fall.norm());
     } else if (m.motion != nullptr) {
       const TimeVector::Passage passage = m.motion->over(t, h, swept.reach);
-      swept.way = h * (passage.rate.norm() + passage.beside);
-      swept.reach += swept.way;
+      swept.travel = h * (passage.rate.norm() + passage.beside);
+      swept.reach += swept.travel;
     }
     all.emplace(part, swept);
   }
@@ -234,9 +243,9 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     const Swept& a = all.at(on.part);
     if (!(plane.normal.dot(a.c) - plane.highest(t, h) < a.reach)) continue;
     near.soft = true;
-    // It is not thin, but may go to and fro.
-    near.keep_within(h * plane.point.over(t, h).beside, 0, kStepShare * meshes_.at(on.part).thickness(), h,
-                     after != nullptr);
+    // A half space has no thickness to pass through, but a plane may oscillate.
+    near.limit_travel(h * plane.point.over(t, h).beside, 0, kMaxStepShare * meshes_.at(on.part).thickness(),
+                      h, after != nullptr);
   }
   for (const OnObstacle& on : on_obstacles_) {
     const ContactObstacle& obstacle = model_->body().contact.obstacles[on.obstacle];
@@ -244,15 +253,15 @@ void MeshFinder::approach(const State& state, const State* after, double t, doub
     const Swept& a = all.at(on.part);
     if (!on.mesh->comes_near(a.c, a.reach)) continue;
     near.soft = true;
-    near.keep_within(a.way, a.gained + a.fall.norm(), kStepShare * meshes_.at(on.part).thickness(), h,
-                     after != nullptr);
+    near.limit_travel(a.travel, a.travel_change + a.fall.norm(),
+                      kMaxStepShare * meshes_.at(on.part).thickness(), h, after != nullptr);
   }
   each_pair(state, all, [&](const Swept& a, const Swept& b, const ContactRule&) {
     near.soft = true;
-    const double thin =
-        ContactFinder::kThinShare * std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
-    near.keep_within(a.way + b.way, a.gained + b.gained + (a.fall - b.fall).norm(), thin, h,
-                     after != nullptr);
+    const double thin = ContactFinder::kMaxTravelShare *
+                        std::min(meshes_.at(a.part).thickness(), meshes_.at(b.part).thickness());
+    near.limit_travel(a.travel + b.travel, a.travel_change + b.travel_change + (a.fall - b.fall).norm(), thin,
+                      h, after != nullptr);
   });
   near.empty = near.empty && !near.soft;
 }

@@ -1,3 +1,4 @@
+// Tests of vertices against faces and of edges against edges, for two meshes.
 #include <pliant/collision/mesh/mesh_touches.h>
 
 #include <algorithm>
@@ -13,24 +14,28 @@ namespace pliant {
 
 namespace {
 
-/// Edges go across each other by less than this share of the shorter one; deeper, vertices are inside.
+/// Largest depth of two crossing edges, as a share of the shorter one; for deeper overlaps vertices are
+/// inside.
 constexpr double kEdgeDepth = 0.5;
-/// Edges whose sine of the angle between them is below this are parallel.
+/// Edges are parallel if the sine of the angle between them is below this.
 constexpr double kParallel = 1e-9;
-/// Distances to triangles that differ by less than this part are to a common edge or corner of theirs.
+/// Distances to two triangles whose squares differ by less than this share are equal: the nearest point is on
+/// a common edge or corner.
 constexpr double kTie = 1e-9;
-/// A triangle is straight above a point whose distance to it squared is that to its plane, but for this.
+/// A triangle is straight above a point if the squared distances to the triangle and to its plane agree to
+/// this share.
 constexpr double kStraightAbove = 1e-6;
-/// Edges whose triangles turn by less than this, rad, do not stick out.
+/// Edges with a smaller angle (rad) between the normals of their triangles are not sharp.
 constexpr double kNoTurn = 1e-6;
-/// Triangles of an obstacle are searched to this share of the greatest depth around a part.
+/// The box of a part is enlarged by this share of the largest depth for the search of triangles of an
+/// obstacle.
 constexpr double kMargin = 0.1;
-/// Sine of an angle by which a normal at a corner of an obstacle may point into it.
-constexpr double kOut = 1e-3;
-/// Two triangles of a ridge whose normals have a cosine below this are the sides of a plate.
+/// Tolerance, as a sine, of the test that a normal at a corner of an obstacle points outward.
+constexpr double kOutwardSine = 1e-3;
+/// The triangles of a ridge are the two sides of a plate if the cosine of their normals is below this.
 constexpr double kBackToBack = -0.999999;
 
-/// The point of a triangle that is nearest to x: its weights.
+/// Returns the weights of the corners in the point of a triangle that is nearest to x.
 Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, const Vec3<double>& p1,
                              const Vec3<double>& p2) {
   const Vec3<double> e1 = p1 - p0, e2 = p2 - p0, d = x - p0;
@@ -52,18 +57,18 @@ Vec3<double> nearest_weights(const Vec3<double>& x, const Vec3<double>& p0, cons
   });
 }
 
-/// The part of a mesh that may be in another one, with what is needed of it again and again.
+/// The vertices, edges and faces of a mesh that may be inside another one, with data for repeated use.
 struct Candidates {
   struct Face {
     Eigen::Vector3i corner;
     Vec3<double> p0, p1, p2, normal, centre;
-    double radius;  ///< of a ball about the centre that it is in
+    double radius;  ///< of a ball about the centre that contains the face, m
   };
   std::vector<int> vertices, edges;
   std::vector<Face> faces;
 };
 
-/// An edge that sticks out.
+/// A convex edge.
 struct SharpEdge {
   int from, to;
   Vec3<double> p, along;
@@ -85,16 +90,17 @@ Candidates::Face face_of(const Eigen::Vector3i& corner, const Eigen::Matrix3Xd& 
   return {corner, p0, p1, p2, normal, centre, radius};
 }
 
-/// Of a mesh those that are in a box and, by `height` over its vertices, not below `least`.
+/// Returns the vertices, edges and faces of a mesh that meet a box and whose height is at least min_height.
+/// height: one entry for each vertex.
 Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const VecX<double>& height,
-                      double least) {
+                      double min_height) {
   Candidates chosen;
   for (int k = 0; k < m.x.cols(); ++k)
-    if (height[k] >= least && box.contains(m.x.col(k))) chosen.vertices.push_back(k);
+    if (height[k] >= min_height && box.contains(m.x.col(k))) chosen.vertices.push_back(k);
   const std::vector<ContactMesh::Edge>& edges = m.mesh->edges();
   for (int k = 0; k < static_cast<int>(edges.size()); ++k) {
     const ContactMesh::Edge& e = edges[at(k)];
-    if (std::max(height[e.from], height[e.to]) < least || e.right < 0) continue;
+    if (std::max(height[e.from], height[e.to]) < min_height || e.right < 0) continue;
     const Vec3<double> from = m.x.col(e.from), to = m.x.col(e.to);
     if (!(from.cwiseMax(to).array() < box.min().array()).any() &&
         !(from.cwiseMin(to).array() > box.max().array()).any())
@@ -103,7 +109,7 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
   const Eigen::Matrix3Xi& triangles = m.mesh->triangles();
   for (int t = 0; t < triangles.cols(); ++t) {
     const auto corner = triangles.col(t);
-    if (std::max({height[corner[0]], height[corner[1]], height[corner[2]]}) < least) continue;
+    if (std::max({height[corner[0]], height[corner[1]], height[corner[2]]}) < min_height) continue;
     const Vec3<double> p0 = m.x.col(corner[0]), p1 = m.x.col(corner[1]), p2 = m.x.col(corner[2]);
     if ((p0.cwiseMax(p1).cwiseMax(p2).array() < box.min().array()).any() ||
         (p0.cwiseMin(p1).cwiseMin(p2).array() > box.max().array()).any())
@@ -113,20 +119,21 @@ Candidates candidates(const PlacedMesh& m, const Eigen::AlignedBox3d& box, const
   return chosen;
 }
 
-/// Leaves those that are not below `least`.
-void keep_above(Candidates& chosen, const PlacedMesh& m, const VecX<double>& height, double least) {
+/// Removes those whose height is below min_height.
+void keep_above(Candidates& chosen, const PlacedMesh& m, const VecX<double>& height, double min_height) {
   auto keep = [](auto& all, auto&& top) {
     all.erase(std::remove_if(all.begin(), all.end(), [&](const auto& one) { return !top(one); }), all.end());
   };
-  keep(chosen.vertices, [&](int k) { return height[k] >= least; });
+  keep(chosen.vertices, [&](int k) { return height[k] >= min_height; });
   keep(chosen.edges, [&](int k) {
     const ContactMesh::Edge& e = m.mesh->edges()[at(k)];
-    return std::max(height[e.from], height[e.to]) >= least;
+    return std::max(height[e.from], height[e.to]) >= min_height;
   });
-  keep(chosen.faces, [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= least; });
+  keep(chosen.faces,
+       [&](const Candidates::Face& face) { return height(face.corner).maxCoeff() >= min_height; });
 }
 
-/// Those of some edges of a mesh that stick out.
+/// Returns the convex edges among some edges of a mesh.
 std::vector<SharpEdge> sharp_edges(const PlacedMesh& m, const std::vector<int>& edges) {
   std::vector<SharpEdge> sharp;
   for (const int k : edges) {
@@ -138,59 +145,61 @@ std::vector<SharpEdge> sharp_edges(const PlacedMesh& m, const std::vector<int>& 
   return sharp;
 }
 
-/// The face that a point is nearest to.
+/// The face that is nearest to a point.
 struct NearestFace {
   const Candidates::Face* face = nullptr;
-  Vec3<double> weight = Vec3<double>::Zero();               ///< of its corners in the point of it
-  double square = std::numeric_limits<double>::infinity();  ///< of the distance, m^2
-  double gap = 0;                                           ///< height over its plane, m
+  Vec3<double> weight = Vec3<double>::Zero();               ///< of the corners in the nearest point
+  double square = std::numeric_limits<double>::infinity();  ///< squared distance, m^2
+  double gap = 0;                                           ///< height over the plane of the face, m
 
-  /// The point of it.
+  /// The nearest point.
   Vec3<double> foot() const { return weight[0] * face->p0 + weight[1] * face->p1 + weight[2] * face->p2; }
   bool is_straight_behind() const { return gap < 0 && square <= gap * gap * (1 + kStraightAbove); }
 };
 
-/// Tells which of some faces a point is nearest to.
+/// Finds the nearest of some faces.
 class NearestOf {
  public:
-  /// faces: must outlive it.
+  /// faces: must outlive this object.
   explicit NearestOf(const std::vector<Candidates::Face>& faces)
       : faces_(faces), centres_(static_cast<Eigen::Index>(faces.size()), 3) {
     for (Eigen::Index k = 0; k < centres_.rows(); ++k)
       centres_.row(k) = faces[static_cast<std::size_t>(k)].centre.transpose();
   }
 
-  /// Of those that count.
+  /// Returns the nearest to x of the faces for which is_candidate(face) is true.
   template <class F>
-  NearestFace operator()(const Vec3<double>& x, F&& counts) {
+  NearestFace operator()(const Vec3<double>& x, F&& is_candidate) {
     NearestFace best;
     double reach = std::numeric_limits<double>::infinity();
     auto consider = [&](const Candidates::Face& face) {
       const double height = face.normal.dot(x - face.p0);
       const Vec3<double> w = nearest_weights(x, face.p0, face.p1, face.p2);
       const double square = (w[0] * face.p0 + w[1] * face.p1 + w[2] * face.p2 - x).squaredNorm();
-      // Where several are as near, the one that x stands highest over or below tells inside from outside.
+      // Of several equally near faces, the one with the largest |height| of x decides between inside and
+      // outside.
       const bool nearer = square < best.square * (1 - kTie);
       if (!nearer && !(square < best.square * (1 + kTie) && std::abs(height) > std::abs(best.gap))) return;
       best = {&face, w, square, height};
       reach = std::sqrt(square) * (1 + kTie);
     };
-    // Begun with the one whose middle is nearest, most of the others can be told not to be nearer.
-    squares_ = (centres_.col(0) - x[0]).square() + (centres_.col(1) - x[1]).square() +
-               (centres_.col(2) - x[2]).square();
+    // The face with the nearest centre is tested first, so that most other faces are excluded by their balls.
+    squared_distances_ = (centres_.col(0) - x[0]).square() + (centres_.col(1) - x[1]).square() +
+                         (centres_.col(2) - x[2]).square();
     std::size_t first = faces_.size();
-    double least = std::numeric_limits<double>::infinity();
+    double min_square = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < faces_.size(); ++k) {
-      const double square = squares_[static_cast<Eigen::Index>(k)];
-      if (!(square < least) || !counts(faces_[k])) continue;
-      least = square;
+      const double square = squared_distances_[static_cast<Eigen::Index>(k)];
+      if (!(square < min_square) || !is_candidate(faces_[k])) continue;
+      min_square = square;
       first = k;
     }
     if (first == faces_.size()) return best;
     consider(faces_[first]);
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       const double most = reach + faces_[k].radius;
-      if (squares_[static_cast<Eigen::Index>(k)] <= most * most && counts(faces_[k])) consider(faces_[k]);
+      if (squared_distances_[static_cast<Eigen::Index>(k)] <= most * most && is_candidate(faces_[k]))
+        consider(faces_[k]);
     }
     return best;
   }
@@ -198,15 +207,15 @@ class NearestOf {
  private:
   const std::vector<Candidates::Face>& faces_;
   Eigen::Array<double, Eigen::Dynamic, 3> centres_;
-  Eigen::ArrayXd squares_;  // of distances
+  Eigen::ArrayXd squared_distances_;  // squared distances of the centres
 };
 
-/// Vertices of one mesh that are behind faces of the other. all: these are all of its faces, so
-/// that what is behind one is inside even where another one meets it in a dent. one_is_a: which is which in
-/// what is found.
-void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
-                     const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
-                     std::vector<MeshTouch>& found) {
+/// Appends the overlaps of vertices of one mesh that are behind faces of the other. all: the faces are all
+/// faces of the other mesh near it, so that a vertex that is not straight behind its nearest face, as in a
+/// dent, is inside too. one_is_a: whether `one` is side a of the result.
+void add_vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertices,
+                         const std::vector<Candidates::Face>& faces, bool all, bool one_is_a,
+                         std::vector<MeshTouch>& found) {
   NearestOf nearest_of(faces);
   for (const int k : vertices) {
     const Vec3<double> x = one.col(k);
@@ -233,10 +242,11 @@ void vertices_inside(const Eigen::Matrix3Xd& one, const std::vector<int>& vertic
   }
 }
 
-/// Edges of a and b that have gone across each other: of convex surfaces those whose normals, those of b
-/// turned round, cross on the sphere, so that their distance is one of the bodies.
-void edges_across(const std::vector<SharpEdge>& of_a, const std::vector<SharpEdge>& of_b,
-                  std::vector<MeshTouch>& found) {
+/// Appends the overlaps of edges of a and b that have passed through each other. For convex edges these are
+/// the pairs whose arcs of normals, those of b reversed, cross on the unit sphere (a face of the Minkowski
+/// difference).
+void add_crossing_edges(const std::vector<SharpEdge>& of_a, const std::vector<SharpEdge>& of_b,
+                        std::vector<MeshTouch>& found) {
   for (const SharpEdge& e : of_a)
     for (const SharpEdge& f : of_b) {
       const double above_1 = -f.n1.dot(e.n21), above_2 = -f.n2.dot(e.n21);
@@ -267,8 +277,8 @@ void edges_across(const std::vector<SharpEdge>& of_a, const std::vector<SharpEdg
     }
 }
 
-/// Whether a point of a triangle, told by its weights, is on an edge or a corner from which nothing sticks
-/// out: behind it there are points that are straight behind no triangle.
+/// Whether a point of a triangle, given by its weights, is on an edge or a corner without a sharp edge.
+/// Behind such an edge or corner there are points that are straight behind no triangle.
 bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weight) {
   std::array<int, 3> on{};
   std::size_t n = 0;
@@ -280,10 +290,10 @@ bool is_in_valley(const ObstacleMesh& m, int triangle, const Vec3<double>& weigh
   return !m.edges()[static_cast<std::size_t>(m.edges_of(triangle)[edge])].sharp;
 }
 
-/// Vertices of a that are behind triangles that they are turned towards; of a plate those that it parts from
-/// the middle of a.
-void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
-                     std::vector<MeshTouch>& found) {
+/// Appends the overlaps of vertices of a that are behind triangles whose normals oppose the outward direction
+/// of the vertex. For a plate these are the vertices on the other side of the plate from the centre of a.
+void add_vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vector<int>& triangles,
+                         std::vector<MeshTouch>& found) {
   std::vector<Candidates::Face> faces;
   std::vector<int> numbers;
   const Vec3<double> middle = a.x.rowwise().mean();
@@ -330,24 +340,25 @@ void vertices_behind(const PlacedMesh& a, const ObstacleMesh& b, const std::vect
   }
 }
 
-struct SharpParts {
+struct SharpElements {
   std::vector<int> vertices;
   std::vector<SharpEdge> edges;
 };
 
-/// What sticks out of some triangles of an obstacle: the border does so to its side, the edge of a plate from
-/// its front to its side and from there to its back.
-SharpParts sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
-  SharpParts sharp;
+/// Returns the sharp edges of some triangles of an obstacle, and their vertices. The second normal of a
+/// border edge points sideways. The edge of a plate is entered twice: from front to side, and from side to
+/// back.
+SharpElements sharp_elements(const ObstacleMesh& m, const std::vector<int>& triangles) {
+  SharpElements sharp;
   std::vector<int> edges;
   for (const int t : triangles)
     for (const int e : m.edges_of(t))
       if (m.edges()[static_cast<std::size_t>(e)].sharp) edges.push_back(e);
-  auto once = [](std::vector<int>& some) {
+  auto sort_unique = [](std::vector<int>& some) {
     std::sort(some.begin(), some.end());
     some.erase(std::unique(some.begin(), some.end()), some.end());
   };
-  once(edges);
+  sort_unique(edges);
   for (const int number : edges) {
     const ObstacleMesh::Edge& e = m.edges()[static_cast<std::size_t>(number)];
     const Vec3<double> p = m.vertices().col(e.vertex[0]),
@@ -366,7 +377,7 @@ SharpParts sharp_of(const ObstacleMesh& m, const std::vector<int>& triangles) {
       add(side, back);
     }
   }
-  once(sharp.vertices);
+  sort_unique(sharp.vertices);
   return sharp;
 }
 
@@ -377,14 +388,15 @@ PlacedMesh::PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at)
 
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found) {
   if (!a.box.intersects(b.box)) return;
-  // Nothing of a that is behind all of b touches it, whatever the direction; the same the other way round.
+  // A vertex of a that is before all of b along a direction does not overlap b, and the reverse; any
+  // direction gives a valid bound.
   Vec3<double> towards = (b.box.center() - a.box.center()).normalized();
   VecX<double> along_a = a.x.transpose() * towards, along_b = -(b.x.transpose() * towards);
   double end_of_a = along_a.maxCoeff(), start_of_b = -along_b.maxCoeff();
   if (end_of_a < start_of_b) return;
   Candidates of_a = candidates(a, b.box, along_a, start_of_b),
              of_b = candidates(b, a.box, along_b, -end_of_a);
-  // Those that are left tell a direction that parts the bodies better.
+  // The mean normal of the remaining faces is a better separating direction.
   towards.setZero();
   for (const Candidates::Face& face : of_a.faces) towards += face.normal;
   for (const Candidates::Face& face : of_b.faces) towards -= face.normal;
@@ -396,9 +408,9 @@ void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouc
   if (end_of_a < start_of_b) return;
   keep_above(of_a, a, along_a, start_of_b);
   keep_above(of_b, b, along_b, -end_of_a);
-  vertices_inside(a.x, of_a.vertices, of_b.faces, false, true, found);
-  vertices_inside(b.x, of_b.vertices, of_a.faces, false, false, found);
-  edges_across(sharp_edges(a, of_a.edges), sharp_edges(b, of_b.edges), found);
+  add_vertices_inside(a.x, of_a.vertices, of_b.faces, false, true, found);
+  add_vertices_inside(b.x, of_b.vertices, of_a.faces, false, false, found);
+  add_crossing_edges(sharp_edges(a, of_a.edges), sharp_edges(b, of_b.edges), found);
 }
 
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found) {
@@ -409,18 +421,18 @@ void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, st
   b.query(around, near);
   if (near.empty()) return;
   const auto first = static_cast<std::ptrdiff_t>(found.size());
-  vertices_behind(a, b, near, found);
-  const SharpParts sharp = sharp_of(b, near);
+  add_vertices_behind(a, b, near, found);
+  const SharpElements sharp = sharp_elements(b, near);
   const auto of_corners = static_cast<std::ptrdiff_t>(found.size());
   if (!sharp.edges.empty()) {
     const Candidates of_a = candidates(a, around, VecX<double>::Zero(a.x.cols()), 0);
-    vertices_inside(b.vertices(), sharp.vertices, of_a.faces, true, false, found);
+    add_vertices_inside(b.vertices(), sharp.vertices, of_a.faces, true, false, found);
     found.erase(std::remove_if(found.begin() + of_corners, found.end(),
                                [&](const MeshTouch& touch) {
-                                 return !b.leads_out(touch.b.vertex[0], touch.normal, kOut);
+                                 return !b.points_outward(touch.b.vertex[0], touch.normal, kOutwardSine);
                                }),
                 found.end());
-    edges_across(sharp_edges(a, of_a.edges), sharp.edges, found);
+    add_crossing_edges(sharp_edges(a, of_a.edges), sharp.edges, found);
   }
   found.erase(std::remove_if(found.begin() + first, found.end(),
                              [&](const MeshTouch& touch) { return touch.gap < -deepest; }),

@@ -1,3 +1,4 @@
+// Velocities of mesh nodes: x_dot = c_dot + R (omega x p + s_dot + d_dot), Eq. (7).
 #include <pliant/collision/mesh/node_motion.h>
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// Checks of an obstacle mesh, its edges, faces and sharp edges, its tree of boxes, and queries.
 #include <pliant/collision/mesh/obstacle_mesh.h>
 
 #include <algorithm>
@@ -13,11 +14,11 @@ namespace pliant {
 
 namespace {
 
-/// A triangle that is lower than this share of its longest edge has no area: corners are told in single
-/// precision.
+/// A triangle whose height is below this share of its longest edge has no area; vertices of files are often
+/// in single precision.
 constexpr double kNoHeight = 1e-7;
-/// Triangles are in one plane when they are this near to it, in diagonals of the mesh, and turned against it
-/// by no more than this.
+/// Triangles are in one plane if their vertices are nearer to it than kSamePlane, in diagonals of the mesh,
+/// and their normals differ by at most kOnePlaneNormal.
 constexpr double kSamePlane = 4e-7, kOnePlaneNormal = 1e-4;
 constexpr int kTrianglesInLeaf = 4;
 
@@ -27,30 +28,30 @@ std::string place(const Vec3<double>& x) {
   return text.str();
 }
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void fail_mesh(const std::string& what) {
   throw std::invalid_argument(what);
 }
 
 }  // namespace
 
 ObstacleMesh::ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles) {
-  if (triangles.cols() == 0) refuse("it has no triangles");
+  if (triangles.cols() == 0) fail_mesh("it has no triangles");
   weld(vertices, triangles);
-  lay_edges();
+  build_edges();
   order_.resize(at(static_cast<int>(triangles_.cols())));
   for (std::size_t t = 0; t < order_.size(); ++t) order_[t] = static_cast<int>(t);
-  lay_tree(0, static_cast<int>(order_.size()));
-  lay_faces();
+  build_tree(0, static_cast<int>(order_.size()));
+  build_faces();
   mark_sharp();
 }
 
 void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles) {
   std::map<std::array<double, 3>, int> number_at;
   std::vector<int> number;
-  std::vector<Eigen::Index> first;  // vertex of the file, of each number
+  std::vector<Eigen::Index> first;  // for each merged vertex, its first vertex in the input
   for (Eigen::Index i = 0; i < vertices.cols(); ++i) {
     const Vec3<double> x = vertices.col(i);
-    if (!x.allFinite()) refuse("vertex " + std::to_string(i) + " is not finite: " + place(x));
+    if (!x.allFinite()) fail_mesh("vertex " + std::to_string(i) + " is not finite: " + place(x));
     const auto [entry, is_new] =
         number_at.try_emplace({x[0] + 0.0, x[1] + 0.0, x[2] + 0.0}, static_cast<int>(first.size()));
     if (is_new) first.push_back(i);
@@ -67,8 +68,8 @@ void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi
     for (int k = 0; k < 3; ++k) {
       const int i = triangles(k, t);
       if (i < 0 || i >= vertices.cols())
-        refuse("triangle " + std::to_string(t) + " has vertex " + std::to_string(i) + " of " +
-               std::to_string(vertices.cols()));
+        fail_mesh("triangle " + std::to_string(t) + " names vertex " + std::to_string(i) +
+                  ", but the number of vertices is " + std::to_string(vertices.cols()));
       triangles_(k, t) = number[at(i)];
       used[at(number[at(i)])] = true;
       corner[at(k)] = vertices.col(i);
@@ -77,18 +78,18 @@ void ObstacleMesh::weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi
     const Vec3<double> across = a.cross(b);
     const double longest = std::max({a.norm(), b.norm(), (corner[2] - corner[1]).norm()});
     if (!(across.norm() > kNoHeight * longest * longest))
-      refuse("triangle " + std::to_string(t) + " has no area: its corners are " + place(corner[0]) + ", " +
-             place(corner[1]) + " and " + place(corner[2]));
+      fail_mesh("triangle " + std::to_string(t) + " has no area: its corners are " + place(corner[0]) + ", " +
+                place(corner[1]) + " and " + place(corner[2]));
     normals_.col(t) = across.normalized();
   }
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k])
-      refuse("vertex " + std::to_string(first[k]) +
-             " is in no triangle: " + place(x_.col(static_cast<Eigen::Index>(k))));
+      fail_mesh("vertex " + std::to_string(first[k]) +
+                " is in no triangle: " + place(x_.col(static_cast<Eigen::Index>(k))));
 }
 
-void ObstacleMesh::lay_edges() {
-  std::map<std::pair<int, int>, int> number;  // by its vertices, the lower first
+void ObstacleMesh::build_edges() {
+  std::map<std::pair<int, int>, int> number;  // by vertices, the smaller number first
   edges_of_.resize(at(static_cast<int>(triangles_.cols())));
   for (int t = 0; t < triangles_.cols(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -100,19 +101,19 @@ void ObstacleMesh::lay_edges() {
         continue;
       }
       Edge& edge = edges_[at(entry->second)];
-      auto told = [&] { return "the edge from " + place(x_.col(a)) + " to " + place(x_.col(b)); };
+      auto edge_text = [&] { return "the edge from " + place(x_.col(a)) + " to " + place(x_.col(b)); };
       const std::string one = std::to_string(edge.triangle[0]), other = std::to_string(t);
       if (edge.triangle[1] >= 0)
-        refuse(told() + " has three triangles: " + one + ", " + std::to_string(edge.triangle[1]) + " and " +
-               other);
+        fail_mesh(edge_text() + " has three triangles: " + one + ", " + std::to_string(edge.triangle[1]) +
+                  " and " + other);
       if (edge.vertex[0] == a)
-        refuse("triangles " + one + " and " + other + " are turned against each other at " + told());
+        fail_mesh("triangles " + one + " and " + other + " have opposite orientations at " + edge_text());
       edge.triangle[1] = t;
     }
   closed_ = std::all_of(edges_.begin(), edges_.end(), [](const Edge& e) { return e.triangle[1] >= 0; });
 }
 
-void ObstacleMesh::lay_tree(int first, int count) {
+void ObstacleMesh::build_tree(int first, int count) {
   Node node{{}, first, count, 0};
   for (int i = first; i < first + count; ++i)
     for (int k = 0; k < 3; ++k) node.box.extend(x_.col(triangles_(k, order_[at(i)])));
@@ -129,12 +130,12 @@ void ObstacleMesh::lay_tree(int first, int count) {
   std::nth_element(begin, begin + half, begin + count,
                    [&](int i, int j) { return std::pair(middle(i), i) < std::pair(middle(j), j); });
   nodes_[here].count = 0;
-  lay_tree(first, half);
+  build_tree(first, half);
   nodes_[here].second = static_cast<int>(nodes_.size());
-  lay_tree(first + half, count - half);
+  build_tree(first + half, count - half);
 }
 
-void ObstacleMesh::lay_faces() {
+void ObstacleMesh::build_faces() {
   const double near = kSamePlane * box().diagonal().norm();
   face_of_.assign(edges_of_.size(), -1);
   std::vector<int> open;
@@ -169,7 +170,7 @@ void ObstacleMesh::mark_sharp() {
     if (edge.triangle[1] < 0) continue;
     const Vec3<double> n = normal(edge.triangle[0]), m = normal(edge.triangle[1]);
     const double sine = n.cross(m).dot(along(edge));
-    // Two sides of a plate lie on each other: that is a ridge too.
+    // The two sides of a plate coincide; their common edge is a ridge too.
     edge.sharp = face_of_[at(edge.triangle[0])] != face_of_[at(edge.triangle[1])] &&
                  (sine > 0 || (n.dot(m) < 0 && sine > -kOnePlaneNormal));
   }
@@ -180,14 +181,14 @@ void ObstacleMesh::mark_sharp() {
       corner.clear();
 }
 
-bool ObstacleMesh::leads_out(const Edge& edge, const Vec3<double>& direction, double sine) const {
+bool ObstacleMesh::points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const {
   const Vec3<double> e = along(edge);
   if (direction.dot(e.cross(normal(edge.triangle[0]))) < -sine) return false;
   if (edge.triangle[1] < 0) return direction.dot(normal(edge.triangle[0])) >= -sine;
   return direction.dot(normal(edge.triangle[1]).cross(e)) >= -sine;
 }
 
-bool ObstacleMesh::leads_out(int vertex, const Vec3<double>& direction, double sine) const {
+bool ObstacleMesh::points_outward(int vertex, const Vec3<double>& direction, double sine) const {
   const std::vector<int>& meet = corner(vertex);
   return std::all_of(meet.begin(), meet.end(), [&](int number) {
     const Edge& edge = edges_[at(number)];
@@ -198,7 +199,8 @@ bool ObstacleMesh::leads_out(int vertex, const Vec3<double>& direction, double s
 
 void ObstacleMesh::query(const Eigen::AlignedBox3d& box, std::vector<int>& found) const {
   found.clear();
-  std::array<int, 64> open;  // halves of halves: as deep as a number has bits
+  std::array<int, 64>
+      open;  // the tree halves its triangles, so its depth is at most the number of bits of an int
   std::size_t n_open = 0;
   open[n_open++] = 0;
   while (n_open > 0) {

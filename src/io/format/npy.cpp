@@ -1,5 +1,5 @@
 // Format version 1.0: magic, version, header length, a Python dictionary padded with blanks to a multiple of
-// 64 bytes. Our header always takes kHeader bytes, so that the count can be rewritten in place.
+// 64 bytes. The header always has kHeader bytes, so that the number of rows can be rewritten in place.
 #include <pliant/io/format/npy.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ void write_at(int descriptor, const void* bytes, std::size_t size, std::int64_t 
   }
 }
 
-// Bytes read, fewer than size only at the end of the file.
+// Returns the number of bytes read; it is less than size only at the end of the file.
 std::size_t read_at(int descriptor, void* bytes, std::size_t size, std::int64_t offset,
                     const std::filesystem::path& path) {
   std::size_t done = 0;
@@ -62,7 +62,7 @@ std::size_t read_at(int descriptor, void* bytes, std::size_t size, std::int64_t 
   throw std::runtime_error(path.string() + " is not a table of a recording: " + why);
 }
 
-// The integers of 'shape': (...).
+// Returns the integers of 'shape': (...).
 std::vector<std::int64_t> parse_shape(const std::string& header, const std::filesystem::path& path) {
   const std::size_t key = header.find("'shape'");
   const std::size_t open = key == std::string::npos ? key : header.find('(', key);
@@ -121,7 +121,7 @@ NpyWriter NpyWriter::resume(const std::filesystem::path& path, int columns, std:
   NpyWriter writer(path, descriptor, columns, rows);
   writer.write_header();
   const auto size = static_cast<off_t>(kHeader + row_bytes(columns) * static_cast<std::size_t>(rows));
-  if (::ftruncate(descriptor, size) != 0) throw_file_fault(errno, "cut", path);
+  if (::ftruncate(descriptor, size) != 0) throw_file_fault(errno, "truncate", path);
   return writer;
 }
 
@@ -166,16 +166,17 @@ NpyReader::NpyReader(std::filesystem::path path) : path_(std::move(path)) {
     char start[10];
     if (read_at(descriptor_, start, sizeof start, 0, path_) != sizeof start ||
         std::memcmp(start, "\x93NUMPY", 6) != 0)
-      refuse(path_, "it does not begin like a NumPy file");
-    if (start[6] != 1) refuse(path_, "it is of another version of NumPy's format");
+      refuse(path_, "it does not begin as a NumPy file");
+    if (start[6] != 1) refuse(path_, "it has another version of NumPy's format");
     const std::size_t length =
         static_cast<unsigned char>(start[8]) + std::size_t{256} * static_cast<unsigned char>(start[9]);
     std::string header(length, '\0');
     if (read_at(descriptor_, header.data(), length, sizeof start, path_) != length)
-      refuse(path_, "its header is cut");
+      refuse(path_, "its header is truncated");
     if (header.find(std::string("'descr': '") + kType + "'") == std::string::npos)
-      refuse(path_, "it does not hold doubles of this machine");
-    if (header.find("'fortran_order': False") == std::string::npos) refuse(path_, "it is not in rows");
+      refuse(path_, "it does not contain doubles in the byte order of this machine");
+    if (header.find("'fortran_order': False") == std::string::npos)
+      refuse(path_, "it is not in row-major order");
     const std::vector<std::int64_t> shape = parse_shape(header, path_);
     if (shape.empty() || shape.size() > 2)
       refuse(path_, "it has " + std::to_string(shape.size()) + " dimensions");
@@ -206,10 +207,10 @@ void NpyReader::read(std::int64_t row, double* numbers, std::int64_t count) cons
   if (row < 0 || count < 0 || row > rows_ - count)
     throw std::out_of_range(path_.string() + " has no row " +
                             std::to_string(row < 0 ? row : row + count - 1));
-  const auto a_row = static_cast<std::int64_t>(row_bytes(columns_));
-  const auto bytes = static_cast<std::size_t>(count * a_row);
-  if (read_at(descriptor_, numbers, bytes, data_ + row * a_row, path_) != bytes)
-    refuse(path_, "row " + std::to_string(row + count - 1) + " is cut");
+  const auto row_size = static_cast<std::int64_t>(row_bytes(columns_));
+  const auto bytes = static_cast<std::size_t>(count * row_size);
+  if (read_at(descriptor_, numbers, bytes, data_ + row * row_size, path_) != bytes)
+    refuse(path_, "row " + std::to_string(row + count - 1) + " is truncated");
 }
 
 }  // namespace pliant

@@ -1,5 +1,4 @@
-// Text goes line by line into a block that stays in the cache, and from there to the file or string it is
-// meant for.
+// OBJ text is written line by line into a block that stays in the cache, and from there to a file or string.
 #include <pliant/io/format/obj.h>
 
 #include <algorithm>
@@ -18,11 +17,12 @@ constexpr std::size_t kLongestLine = 3 * (2 * kLongestNumber + 3) + 8;
 
 using Sink = std::function<void(const char*, std::size_t)>;
 
+/// A text buffer that passes its content to a sink when it is full.
 class Block {
  public:
   explicit Block(Sink sink) : sink_(std::move(sink)), bytes_(new char[kSize]) {}
 
-  /// Room for one line; what was written of it is told by wrote().
+  /// Returns a pointer to space for one line. The caller reports the end of the written text by wrote().
   char* line() {
     if (used_ + kLongestLine > kSize) flush();
     return bytes_.get() + used_;
@@ -53,7 +53,7 @@ char* put(char* at, std::int64_t n) {
   return std::to_chars(at, at + kLongestNumber, n).ptr;
 }
 
-// A component of a unit vector with six decimals: "-0.577350".
+// Writes a component of a unit vector with six decimals: "-0.577350".
 char* put_unit(char* at, double x) {
   auto millionths = static_cast<int>(std::lround(std::clamp(x, -1.0, 1.0) * 1e6));
   if (millionths < 0) {
@@ -70,7 +70,7 @@ char* put_unit(char* at, double x) {
   return at + 6;
 }
 
-// Names of groups end at a blank.
+// Returns the name of a group; in OBJ files a name ends at a blank, so blanks are replaced.
 std::string group_name(const std::string& name) {
   std::string group = name;
   for (char& c : group)
@@ -78,7 +78,7 @@ std::string group_name(const std::string& name) {
   return group;
 }
 
-// Lines of one mesh. vertex, normal: numbers of its first, from 1.
+// Writes the lines of one mesh. vertex, normal: numbers of its first vertex and normal, counted from 1.
 void add_mesh(Block& block, const TriangleMesh& mesh, std::int64_t vertex, std::int64_t normal) {
   for (Eigen::Index i = 0; i < mesh.x.cols(); ++i) {
     char* at = block.line();

@@ -1,5 +1,6 @@
-// PNG through libpng: fastest compression and the Up filter, which on rendered pictures cost a fifth of the
-// time of the defaults for about a quarter more bytes. Encoded in memory, then written whole.
+// PNG with libpng, using the fastest compression and the Up filter: for rendered pictures they need a fifth
+// of the time of the defaults and give about a quarter more bytes. A picture is encoded in memory, then
+// written whole.
 #include <pliant/io/format/png.h>
 
 #include <csetjmp>
@@ -42,7 +43,7 @@ void on_bytes(png_structp png, png_bytep bytes, png_size_t size) {
 
 void on_flush(png_structp) {}
 
-// libpng reports an error by a long jump to here: nothing in this function may own anything.
+// libpng reports an error by a long jump into this function, so no local object here may own a resource.
 bool encode(png_structp png, png_infop info, const Image& image, Encoding& encoding) {
   if (setjmp(png_jmpbuf(png))) return false;
   png_set_write_fn(png, &encoding, on_bytes, on_flush);

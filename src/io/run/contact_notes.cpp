@@ -1,3 +1,4 @@
+#include <pliant/contact/contact_stepping.h>
 #include <pliant/io/run/contact_notes.h>
 
 #include <algorithm>
@@ -12,30 +13,30 @@ namespace pliant {
 
 namespace {
 
-constexpr std::size_t kMostTold = 10;
+constexpr std::size_t kMaxReported = 10;  // pairs per state
 
-/// "the plane 'floor'"
+/// Returns the name of the second thing of a contact, with its kind: "the plane 'floor'".
 std::string other_side(const Model& model, const Contact& contact) {
   if (contact.b.part >= 0) return "part '" + model.parts()[at(contact.b.part)].part->name() + "'";
   if (contact.plane >= 0) return "the plane '" + model.body().contact.planes[at(contact.plane)].name + "'";
   return "the obstacle '" + model.body().contact.obstacles[at(contact.obstacle)].name + "'";
 }
 
-/// ", unless hinge 'arm' holds them": the first joint that holds a part of a contact to what nothing moves;
-/// empty: there is none.
+/// Returns ", unless hinge 'arm' prevents it" for the first closed or closing joint that ties a part of a
+/// contact to the world or to an immobile part, or an empty text if there is none.
 std::string holding_joint(const Simulation& simulation, const Contact& contact) {
   const Model& model = simulation.model();
   for (std::size_t j = 0; j < model.joints().size(); ++j) {
     const JointModel& joint = model.joints()[j];
     const JointMode mode = simulation.state().joints[j];
     if (mode != JointMode::closed && mode != JointMode::closing) continue;
-    const bool holds = std::any_of(joint.at.begin(), joint.at.end(), [&](const PortRef& port) {
+    const bool anchored = std::any_of(joint.at.begin(), joint.at.end(), [&](const PortRef& port) {
       return port.part < 0 || model.parts()[at(port.part)].q0 < 0;
     });
-    if (!holds) continue;
+    if (!anchored) continue;
     for (const JointSide& side : joint.sides)
       if (side.part == contact.a.part || side.part == contact.b.part)
-        return ", unless " + std::string(joint.joint->type()) + " '" + joint.joint->name() + "' holds them";
+        return ", unless " + std::string(joint.joint->type()) + " '" + joint.joint->name() + "' prevents it";
   }
   return {};
 }
@@ -50,32 +51,35 @@ double deepest_share(const Simulation& simulation) {
   return deepest;
 }
 
-std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told) {
+std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported) {
   if (simulation.contact() == nullptr) return {};
   const Model& model = simulation.model();
   const std::vector<Contact> overlaps = simulation.contact()->overlaps(simulation.state(), simulation.time());
   std::map<TouchingPair, const Contact*> deepest;
   for (const Contact& contact : overlaps) {
     const TouchingPair pair{contact.a.part, contact.b.part, contact.plane, contact.obstacle};
-    if (!(contact.gap < -kToldOverlap * smaller_size(model, contact)) || told.count(pair) > 0) continue;
+    if (!(contact.gap < -kReportedOverlap * smaller_size(model, contact)) || reported.count(pair) > 0)
+      continue;
     const Contact*& known = deepest[pair];
     if (known == nullptr || contact.gap < known->gap) known = &contact;
   }
   std::vector<const Contact*> now;
   for (const auto& entry : deepest) {
     now.push_back(entry.second);
-    told.insert(entry.first);
+    reported.insert(entry.first);
   }
   std::stable_sort(now.begin(), now.end(),
                    [](const Contact* one, const Contact* other) { return one->gap < other->gap; });
   std::vector<std::string> notes;
-  for (std::size_t k = 0; k < std::min(now.size(), kMostTold); ++k)
+  for (std::size_t k = 0; k < std::min(now.size(), kMaxReported); ++k)
     notes.push_back("warning: at t = " + rounded_text(simulation.time()) + " s part '" +
                     model.parts()[at(now[k]->a.part)].part->name() + "' and " + other_side(model, *now[k]) +
-                    " overlap by " + rounded_text(-now[k]->gap) + " m; they are parted at a bounded speed" +
+                    " overlap by " + rounded_text(-now[k]->gap) + " m, which is " +
+                    rounded_text(-now[k]->gap / smaller_size(model, *now[k]), 2) +
+                    " of the size of the smaller part; contact separates them at a bounded speed" +
                     holding_joint(simulation, *now[k]));
-  if (now.size() > kMostTold)
-    notes.push_back("and " + std::to_string(now.size() - kMostTold) + " pairs more overlap less");
+  if (now.size() > kMaxReported)
+    notes.push_back(std::to_string(now.size() - kMaxReported) + " more pairs overlap by less");
   return notes;
 }
 

@@ -13,52 +13,54 @@ namespace pliant {
 
 namespace {
 
-constexpr double kTighter = 10;
+constexpr double kTighter = 10;  // ratio of the two tolerances
 
-/// What is no number stays.
-void raise(double& most, double value) {
-  if (!(value <= most) && !std::isnan(most)) most = value;
+/// Replaces a maximum by a larger value; NaN is kept.
+void raise_max(double& max, double value) {
+  if (!(value <= max) && !std::isnan(max)) max = value;
 }
 
+/// Raises the differences of coordinates and velocities between two states.
 void compare(const Model& model, const State& a, const State& b, ErrorEstimate& error) {
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
     const VecX<double> q = a.q - b.q, v = a.v - b.v;
-    raise(error.place, q.segment<3>(m.q0).norm());
-    raise(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
-    raise(error.velocity, v.segment<3>(m.v0).norm());
-    raise(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
+    raise_max(error.place, q.segment<3>(m.q0).norm());
+    raise_max(error.rotation, 2 * q.segment<4>(m.q0 + 3).norm());
+    raise_max(error.velocity, v.segment<3>(m.v0).norm());
+    raise_max(error.angular_velocity, v.segment<3>(m.v0 + 3).norm());
     for (int k = 0; k < m.n_s; ++k) {
       const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
-      raise(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
+      raise_max(is_length ? error.length : error.parameter, std::abs(q[m.q0 + 7 + k]));
     }
     if (m.n_d() > 0)
-      raise(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
+      raise_max(error.displacement, q.segment(m.q0 + 7 + m.n_s, m.n_d()).lpNorm<Eigen::Infinity>());
   }
 }
 
-/// Forces of joints, as evaluations at both states left them, and how far those that hold are open.
+/// Raises the differences of joint forces between two states, and the gaps of closed joints. work_a, work_b:
+/// results of evaluations at the states.
 void compare_joints(const Dynamics& dynamics, const State& a, const Workspace<double>& work_a, const State& b,
                     const Workspace<double>& work_b, ErrorEstimate& error) {
   const Model& model = dynamics.model();
   for (int j = 0; j < static_cast<int>(model.joints().size()); ++j) {
     const auto k = static_cast<std::size_t>(j);
-    if (a.joints[k] == JointMode::closed) raise(error.gap, model.gap(a, j));
+    if (a.joints[k] == JointMode::closed) raise_max(error.gap, model.gap(a, j));
     if (a.joints[k] != b.joints[k]) continue;
     const Wrench one = dynamics.joint_wrench(a.time(), j, work_a),
                  other = dynamics.joint_wrench(b.time(), j, work_b);
-    raise(error.joint_force, (one.force - other.force).norm());
-    raise(error.joint_torque, (one.torque - other.torque).norm());
+    raise_max(error.joint_force, (one.force - other.force).norm());
+    raise_max(error.joint_torque, (one.torque - other.torque).norm());
   }
 }
 
-/// While it lives, steps to a tolerance in which bodies lie on each other and their error is not controlled
-/// are half as long as those to another.
+/// During its lifetime, the longest contact step of a scene is half as long as that of the original
+/// tolerance.
 class HalfStepsInContact {
  public:
-  HalfStepsInContact(ContactSettings& settings, double tolerance, double of)
+  HalfStepsInContact(ContactSettings& settings, double tolerance, double original_tolerance)
       : settings_(settings), longest_(settings.longest_step) {
-    const double half = longest_contact_step(settings, of) / 2;
+    const double half = longest_contact_step(settings, original_tolerance) / 2;
     settings_.longest_step = half * longest_ / longest_contact_step(settings, tolerance);
   }
   ~HalfStepsInContact() { settings_.longest_step = longest_; }
@@ -70,9 +72,9 @@ class HalfStepsInContact {
   double longest_;
 };
 
-/// On to a time, in steps of one length as near to `step` as lets it be met; to a tolerance in two at least,
-/// for the same step as that of the run would tell nothing.
-void go_to(Simulation& simulation, double until, double step) {
+/// Advances a simulation to a time `until` (s): with fixed steps, in equal steps of about `step`; with a
+/// tolerance, in at least two steps, because a step equal to that of the run would show no difference.
+void step_to(Simulation& simulation, double until, double step) {
   const double now = simulation.time();
   if (!(until > now)) return;
   if (simulation.tolerance() > 0) {
@@ -89,8 +91,8 @@ void go_to(Simulation& simulation, double until, double step) {
 void require_better_run(const Scene& scene) {
   if (!(scene.tolerance > 0) || scene.tolerance > kLeastTolerance) return;
   std::ostringstream message;
-  message << "no run is better than one to a tolerance of " << scene.tolerance
-          << ": its error cannot be estimated";
+  message << "the error of a run with the tolerance " << scene.tolerance
+          << " cannot be estimated, because no run is more accurate; choose a larger tolerance";
   throw std::invalid_argument(message.str());
 }
 
@@ -100,21 +102,21 @@ ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double
   ErrorEstimate error;
   error.tolerance = scene.tolerance > 0 ? std::max(kLeastTolerance, scene.tolerance / kTighter) : 0;
   error.step = scene.tolerance > 0 ? 0 : step / 2;
-  // Where many bodies lie on each other the tolerance says nothing: half the step does.
+  // The tolerance does not control the error of resting contacts of many bodies; there the step is halved.
   const HalfStepsInContact half(scene.body.contact, error.tolerance, scene.tolerance);
   Simulation simulation(scene.body, integrator, threads, error.tolerance);
   const Dynamics& dynamics = simulation.dynamics();
-  Workspace<double> of_run, of_better;
+  Workspace<double> run_work, better_work;
   const double end = run.rows() > 0 ? run.time(run.rows() - 1) : 0;
   progress.begin("estimate error", end, "s");
   for (std::int64_t row = 0; row < run.rows(); ++row) {
     const State recorded = run.state(row);
-    go_to(simulation, recorded.time(), error.step);
+    step_to(simulation, recorded.time(), error.step);
     const State& better = simulation.state();
     compare(simulation.model(), recorded, better, error);
-    raise(error.energy,
-          std::abs(dynamics.ledger(recorded, of_run).energy() - dynamics.ledger(better, of_better).energy()));
-    compare_joints(dynamics, recorded, of_run, better, of_better, error);
+    raise_max(error.energy, std::abs(dynamics.ledger(recorded, run_work).energy() -
+                                     dynamics.ledger(better, better_work).energy()));
+    compare_joints(dynamics, recorded, run_work, better, better_work, error);
     progress.advance(recorded.time());
   }
   progress.end();

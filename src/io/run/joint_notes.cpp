@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace {
 
-/// Rows of joints, and names of the first of these.
+/// A number of constraint rows and the names of the first joints that have them.
 class NamedRows {
  public:
   void add(const JointModel& joint, int rows) {
@@ -23,10 +23,10 @@ class NamedRows {
     else if (joints_ == kShown + 1)
       names_ += " and others";
   }
-  /// "<what>: N rows of M joints, <names>"; empty without rows.
-  std::string text(const std::string& what) const {
+  /// "HEADING: N rows of M joints, NAMES"; empty without rows.
+  std::string text(const std::string& heading) const {
     if (rows_ == 0) return {};
-    return what + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
+    return heading + ": " + count_text(rows_, "row") + " of " + count_text(joints_, "joint") + "," + names_;
   }
 
  private:
@@ -34,11 +34,11 @@ class NamedRows {
   std::string names_;
 };
 
-/// Less than this part of what both ends of a joint do is rounding of what cancels.
+/// Relative size below which a difference of two contributions is rounding error.
 constexpr double kCancelled = 1e-9;
 
-/// Rows of a joint that no motion changes, such as the length of a rod whose ends coincide, or lie on one
-/// part that does not change between them.
+/// Returns the number of rows of a joint whose Jacobian is zero: the length of a rod whose ends coincide, or
+/// whose ends are on one part that does not deform between them.
 int rows_without_direction(const JointModel& joint, const Workspace<double>& work) {
   int count = 0;
   for (int r = 0; r < joint.rows; ++r) {
@@ -56,19 +56,19 @@ int rows_without_direction(const JointModel& joint, const Workspace<double>& wor
   return count;
 }
 
-/// Whether a joint with a gap (m) has yet to close.
+/// Returns whether a joint with this gap (m) is open.
 bool is_open(const Simulation& simulation, int j, double gap) {
   if (simulation.state().joints[static_cast<std::size_t>(j)] != JointMode::closing) return false;
   const JointModel& joint = simulation.model().joints()[static_cast<std::size_t>(j)];
   return simulation.dynamics().joint_policy().projected || gap > kClosedGap * joint.length;
 }
 
-/// Size of an impulse of a joint, N s, a torque's as of forces at its smaller part's surface.
+/// Returns the size of an impulse of a joint, N s. An angular impulse is divided by the length of the joint.
 double size_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   return impulse.impulse.force.norm() + impulse.impulse.torque.norm() / joint.length;
 }
 
-/// "2 N s", "2 N s and 0.1 N m s", or what of it is no rounding.
+/// Returns an impulse as text, "2 N s and 0.1 N m s", without components that are rounding errors.
 std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
   const double size = size_of(impulse, joint), force = impulse.impulse.force.norm(),
                torque = impulse.impulse.torque.norm();
@@ -80,7 +80,8 @@ std::string text_of(const ImpulseOnEngage& impulse, const JointModel& joint) {
 }  // namespace
 
 std::vector<std::string> redundancy_notes(const Simulation& simulation) {
-  // Rows that follow from others agree with them to this part of what closes gaps of a length.
+  // Redundant rows agree with the rows that imply them up to this fraction of the acceleration that closes a
+  // gap of the joint's length.
   constexpr double kAgrees = 1e-6;
   const Model& model = simulation.model();
   const State& state = simulation.state();
@@ -120,9 +121,9 @@ std::vector<std::string> redundancy_notes(const Simulation& simulation) {
   }
   std::vector<std::string> notes;
   for (const std::string& text :
-       {follow.text("redundant, and left to the rows of others from which they follow"),
-        disagree.text("in contradiction to others that they depend on, and may never close"),
-        directionless.text("without direction where they are")})
+       {follow.text("redundant constraints, implied by those of other joints"),
+        disagree.text("constraints that contradict those of other joints, and may never close"),
+        directionless.text("constraints without direction at the present positions")})
     if (!text.empty()) notes.push_back(text);
   return notes;
 }
@@ -143,14 +144,15 @@ std::string open_joints_note(const Simulation& simulation) {
          " '" + joint.name() + "', by " + rounded_text(model.gap(simulation.state(), widest)) + " m";
 }
 
-std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first) {
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first) {
   const std::vector<ImpulseOnEngage>& all = simulation.engage_impulses();
   auto joint_of = [&](const ImpulseOnEngage& impulse) -> const JointModel& {
     return simulation.model().joints()[static_cast<std::size_t>(impulse.joint)];
   };
-  auto told = [&](std::size_t i) {  // its path is known to have such rates
-    return std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
-                       [&](const ImpulseOnEngage& of) { return of.of_path && of.joint == all[i].joint; });
+  auto reported = [&](std::size_t i) {  // whether an earlier jump of this joint's path has been reported
+    return std::any_of(
+        all.begin(), all.begin() + static_cast<std::ptrdiff_t>(i),
+        [&](const ImpulseOnEngage& other) { return other.of_path && other.joint == all[i].joint; });
   };
   std::vector<std::string> notes;
   for (std::size_t i = first; i < all.size();) {
@@ -160,12 +162,12 @@ std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t fi
         largest = end;
     const JointModel& joint = joint_of(all[largest]);
     const auto count = static_cast<int>(end - i);
-    if (!all[i].of_path || !told(largest))
-      notes.push_back("at t = " + rounded_text(all[i].time) + " s " +
-                      (all[i].of_path ? "the rate of a path jumps: " : "") + joint.joint->type() + " '" +
-                      joint.joint->name() + "' " + (all[i].of_path ? "follows" : "takes hold") +
-                      " with an impulse of " + text_of(all[largest], joint) +
-                      (count > 1 ? ", the largest of " + count_text(count, "joint") : ""));
+    if (!all[i].of_path || !reported(largest))
+      notes.push_back(
+          "at t = " + rounded_text(all[i].time) + " s " +
+          (all[i].of_path ? "the velocity of a prescribed path jumps: " : "") + joint.joint->type() + " '" +
+          joint.joint->name() + "' " + (all[i].of_path ? "follows" : "engages") + " with an impulse of " +
+          text_of(all[largest], joint) + (count > 1 ? ", the largest of " + count_text(count, "joint") : ""));
     i = end;
   }
   return notes;

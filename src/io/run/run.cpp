@@ -15,7 +15,6 @@
 #include <pliant/io/run/skipped.h>
 #include <pliant/io/trajectory.h>
 #include <pliant/part/mesh/surface_turn.h>
-#include <pliant/simulate/stable_step.h>
 
 namespace pliant {
 namespace {
@@ -29,10 +28,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Throws RecordingMismatch if a setting of a resumed run has changed. hint: appended to the message.
 template <class Value>
-void require_same(const char* what, const Value& recorded, const Value& now, const std::string& hint = "") {
+void require_same(const char* name, const Value& recorded, const Value& now, const std::string& hint = "") {
   if (recorded == now) return;
-  std::string message = std::string("the run cannot be gone on with: ") + what + " was ";
+  std::string message = std::string("cannot resume this run: ") + name + " was ";
   if constexpr (std::is_arithmetic_v<Value>)
     message += number_text(recorded) + " and is now " + number_text(now);
   else
@@ -40,27 +40,26 @@ void require_same(const char* what, const Value& recorded, const Value& now, con
   throw RecordingMismatch(message + hint);
 }
 
-// The simulation of a scene whose settings are as they should be.
+// Returns the simulation of a scene. Throws std::invalid_argument for inconsistent settings of the scene.
 std::unique_ptr<Simulation> prepare(Scene& scene, int threads) {
   if (scene.appearance.size() != scene.body.parts().size())
     throw std::invalid_argument("the scene has " + std::to_string(scene.body.parts().size()) +
-                                " parts, but tells the looks of " + std::to_string(scene.appearance.size()));
+                                " parts, but " + std::to_string(scene.appearance.size()) + " appearances");
   if (scene.obstacles.size() != scene.body.contact.obstacles.size())
     throw std::invalid_argument("the scene has " + std::to_string(scene.body.contact.obstacles.size()) +
-                                " obstacles, but tells the looks of " +
-                                std::to_string(scene.obstacles.size()));
+                                " obstacles, but " + std::to_string(scene.obstacles.size()) +
+                                " obstacle appearances");
   for (const Track& track : scene.tracks)
-    if (track.point.part == nullptr)
-      throw std::invalid_argument("track '" + track.name + "' follows no part");
+    if (track.point.part == nullptr) throw std::invalid_argument("track '" + track.name + "' has no part");
   return std::make_unique<Simulation>(scene.body, scene.integrator, threads, scene.tolerance);
 }
 
 }  // namespace
 
 int automatic_threads(Scene& scene) {
-  // Microseconds of an evaluation at the least, as bench/step_bench measures them: of a part, and of each of
-  // its mass points for each parameter, and of a point whose strain is needed. Sending work to the pool and
-  // waiting for it takes about 10.
+  // Lower bounds of the cost of an evaluation in microseconds, measured with bench/step_bench: per part, per
+  // mass point and parameter, and per strain point. Dispatching work to the thread pool and waiting for it
+  // costs about 10.
   constexpr double part_alone = 0.1, point_and_parameter = 0.008, strain_point = 0.2, worth_a_thread = 50;
   double cost = 0;
   for (const auto& part : scene.body.parts()) {
@@ -70,8 +69,8 @@ int automatic_threads(Scene& scene) {
     if (part->continuum() != nullptr) cost += strain_point * part->continuum()->points().n_points;
     if (part->local() != nullptr) cost += part->local()->cost();
   }
-  const int most = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, most);
+  const int available = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return std::clamp(static_cast<int>(std::min(cost / worth_a_thread, 1024.0)), 1, available);
 }
 
 FrameSchedule schedule_of(const Scene& scene) {
@@ -88,9 +87,23 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   const std::string source = options_.scene_file == "-" ? "" : options_.scene_file;
   folder_ = std::make_unique<RunFolder>(options_.folder, options_.existing, source);
   if (options_.existing == Existing::resume)
-    begin_again();
+    resume_recording();
   else
-    start_cold();
+    begin_recording();
+  describe(stable);
+  record_.add_seconds("prepare", seconds_since(start));
+  note_setup(stable);
+  write_layout(folder_->path(), simulation_->model(), schedule_,
+               TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
+  list_files();
+  save(true);
+}
+
+Run::~Run() = default;
+
+/// Sets the options of this session in the run record.
+void Run::describe(const StableStep& stable) {
+  const Scene& scene = *scene_;
   record_.status = RunRecord::Status::running;
   record_.message.clear();
   record_.command = options_.command;
@@ -106,34 +119,36 @@ Run::Run(Scene& scene, RunOptions options, Progress& progress)
   record_.stable_step = stable.step;
   record_.joint_solver = solver_note(simulation_->model());
   record_.skipped = skipped_work(simulation_->model());
-  record_.add_seconds("prepare", seconds_since(start));
-  if (scene.tolerance == 0 && schedule_.step() > stable.step) {
+}
+
+/// Notes a step that is too large, the chosen integrator, the assembly and redundant constraints.
+void Run::note_setup(const StableStep& stable) {
+  if (scene_->tolerance == 0 && schedule_.step() > stable.step) {
     note("warning: the step of " + number_text(schedule_.step()) +
-         " s is above the largest stable one, about " + rounded_text(stable.step) + " s, set by " +
-         stable.limit);
+         " s is larger than the largest stable step, about " + rounded_text(stable.step) + " s, limited by " +
+         stable.limit + "; choose a smaller step");
   }
   if (!simulation_->choice().integrator.empty())
     note("integrator " + simulation_->choice().integrator + ": " + simulation_->choice().why);
   const AssemblyReport& assembly = simulation_->assembly();
   if (assembly.iterations > 0)
-    note("assembled before time 0: gaps up to " + rounded_text(assembly.gap_before) + " m closed in " +
+    note("assembled before time 0: gaps of up to " + rounded_text(assembly.gap_before) + " m closed in " +
          count_text(assembly.iterations, "iteration") +
-         (assembly.converged ? "" : ", the most that are taken; the shapes have not settled"));
+         (assembly.converged ? "" : ", the maximum; the shapes have not converged"));
   note_redundancy();
-  write_layout(folder_->path(), simulation_->model(), schedule_,
-               TrajectoryTable(scene, *simulation_).columns(), scene.contacts);
-  for (const char* file :
-       {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
-    if (file != kSceneFile || !scene.document.empty()) record_.add_file(file);
-  if (simulation_->model().body().contact.active) record_.add_file(kContactCacheFile);
-  if (scene.contacts)
-    for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
-  save(true);
 }
 
-Run::~Run() = default;
+/// Lists the files that are written during the run in the run record.
+void Run::list_files() {
+  for (const char* file :
+       {kRunFile, kSceneFile, kLayoutFile, kTimesFile, kCoordinatesFile, kVelocitiesFile, kModesFile})
+    if (file != kSceneFile || !scene_->document.empty()) record_.add_file(file);
+  if (simulation_->model().body().contact.active) record_.add_file(kContactCacheFile);
+  if (scene_->contacts)
+    for (const char* file : {kContactsFile, kJointImpulsesFile}) record_.add_file(file);
+}
 
-void Run::start_cold() {
+void Run::begin_recording() {
   record_.build = build_info();
   record_.scene_hash = scene_->hash;
   record_.asked_step = scene_->tolerance > 0 ? 0 : scene_->step;
@@ -143,10 +158,10 @@ void Run::start_cold() {
   record_.integrator = simulation_->integrator().name();
   record_.asked_integrator = scene_->integrator;
   if (schedule_.step() != record_.asked_step) {
-    note("the end " + number_text(scene_->end) + " s is no multiple of the step " +
-         number_text(scene_->step) + " s: steps of " + number_text(schedule_.step()) + " s are taken");
+    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
+         number_text(scene_->step) + " s; the run uses steps of " + number_text(schedule_.step()) + " s");
   }
-  write_run_record(*folder_ / kRunFile, record_);  // from here on the folder is known as a run's
+  write_run_record(*folder_ / kRunFile, record_);  // run.json marks the folder as that of a run
   if (!scene_->document.empty())
     write_whole_file(*folder_ / kSceneFile, scene_->document.data(), scene_->document.size(), Durable::yes);
   for (std::size_t i = 0; i < scene_->obstacles.size(); ++i) {
@@ -165,59 +180,68 @@ void Run::start_cold() {
   flush();
 }
 
-void Run::begin_again() {
-  record_ = read_run_record(*folder_ / kRunFile);
+/// Throws RecordingMismatch if build, scene or settings differ from those of the recorded run.
+void Run::check_resumable() const {
   for (const auto& [name, value] : build_info()) {
     const auto recorded = std::find_if(record_.build.begin(), record_.build.end(),
                                        [&key = name](const auto& entry) { return entry.first == key; });
     require_same(("its program's " + name).c_str(),
                  recorded == record_.build.end() ? "unknown" : recorded->second, value,
-                 "; only the same build gives the same numbers");
+                 "; only the build that began the run reproduces its numbers");
   }
   if (record_.scene_hash != scene_->hash)
-    throw RecordingMismatch(
-        "the run cannot be gone on with: the scene or its --set values are not those it began with");
+    throw RecordingMismatch("cannot resume this run: the scene, its meshes or its --set values have changed");
   require_same("the integrator", record_.asked_integrator, scene_->integrator);
   require_same("the frame rate", record_.frame_rate, scene_->frame_rate);
   require_same("the tolerance", record_.tolerance, scene_->tolerance);
-  if (scene_->tolerance == 0) {
-    require_same("the step", record_.asked_step, scene_->step);
-    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
-  }
-  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
-    note("the end " + number_text(scene_->end) + " s is no multiple of the run's step " +
-         number_text(record_.step) + " s: it goes on to " + number_text(schedule_.end()) + " s");
-  }
+  if (scene_->tolerance == 0) require_same("the step", record_.asked_step, scene_->step);
+}
 
-  const Recording recorded = recording();
-  std::int64_t keep = recorded.rows();
-  // A step that was cut short by the end is taken again when that is no longer there.
+/// Sets the simulation to the last recorded state that an uninterrupted run would reach. keep: number of
+/// recorded states; it becomes the number of those that an uninterrupted run would record.
+void Run::set_last_state(const Recording& recorded, std::int64_t& keep) {
+  // With error control, the last step may have been shortened by the end of the run. If the new end is later,
+  // that step is repeated.
   if (scene_->tolerance > 0 && keep > 1 && recorded.time(keep - 1) >= record_.end &&
       scene_->end > record_.end)
     --keep;
-  if (keep > 0) {
-    State last = recorded.state(keep - 1);
-    if (last.time() > schedule_.end() * (1 + 1e-9))
-      throw RecordingMismatch("the run is at t = " + number_text(last.time()) +
-                              " s already, beyond the end of " + number_text(scene_->end) + " s");
-    // A state recorded only because the run ended there is not in the recording of an unbroken run.
-    const bool in_unbroken =
-        scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
-                              : schedule_.records(last.step);
-    if (in_unbroken)
-      recorded_time_ = last.time();
-    else
-      --keep;
-    simulation_->set_state(std::move(last));
+  if (keep == 0) return;
+  State last = recorded.state(keep - 1);
+  if (last.time() > schedule_.end() * (1 + 1e-9))
+    throw RecordingMismatch("cannot resume this run: it has reached t = " + number_text(last.time()) +
+                            " s, beyond the requested end of " + number_text(scene_->end) + " s");
+  // An uninterrupted run does not record a state that was recorded only because the run ended there.
+  const bool in_unbroken =
+      scene_->tolerance > 0 ? schedule_.records(keep > 1 ? recorded.time(keep - 2) : 0, last.time(), last.h)
+                            : schedule_.records(last.step);
+  if (in_unbroken)
+    recorded_time_ = last.time();
+  else
+    --keep;
+  simulation_->set_state(std::move(last));
+}
+
+void Run::resume_recording() {
+  record_ = read_run_record(*folder_ / kRunFile);
+  check_resumable();
+  if (scene_->tolerance == 0)
+    schedule_ = FrameSchedule::with_exact_step(scene_->end, record_.step, record_.frame_rate);
+  if (std::abs(schedule_.end() - scene_->end) > 1e-9 * scene_->end) {
+    note("the end " + number_text(scene_->end) + " s is not a multiple of the step " +
+         number_text(record_.step) + " s of this run; the run ends at " + number_text(schedule_.end()) +
+         " s");
   }
+  const Recording recorded = recording();
+  std::int64_t keep = recorded.rows();
+  set_last_state(recorded, keep);
   writer_ =
       std::make_unique<RecordingWriter>(RecordingWriter::resume(folder_->path(), simulation_->model(), keep));
   if (scene_->contacts)
     contacts_ = std::make_unique<ContactRecordingWriter>(
         ContactRecordingWriter::resume(folder_->path(), keep > 0 ? recorded.time(keep - 1) : -1));
   if (keep == 0 && simulation_->time() == 0) record_state();
-  counted_steps_ = record_.step_counters;
-  counted_work_ = record_.counters;
+  earlier_steps_ = record_.step_counters;
+  earlier_counters_ = record_.counters;
   ++record_.resumed;
 }
 
@@ -227,36 +251,35 @@ void Run::note(const std::string& text) {
   progress_->note(text);
 }
 
-/// Tells of rows that depend on others when other joints act than were told of last.
+/// Notes redundant constraints, once for each set of acting joints.
 void Run::note_redundancy() {
   std::vector<bool> acting;
   for (const JointMode mode : simulation_->state().joints) acting.push_back(mode != JointMode::off);
-  if (acting == told_acting_) return;
-  told_acting_ = std::move(acting);
+  if (acting == reported_acting_) return;
+  reported_acting_ = std::move(acting);
   for (const std::string& text : redundancy_notes(*simulation_))
-    if (told_redundant_.insert(text).second) note(text);
+    if (reported_redundant_.insert(text).second) note(text);
 }
 
-void Run::note_holds() {
-  for (const std::string& text : hold_notes(*simulation_, told_holds_)) note(text);
-  told_holds_ = simulation_->engage_impulses().size();
+void Run::note_engagements() {
+  for (const std::string& text : engage_notes(*simulation_, reported_impulses_)) note(text);
+  reported_impulses_ = simulation_->engage_impulses().size();
 }
 
-/// Tells of each part once whose parameters turn it so far that elasticity linear in d is no longer what it
-/// was at rest.
+/// Notes, once per part, that its parameters rotate its surface so far that elasticity linear in d is no
+/// longer accurate.
 void Run::note_turns() {
   for (const PartModel& m : simulation_->model().parts()) {
-    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || told_turned_.count(m.part->name()) > 0) continue;
+    if (m.q0 < 0 || !linear_on_moving_shape(*m.part) || reported_turned_.count(m.part->name()) > 0) continue;
     const double turn = largest_surface_turn(*m.part, simulation_->state().q.segment(m.q0 + 7, m.n_s));
     if (!(turn > kMostLinearTurn)) continue;
-    told_turned_.insert(m.part->name());
+    reported_turned_.insert(m.part->name());
     note("warning: at t = " + rounded_text(simulation_->time()) + " s the parameters of part '" +
-         m.part->name() + "' turn some of its surface by " + rounded_text(turn) +
-         " rad; local elasticity that is linear in the displacements means something else there than at "
-         "rest beyond " +
+         m.part->name() + "' rotate some of its surface by " + rounded_text(turn) +
+         " rad; a local law that is linear in the displacements is accurate up to about " +
          rounded_text(kMostLinearTurn) +
-         " rad; laws of the whole map (neo_hookean, st_venant_kirchhoff, corotated, neo_hookean_membrane, "
-         "st_venant_kirchhoff_membrane) bear any turn");
+         " rad; use a law that is valid for all rotations (neo_hookean, st_venant_kirchhoff, corotated, "
+         "neo_hookean_membrane, st_venant_kirchhoff_membrane)");
   }
 }
 
@@ -271,17 +294,17 @@ void Run::record_state() {
   record_.open_gap = gaps.open;
   const double depth = deepest_share(*simulation_);
   record_.max_depth = std::max(record_.max_depth, depth);
-  if (depth > kToldOverlap)
-    for (const std::string& text : overlap_notes(*simulation_, told_overlaps_)) note(text);
+  if (depth > kReportedOverlap)
+    for (const std::string& text : overlap_notes(*simulation_, reported_overlaps_)) note(text);
   note_redundancy();
-  note_holds();
+  note_engagements();
   note_turns();
   record_.max_balance_error = std::max(record_.max_balance_error, std::abs(ledger.balance));
   record_.max_energy = std::max(record_.max_energy, std::abs(ledger.energy()));
   record_.max_kinetic = std::max(record_.max_kinetic, ledger.kinetic);
 }
 
-/// What touched comes first: every recorded state has it then, whenever the process is killed.
+/// Writes the contacts first, so that every recorded state has its contacts even if the process is killed.
 void Run::flush(bool to_disk) {
   if (contacts_) contacts_->flush(to_disk);
   writer_->flush(to_disk);
@@ -304,20 +327,20 @@ void Run::save(bool to_disk) {
 
 void Run::write_record() {
   const StepCounters& session = simulation_->step_counters();
-  record_.step_counters.steps = counted_steps_.steps + session.steps;
+  record_.step_counters.steps = earlier_steps_.steps + session.steps;
   record_.steps_done = scene_->tolerance > 0 ? record_.step_counters.steps : simulation_->state().step;
-  record_.step_counters.evaluations = counted_steps_.evaluations + session.evaluations;
-  record_.step_counters.rejected = counted_steps_.rejected + session.rejected;
-  record_.step_counters.uncontrolled = counted_steps_.uncontrolled + session.uncontrolled;
-  record_.step_counters.limit_impulses = counted_steps_.limit_impulses + session.limit_impulses;
-  record_.step_counters.factorisations = counted_steps_.factorisations + session.factorisations;
-  record_.step_counters.impacts = counted_steps_.impacts + session.impacts;
-  record_.step_counters.contact_sweeps = counted_steps_.contact_sweeps + session.contact_sweeps;
-  record_.step_counters.contact_fallbacks = counted_steps_.contact_fallbacks + session.contact_fallbacks;
-  record_.step_counters.contact_cutoffs = counted_steps_.contact_cutoffs + session.contact_cutoffs;
+  record_.step_counters.evaluations = earlier_steps_.evaluations + session.evaluations;
+  record_.step_counters.rejected = earlier_steps_.rejected + session.rejected;
+  record_.step_counters.uncontrolled = earlier_steps_.uncontrolled + session.uncontrolled;
+  record_.step_counters.limit_impulses = earlier_steps_.limit_impulses + session.limit_impulses;
+  record_.step_counters.factorisations = earlier_steps_.factorisations + session.factorisations;
+  record_.step_counters.impacts = earlier_steps_.impacts + session.impacts;
+  record_.step_counters.contact_sweeps = earlier_steps_.contact_sweeps + session.contact_sweeps;
+  record_.step_counters.contact_fallbacks = earlier_steps_.contact_fallbacks + session.contact_fallbacks;
+  record_.step_counters.contact_cutoffs = earlier_steps_.contact_cutoffs + session.contact_cutoffs;
   record_.step_counters.contact_residual =
-      std::max(counted_steps_.contact_residual, session.contact_residual);
-  record_.counters = counted_work_;
+      std::max(earlier_steps_.contact_residual, session.contact_residual);
+  record_.counters = earlier_counters_;
   record_.counters += simulation_->counters();
   const std::vector<double>& rested = simulation_->state().at_rest;
   record_.asleep =
@@ -334,8 +357,8 @@ bool Run::at_end() const {
                                : simulation_->state().step >= schedule_.steps();
 }
 
-/// Whether the state after it is one that is recorded.
-bool Run::take_step() {
+/// Performs one step. Returns whether the new state is to be recorded.
+bool Run::step_once() {
   if (scene_->tolerance == 0) {
     simulation_->step(schedule_.step());
     return schedule_.records(simulation_->state().step);
@@ -355,7 +378,7 @@ void Run::step_to_end() {
       stopped_ = true;
       break;
     }
-    const bool records = take_step();
+    const bool records = step_once();
     progress_->advance(simulation_->time() - first_time);
     if (!records) continue;
     record_state();
@@ -376,7 +399,8 @@ bool Run::simulate() {
     try {
       step_to_end();
     } catch (const StepFailure&) {
-      // The simulation holds the last good state: what led to the failure is in the recording.
+      // The simulation is at the last good state. It is recorded, so that the motion before the failure can
+      // be examined.
       record_state();
       record_.add_seconds("simulate", seconds_since(start));
       save(true);
@@ -386,11 +410,11 @@ bool Run::simulate() {
     record_.add_seconds("simulate", seconds_since(start));
     save(true);
     if (record_.step_counters.uncontrolled > 0)
-      note("many bodies, or soft ones, lay on each other in " +
+      note("resting contacts of many bodies, or of soft ones, in " +
            count_text(record_.step_counters.uncontrolled, "step") +
-           ", whose error is not controlled; they are of at most " +
+           ": the error of these steps is not controlled; they are at most " +
            rounded_text(longest_contact_step(scene_->body.contact, simulation_->tolerance())) +
-           " s, and --estimate-error tells it");
+           " s long, and --estimate-error measures their error");
     const std::string open = open_joints_note(*simulation_);
     if (!open.empty()) note(open);
     write("trajectory", {}, [&] { write_tables(); });
@@ -436,7 +460,7 @@ void Run::fail(const std::string& message) noexcept {
   try {
     record_.status = RunRecord::Status::failed;
     record_.message = message;
-    write_record();  // without the tables, which may be what failed
+    write_record();  // without the tables, whose writing may have failed
   } catch (const std::exception&) {
     // The first failure is the one that is reported.
   }

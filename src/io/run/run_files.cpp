@@ -14,7 +14,7 @@ bool all_digits(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-// "NAME.part-PID-N" is NAME still being written.
+// Returns the name of the target of a file: "NAME.part-PID-N" is the temporary name of NAME.
 std::string finished_name(const std::string& name) {
   const std::size_t mark = name.rfind(".part-");
   if (mark == std::string::npos) return name;

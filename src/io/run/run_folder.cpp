@@ -23,7 +23,7 @@ bool exists_at_all(const fs::path& path) {
   return fs::symlink_status(path).type() != fs::file_type::not_found;
 }
 
-// What a folder holds, relative to it, folders inside left out.
+// Returns the paths of all files in a folder and its sub-folders, relative to the folder.
 std::vector<fs::path> files_of(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
@@ -31,7 +31,7 @@ std::vector<fs::path> files_of(const fs::path& folder) {
   return files;
 }
 
-bool lies_in(const fs::path& file, const fs::path& folder) {
+bool is_in(const fs::path& file, const fs::path& folder) {
   const fs::path inner = fs::weakly_canonical(file), outer = fs::weakly_canonical(folder);
   const fs::path relative = inner.lexically_relative(outer);
   return !relative.empty() && *relative.begin() != "..";
@@ -39,7 +39,7 @@ bool lies_in(const fs::path& file, const fs::path& folder) {
 
 }  // namespace
 
-// The lock file, held by flock: the system drops it however the process ends.
+// The lock file, locked by flock: the system releases the lock whenever the process ends.
 class RunFolder::Lock {
  public:
   explicit Lock(const fs::path& folder) : path_(folder / kLockFile) {
@@ -54,11 +54,11 @@ class RunFolder::Lock {
                             (length > 0 ? std::string(owner, static_cast<std::size_t>(length)) : "unknown") +
                             ")");
       }
-      // Had the holder before us just removed the file, our lock would be on a file without a name.
-      struct stat held {
+      // If the previous owner has just removed the file, the lock is on a file without a name: try again.
+      struct stat locked {
       }, named{};
-      if (::fstat(descriptor_, &held) == 0 && ::stat(path_.c_str(), &named) == 0 &&
-          held.st_ino == named.st_ino && held.st_dev == named.st_dev)
+      if (::fstat(descriptor_, &locked) == 0 && ::stat(path_.c_str(), &named) == 0 &&
+          locked.st_ino == named.st_ino && locked.st_dev == named.st_dev)
         break;
       ::close(descriptor_);
     }
@@ -88,7 +88,7 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
   const fs::file_status status = fs::symlink_status(folder_);
   if (fs::is_symlink(status))
     throw OutputRefused("the output folder " + folder_.string() +
-                        " is a symbolic link; name the folder it leads to");
+                        " is a symbolic link; give the path of its target");
   if (fs::exists(status) && !fs::is_directory(status))
     throw OutputRefused("the output folder " + folder_.string() + " is a file");
   if (!fs::exists(status)) {
@@ -103,19 +103,19 @@ RunFolder::RunFolder(fs::path folder, Existing existing, const fs::path& scene) 
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
     if (entry.path().filename() != kLockFile) empty = false;
   if (!empty && existing == Existing::refuse)
-    throw OutputRefused(
-        "the output folder " + folder_.string() + " is not empty; " +
-        (ours ? "--resume goes on with the run in it, --force starts it anew" : "choose another with -o"));
+    throw OutputRefused("the output folder " + folder_.string() + " is not empty; " +
+                        (ours ? "--resume continues the run in it, --force replaces it by a new run"
+                              : "choose another with -o"));
   if (!empty && !ours)
     throw OutputRefused("the output folder " + folder_.string() +
-                        " is not empty and holds no run of pliant (no " + kRunFile +
+                        " is not empty and contains no run of pliant (no " + kRunFile +
                         "); choose another with -o");
   if (existing == Existing::resume && !ours)
     throw OutputRefused("there is no run to resume in the folder " + folder_.string());
   lock_ = std::make_unique<Lock>(folder_);
   if (empty || existing != Existing::force) return;
-  if (!scene.empty() && lies_in(scene, folder_)) {
-    throw OutputRefused("the scene " + scene.string() + " lies in the output folder " + folder_.string() +
+  if (!scene.empty() && is_in(scene, folder_)) {
+    throw OutputRefused("the scene " + scene.string() + " is in the output folder " + folder_.string() +
                         ", whose files would be removed; choose another folder with -o");
   }
   for (const fs::path& file : files_of(folder_))

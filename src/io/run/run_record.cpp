@@ -21,12 +21,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 4> kStatus{"running", "complete", "stopped", "failed"};
 
-// JSON knows no infinity: an absent bound is null.
+// Returns a bound as JSON; an infinite bound becomes null, because JSON has no infinity.
 Json bound(double x) {
   return std::isfinite(x) ? Json(x) : Json(nullptr);
 }
 
-// "[json.exception.parse_error.101] parse error ..." without its first word.
+// Returns the message "[json.exception.parse_error.101] parse error ..." without the tag in brackets.
 std::string without_tag(const std::string& message) {
   const std::size_t end = message.find("] ");
   return end == std::string::npos ? message : message.substr(end + 2);
@@ -67,6 +67,73 @@ void RunRecord::add_file(const std::string& name) {
   if (std::find(files.begin(), files.end(), name) == files.end()) files.push_back(name);
 }
 
+namespace {
+
+Json options_of(const RunRecord& r) {
+  return {{"end", r.end},
+          {"asked_step", r.asked_step},
+          {"step", r.step},
+          {"tolerance", r.tolerance},
+          {"frame_rate", r.frame_rate},
+          {"integrator", r.integrator},
+          {"asked_integrator", r.asked_integrator},
+          {"joint_solver", r.joint_solver},
+          {"threads", r.threads},
+          {"width", r.width},
+          {"height", r.height},
+          {"graphics", r.graphics},
+          {"command", r.command}};
+}
+
+Json work_of(const RunRecord& r) {
+  return {{"steps", r.step_counters.steps},
+          {"evaluations", r.step_counters.evaluations},
+          {"rejected", r.step_counters.rejected},
+          {"uncontrolled", r.step_counters.uncontrolled},
+          {"limit_impulses", r.step_counters.limit_impulses},
+          {"factorisations", r.step_counters.factorisations},
+          {"impacts", r.step_counters.impacts},
+          {"contact_sweeps", r.step_counters.contact_sweeps},
+          {"contact_fallbacks", r.step_counters.contact_fallbacks},
+          {"contact_cutoffs", r.step_counters.contact_cutoffs},
+          {"jacobian_points", r.counters.jacobian_points},
+          {"rate_points", r.counters.rate_points},
+          {"mass_matrices", r.counters.mass_matrices},
+          {"inertial_forces", r.counters.inertial_forces},
+          {"point_jets", r.counters.point_jets},
+          {"surfaces", r.counters.surfaces}};
+}
+
+Json monitors_of(const RunRecord& r) {
+  return {{"max_balance_error", r.max_balance_error},
+          {"max_energy", r.max_energy},
+          {"max_kinetic", r.max_kinetic},
+          {"max_gap", r.max_gap},
+          {"open_gap", r.open_gap},
+          {"max_depth", r.max_depth},
+          {"asleep", r.asleep},
+          {"max_contact_residual", r.step_counters.contact_residual},
+          {"largest_stable_step", bound(r.stable_step)}};
+}
+
+Json error_estimate_of(const ErrorEstimate& e) {
+  return {{"place", e.place},
+          {"rotation", e.rotation},
+          {"length", e.length},
+          {"parameter", e.parameter},
+          {"displacement", e.displacement},
+          {"velocity", e.velocity},
+          {"angular_velocity", e.angular_velocity},
+          {"energy", e.energy},
+          {"joint_force", e.joint_force},
+          {"joint_torque", e.joint_torque},
+          {"gap", e.gap},
+          {"tolerance", e.tolerance},
+          {"step", e.step}};
+}
+
+}  // namespace
+
 void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   Json json;
   json["format"] = "pliant run";
@@ -79,62 +146,12 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
                       {"resumed", r.resumed}};
   json["scene"] = {
       {"name", r.scene}, {"file", r.scene_file}, {"overrides", r.overrides}, {"hash", hex(r.scene_hash)}};
-  json["options"] = {{"end", r.end},
-                     {"asked_step", r.asked_step},
-                     {"step", r.step},
-                     {"tolerance", r.tolerance},
-                     {"frame_rate", r.frame_rate},
-                     {"integrator", r.integrator},
-                     {"asked_integrator", r.asked_integrator},
-                     {"joint_solver", r.joint_solver},
-                     {"threads", r.threads},
-                     {"width", r.width},
-                     {"height", r.height},
-                     {"graphics", r.graphics},
-                     {"command", r.command}};
+  json["options"] = options_of(r);
   json["build"] = pairs(r.build);
   json["wall_seconds"] = pairs(r.seconds);
-  json["work"] = {{"steps", r.step_counters.steps},
-                  {"evaluations", r.step_counters.evaluations},
-                  {"rejected", r.step_counters.rejected},
-                  {"uncontrolled", r.step_counters.uncontrolled},
-                  {"limit_impulses", r.step_counters.limit_impulses},
-                  {"factorisations", r.step_counters.factorisations},
-                  {"impacts", r.step_counters.impacts},
-                  {"contact_sweeps", r.step_counters.contact_sweeps},
-                  {"contact_fallbacks", r.step_counters.contact_fallbacks},
-                  {"contact_cutoffs", r.step_counters.contact_cutoffs},
-                  {"jacobian_points", r.counters.jacobian_points},
-                  {"rate_points", r.counters.rate_points},
-                  {"mass_matrices", r.counters.mass_matrices},
-                  {"inertial_forces", r.counters.inertial_forces},
-                  {"point_jets", r.counters.point_jets},
-                  {"surfaces", r.counters.surfaces}};
-  json["monitors"] = {{"max_balance_error", r.max_balance_error},
-                      {"max_energy", r.max_energy},
-                      {"max_kinetic", r.max_kinetic},
-                      {"max_gap", r.max_gap},
-                      {"open_gap", r.open_gap},
-                      {"max_depth", r.max_depth},
-                      {"asleep", r.asleep},
-                      {"max_contact_residual", r.step_counters.contact_residual},
-                      {"largest_stable_step", bound(r.stable_step)}};
-  if (r.error) {
-    const ErrorEstimate& e = *r.error;
-    json["error_estimate"] = {{"place", e.place},
-                              {"rotation", e.rotation},
-                              {"length", e.length},
-                              {"parameter", e.parameter},
-                              {"displacement", e.displacement},
-                              {"velocity", e.velocity},
-                              {"angular_velocity", e.angular_velocity},
-                              {"energy", e.energy},
-                              {"joint_force", e.joint_force},
-                              {"joint_torque", e.joint_torque},
-                              {"gap", e.gap},
-                              {"tolerance", e.tolerance},
-                              {"step", e.step}};
-  }
+  json["work"] = work_of(r);
+  json["monitors"] = monitors_of(r);
+  if (r.error) json["error_estimate"] = error_estimate_of(*r.error);
   json["held"] = r.held;
   json["skipped"] = r.skipped;
   json["notes"] = r.notes;
@@ -142,6 +159,73 @@ void write_run_record(const std::filesystem::path& file, const RunRecord& r) {
   const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   write_whole_file(file, text.data(), text.size(), Durable::yes);
 }
+
+namespace {
+
+void read_progress(const Json& progress, RunRecord& r) {
+  progress.at("time").get_to(r.time);
+  progress.at("steps").get_to(r.steps);
+  progress.at("steps_done").get_to(r.steps_done);
+  progress.at("states").get_to(r.states);
+  progress.at("resumed").get_to(r.resumed);
+}
+
+void read_scene(const Json& scene, RunRecord& r) {
+  scene.at("name").get_to(r.scene);
+  scene.at("file").get_to(r.scene_file);
+  scene.at("overrides").get_to(r.overrides);
+  r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
+}
+
+// Keys read with value() are absent in the records of older versions.
+void read_options(const Json& options, RunRecord& r) {
+  options.at("end").get_to(r.end);
+  options.at("asked_step").get_to(r.asked_step);
+  options.at("step").get_to(r.step);
+  r.tolerance = options.value("tolerance", 0.0);
+  options.at("frame_rate").get_to(r.frame_rate);
+  options.at("integrator").get_to(r.integrator);
+  r.asked_integrator = options.value("asked_integrator", r.integrator);
+  options.at("joint_solver").get_to(r.joint_solver);
+  options.at("threads").get_to(r.threads);
+  options.at("width").get_to(r.width);
+  options.at("height").get_to(r.height);
+  options.at("graphics").get_to(r.graphics);
+  options.at("command").get_to(r.command);
+}
+
+void read_work(const Json& work, RunRecord& r) {
+  work.at("steps").get_to(r.step_counters.steps);
+  work.at("evaluations").get_to(r.step_counters.evaluations);
+  work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
+  r.step_counters.rejected = work.value("rejected", 0L);
+  r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
+  r.step_counters.factorisations = work.value("factorisations", 0L);
+  r.step_counters.impacts = work.value("impacts", 0L);
+  r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
+  r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
+  r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
+  work.at("jacobian_points").get_to(r.counters.jacobian_points);
+  work.at("rate_points").get_to(r.counters.rate_points);
+  work.at("mass_matrices").get_to(r.counters.mass_matrices);
+  work.at("inertial_forces").get_to(r.counters.inertial_forces);
+  work.at("point_jets").get_to(r.counters.point_jets);
+  work.at("surfaces").get_to(r.counters.surfaces);
+}
+
+void read_monitors(const Json& monitors, RunRecord& r) {
+  monitors.at("max_balance_error").get_to(r.max_balance_error);
+  monitors.at("max_energy").get_to(r.max_energy);
+  monitors.at("max_kinetic").get_to(r.max_kinetic);
+  monitors.at("max_gap").get_to(r.max_gap);
+  monitors.at("open_gap").get_to(r.open_gap);
+  r.max_depth = monitors.value("max_depth", 0.0);
+  r.asleep = monitors.value("asleep", 0);
+  r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
+  if (!monitors.at("largest_stable_step").is_null()) monitors.at("largest_stable_step").get_to(r.stable_step);
+}
+
+}  // namespace
 
 RunRecord read_run_record(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -156,61 +240,13 @@ RunRecord read_run_record(const std::filesystem::path& file) {
     if (found == kStatus.end()) throw RecordingMismatch(file.string() + " has the unknown status " + status);
     r.status = static_cast<RunRecord::Status>(found - kStatus.begin());
     json.at("message").get_to(r.message);
-    const Json& progress = json.at("progress");
-    progress.at("time").get_to(r.time);
-    progress.at("steps").get_to(r.steps);
-    progress.at("steps_done").get_to(r.steps_done);
-    progress.at("states").get_to(r.states);
-    progress.at("resumed").get_to(r.resumed);
-    const Json& scene = json.at("scene");
-    scene.at("name").get_to(r.scene);
-    scene.at("file").get_to(r.scene_file);
-    scene.at("overrides").get_to(r.overrides);
-    r.scene_hash = std::stoull(scene.at("hash").get<std::string>(), nullptr, 16);
-    const Json& options = json.at("options");
-    options.at("end").get_to(r.end);
-    options.at("asked_step").get_to(r.asked_step);
-    options.at("step").get_to(r.step);
-    r.tolerance = options.value("tolerance", 0.0);  // older runs had none
-    options.at("frame_rate").get_to(r.frame_rate);
-    options.at("integrator").get_to(r.integrator);
-    r.asked_integrator = options.value("asked_integrator", r.integrator);
-    options.at("joint_solver").get_to(r.joint_solver);
-    options.at("threads").get_to(r.threads);
-    options.at("width").get_to(r.width);
-    options.at("height").get_to(r.height);
-    options.at("graphics").get_to(r.graphics);
-    options.at("command").get_to(r.command);
+    read_progress(json.at("progress"), r);
+    read_scene(json.at("scene"), r);
+    read_options(json.at("options"), r);
     r.build = read_pairs<std::string>(json.at("build"));
     r.seconds = read_pairs<double>(json.at("wall_seconds"));
-    const Json& work = json.at("work");
-    work.at("steps").get_to(r.step_counters.steps);
-    work.at("evaluations").get_to(r.step_counters.evaluations);
-    work.at("limit_impulses").get_to(r.step_counters.limit_impulses);
-    r.step_counters.rejected = work.value("rejected", 0L);  // older runs had none of these
-    r.step_counters.uncontrolled = work.value("uncontrolled", 0L);
-    r.step_counters.factorisations = work.value("factorisations", 0L);
-    r.step_counters.impacts = work.value("impacts", 0L);
-    r.step_counters.contact_sweeps = work.value("contact_sweeps", 0L);
-    r.step_counters.contact_fallbacks = work.value("contact_fallbacks", 0L);
-    r.step_counters.contact_cutoffs = work.value("contact_cutoffs", 0L);
-    work.at("jacobian_points").get_to(r.counters.jacobian_points);
-    work.at("rate_points").get_to(r.counters.rate_points);
-    work.at("mass_matrices").get_to(r.counters.mass_matrices);
-    work.at("inertial_forces").get_to(r.counters.inertial_forces);
-    work.at("point_jets").get_to(r.counters.point_jets);
-    work.at("surfaces").get_to(r.counters.surfaces);
-    const Json& monitors = json.at("monitors");
-    monitors.at("max_balance_error").get_to(r.max_balance_error);
-    monitors.at("max_energy").get_to(r.max_energy);
-    monitors.at("max_kinetic").get_to(r.max_kinetic);
-    monitors.at("max_gap").get_to(r.max_gap);
-    monitors.at("open_gap").get_to(r.open_gap);
-    r.max_depth = monitors.value("max_depth", 0.0);  // older runs had none of these
-    r.asleep = monitors.value("asleep", 0);
-    r.step_counters.contact_residual = monitors.value("max_contact_residual", 0.0);
-    if (!monitors.at("largest_stable_step").is_null())
-      monitors.at("largest_stable_step").get_to(r.stable_step);
+    read_work(json.at("work"), r);
+    read_monitors(json.at("monitors"), r);
     json.at("held").get_to(r.held);
     json.at("skipped").get_to(r.skipped);
     json.at("notes").get_to(r.notes);
@@ -219,7 +255,7 @@ RunRecord read_run_record(const std::filesystem::path& file) {
   } catch (const nlohmann::json::exception& fault) {
     throw RecordingMismatch(file.string() + " is damaged: " + without_tag(fault.what()));
   } catch (const std::logic_error&) {
-    throw RecordingMismatch(file.string() + " is damaged: its scene hash is no number");
+    throw RecordingMismatch(file.string() + " is damaged: its scene hash is not a number");
   }
 }
 

@@ -17,25 +17,25 @@ std::vector<std::string> skipped_work(const Model& model) {
       frozen += part.part->parameters().size() - part.n_s;
   }
   std::vector<std::string> skipped;
-  if (fixed > 0) skipped.push_back("coordinates of parts that do not move: " + std::to_string(fixed));
+  if (fixed > 0) skipped.push_back("coordinates of fixed parts: " + std::to_string(fixed));
   if (prescribed > 0)
-    skipped.push_back("coordinates of parts whose motion is prescribed: " + std::to_string(prescribed));
+    skipped.push_back("coordinates of parts with prescribed motion: " + std::to_string(prescribed));
   if (rigid > 0)
-    skipped.push_back("J and Jdot qs_dot of rigid parts, whose inertia is constant: " +
-                      std::to_string(rigid));
+    skipped.push_back("Jacobians of rigid parts, whose inertia is constant: " + std::to_string(rigid));
   if (frozen > 0)
-    skipped.push_back("rows and columns of frozen parameters in parts that deform: " +
-                      std::to_string(frozen));
-  if (moving > 0 && local == 0) skipped.push_back("meshes and elements: no part deforms locally");
+    skipped.push_back("rows and columns of frozen parameters in deformable parts: " + std::to_string(frozen));
+  if (moving > 0 && local == 0)
+    skipped.push_back("meshes and elements, because no part has local deformation");
   if (local > 0 && local < moving)
-    skipped.push_back("meshes and elements of parts that do not deform locally: " +
+    skipped.push_back("meshes and elements of parts without local deformation: " +
                       std::to_string(moving - local));
-  if (model.joints().empty()) skipped.push_back("C_q and lambda: there are no joints");
+  if (model.joints().empty())
+    skipped.push_back("constraint Jacobians and multipliers, because there are no joints");
   if (moving > 1 && model.springs().empty() && model.joints().empty())
-    skipped.push_back("coupling: no spring or joint ties the parts");
+    skipped.push_back("coupled solution, because no spring or joint ties the parts");
   if (model.springs().empty() && model.forces().empty() && model.torques().empty())
-    skipped.push_back("springs, point forces and torques: there are none");
-  if (model.body().gravity.isZero(0)) skipped.push_back("gravity: it is zero");
+    skipped.push_back("springs, point forces and torques, because there are none");
+  if (model.body().gravity.isZero(0)) skipped.push_back("gravity, because it is zero");
   return skipped;
 }
 

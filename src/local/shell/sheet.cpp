@@ -1,19 +1,2 @@
-#include <pliant/local/shell/sheet.h>
-
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
-namespace pliant {
-
-void Sheet::check() const {
-  if (!(E >= 0) || !std::isfinite(E))
-    throw std::invalid_argument("Young's modulus is " + std::to_string(E) + "; it must not be negative");
-  if (!(nu > -1 && nu <= 0.5))
-    throw std::invalid_argument("Poisson's ratio is " + std::to_string(nu) +
-                                "; it must be above -1 and at most 0.5");
-  if (!(thickness > 0) || !std::isfinite(thickness))
-    throw std::invalid_argument("the thickness is " + std::to_string(thickness) + "; it must be positive");
-}
-
-}  // namespace pliant
+// Compiles the functions of shell/sheet.h once for the library.
+#include <pliant/local/shell/sheet-inl.h>

@@ -1,3 +1,4 @@
+// Factory of solid energies by law and number of nodes of an element.
 #include <pliant/local/solid/make_solid_energy.h>
 
 #include <stdexcept>
@@ -26,7 +27,7 @@ std::unique_ptr<NodalEnergy> make(SolidLaw law, const Nodes& rest, const Eigen::
     case SolidLaw::corotated:
       return std::make_unique<SolidEnergy<Element, Corotated>>(rest, elements, Corotated(material));
   }
-  throw std::logic_error("a law of solids that has no energy");
+  throw std::logic_error("make_solid_energy: unknown law of solids");
 }
 
 }  // namespace
@@ -39,8 +40,8 @@ std::unique_ptr<NodalEnergy> make_solid_energy(SolidLaw law, const Nodes& rest,
     return make<QuadraticTetrahedron>(law, rest, elements, material);
   if (elements.rows() == EnrichedTetrahedron::n_nodes)
     return make<EnrichedTetrahedron>(law, rest, elements, material);
-  throw std::invalid_argument("elements of solids have 4, 10 or 15 nodes, not " +
-                              std::to_string(elements.rows()));
+  throw std::invalid_argument("elements have " + std::to_string(elements.rows()) +
+                              " nodes; solids need elements with 4, 10 or 15");
 }
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// The registry of the laws of local deformation.
 #include <pliant/part/local/local_laws.h>
 
 #include <stdexcept>
@@ -22,7 +23,7 @@ using Energy = std::unique_ptr<NodalEnergy>;
 const Number kYoung{"E", "Pa", "Young's modulus.", 0, true};
 const Number kPoissonShell{"nu", "1", "Poisson's ratio.", -1, true, 0.3, 0.5};
 const Number kPoissonSolid{"nu", "1", "Poisson's ratio, below 1/2.", -1, true, 0.3, 0.4999999};
-const Number kThickness{"thickness", "m", "Of the sheet.", 0, true};
+const Number kThickness{"thickness", "m", "Thickness of the sheet.", 0, true};
 
 ShellMesh shell(const LocalMesh& mesh) {
   return ShellMesh(mesh.X, mesh.triangles);
@@ -32,20 +33,21 @@ Sheet sheet(const double* values) {
 }
 
 template <class Law>
-Energy lay_membrane(const LocalMesh& mesh, const double* values) {
+Energy membrane_energy(const LocalMesh& mesh, const double* values) {
   return std::make_unique<Membrane<Law>>(shell(mesh), sheet(values));
 }
 template <class Hinges>
-Energy lay_bending(const LocalMesh& mesh, const double* values) {
+Energy bending_energy(const LocalMesh& mesh, const double* values) {
   return std::make_unique<MidEdgeBending<Hinges>>(shell(mesh), sheet(values), mesh.density);
 }
 template <SolidLaw law>
-Energy lay_solid(const LocalMesh& mesh, const double* values) {
+Energy solid_energy(const LocalMesh& mesh, const double* values) {
   return make_solid_energy(law, mesh.X, mesh.tetrahedra, Elasticity(values[0], values[1]));
 }
 
 }  // namespace
 
+// This function is long because it is the table of all laws.
 const std::vector<LocalLawInfo>& all_local_laws() {
   static const std::vector<LocalLawInfo> all{
       {"membrane",
@@ -57,30 +59,31 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        },
        true},
       {"st_venant_kirchhoff_membrane",
-       "A thin sheet that resists stretch from rest to now, by any rotation.",
+       "A thin sheet that resists stretch from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
-       lay_membrane<StVenantKirchhoffSheet>},
+       membrane_energy<StVenantKirchhoffSheet>},
       {"neo_hookean_membrane",
-       "A rubber sheet that resists stretch from rest to now, by any rotation.",
+       "A rubber sheet that resists stretch from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
-       lay_membrane<NeoHookeanSheet>},
+       membrane_energy<NeoHookeanSheet>},
       {"loaded_membrane",
        "The membrane of Terzopoulos & Metaxas 1991 over the surface: 1/2 (w1 |grad d|^2 + w0 |d|^2) per "
        "area.",
        true,
        {{"w0", "N/m^3", "Resists the size of d.", 0, false, 0.0},
-        {"w1", "N/m", "Resists its variation.", 0, false}},
+        {"w1", "N/m", "Resists the variation of d.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(shell(mesh), Load{values[0], values[1]});
        },
        true},
       {"loaded_membrane_uv",
-       "The same as published, over the rectangle of the parameters u and v: stiffer towards poles.",
+       "The membrane of Terzopoulos & Metaxas 1991 over the rectangle of the parameters u and v, as "
+       "published: stiffer towards poles.",
        true,
        {{"w0", "N/m", "Resists the size of d.", 0, false, 0.0},
-        {"w1", "N/m", "Resists its variation.", 0, false}},
+        {"w1", "N/m", "Resists the variation of d.", 0, false}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<LoadedMembrane>(parameter_mesh(mesh), Load{values[0], values[1]});
        },
@@ -89,25 +92,27 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        "A thin sheet that resists bending, for small local deformation; quadratic in d.",
        true,
        {kYoung, kPoissonShell, kThickness},
-       lay_bending<LinearHinges>,
+       bending_energy<LinearHinges>,
        true},
       {"folding",
-       "A thin sheet that resists bending from rest to now, by any rotation.",
+       "A thin sheet that resists bending from rest to now, for any rotation.",
        true,
        {kYoung, kPoissonShell, kThickness},
-       lay_bending<FoldingHinges>},
+       bending_energy<FoldingHinges>},
       {"pressure",
-       "A constant pressure in the shell, more than outside.",
+       "A constant excess pressure in the shell.",
        true,
-       {{"p", "Pa", "Inside less outside.", -std::numeric_limits<double>::infinity(), true}},
+       {{"p", "Pa", "Pressure inside minus pressure outside.", -std::numeric_limits<double>::infinity(),
+         true}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          return std::make_unique<ConstantPressure>(shell(mesh), values[0]);
        }},
       {"gas",
-       "A gas in the shell: p V^gamma stays.",
+       "A gas in the shell: p V^gamma is constant.",
        true,
        {{"p0", "Pa", "Pressure in the shell at rest.", 0, false},
-        {"gamma", "1", "Ratio of its specific heats; 1: at constant temperature.", 1, false, 1.4},
+        {"gamma", "1", "Ratio of the specific heats of the gas; 1 means constant temperature.", 1, false,
+         1.4},
         {"p_ext", "Pa", "Pressure outside.", 0, false, 0.0}},
        [](const LocalMesh& mesh, const double* values) -> Energy {
          VecX<double> X(3 * mesh.X.rows());
@@ -119,29 +124,29 @@ const std::vector<LocalLawInfo>& all_local_laws() {
        "Linear elasticity, for small local deformation; quadratic in d.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<SolidLaw::linear>,
+       solid_energy<SolidLaw::linear>,
        true},
       {"elastic_averaged",
-       "The same with the dilatation averaged around nodes: it does not lock where nu is near 1/2.",
+       "Linear elasticity with the dilatation averaged around nodes, which does not lock for nu near 1/2.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<SolidLaw::averaged_linear>,
+       solid_energy<SolidLaw::averaged_linear>,
        true},
       {"st_venant_kirchhoff",
-       "St. Venant-Kirchhoff elasticity from rest to now, by any rotation.",
+       "St. Venant-Kirchhoff elasticity from rest to now, for any rotation.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<SolidLaw::st_venant_kirchhoff>},
+       solid_energy<SolidLaw::st_venant_kirchhoff>},
       {"neo_hookean",
-       "Rubber from rest to now, by any rotation.",
+       "Rubber from rest to now, for any rotation.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<SolidLaw::neo_hookean>},
+       solid_energy<SolidLaw::neo_hookean>},
       {"corotated",
        "Linear elasticity in a frame that turns with each element.",
        false,
        {kYoung, kPoissonSolid},
-       lay_solid<SolidLaw::corotated>},
+       solid_energy<SolidLaw::corotated>},
   };
   return all;
 }
@@ -158,18 +163,18 @@ LocalSettings::Law local_law(const std::string& name, std::vector<double> values
     known += std::string(" ") + info.name;
     if (name != info.name) continue;
     if (values.size() != info.numbers.size())
-      throw std::invalid_argument("law '" + name + "' takes " + std::to_string(info.numbers.size()) +
-                                  " numbers");
+      throw std::invalid_argument("law '" + name + "' has " + std::to_string(info.numbers.size()) +
+                                  " numbers, not " + std::to_string(values.size()));
     const bool of_shell = info.shell;
-    const auto lay = info.lay;
+    const auto make_energy = info.make_energy;
     std::optional<Elasticity> linear;
     if (name == "elastic") linear.emplace(values[0], values[1]);
     return LocalSettings::Law(
-        [name, of_shell, lay, values = std::move(values)](const LocalMesh& mesh) {
+        [name, of_shell, make_energy, values = std::move(values)](const LocalMesh& mesh) {
           if (mesh.shell() != of_shell)
-            throw std::invalid_argument("law '" + name + "' is of " + (of_shell ? "shells" : "solids") +
-                                        ", not of " + (of_shell ? "solids" : "shells"));
-          return lay(mesh, values.data());
+            throw std::invalid_argument("law '" + name + "' is for " + (of_shell ? "shells" : "solids") +
+                                        ", not for " + (of_shell ? "solids" : "shells"));
+          return make_energy(mesh, values.data());
         },
         name, linear);
   }

@@ -1,3 +1,4 @@
+// Meshes of parts: nodal masses, and weights of material points.
 #include <pliant/part/local/local_mesh.h>
 
 #include <array>
@@ -29,13 +30,13 @@ VecX<double> LocalMesh::areas() const {
 
 namespace {
 
-/// Moments of mass of order 0, 1 and 2 of a point.
+/// Returns the moments of order 0, 1 and 2 of a point of unit mass.
 Vec<double, 10> moments(const Vec3<double>& x) {
   Vec<double, 10> f;
   f << 1, x[0], x[1], x[2], x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0];
   return f;
 }
-/// The same of a whole part.
+/// Returns the moments of a whole part.
 Vec<double, 10> moments(const Inertia<double>& whole) {
   const Mat3<double> I = whole.M.block<3, 3>(3, 3);
   const Vec3<double> square = 0.5 * I.trace() * Vec3<double>::Ones() - I.diagonal();
@@ -44,9 +45,9 @@ Vec<double, 10> moments(const Inertia<double>& whole) {
   return f;
 }
 
-/// Changes masses as little as it takes, relative to themselves, to give them the mass, the centre and the
-/// second moments of the part without nodes. Returns the largest part of a moment that is still missing, of
-/// the most that it could be.
+/// Changes nodal masses by the smallest relative amounts that give them the mass, the centre and the second
+/// moments of the part. Returns the largest error of a moment, relative to the largest value that the moment
+/// could have.
 double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>& mass) {
   const Eigen::Index n = X.rows();
   const Vec<double, 10> unit = moments(Vec3<double>(X.cwiseAbs().colwise().maxCoeff().transpose()));
@@ -54,7 +55,7 @@ double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>&
   for (Eigen::Index k = 0; k < n; ++k)
     F.col(k) = moments(Vec3<double>(X.row(k).transpose())).cwiseQuotient(unit);
   const Vec<double, 10> wanted = moments(whole).cwiseQuotient(unit), missing = wanted - F * mass;
-  // Least sum m c^2 with sum m c f = what is missing: c = f^T y.
+  // Minimise sum m c^2 subject to sum m c f = missing; the solution is c = f^T y.
   const Eigen::Matrix<double, 10, 10> A = F * mass.asDiagonal() * F.transpose();
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, 10, 10>> solver;
   solver.setThreshold(1e-10);
@@ -64,7 +65,7 @@ double match_moments(const Inertia<double>& whole, const Nodes& X, VecX<double>&
   return (wanted - F * mass).cwiseAbs().maxCoeff() / whole.mass;
 }
 
-/// Weights of the point of a triangle that is nearest to x.
+/// Returns the weights of the point of a triangle that is nearest to x.
 Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<double>, 3>& corner) {
   const Vec3<double> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], r = x - corner[0];
   const double a = e1.dot(e1), b = e1.dot(e2), c = e2.dot(e2), d = e1.dot(r), e = e2.dot(r);
@@ -72,14 +73,14 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   const double s = (c * d - b * e) / det, t = (a * e - b * d) / det;
   if (s >= 0 && t >= 0 && s + t <= 1) return {1 - s - t, s, t};
   Vec3<double> best = Vec3<double>::Zero();
-  double least = std::numeric_limits<double>::infinity();
+  double least_distance = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>((k + 1) % 3);
     const Vec3<double> edge = corner[j] - corner[i];
     const double along = std::clamp((x - corner[i]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
     const double distance = (x - corner[i] - along * edge).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
+    if (distance >= least_distance) continue;
+    least_distance = distance;
     best.setZero();
     best[k] = 1 - along;
     best[(k + 1) % 3] = along;
@@ -87,10 +88,10 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   return best;
 }
 
-/// Weights of a point x in a shell: those of the point of its triangles that is nearest.
+/// Returns the weights of a point x of a shell: those of the nearest point of the triangles.
 NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   NodeWeights best;
-  double least = std::numeric_limits<double>::infinity();
+  double least_distance = std::numeric_limits<double>::infinity();
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
     std::array<Vec3<double>, 3> corner;
     for (int k = 0; k < 3; ++k)
@@ -98,8 +99,8 @@ NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
     const Vec3<double> weight = nearest_on_triangle(x, corner);
     const double distance =
         (x - weight[0] * corner[0] - weight[1] * corner[1] - weight[2] * corner[2]).squaredNorm();
-    if (distance >= least) continue;
-    least = distance;
+    if (distance >= least_distance) continue;
+    least_distance = distance;
     best = {};
     for (int k = 0; k < 3; ++k) {
       if (weight[k] == 0) continue;
@@ -110,16 +111,16 @@ NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   return best;
 }
 
-/// Weights of a point x in an element, from barycentric coordinates nearby.
+/// Returns the weights of a point x in an element. L: start, barycentric coordinates of the straight element.
 template <class Element>
 NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<double>& x,
                        std::array<double, 4> L) {
   std::array<Vec3<double>, Element::n_nodes> X;
   for (int k = 0; k < Element::n_nodes; ++k)
     X[static_cast<std::size_t>(k)] = mesh.X.row(mesh.tetrahedra(k, element)).transpose();
-  // Newton's method where the element is curved; straight ones are met at once.
-  constexpr int most = 10;
-  for (int i = 0; i < most; ++i) {
+  // Newton's method. It needs one iteration if the element is straight.
+  constexpr int kIterations = 10;
+  for (int i = 0; i < kIterations; ++i) {
     const TetrahedronPoint at{L, 0};
     const auto N = Element::N(at);
     Vec3<double> miss = x;
@@ -137,7 +138,8 @@ NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<d
   return at;
 }
 
-/// Weights of a point x in a solid: by the element in which it lies, or outside of which it lies least.
+/// Returns the weights of a point x of a solid, by the element that contains it or is nearest to containing
+/// it.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Index in = 0;
   std::array<double, 4> L{};
@@ -157,7 +159,8 @@ NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   return weights_in<EnrichedTetrahedron>(mesh, in, x, L);
 }
 
-/// Triangles of a surface of 3 nodes a column, or of 6 or 7 (see Solid), which make four and six each.
+/// Splits faces into flat triangles. faces: 3 nodes a column, or 6 or 7 (see Solid), which give four and six
+/// triangles.
 Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
   if (faces.rows() == 3) return faces;
   if (faces.rows() == 6) {
@@ -185,7 +188,7 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.nodes = surface.material();
     mesh.triangles = surface.triangles();
   } else {
-    // Modes take the consistent mass, which is positive without the nodes on faces and in the middle.
+    // Modes use the consistent mass, which is positive without the nodes on faces and in the middle.
     const bool modes = settings.basis == LocalSettings::Basis::modes;
     const Solid solid(part, settings.resolution,
                       settings.order == 1 ? Solid::Order::linear
@@ -204,8 +207,9 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
       "part '" + part.name() + "': a mesh of resolution " + std::to_string(settings.resolution);
   if (!(missing <= rounding)) {
     std::ostringstream message;
-    message << of_mesh << " cannot have the mass, the centre and the inertia of the part: " << missing
-            << " of a moment is missing; expected another resolution, or a part that is less thin";
+    message << of_mesh
+            << " cannot have the mass, the centre and the inertia of the part: a relative share of "
+            << missing << " of a moment is missing; expected another resolution, or a part that is less thin";
     throw LocalFault(message.str());
   }
   if (!(mesh.mass.minCoeff() > 0)) throw LocalFault(of_mesh + " is too coarse for its masses to be positive");

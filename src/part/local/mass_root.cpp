@@ -1,3 +1,4 @@
+// Square roots of mass matrices by sparse Cholesky factors.
 #include "mass_root.h"
 
 #include <stdexcept>
@@ -6,10 +7,11 @@ namespace pliant {
 
 MassRoot::MassRoot(Eigen::SparseMatrix<double> nodes, const VecX<double>& own)
     : M_(std::move(nodes)), factor_(M_), own_(own.cwiseSqrt()) {
-  if (factor_.info() != Eigen::Success) throw std::invalid_argument("its mass matrix is not positive");
+  if (factor_.info() != Eigen::Success)
+    throw std::invalid_argument("its mass matrix is not positive definite");
 }
 
-// P M P^T = L L^T, so that C = L^T P.
+// P M P^T = L L^T, therefore C = L^T P.
 
 MatX<double> MassRoot::root_of_nodes(const MatX<double>& d) const {
   return factor_.matrixU() * MatX<double>(factor_.permutationP() * d);
@@ -30,23 +32,23 @@ MatX<double> MassRoot::each(const MatX<double>& all, Nodal&& nodal, Own&& own) c
 
 MatX<double> MassRoot::root(const MatX<double>& d) const {
   return each(
-      d, [&](const MatX<double>& of) { return root_of_nodes(of); },
-      [&](const auto& of) { return own_.asDiagonal() * of; });
+      d, [&](const MatX<double>& rows) { return root_of_nodes(rows); },
+      [&](const auto& rows) { return own_.asDiagonal() * rows; });
 }
 
 MatX<double> MassRoot::transposed(const MatX<double>& x) const {
   return each(
       x,
-      [&](const MatX<double>& of) -> MatX<double> {
-        return factor_.permutationPinv() * MatX<double>(factor_.matrixL() * of);
+      [&](const MatX<double>& rows) -> MatX<double> {
+        return factor_.permutationPinv() * MatX<double>(factor_.matrixL() * rows);
       },
-      [&](const auto& of) { return own_.asDiagonal() * of; });
+      [&](const auto& rows) { return own_.asDiagonal() * rows; });
 }
 
 MatX<double> MassRoot::solve(const MatX<double>& x) const {
   return each(
-      x, [&](const MatX<double>& of) { return solve_of_nodes(of); },
-      [&](const auto& of) { return own_.cwiseInverse().asDiagonal() * of; });
+      x, [&](const MatX<double>& rows) { return solve_of_nodes(rows); },
+      [&](const auto& rows) { return own_.cwiseInverse().asDiagonal() * rows; });
 }
 
 Eigen::SparseMatrix<double> MassRoot::whole() const {

@@ -1,5 +1,5 @@
-// A root C of a mass matrix, M = C^T C, of nodes whose masses may be coupled, the same along x, y and z, and
-// of coordinates that follow them, each with an inertia of its own. x = C d are mass-normalised coordinates.
+// A square root C of a mass matrix, M = C^T C. Masses of nodes may be coupled, equally along x, y and z;
+// further coordinates have an inertia each. x = C d are mass-normalised coordinates.
 #pragma once
 
 #include <vector>
@@ -12,33 +12,33 @@ namespace pliant {
 
 class MassRoot {
  public:
-  /// nodes: M over nodes, n x n, kg. own: of the coordinates that follow. Throws std::invalid_argument where
-  /// M is not positive.
+  /// nodes: M over nodes, n x n, kg. own: inertia of the further coordinates. Throws std::invalid_argument if
+  /// M is not positive definite.
   MassRoot(Eigen::SparseMatrix<double> nodes, const VecX<double>& own);
 
   Eigen::Index n_nodes() const { return M_.rows(); }
-  /// Over all coordinates.
+  /// Number of all coordinates.
   Eigen::Index size() const { return 3 * n_nodes() + own_.size(); }
   /// M over nodes.
   const Eigen::SparseMatrix<double>& of_nodes() const { return M_; }
-  /// C d and C^-1 x of fields over nodes, one a column.
+  /// Return C d and C^-1 x of scalar fields over nodes, one a column.
   MatX<double> root_of_nodes(const MatX<double>& d) const;
   MatX<double> solve_of_nodes(const MatX<double>& x) const;
-  /// C d, C^T x and C^-1 x over all coordinates.
+  /// Return C d, C^T x and C^-1 x over all coordinates.
   MatX<double> root(const MatX<double>& d) const;
   MatX<double> transposed(const MatX<double>& x) const;
   MatX<double> solve(const MatX<double>& x) const;
-  /// M over all coordinates.
+  /// Returns M over all coordinates.
   Eigen::SparseMatrix<double> whole() const;
 
  private:
-  /// act on the columns of x, y and z of all, and the roots of own inertia on the rest.
+  /// Applies `nodal` to the rows of x, y and z, and `own` to the rows of the further coordinates.
   template <class Nodal, class Own>
   MatX<double> each(const MatX<double>& all, Nodal&& nodal, Own&& own) const;
 
   Eigen::SparseMatrix<double> M_;
   Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
-  VecX<double> own_;  ///< roots
+  VecX<double> own_;  // square roots of the inertia of the further coordinates
 };
 
 }  // namespace pliant

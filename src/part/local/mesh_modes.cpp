@@ -1,9 +1,9 @@
 // The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0,
-// those of largest nu of
-//   x -> s - Y (Q^T Y)^-1 Q^T s,   s = C (K + sigma M)^-1 C^T x,   Y the same of Q,   nu = 1/(omega^2 +
-//   sigma)
-// M of curved elements is the consistent one, by which omega errs with the fourth power of an edge, from
-// above; of straight ones and of shells the lumped one, whose error opposes that of their stiffness.
+// they are the eigenvectors of largest eigenvalue nu = 1/(omega^2 + sigma) of
+//   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
+// Curved elements use the consistent M: the error of omega is positive and of fourth order in the edge
+// length. Straight elements and shells use the lumped M, whose error has the opposite sign to that of their
+// stiffness.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,10 +18,10 @@
 #include <pliant/local/solid/solid_mass.h>
 #include <pliant/math/eigenvalues.h>
 #include <pliant/part/local/modal_basis.h>
+#include <pliant/part/local/mode_conditions.h>
 #include <pliant/part/part.h>
 
 #include "mass_root.h"
-#include "mode_conditions.h"
 
 namespace pliant {
 
@@ -29,13 +29,13 @@ namespace {
 
 using Sparse = SparseMatrix;
 
-/// Up to here the dense solver is the faster way.
+/// Up to this number of coordinates the dense solver is faster.
 constexpr Eigen::Index kDense = 400;
-/// Local coordinates whose factor takes gigabytes, and numbers in the modes.
-constexpr Eigen::Index kMostCoordinates = 120'000;
-constexpr double kMostNumbers = 5e7;
+/// Limits of local coordinates, whose factor needs gigabytes, and of numbers in the modes.
+constexpr Eigen::Index kMaxCoordinates = 120'000;
+constexpr double kMaxNumbers = 5e7;
 
-/// M over the nodes of a mesh.
+/// Returns M over the nodes of a mesh.
 Sparse mass_of(const LocalMesh& mesh) {
   const Eigen::Index n = mesh.X.rows();
   std::vector<Eigen::Triplet<double>> entries;
@@ -49,22 +49,23 @@ Sparse mass_of(const LocalMesh& mesh) {
   return M;
 }
 
-/// Throws where modes do not know a law.
-void check_laws(const std::string& of, const LaidEnergies& laid, const LocalSettings& settings) {
-  for (std::size_t k = 0; k < laid.all.size(); ++k)
-    if (laid.all[k]->of() != NodalEnergy::Of::displacement)
-      throw LocalFault(of + "modes know laws that are quadratic in d only, and not the law '" +
+/// Throws LocalFault if there is no law, or a law that is not quadratic in d.
+void check_laws(const std::string& part_name, const MeshEnergies& energies, const LocalSettings& settings) {
+  for (std::size_t k = 0; k < energies.all.size(); ++k)
+    if (energies.all[k]->of() != NodalEnergy::Of::displacement)
+      throw LocalFault(part_name + "modes support only laws that are quadratic in d, not the law '" +
                            settings.energies[k].name + "'; expected another law, or the basis \"nodes\"",
                        static_cast<int>(k));
-  if (laid.all.empty()) throw LocalFault(of + "modes need a law; expected one at least");
+  if (energies.all.empty()) throw LocalFault(part_name + "modes need a law; expected at least one");
 }
 
 /// Mass and stiffness of a mesh.
 struct MeshElasticity {
-  MeshElasticity(const LocalMesh& mesh, const LaidEnergies& laid) : mass(mass_of(mesh), laid.own_inertia) {
+  MeshElasticity(const LocalMesh& mesh, const MeshEnergies& energies)
+      : mass(mass_of(mesh), energies.own_inertia) {
     const Eigen::Index n = mass.size();
     std::vector<Eigen::Triplet<double>> entries;
-    for (const auto& energy : laid.all) energy->add_stiffness(VecX<double>::Zero(n), entries);
+    for (const auto& energy : energies.all) energy->add_stiffness(VecX<double>::Zero(n), entries);
     K.resize(n, n);
     K.setFromTriplets(entries.begin(), entries.end());
   }
@@ -72,16 +73,17 @@ struct MeshElasticity {
   Sparse K;
 };
 
-/// An orthonormal basis of C G0: rigid motion and the dynamic parameters, at rest.
-MatX<double> conditions(const Part& part, const LocalMesh& mesh, const MassRoot& mass) {
-  constexpr double dependent = 1e-9;
+/// Returns an orthonormal basis of C G0, the fields of rigid motion and of the dynamic parameters at rest.
+MatX<double> basis_of_conditions(const Part& part, const LocalMesh& mesh, const MassRoot& mass) {
+  constexpr double dependent = 1e-9;  // see orthonormal_basis()
   const MatX<double> G = rest_frame(part, mesh.nodes, mesh.X);
   MatX<double> all = MatX<double>::Zero(mass.size(), G.cols());
   all.topRows(G.rows()) = G;
   return orthonormal_basis(mass.root(all), dependent);
 }
 
-/// (K' + sigma)^-1, K' = C^-T K C^-1, on what the conditions leave, as Spectra asks for it.
+/// The operator (K' + sigma)^-1, K' = C^-T K C^-1, on the complement of the conditions, with the interface of
+/// Spectra.
 class Flexibility {
  public:
   using Scalar = double;
@@ -94,7 +96,7 @@ class Flexibility {
     factor_->analyse(shifted);
     positive_ = factor_->factor(shifted);
     if (!positive_) return;
-    Y_ = yield(Q);
+    Y_ = unconstrained(Q);
     inner_.compute(Q.transpose() * Y_);
     positive_ = inner_.info() == Eigen::Success;
   }
@@ -102,16 +104,17 @@ class Flexibility {
   Eigen::Index rows() const { return Q_.rows(); }
   Eigen::Index cols() const { return Q_.rows(); }
   void perform_op(const double* in, double* out) const {
-    const VecX<double> s = yield(Eigen::Map<const VecX<double>>(in, rows()));
-    const VecX<double> hold = inner_.solve(Q_.transpose() * s);
-    Eigen::Map<VecX<double>>(out, rows()) = s - Y_ * hold;
+    const VecX<double> s = unconstrained(Eigen::Map<const VecX<double>>(in, rows()));
+    const VecX<double> multipliers = inner_.solve(Q_.transpose() * s);
+    Eigen::Map<VecX<double>>(out, rows()) = s - Y_ * multipliers;
   }
 
  private:
-  MatX<double> yield(const MatX<double>& x) const {
-    MatX<double> pushed = mass_.transposed(x);
-    factor_->solve(pushed);
-    return mass_.root(pushed);
+  /// Returns A x without the conditions.
+  MatX<double> unconstrained(const MatX<double>& x) const {
+    MatX<double> y = mass_.transposed(x);
+    factor_->solve(y);
+    return mass_.root(y);
   }
 
   const MassRoot& mass_;
@@ -122,10 +125,10 @@ class Flexibility {
   Eigen::LDLT<MatX<double>> inner_;
 };
 
-/// A tenth of the least omega^2 among displacements that are quadratic in X.
+/// Returns the shift sigma: a tenth of the smallest omega^2 among displacements that are quadratic in X.
 double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const MatX<double>& Q) {
   const Eigen::Index n = mesh.X.rows();
-  double least = std::numeric_limits<double>::infinity();
+  double min_omega2 = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k <= j; ++k) {
@@ -135,79 +138,138 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
         x -= (Q * (Q.transpose() * x)).eval();
         d = elasticity.mass.solve(x);
         const double omega2 = d.dot(elasticity.K * d) / x.squaredNorm();
-        if (omega2 > 0) least = std::min(least, omega2);
+        if (omega2 > 0) min_omega2 = std::min(min_omega2, omega2);
       }
-  return 0.1 * least;
+  return 0.1 * min_omega2;
 }
 
-/// Columns: the modes in mass-normalised coordinates, of rising frequency.
-MatX<double> lowest(const std::string& of, const LocalMesh& mesh, const MeshElasticity& elasticity,
-                    const MatX<double>& Q, Eigen::Index count, const MakeSparseFactor& make_factor) {
+/// The lowest modes by all eigenvectors of K', for few coordinates.
+MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>& Q, Eigen::Index count) {
   const Eigen::Index n = elasticity.mass.size();
-  if (n <= kDense || 4 * count > n) {
-    const Eigen::HouseholderQR<MatX<double>> qr(Q);
-    const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols()),
-                       d = elasticity.mass.solve(Z);
-    return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
-  }
-  constexpr double tolerance = 1e-13;
-  constexpr int most_iterations = 1000;
-  Flexibility flexibility(elasticity, Q, shift_of(mesh, elasticity, Q), make_factor);
+  const Eigen::HouseholderQR<MatX<double>> qr(Q);
+  const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(n - Q.cols()),
+                     d = elasticity.mass.solve(Z);
+  return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
+}
+
+/// A part, its mesh and its elasticity.
+struct MeshProblem {
+  const Part& part;
+  const LocalSettings& settings;
+  const LocalMesh& mesh;
+  std::string part_name = "part '" + part.name() + "': ";
+
+  Eigen::Index count() const { return settings.modes; }
+  /// Throws std::invalid_argument for too few or too many modes or nodes.
+  void check_size() const;
+};
+
+/// Returns the lowest modes in mass-normalised coordinates, one a column, by increasing frequency.
+MatX<double> lowest_modes(const MeshProblem& problem, const MeshElasticity& elasticity,
+                          const MatX<double>& Q) {
+  const Eigen::Index n = elasticity.mass.size(), count = problem.count();
+  if (n <= kDense || 4 * count > n) return lowest_of_all(elasticity, Q, count);
+  constexpr double kEigenTolerance = 1e-13;
+  constexpr int kMaxIterations = 1000;
+  const double sigma = shift_of(problem.mesh, elasticity, Q);
+  Flexibility flexibility(elasticity, Q, sigma, problem.settings.make_factor);
   if (!flexibility.exists())
-    throw std::invalid_argument(of + "its elasticity is not positive: its modes cannot be told");
+    throw std::invalid_argument(
+        problem.part_name + "its stiffness matrix is not positive definite, so its modes cannot be found");
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, std::min(n, 2 * count + 20));
   solver.init();
-  solver.compute(Spectra::SortRule::LargestAlge, most_iterations, tolerance);
+  solver.compute(Spectra::SortRule::LargestAlge, kMaxIterations, kEigenTolerance);
   if (solver.info() != Spectra::CompInfo::Successful)
-    throw std::invalid_argument(of + "only " + std::to_string(solver.eigenvalues().size()) + " of its " +
-                                std::to_string(count) + " modes could be told; expected fewer modes");
+    throw std::invalid_argument(problem.part_name + "the eigenvalue search found only " +
+                                std::to_string(solver.eigenvalues().size()) + " of its " +
+                                std::to_string(count) + " modes; expected fewer modes");
   MatX<double> x = solver.eigenvectors();
   x -= (Q * (Q.transpose() * x)).eval();
   const Eigen::HouseholderQR<MatX<double>> qr(x);
   return qr.householderQ() * MatX<double>::Identity(n, count);
 }
 
+void MeshProblem::check_size() const {
+  const Eigen::Index n_nodes = mesh.X.rows();
+  if (count() < 1)
+    throw std::invalid_argument(part_name + std::to_string(count()) + " modes; expected at least 1");
+  const double numbers = (4.0 + 3 * settings.modes) * static_cast<double>(n_nodes);
+  if (3 * n_nodes > kMaxCoordinates || numbers > kMaxNumbers)
+    throw std::invalid_argument(part_name + std::to_string(count()) + " modes of a mesh of " +
+                                std::to_string(n_nodes) + " nodes are too many; expected at most " +
+                                std::to_string(kMaxCoordinates / 3) + " nodes, and nodes times modes below " +
+                                std::to_string(static_cast<long>(kMaxNumbers / 3)));
+}
+
+/// Modes over the coordinates of a mesh, one a column, by increasing frequency.
+struct MeshModes {
+  MatX<double> d;
+  VecX<double> omega2;
+};
+
+/// Returns modes that diagonalise the stiffness among the given ones. Their energies are accurate to the
+/// square of the error of the modes.
+MeshModes diagonalised(const MeshElasticity& elasticity, const MatX<double>& x) {
+  const MatX<double> d = elasticity.mass.solve(x);
+  const MatX<double> stiffness = d.transpose() * (elasticity.K * d);
+  const Eigenpairs inner = symmetric_eigenpairs(stiffness);
+  return {d * inner.vectors, inner.values.cwiseMax(0)};
+}
+
+/// Displacements along x, y, z at nodes of mode number j.
+auto nodal_part(const MeshModes& modes, Eigen::Index j, Eigen::Index n_nodes) {
+  return modes.d.col(j).head(3 * n_nodes).reshaped(n_nodes, 3);
+}
+
+/// Returns scalar fields over nodes whose combinations are the constant, X and the components of the modes;
+/// orthogonal over the mass, and each with the mass of the part.
+MatX<double> fields_of(const LocalMesh& mesh, const MassRoot& root, const MeshModes& modes) {
+  constexpr double dependent = 1e-10;  // see orthonormal_basis()
+  const Eigen::Index n_nodes = mesh.X.rows(), count = modes.d.cols();
+  MatX<double> fields(n_nodes, 4 + 3 * count);
+  fields.leftCols<4>() << VecX<double>::Ones(n_nodes), mesh.X;
+  for (Eigen::Index j = 0; j < count; ++j) fields.middleCols<3>(4 + 3 * j) = nodal_part(modes, j, n_nodes);
+  return std::sqrt(mesh.mass.sum()) *
+         root.solve_of_nodes(orthonormal_basis(root.root_of_nodes(fields), dependent));
+}
+
+/// Returns the fields phi at a material point from those at nodes.
+NodeWeights fields_at(const Part& part, const LocalMesh& mesh, const MatX<double>& phi,
+                      const Material<double>& m) {
+  const NodeWeights among = mesh_weights(part, mesh, m);
+  NodeWeights at;
+  for (Eigen::Index a = 0; a < phi.cols() && !among.node.empty(); ++a) {
+    double sum = 0;
+    for (std::size_t i = 0; i < among.node.size(); ++i) sum += among.weight[i] * phi(among.node[i], a);
+    at.node.push_back(static_cast<int>(a));
+    at.weight.push_back(sum);
+  }
+  return at;
+}
+
 }  // namespace
 
 ModalBasis make_mesh_modes(const Part& part, const LocalSettings& settings) {
-  const std::string of = "part '" + part.name() + "': ";
-  ModalBasis basis;
   const auto mesh = std::make_shared<const LocalMesh>(make_local_mesh(part, settings));
-  const Eigen::Index n_nodes = mesh->X.rows();
-  if (settings.modes < 1)
-    throw std::invalid_argument(of + std::to_string(settings.modes) + " modes; expected 1 at least");
-  const double numbers = (4.0 + 3 * settings.modes) * static_cast<double>(n_nodes);
-  if (3 * n_nodes > kMostCoordinates || numbers > kMostNumbers)
-    throw std::invalid_argument(
-        of + std::to_string(settings.modes) + " modes of a mesh of " + std::to_string(n_nodes) +
-        " nodes are too much to be told; expected at most " + std::to_string(kMostCoordinates / 3) +
-        " nodes, and nodes times modes below " + std::to_string(static_cast<long>(kMostNumbers / 3)));
-  const LaidEnergies laid = lay_energies(part, settings, *mesh);
-  check_laws(of, laid, settings);
-  const MeshElasticity elasticity(*mesh, laid);
+  const MeshProblem problem{part, settings, *mesh};
+  problem.check_size();
+  const MeshEnergies energies = make_mesh_energies(part, settings, *mesh);
+  check_laws(problem.part_name, energies, settings);
+  const MeshElasticity elasticity(*mesh, energies);
   const MassRoot& root = elasticity.mass;
-  const MatX<double> Q = conditions(part, *mesh, root);
-  const Eigen::Index left = root.size() - Q.cols();
-  if (settings.modes > left)
-    throw std::invalid_argument(of + std::to_string(settings.modes) + " modes of a mesh that has " +
-                                std::to_string(left) + "; expected no more");
-  MatX<double> x = lowest(of, *mesh, elasticity, Q, settings.modes, settings.make_factor);
-  // By their energies, whose error is the square of that of the modes.
-  x = root.solve(x);
-  const MatX<double> stiffness = x.transpose() * (elasticity.K * x);
-  const Eigenpairs inner = symmetric_eigenpairs(stiffness);
-  const MatX<double> modes = x * inner.vectors;
-  basis.omega2 = inner.values.cwiseMax(0);
+  const MatX<double> Q = basis_of_conditions(part, *mesh, root);
+  const Eigen::Index available = root.size() - Q.cols();
+  if (settings.modes > available)
+    throw std::invalid_argument(problem.part_name + std::to_string(settings.modes) +
+                                " modes of a mesh that has " + std::to_string(available) +
+                                "; expected no more");
+  const MeshModes modes = diagonalised(elasticity, lowest_modes(problem, elasticity, Q));
 
-  // The fields that make them up, with the constant and X.
-  constexpr double dependent = 1e-10;
-  MatX<double> fields(n_nodes, 4 + 3 * settings.modes);
-  fields.leftCols<4>() << VecX<double>::Ones(n_nodes), mesh->X;
-  for (Eigen::Index j = 0; j < settings.modes; ++j)
-    fields.middleCols<3>(4 + 3 * j) = modes.col(j).head(3 * n_nodes).reshaped(n_nodes, 3);
+  ModalBasis basis;
+  basis.omega2 = modes.omega2;
+  const Eigen::Index n_nodes = mesh->X.rows();
   const double mass = mesh->mass.sum();
-  const auto phi = std::make_shared<const MatX<double>>(
-      std::sqrt(mass) * root.solve_of_nodes(orthonormal_basis(root.root_of_nodes(fields), dependent)));
+  const auto phi = std::make_shared<const MatX<double>>(fields_of(*mesh, root, modes));
   basis.mass = VecX<double>::Constant(phi->cols(), mass);
   basis.project = MatX<double>(root.of_nodes() * *phi).transpose() / mass;
   basis.points = mesh->nodes;
@@ -215,21 +277,12 @@ ModalBasis make_mesh_modes(const Part& part, const LocalSettings& settings) {
   basis.X = basis.project * mesh->X;
   basis.B.resize(3 * phi->cols(), settings.modes);
   for (Eigen::Index j = 0; j < settings.modes; ++j)
-    basis.B.col(j) =
-        MatX<double>(basis.project * modes.col(j).head(3 * n_nodes).reshaped(n_nodes, 3)).reshaped();
+    basis.B.col(j) = MatX<double>(basis.project * nodal_part(modes, j, n_nodes)).reshaped();
   basis.mesh = *mesh;
   basis.shown = *phi;
   basis.made_of = "a mesh of " + std::to_string(n_nodes) + " nodes";
   basis.weights = [mesh, phi](const Part& of_part, const Material<double>& m) {
-    const NodeWeights among = mesh_weights(of_part, *mesh, m);
-    NodeWeights at;
-    for (Eigen::Index a = 0; a < phi->cols() && !among.node.empty(); ++a) {
-      double sum = 0;
-      for (std::size_t i = 0; i < among.node.size(); ++i) sum += among.weight[i] * (*phi)(among.node[i], a);
-      at.node.push_back(static_cast<int>(a));
-      at.weight.push_back(sum);
-    }
-    return at;
+    return fields_at(of_part, *mesh, *phi, m);
   };
   return basis;
 }

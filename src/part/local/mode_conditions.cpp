@@ -1,4 +1,5 @@
-#include "mode_conditions.h"
+// The reference conditions at rest, and modes under them.
+#include <pliant/part/local/mode_conditions.h>
 
 #include <stdexcept>
 
@@ -57,7 +58,7 @@ MatX<double> orthonormal_basis(MatX<double> A, double dependent) {
 }
 
 void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
-  constexpr double dependent = 1e-9;
+  constexpr double dependent = 1e-9;  // relative distance below which a column of W depends on the others
   const Eigen::Index n = basis.mass.size();
   const double mass = basis.mass[0];
   MatX<double> W = rest_frame(part, basis);
@@ -67,7 +68,7 @@ void diagonalise(const Part& part, const MatX<double>& K, ModalBasis& basis) {
   const Eigen::Index left = 3 * n - qr.rank();
   if (left < 1)
     throw std::invalid_argument("part '" + part.name() +
-                                "': its frame and dynamic parameters leave no displacement to its " +
+                                "': its frame and dynamic parameters represent all displacements of its " +
                                 basis.made_of + "; expected a higher degree");
   const MatX<double> Z = MatX<double>(qr.householderQ()).rightCols(left);
   const Eigenpairs modes = symmetric_eigenpairs(Z.transpose() * K * Z);

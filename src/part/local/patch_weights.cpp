@@ -1,3 +1,4 @@
+// Weights of patches of nodes.
 #include <pliant/part/local/patch_weights.h>
 
 #include <algorithm>
@@ -12,7 +13,8 @@ namespace pliant {
 
 namespace {
 
-/// Nodes of a measure within the radius, and their weights phi times it, which sum to 1.
+/// The nodes within the radius with a positive measure (area or mass), and weights phi times measure, scaled
+/// to sum 1.
 struct Patch {
   std::vector<int> node;
   VecX<double> weight;
@@ -22,17 +24,17 @@ Patch patch_around(const Nodes& X, const Vec3<double>& centre, double radius, co
   Patch patch;
   std::vector<double> weights;
   for (Eigen::Index k = 0; k < X.rows(); ++k) {
-    const double fall = 1 - (X.row(k).transpose() - centre).squaredNorm() / (radius * radius);
-    if (!(fall > 0) || !(measure[k] > 0)) continue;
+    const double share = 1 - (X.row(k).transpose() - centre).squaredNorm() / (radius * radius);
+    if (!(share > 0) || !(measure[k] > 0)) continue;
     patch.node.push_back(static_cast<int>(k));
-    weights.push_back(fall * fall * measure[k]);
+    weights.push_back(share * share * measure[k]);
   }
   patch.weight = Eigen::Map<const VecX<double>>(weights.data(), static_cast<Eigen::Index>(weights.size()));
   if (!weights.empty()) patch.weight /= patch.weight.sum();
   return patch;
 }
 
-/// 1 and (X - centre) / radius at the nodes of a patch: 4 rows.
+/// Returns 1 and (X - centre) / radius at the nodes of a patch: 4 rows.
 Eigen::Matrix4Xd linear_functions(const Patch& patch, const Nodes& X, const Vec3<double>& centre,
                                   double radius) {
   Eigen::Matrix4Xd f(4, static_cast<Eigen::Index>(patch.node.size()));
@@ -44,23 +46,23 @@ Eigen::Matrix4Xd linear_functions(const Patch& patch, const Nodes& X, const Vec3
 }  // namespace
 
 NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m, double radius) {
-  constexpr int fewest = 5;
-  constexpr double flat = 1e-10;     // of a patch without extent across it
-  constexpr double most_weight = 4;  // in sum |w|: beyond, so few nodes that they pull against each other
+  constexpr int kMinPatchNodes = 5;
+  constexpr double kFlatPatch = 1e-10;  // rank threshold for a patch without thickness
+  constexpr double kMaxWeightSum = 4;   // of |w|; a larger sum means that few nodes pull against each other
   const NodeWeights element = mesh_weights(part, mesh, m);
   if (element.node.empty()) return element;
   const Vec3<double> centre = part.s({m}, part.parameters().rest()).col(0);
   const bool on_surface = m.w == 1;
   const Patch patch = patch_around(mesh.X, centre, radius, on_surface ? mesh.areas() : mesh.mass);
-  // The mean of a patch of a curved surface lies beside it: set right by all nodes around, so that where
-  // these reach across the surface little changes.
+  // The mean of a patch of a curved surface is off the surface. All nodes around correct it: they extend
+  // across the surface, so that the correction is small.
   const Patch around = mesh.shell() || !on_surface ? patch : patch_around(mesh.X, centre, radius, mesh.mass);
-  if (static_cast<int>(patch.node.size()) < fewest) return element;
+  if (static_cast<int>(patch.node.size()) < kMinPatchNodes) return element;
   const Eigen::Matrix4Xd f = linear_functions(patch, mesh.X, centre, radius),
                          g = linear_functions(around, mesh.X, centre, radius);
   const Eigen::Vector4d missing = Eigen::Vector4d::Unit(0) - f * patch.weight;
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix4d> solver;
-  solver.setThreshold(flat);
+  solver.setThreshold(kFlatPatch);
   solver.compute(g * around.weight.asDiagonal() * g.transpose());
   VecX<double> w = VecX<double>::Zero(mesh.X.rows());
   const VecX<double> change = around.weight.asDiagonal() * (g.transpose() * solver.solve(missing));
@@ -68,8 +70,8 @@ NodeWeights patch_weights(const Part& part, const LocalMesh& mesh, const Materia
     w[patch.node[k]] += patch.weight[static_cast<Eigen::Index>(k)];
   for (std::size_t k = 0; k < around.node.size(); ++k)
     w[around.node[k]] += change[static_cast<Eigen::Index>(k)];
-  const double miss = (mesh.X.transpose() * w - centre).norm();
-  if (!(w.lpNorm<1>() <= most_weight) || !(miss <= 1e-9 * radius)) return element;
+  const double error = (mesh.X.transpose() * w - centre).norm();
+  if (!(w.lpNorm<1>() <= kMaxWeightSum) || !(error <= 1e-9 * radius)) return element;
   NodeWeights at;
   for (Eigen::Index k = 0; k < w.size(); ++k) {
     if (w[k] == 0) continue;

@@ -1,7 +1,8 @@
-// Displacement polynomials over the body of a solid. With fields phi = T L of Legendre products L,
-// orthonormal over the mass, and d phi / dX_r = Delta_r phi,
-//   K_rs = V (lambda Delta_r Delta_s^T + mu Delta_s Delta_r^T + delta_rs mu sum_t Delta_t Delta_t^T)
-// for linear elasticity; no quadrature of gradients is needed.
+// Displacement polynomials over the body of a solid. The fields phi = T L are combinations of Legendre
+// products L that are orthonormal over the mass, and d phi / dX_r = Delta_r phi. The stiffness of linear
+// elasticity is then
+//   K_rs = V (lambda Delta_r Delta_s^T + mu Delta_s Delta_r^T + delta_rs mu sum_t Delta_t Delta_t^T),
+// without a quadrature of gradients.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -9,28 +10,30 @@
 #include <Eigen/Cholesky>
 
 #include <pliant/part/local/modal_basis.h>
+#include <pliant/part/local/mode_conditions.h>
 #include <pliant/part/mesh/surface.h>
 #include <pliant/part/part.h>
 
-#include "mode_conditions.h"
 #include "part/quadrature/body_rule.h"
 
 namespace pliant {
 
 namespace {
 
-/// Numbers in the values of all fields at all points beyond which a basis is refused: 400 MB.
-constexpr double kMostValues = 5e7;
+/// Maximum number of values of all fields at all points of a basis: 400 MB.
+constexpr double kMaxValues = 5e7;
 
-/// phi = T L.
+/// The fields phi = T L.
 struct PolynomialFields {
   LegendreProducts L;
   MatX<double> T;  ///< lower triangular
 
+  /// Returns phi at points X: points x fields.
   MatX<double> at(const Eigen::Matrix3Xd& X) const { return L.values(X) * T.transpose(); }
 };
 
-/// Mean squares 1, orthogonal in the mean: by Cholesky's factor of the Gram matrix, twice.
+/// Returns fields that are orthonormal in the mean over the body, by Cholesky factors of the Gram matrix,
+/// applied twice.
 PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const BodyRule& rule) {
   PolynomialFields fields{L, MatX<double>::Identity(L.size(), L.size())};
   const VecX<double> weight = rule.volume / rule.volume.sum();
@@ -51,6 +54,7 @@ PolynomialFields orthonormal(const Part& part, const LegendreProducts& L, const 
   return fields;
 }
 
+/// Returns the stiffness matrix of linear elasticity, with the sum of the constants of the laws.
 MatX<double> stiffness(const PolynomialFields& fields, const std::vector<Elasticity>& laws, double volume) {
   const Eigen::Index n = fields.L.size();
   std::array<MatX<double>, 3> gradient;
@@ -80,21 +84,22 @@ MatX<double> stiffness(const PolynomialFields& fields, const std::vector<Elastic
 }  // namespace
 
 ModalBasis make_polynomials(const Part& part, const LocalSettings& settings) {
-  const std::string of = "part '" + part.name() + "': ";
+  const std::string name = "part '" + part.name() + "': ";
   if (part.shell())
-    throw std::invalid_argument(of +
-                                "displacement polynomials are of solids, and it is a shell; expected the "
-                                "basis \"nodes\" or \"modes\"");
+    throw std::invalid_argument(
+        name +
+        "displacement polynomials are for solids, and the part is a shell; expected the "
+        "basis \"nodes\" or \"modes\"");
   std::vector<Elasticity> laws;
   for (const LocalLaw& law : settings.energies) {
     if (!law.linear)
-      throw LocalFault(of + "displacement polynomials know linear elasticity only, and not the law '" +
+      throw LocalFault(name + "displacement polynomials support only linear elasticity, not the law '" +
                            law.name + "'; expected \"elastic\", or the basis \"nodes\"",
                        static_cast<int>(laws.size()));
     laws.push_back(*law.linear);
   }
   if (settings.degree < 1 || settings.degree > 10)
-    throw std::invalid_argument(of + "polynomials of degree " + std::to_string(settings.degree) +
+    throw std::invalid_argument(name + "polynomials of degree " + std::to_string(settings.degree) +
                                 "; expected 1 to 10");
   ModalBasis basis;
   const Surface surface(part, settings.resolution);
@@ -108,11 +113,11 @@ ModalBasis make_polynomials(const Part& part, const LocalSettings& settings) {
   BodyRule rule = make_body_rule(part, LegendreProducts(box, 2 * settings.degree));
   const LegendreProducts L(box, settings.degree);
   const double values = static_cast<double>(L.size()) * static_cast<double>(rule.X.cols());
-  if (values > kMostValues)
-    throw std::invalid_argument(of + std::to_string(L.size()) + " polynomials at " +
-                                std::to_string(rule.X.cols()) + " points of its body are more numbers than " +
-                                std::to_string(static_cast<long>(kMostValues)) +
-                                "; expected a lower degree or a smoother shape");
+  if (values > kMaxValues)
+    throw std::invalid_argument(
+        name + std::to_string(L.size()) + " polynomials at " + std::to_string(rule.X.cols()) +
+        " points of its body need more numbers than " + std::to_string(static_cast<long>(kMaxValues)) +
+        "; expected a lower degree or a smoother shape");
   const PolynomialFields fields = orthonormal(part, L, rule);
   const double volume = rule.volume.sum();
   const Eigen::Index n = L.size();

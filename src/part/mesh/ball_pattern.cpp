@@ -1,4 +1,5 @@
-#include "ball_pattern.h"
+// The mesh pattern of balls.
+#include <pliant/part/mesh/ball_pattern.h>
 
 #include <cmath>
 
@@ -8,7 +9,7 @@ namespace pliant {
 
 namespace {
 
-/// Azimuth by steps round the square ring through (i, j), of half side ring.
+/// Returns the azimuth of (i, j) by equal steps around its square ring of half side `ring`.
 double azimuth(int i, int j, int ring) {
   if (ring == 0) return 0;
   if (i == ring && std::abs(j) < ring) return kPi / 4 * j / ring;
@@ -18,6 +19,7 @@ double azimuth(int i, int j, int ring) {
   return kPi / 4 * j / ring;
 }
 
+/// Returns 0 for rounding errors of 0.
 double exact(double x) {
   return std::abs(x) < 1e-15 ? 0.0 : x;
 }
@@ -36,7 +38,7 @@ Vec3<double> ball_direction(const LatticePoint& p) {
     s = k > 0 ? c : -c;
   }
   double cv = exact(std::cos(v)), sv = exact(std::sin(v));
-  if (std::abs(i) == std::abs(j) && ring > 0) {  // the diagonals exactly
+  if (std::abs(i) == std::abs(j) && ring > 0) {  // exact diagonals
     cv = std::copysign(std::sqrt(0.5), i);
     sv = std::copysign(std::sqrt(0.5), j);
   }
@@ -45,12 +47,12 @@ Vec3<double> ball_direction(const LatticePoint& p) {
 
 BallSurface::BallSurface(int m) {
   auto vertex = [&](const LatticePoint& p) {
-    const auto [at, fresh] = index.try_emplace(p, static_cast<int>(points.size()));
-    if (fresh) points.push_back(p);
+    const auto [at, is_new] = index.try_emplace(p, static_cast<int>(points.size()));
+    if (is_new) points.push_back(p);
     return at->second;
   };
   for (int face = 0; face < 6; ++face) {
-    // Each face of the cube: its outward axis and two axes that turn counter-clockwise seen from outside.
+    // A face of the cube: its outward axis, and two axes that are counter-clockwise seen from outside.
     const int axis = face / 2, sign = face % 2 == 0 ? 1 : -1;
     const int right = (axis + 1) % 3, up = (axis + 2) % 3;
     auto at = [&](int a, int b) {

@@ -1,3 +1,4 @@
+// Folds of the deformation.
 #include <pliant/part/mesh/folds.h>
 
 #include <stdexcept>
@@ -6,9 +7,9 @@
 
 namespace pliant {
 
-double least_volume_ratio(const Part& part, const ParameterValues<double>& values) {
+double min_volume_ratio(const Part& part, const ParameterValues<double>& values) {
   if (part.parameters().all_links().empty()) return 1;
-  constexpr int round = 32;
+  constexpr int round = 32;  // samples round v; along u from -tall to tall
   const int tall = part.shape().mesh() == MeshPattern::torus ? round / 2 : round / 4;
   Eigen::Matrix3Xd e(3, (2 * tall + 1) * round);
   Eigen::Index column = 0;
@@ -16,19 +17,19 @@ double least_volume_ratio(const Part& part, const ParameterValues<double>& value
     for (int j = 0; j < round; ++j)
       e.col(column++) =
           part.shape().e(material_at(2 * kPi * i / round, 2 * kPi * j / round), values.b.data());
-  double least = kInfinity;
+  double min_ratio = kInfinity;
   for (const Mat3<double>& F : part.chain_gradient(e, values)) {
     const double ratio = F.determinant();
-    if (!(ratio >= least)) least = ratio;
+    if (!(ratio >= min_ratio)) min_ratio = ratio;
   }
-  return least;
+  return min_ratio;
 }
 
 bool folds(const Part& part, const ParameterValues<double>& values) {
-  return !(least_volume_ratio(part, values) >= -1e-12);
+  return !(min_volume_ratio(part, values) >= -1e-12);
 }
 
-void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which) {
+void throw_if_folded(const Part& part, const ParameterValues<double>& values, const char* which) {
   if (folds(part, values)) throw_folded(part, which);
 }
 

@@ -1,3 +1,4 @@
+// Meshes on the parameter rectangle.
 #include <pliant/part/mesh/parameter_mesh.h>
 
 #include <algorithm>
@@ -16,12 +17,13 @@ struct Corner {
 };
 using Triangle = std::array<Corner, 3>;
 
-/// Of the values of an angle that is x the one nearest to `to`.
+/// Returns x plus the multiple of 2 pi that brings it nearest to `to`.
 double near(double x, double to) {
   return x + 2 * kPi * std::round((to - x) / (2 * kPi));
 }
 
-/// Positive where v, u turn as the surface does seen from outside.
+/// Returns twice the area on the rectangle: positive if (v, u) have the orientation of the surface seen from
+/// outside.
 double twice_area(const Triangle& t) {
   return (t[1].v - t[0].v) * (t[2].u - t[0].u) - (t[1].u - t[0].u) * (t[2].v - t[0].v);
 }
@@ -29,12 +31,12 @@ double twice_area(const Triangle& t) {
 }  // namespace
 
 ParameterMesh parameter_mesh(const LocalMesh& mesh) {
-  // A ring that goes round in u as well has no poles.
+  // A torus has no poles: u goes around the tube, so that cos u is negative somewhere.
   const bool poles = std::none_of(mesh.nodes.begin(), mesh.nodes.end(),
                                   [](const Material<double>& m) { return m.cu.x < 0; });
   std::vector<Triangle> all;
   for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
-    Triangle corners;  // from the pole on, if there is one
+    Triangle corners;  // starting at the pole, if there is one
     int first = 0;
     for (int k = 0; k < 3; ++k)
       if (poles && mesh.nodes[static_cast<std::size_t>(mesh.triangles(k, t))].cu.x == 0) first = k;

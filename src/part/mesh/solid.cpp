@@ -1,3 +1,4 @@
+// Meshes of tetrahedra of balls and tori.
 #include <pliant/part/mesh/solid.h>
 
 #include <algorithm>
@@ -14,28 +15,28 @@
 #include <Eigen/LU>
 
 #include <pliant/local/solid/tetrahedron.h>
+#include <pliant/part/mesh/ball_pattern.h>
 #include <pliant/part/mesh/surface.h>
-
-#include "ball_pattern.h"
 
 namespace pliant {
 
 namespace {
 
-/// Least volume of an element, in units of the cube of its longest edge.
+/// Minimum volume of an element, relative to the cube of its longest edge.
 constexpr double kFlat = 1e-9;
-/// More straight elements than that, or a quarter of curved ones, would not fit in a few gigabytes.
-constexpr double kMostElements = 2e6;
+/// Maximum number of straight elements; a quarter of it for curved ones. More elements would need more than a
+/// few gigabytes.
+constexpr double kMaxElements = 2e6;
 
-/// Corner nodes and elements, the vertices of the surface first.
+/// Corner nodes and elements. The first nodes are the vertices of the surface.
 struct Corners {
   std::vector<Material<double>> material;
   std::vector<std::array<int, 4>> elements;
-  /// The material point of the surface amid vertices of an edge or a triangle of it.
-  std::function<Material<double>(const std::vector<int>&)> amid;
+  /// Returns the material point of the surface in the middle of an edge or a triangle, given by its vertices.
+  std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
-/// The material point in a direction of the mesh pattern, at the radius w.
+/// Gives the material point in a direction of the mesh pattern at the radius w.
 struct Labels {
   const ShapeFace& shape;
   ShapeParameters a;
@@ -46,7 +47,7 @@ struct Labels {
   }
 };
 
-Corners lay_ball(const Labels& label, const Surface& surface, int m) {
+Corners ball_corners(const Labels& label, const Surface& surface, int m) {
   Corners corners;
   corners.material = surface.material();
   const BallSurface ball(m);
@@ -64,7 +65,8 @@ Corners lay_ball(const Labels& label, const Surface& surface, int m) {
   for (int i = -m; i < m; ++i)
     for (int j = -m; j < m; ++j)
       for (int k = -m; k < m; ++k) {
-        // From the corner of the cell next to the centre, one step along each axis, in any order of them.
+        // Each element is a path from the corner of the cell nearest to the centre, one step along each axis;
+        // there are six orders of the axes.
         const std::array<int, 3> step{i < 0 ? -1 : 1, j < 0 ? -1 : 1, k < 0 ? -1 : 1};
         const LatticePoint inner{i < 0 ? i + 1 : i, j < 0 ? j + 1 : j, k < 0 ? k + 1 : k};
         std::array<std::size_t, 3> axes{0, 1, 2};
@@ -80,7 +82,7 @@ Corners lay_ball(const Labels& label, const Surface& surface, int m) {
           corners.elements.push_back(element);
         } while (std::next_permutation(axes.begin(), axes.end()));
       }
-  corners.amid = [label, points = ball.points](const std::vector<int>& vertices) {
+  corners.middle = [label, points = ball.points](const std::vector<int>& vertices) {
     LatticePoint sum{};
     for (int v : vertices)
       for (std::size_t r = 0; r < 3; ++r) sum[r] += points[static_cast<std::size_t>(v)][r];
@@ -90,15 +92,15 @@ Corners lay_ball(const Labels& label, const Surface& surface, int m) {
 }
 
 /// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
-/// triangle run from its first node to the second and third and from the second to the third: along rings as
-/// the angle does, else inwards. That is how the sides of prisms are cut on the surface.
+/// triangle are directed from its first node to the second and third, and from the second to the third: along
+/// rings by increasing angle, else inwards. The surface cuts the sides of prisms in these directions as well.
 struct TubeSection {
   struct Node {
-    int ring, step;  ///< n and the number in the ring; ring 0: the middle
+    int ring, step;  ///< n and the number in the ring; ring 0 is the middle
   };
   std::vector<Node> nodes;
   std::vector<std::array<int, 3>> triangles;
-  std::vector<bool> outwards;  ///< of each triangle, whether it has one node on the outer ring and two inside
+  std::vector<bool> outwards;  ///< whether a triangle has one node on the outer ring and two on the inner one
 
   explicit TubeSection(int m) {
     for (int n = m; n > 0; n -= 2) {
@@ -116,7 +118,7 @@ struct TubeSection {
             add({outer(o), outer(o + 1), inside}, false);
             continue;
           }
-          // Inner points of this side face the outer steps 1 .. n - 1 of it.
+          // The inner points of this side face its outer steps 1 .. n - 1.
           auto inner = [&](int step) { return inside + (side * (n - 2) + step - 1) % (4 * (n - 2)); };
           if (k == 0 || k == n - 1) {
             add({outer(o), outer(o + 1), inner(k == 0 ? 1 : n - 1)}, false);
@@ -133,7 +135,7 @@ struct TubeSection {
   }
 };
 
-Corners lay_torus(const Labels& label, const Surface& surface, int m) {
+Corners torus_corners(const Labels& label, const Surface& surface, int m) {
   Corners corners;
   corners.material = surface.material();
   const int round = 8 * m, tube = 4 * m;
@@ -160,8 +162,8 @@ Corners lay_torus(const Labels& label, const Surface& surface, int m) {
         corners.elements.push_back(element);
       }
     }
-  corners.amid = [label, round, tube](const std::vector<int>& vertices) {
-    // The mean of numbers next to each other on circles of `tube` and `round`.
+  corners.middle = [label, round, tube](const std::vector<int>& vertices) {
+    // The mean of neighbouring numbers on circles of `tube` and `round` numbers.
     const int from = vertices[0];
     double along = 0, across = 0;
     auto step = [](int p, int q, int n) { return std::remainder(q - p, n); };
@@ -174,18 +176,18 @@ Corners lay_torus(const Labels& label, const Surface& surface, int m) {
   return corners;
 }
 
-/// The least Jacobian determinant of an element over points spread in it, in units of 1/6 of the volume of
-/// the cube of its longest edge.
+/// Returns the smallest Jacobian determinant of an element over given points, relative to the cube of its
+/// longest edge.
 template <class Element>
-double least_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>& points) {
-  double longest = 0, least = kInfinity;
+double min_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>& points) {
+  double longest = 0, smallest = kInfinity;
   for (const auto& [a, b] : kTetrahedronEdges) longest = std::max(longest, (x[a] - x[b]).norm());
   for (const TetrahedronPoint& at : points)
-    least = std::min(least, Element::template gradient<double>(at, x).determinant());
-  return least / (longest * longest * longest);
+    smallest = std::min(smallest, Element::template gradient<double>(at, x).determinant());
+  return smallest / (longest * longest * longest);
 }
 
-/// The size of the bubble of a face or the middle of an enriched element.
+/// Returns the amplitude of the bubble of a face or of the middle of an enriched element.
 Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
   Vec3<double> size;
   for (int r = 0; r < 3; ++r) {
@@ -196,7 +198,7 @@ Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
   return size;
 }
 
-/// Barycentric points in quarters: corners, edges, faces and inside.
+/// Returns barycentric points at quarters: corners, edges, faces and inside.
 std::vector<TetrahedronPoint> spread_points() {
   std::vector<TetrahedronPoint> points;
   constexpr int n = 4;
@@ -207,62 +209,30 @@ std::vector<TetrahedronPoint> spread_points() {
   return points;
 }
 
-}  // namespace
+/// Adds the nodes of quadratic and enriched elements to those of straight ones.
+class ElementNodes {
+ public:
+  ElementNodes(const Labels& label, Corners corners)
+      : label_(label), corners_(std::move(corners)), material_(std::move(corners_.material)) {}
 
-Solid::Solid(const Part& part, int resolution, Order order) {
-  if (resolution < 1 || resolution > 64)
-    throw std::invalid_argument("part '" + part.name() + "': solid resolution " + std::to_string(resolution) +
-                                " must be from 1 to 64");
-  const double elements = 48 * std::pow(resolution, 3),
-               most = order == Order::linear ? kMostElements : kMostElements / 4;
-  if (elements > most) {
-    std::ostringstream message;
-    message << "part '" << part.name() << "': solid resolution " << resolution << " makes some " << elements
-            << " elements of this order; expected at most " << most;
-    throw std::invalid_argument(message.str());
+  const std::vector<std::array<int, 4>>& corners() const { return corners_.elements; }
+  std::vector<Material<double>> take_material() { return std::move(material_); }
+
+  /// Fills rows 3 to 5 of a boundary triangle and, if enriched, row 6.
+  void add_boundary_nodes(Eigen::Ref<Eigen::VectorXi> triangle, bool enriched) {
+    for (int k = 0; k < 3; ++k)
+      triangle[3 + k] = node_between({triangle[k], triangle[(k + 1) % 3]}, corners_.middle);
+    if (enriched) triangle[6] = node_between({triangle[0], triangle[1], triangle[2]}, corners_.middle);
   }
-  const ParameterValues<double> rest = part.parameters().rest();
-  const ShapeFace& shape = part.shape();
-  const ShapeParameters a = rest.b.data();
-  const Surface surface(part, resolution);
-  n_surface_ = static_cast<int>(surface.material().size());
-  const Labels label{shape, a};
-  Corners corners = shape.mesh() == MeshPattern::ball ? lay_ball(label, surface, resolution)
-                                                      : lay_torus(label, surface, resolution);
-  material_ = std::move(corners.material);
-  const bool enriched = order == Order::enriched, quadratic = order == Order::quadratic || enriched;
-  elements_.resize(enriched ? 15 : quadratic ? 10 : 4, static_cast<Eigen::Index>(corners.elements.size()));
-  boundary_.resize(enriched ? 7 : quadratic ? 6 : 3, surface.triangles().cols());
-  boundary_.topRows<3>() = surface.triangles();
-
-  std::map<std::vector<int>, int> amid;  // the node amid nodes of an edge or a face
-  auto node_amid = [&](std::vector<int> ends, auto&& place) {
-    std::sort(ends.begin(), ends.end());
-    const auto [at, fresh] = amid.try_emplace(ends, n_nodes());
-    if (fresh) material_.push_back(place(at->first));
-    return at->second;
-  };
-  auto e = [&](int node) { return shape.e(material_[static_cast<std::size_t>(node)], a); };
-  auto halfway = [&](const std::vector<int>& ends) {
-    return shape.label(0.5 * (e(ends[0]) + e(ends[1])), a);
-  };
-  if (quadratic)
-    for (Eigen::Index t = 0; t < boundary_.cols(); ++t) {
-      for (int k = 0; k < 3; ++k)
-        boundary_(3 + k, t) = node_amid({boundary_(k, t), boundary_((k + 1) % 3, t)}, corners.amid);
-      if (enriched)
-        boundary_(6, t) = node_amid({boundary_(0, t), boundary_(1, t), boundary_(2, t)}, corners.amid);
-    }
-  for (std::size_t t = 0; t < corners.elements.size(); ++t) {
-    const std::array<int, 4>& corner = corners.elements[t];
-    auto element = elements_.col(static_cast<Eigen::Index>(t));
-    for (int k = 0; k < 4; ++k) element[k] = corner[static_cast<std::size_t>(k)];
-    if (!quadratic) continue;
+  /// Fills rows 4 to 9 of an element. Edges inside get the middle of their ends in the shape.
+  void add_edge_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     for (std::size_t k = 0; k < 6; ++k)
       element[static_cast<Eigen::Index>(4 + k)] =
-          node_amid({corner[kTetrahedronEdges[k][0]], corner[kTetrahedronEdges[k][1]]}, halfway);
-    if (!enriched) continue;
-    // Faces inside and the middle: where the bubbles vanish.
+          node_between({corner[kTetrahedronEdges[k][0]], corner[kTetrahedronEdges[k][1]]},
+                       [&](const std::vector<int>& ends) { return at(0.5 * (e(ends[0]) + e(ends[1]))); });
+  }
+  /// Fills rows 10 to 14 of an element. Nodes on faces inside and in the middle are where the bubbles vanish.
+  void add_bubble_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     std::array<Vec3<double>, 15> x;
     for (std::size_t k = 0; k < 10; ++k) x[k] = e(element[static_cast<Eigen::Index>(k)]);
     auto without_bubble = [&](std::size_t node) {
@@ -274,33 +244,98 @@ Solid::Solid(const Part& part, int resolution, Order order) {
       std::vector<int> face(corner.begin(), corner.end());
       face.erase(face.begin() + static_cast<std::ptrdiff_t>(f));
       const int node =
-          node_amid(face, [&](const std::vector<int>&) { return shape.label(without_bubble(10 + f), a); });
+          node_between(face, [&](const std::vector<int>&) { return at(without_bubble(10 + f)); });
       element[static_cast<Eigen::Index>(10 + f)] = node;
       x[10 + f] = e(node);
     }
     element[14] = n_nodes();
-    material_.push_back(shape.label(without_bubble(14), a));
+    material_.push_back(at(without_bubble(14)));
   }
 
-  const Eigen::Matrix3Xd s = part.s(material_, rest);
+ private:
+  int n_nodes() const { return static_cast<int>(material_.size()); }
+  Vec3<double> e(int node) const {
+    return label_.shape.e(material_[static_cast<std::size_t>(node)], label_.a);
+  }
+  Material<double> at(const Vec3<double>& x) const { return label_.shape.label(x, label_.a); }
+  /// Returns the node between the nodes of an edge or a face. place(ends) gives the material point of a new
+  /// node.
+  template <class Place>
+  int node_between(std::vector<int> ends, const Place& place) {
+    std::sort(ends.begin(), ends.end());
+    const auto [found, is_new] = between_.try_emplace(ends, n_nodes());
+    if (is_new) material_.push_back(place(found->first));
+    return found->second;
+  }
+
+  const Labels& label_;
+  Corners corners_;
+  std::vector<Material<double>> material_;
+  std::map<std::vector<int>, int> between_;
+};
+
+void check_resolution(const Part& part, int resolution, Solid::Order order) {
+  if (resolution < 1 || resolution > 64)
+    throw std::invalid_argument("part '" + part.name() + "': solid resolution " + std::to_string(resolution) +
+                                " must be from 1 to 64");
+  const double elements = 48 * std::pow(resolution, 3),
+               most = order == Solid::Order::linear ? kMaxElements : kMaxElements / 4;
+  if (elements <= most) return;
+  std::ostringstream message;
+  message << "part '" << part.name() << "': solid resolution " << resolution << " makes some " << elements
+          << " elements of this order; expected at most " << most;
+  throw std::invalid_argument(message.str());
+}
+
+/// Throws std::invalid_argument if an element is flat or turned inside out at rest. s: positions of the nodes
+/// at rest.
+void check_elements(const Part& part, int resolution, const Eigen::MatrixXi& elements,
+                    const Eigen::Matrix3Xd& s) {
   const std::vector<TetrahedronPoint> points = spread_points();
-  for (Eigen::Index t = 0; t < elements_.cols(); ++t) {
+  for (Eigen::Index t = 0; t < elements.cols(); ++t) {
     std::array<Vec3<double>, 15> x;
-    for (Eigen::Index k = 0; k < elements_.rows(); ++k)
-      x[static_cast<std::size_t>(k)] = s.col(elements_(k, t));
-    const double least = enriched ? least_jacobian<EnrichedTetrahedron>(x.data(), points)
-                         : quadratic
-                             ? least_jacobian<QuadraticTetrahedron>(x.data(), points)
-                             : least_jacobian<LinearTetrahedron>(x.data(), {LinearTetrahedron::rule[0]});
-    if (least > kFlat) continue;
+    for (Eigen::Index k = 0; k < elements.rows(); ++k) x[static_cast<std::size_t>(k)] = s.col(elements(k, t));
+    const double smallest = elements.rows() == 15 ? min_jacobian<EnrichedTetrahedron>(x.data(), points)
+                            : elements.rows() == 10
+                                ? min_jacobian<QuadraticTetrahedron>(x.data(), points)
+                                : min_jacobian<LinearTetrahedron>(x.data(), {LinearTetrahedron::rule[0]});
+    if (smallest > kFlat) continue;
     const Vec3<double> middle = (x[0] + x[1] + x[2] + x[3]) / 4;
     std::ostringstream text;
     text << "part '" << part.name() << "': at resolution " << resolution
-         << " an element of its solid mesh is " << (least < -kFlat ? "turned inside out" : "flat")
+         << " an element of its solid mesh is " << (smallest < -kFlat ? "turned inside out" : "flat")
          << " near (" << middle[0] << ", " << middle[1] << ", " << middle[2]
-         << ") at the rest shape; a finer resolution or a milder rest shape is needed";
+         << ") at the rest shape; use a finer resolution or a milder rest shape";
     throw std::invalid_argument(text.str());
   }
+}
+
+}  // namespace
+
+Solid::Solid(const Part& part, int resolution, Order order) {
+  check_resolution(part, resolution, order);
+  const ParameterValues<double> rest = part.parameters().rest();
+  const ShapeFace& shape = part.shape();
+  const Surface surface(part, resolution);
+  n_surface_ = static_cast<int>(surface.material().size());
+  const Labels label{shape, rest.b.data()};
+  ElementNodes nodes(label, shape.mesh() == MeshPattern::ball ? ball_corners(label, surface, resolution)
+                                                              : torus_corners(label, surface, resolution));
+  const bool enriched = order == Order::enriched, quadratic = order == Order::quadratic || enriched;
+  elements_.resize(enriched ? 15 : quadratic ? 10 : 4, static_cast<Eigen::Index>(nodes.corners().size()));
+  boundary_.resize(enriched ? 7 : quadratic ? 6 : 3, surface.triangles().cols());
+  boundary_.topRows<3>() = surface.triangles();
+  if (quadratic)
+    for (Eigen::Index t = 0; t < boundary_.cols(); ++t) nodes.add_boundary_nodes(boundary_.col(t), enriched);
+  for (std::size_t t = 0; t < nodes.corners().size(); ++t) {
+    const std::array<int, 4>& corner = nodes.corners()[t];
+    auto element = elements_.col(static_cast<Eigen::Index>(t));
+    for (int k = 0; k < 4; ++k) element[k] = corner[static_cast<std::size_t>(k)];
+    if (quadratic) nodes.add_edge_nodes(corner, element);
+    if (enriched) nodes.add_bubble_nodes(corner, element);
+  }
+  material_ = nodes.take_material();
+  check_elements(part, resolution, elements_, part.s(material_, rest));
 }
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// The search for a quadrature over the body of a solid.
 #include "body_rule.h"
 
 #include <array>
@@ -11,32 +12,34 @@ namespace pliant {
 
 namespace {
 
-/// Nodes a panel, by level of refinement; two levels double them.
-constexpr std::array<int, 12> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
-constexpr std::size_t kLastLevel = kSizes.size() - 3;
-/// Changes of moments that are rounding, relative to the volume; and what is taken when no more is to be had.
-constexpr double kTolerance = 5e-14, kNoise = 1e-12;
-constexpr Eigen::Index kMostPoints = 2'000'000;
+/// Nodes a panel, by level of refinement. Two levels double them.
+constexpr std::array<int, 12> kBodySizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
+constexpr std::size_t kLastBodyLevel = kBodySizes.size() - 3;
+/// Relative changes of moments: a rule with the first one has converged; one with the second is used if
+/// refining does not improve it.
+constexpr double kMomentTolerance = 5e-14, kAcceptableChange = 1e-12;
+constexpr Eigen::Index kMaxBodyPoints = 2'000'000;
 
-/// Along u, v and w.
+/// Levels of refinement along u, v and w.
 using Levels = std::array<std::size_t, 3>;
 
 struct Nodes3 {
   std::vector<AngleNode> u, v;
   std::vector<QuadratureNode> w;
   Nodes3(const RestShape& shape, const Levels& levels)
-      : u(profile_nodes(shape, kSizes[levels[0]])),
-        v(ring_nodes(shape, kSizes[levels[1]])),
-        w(depth_nodes(shape, kSizes[levels[2]])) {}
+      : u(profile_nodes(shape, kBodySizes[levels[0]])),
+        v(ring_nodes(shape, kBodySizes[levels[1]])),
+        w(depth_nodes(shape, kBodySizes[levels[2]])) {}
   Eigen::Index count() const { return static_cast<Eigen::Index>(u.size() * v.size() * w.size()); }
 };
 
-BodyRule points_of(const RestShape& shape, const Levels& levels) {
+/// Returns the rule of given levels.
+BodyRule rule_of(const RestShape& shape, const Levels& levels) {
   const Nodes3 nodes(shape, levels);
-  if (nodes.count() > kMostPoints)
+  if (nodes.count() > kMaxBodyPoints)
     throw std::invalid_argument("part '" + shape.part.name() + "': integrals over its body need " +
                                 std::to_string(nodes.count()) + " points, more than " +
-                                std::to_string(kMostPoints) +
+                                std::to_string(kMaxBodyPoints) +
                                 "; expected a lower degree, a smoother shape, or the basis \"nodes\"");
   std::vector<RestPoint> points;
   for (const AngleNode& u : nodes.u)
@@ -51,7 +54,7 @@ BodyRule points_of(const RestShape& shape, const Levels& levels) {
   return rule;
 }
 
-/// Integrals of all products, relative to the volume.
+/// Returns the integrals of all products, relative to the volume.
 VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) {
   VecX<double> sum = VecX<double>::Zero(polynomials.size());
   constexpr Eigen::Index block = 2048;
@@ -63,31 +66,32 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
   return sum / rule.volume.sum();
 }
 
-/// Refines along one direction until no moment changes, the others being coarse.
-std::size_t settle(const RestShape& shape, const LegendreProducts& polynomials, std::size_t direction,
-                   double& left) {
+/// Returns the level along one direction at which refining changes no moment, with coarse nodes along the
+/// other directions.
+std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
+                             std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;
   auto at = [&](std::size_t level) -> const VecX<double>& {
     while (known.size() <= level) {
       Levels levels{1, 1, 1};
       levels[direction] = known.size();
-      known.push_back(moments(points_of(shape, levels), polynomials));
+      known.push_back(moments(rule_of(shape, levels), polynomials));
     }
     return known[level];
   };
-  double least = std::numeric_limits<double>::infinity();
+  double min_change = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
-  for (std::size_t level = 0; level <= kLastLevel; ++level) {
+  for (std::size_t level = 0; level <= kLastBodyLevel; ++level) {
     at(level + 2);
     const double change = (at(level) - at(level + 2)).lpNorm<Eigen::Infinity>();
-    if (change <= kTolerance) return level;
-    if (change < 0.5 * least) {
-      least = change;
+    if (change <= kMomentTolerance) return level;
+    if (change < 0.5 * min_change) {
+      min_change = change;
       best = level;
     }
-    if (least <= kNoise && level >= best + 2) break;
+    if (min_change <= kAcceptableChange && level >= best + 2) break;
   }
-  left = std::max(left, least);
+  remaining = std::max(remaining, min_change);
   return best;
 }
 
@@ -97,11 +101,11 @@ BodyRule make_body_rule(const Part& part, const LegendreProducts& polynomials) {
   RestShape shape(part);
   shape.points_apart = true;
   Levels levels{};
-  double left = 0;
+  double remaining = 0;
   for (std::size_t direction = 0; direction < 3; ++direction)
-    levels[direction] = settle(shape, polynomials, direction, left);
-  BodyRule rule = points_of(shape, levels);
-  rule.unsettled = left;
+    levels[direction] = refine_direction(shape, polynomials, direction, remaining);
+  BodyRule rule = rule_of(shape, levels);
+  rule.remaining_change = remaining;
   return rule;
 }
 

@@ -1,5 +1,5 @@
-// A quadrature over the body of a solid at rest, exact to rounding for polynomials of its coordinates where
-// the shape lets it be: nodes along each material direction are refined until no moment changes.
+// A quadrature over the body of a solid at rest for polynomials of the coordinates. Nodes along each material
+// direction are refined until no moment changes, so that it is exact to rounding for most shapes.
 #pragma once
 
 #include <vector>
@@ -11,14 +11,14 @@
 namespace pliant {
 
 struct BodyRule {
-  std::vector<Material<double>> at;
-  Eigen::Matrix3Xd X;  ///< body frame, m
-  VecX<double> volume;
-  double unsettled = 0;  ///< largest change of a moment that refining still makes, relative to the volume
+  std::vector<Material<double>> at;  ///< the points
+  Eigen::Matrix3Xd X;                ///< body frame, m
+  VecX<double> volume;               ///< the weights, m^3
+  double remaining_change = 0;       ///< largest change of a moment by refining, relative to the volume
 };
 
-/// For all products of Legendre polynomials of a total degree. Throws std::invalid_argument when that takes
-/// more than two million points.
+/// Makes a rule for all products of Legendre polynomials. Throws std::invalid_argument if it needs more than
+/// two million points.
 BodyRule make_body_rule(const Part& part, const LegendreProducts& polynomials);
 
 }  // namespace pliant

@@ -1,3 +1,4 @@
+// Values and derivatives of Legendre products.
 #include "legendre.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Products P_i(x) P_j(y) P_k(z) of Legendre polynomials, i + j + k <= degree, over a box; by degree.
+// Products P_i(x) P_j(y) P_k(z) of Legendre polynomials over a box with i + j + k <= degree, sorted by
+// degree.
 #pragma once
 
 #include <array>
@@ -16,9 +17,9 @@ class LegendreProducts {
 
   const Eigen::AlignedBox3d& box() const { return box_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(powers_.size()); }
-  /// Values at points x (3 x n, m): n x size().
+  /// Returns the values at points x (3 x n, m): n x size().
   MatX<double> values(const Eigen::Matrix3Xd& x) const;
-  /// E with d/dx_axis of all products = E times all products, 1/m.
+  /// Returns the matrix E with d/dx_axis of all products = E times all products, 1/m.
   MatX<double> derivative(int axis) const;
 
  private:

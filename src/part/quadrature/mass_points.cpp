@@ -1,4 +1,4 @@
-// Laying mass points, by the integrands of M and g_q.
+// The placement of mass points. The integrands of M and g_q, Eq. (11), judge the rules.
 #include <pliant/part/quadrature/mass_points.h>
 
 #include <Eigen/Cholesky>
@@ -11,6 +11,7 @@ using namespace rule_search;
 
 namespace {
 
+/// Points in packs of four.
 struct Packed {
   std::vector<Material<Pack>> at;
   std::vector<Pack> mass;
@@ -31,19 +32,18 @@ Packed pack(const std::vector<RestPoint>& points, double density) {
   return out;
 }
 
-/// Integrands of the mass matrix and of the inertial forces: (La).(Lb) and (La).(acceleration at vdot = 0),
+/// Integrands of the mass matrix and of the inertial forces: (L a).(L b) and (L a).(acceleration at vdot = 0)
 /// for random combinations a, b of generalised velocities at random states.
 class MassIntegrands {
  public:
-  static constexpr const char* what = "mass matrix";
+  static constexpr const char* subject = "mass matrix";
   static constexpr int kEach = 3;
-  static constexpr double kSettled = 2e-14, kThin = 1e-15;
-  static constexpr double kPromised = 1e-12;  ///< of every rule (design 1.3)
+  static constexpr double kTolerance = 2e-14, kThin = 1e-15, kRequired = 1e-12;
 
   explicit MassIntegrands(const RestShape& shape) : shape_(shape), ranges_(shape.part) {}
   int n() const { return ranges_.n(); }
 
-  /// F(node, function): the shares of the nodes of one direction in each integral.
+  /// Returns F(node, function): the contributions of the nodes of one direction to each integral.
   Eigen::MatrixXd shares(const Columns& line, int n_states) const {
     Eigen::MatrixXd F = Eigen::MatrixXd::Zero(line.n_nodes, kEach * n_states);
     Draw draw;
@@ -62,16 +62,33 @@ class MassIntegrands {
     VecMax<double> q, rate;
     ranges_.draw(draw, state, q, rate);
     Vec3<double> omega;
-    for (int i = 0; i < 3; ++i) omega[i] = draw.either_way();
+    for (int i = 0; i < 3; ++i) omega[i] = draw.symmetric();
     Eigen::MatrixXd mix(6 + n(), kEach + 2);
-    for (Eigen::Index i = 0; i < mix.size(); ++i) mix.data()[i] = draw.either_way();
+    for (Eigen::Index i = 0; i < mix.size(); ++i) mix.data()[i] = draw.symmetric();
 
-    // L of every point, three rows each, and the acceleration.
     const auto count = static_cast<Eigen::Index>(column.points.size());
     if (count == 0) return;
-    Eigen::MatrixXd L(3 * count, 6 + n());
-    Eigen::VectorXd acceleration(3 * count);
-    const ParameterValues<double> values = shape_.part.parameters().expand<double>(q, rate);
+    Kinematics all = kinematics(packed, count, shape_.part.parameters().expand<double>(q, rate), omega);
+    if (!scale_columns(column.points, all)) return;
+    const Eigen::MatrixXd moved = all.L * mix;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      const double m = column.points[index].mass;
+      const auto at = moved.middleRows<3>(3 * k);
+      F(column.node[index], 0) += m * at.col(0).dot(at.col(1));
+      F(column.node[index], 1) += m * at.col(2).dot(at.col(3));
+      F(column.node[index], 2) += m * at.col(4).dot(all.acceleration.segment<3>(3 * k));
+    }
+  }
+
+  /// L of Eq. (9) of all points in the body frame, and their accelerations at vdot = 0: three rows a point.
+  struct Kinematics {
+    Eigen::MatrixXd L;
+    Eigen::VectorXd acceleration;
+  };
+  Kinematics kinematics(const Packed& packed, Eigen::Index count, const ParameterValues<double>& values,
+                        const Vec3<double>& omega) const {
+    Kinematics all{Eigen::MatrixXd(3 * count, 6 + n()), Eigen::VectorXd(3 * count)};
     constexpr int block = 8;
     std::array<Jet<Pack>, block> jets;
     for (std::size_t first = 0; first < packed.at.size(); first += block) {
@@ -85,49 +102,48 @@ class MassIntegrands {
         const int l = lane % static_cast<int>(Pack::kLanes);
         auto one = [l](const Vec3<Pack>& x) { return Vec3<double>(x[0][l], x[1][l], x[2][l]); };
         const Vec3<double> s = one(jet.s);
-        auto rows = L.middleRows<3>(3 * point);
+        auto rows = all.L.middleRows<3>(3 * point);
         rows.leftCols<3>().setIdentity();
         for (int i = 0; i < 3; ++i) rows.col(3 + i) = Vec3<double>::Unit(i).cross(s);
         for (int i = 0; i < n(); ++i) rows.col(6 + i) = one(jet.J[static_cast<std::size_t>(i)]);
-        acceleration.segment<3>(3 * point) =
+        all.acceleration.segment<3>(3 * point) =
             omega.cross(omega.cross(s)) + 2 * omega.cross(one(jet.s1)) + one(jet.s2);
       }
     }
-    // Each column in units of its own spread, so that small entries of M count as much as large ones.
+    return all;
+  }
+
+  /// Scales each column to a root mean square of 1, so that small entries of M count as much as large ones.
+  /// Returns false if the points have no mass.
+  static bool scale_columns(const std::vector<RestPoint>& points, Kinematics& all) {
     double mass = 0;
-    for (const RestPoint& p : column.points) mass += p.mass;
-    if (!(mass > 0)) return;
-    for (Eigen::Index c = 0; c < L.cols() + 1; ++c) {
+    for (const RestPoint& p : points) mass += p.mass;
+    if (!(mass > 0)) return false;
+    for (Eigen::Index c = 0; c < all.L.cols() + 1; ++c) {
       double square = 0;
-      auto x =
-          c < L.cols() ? Eigen::Ref<Eigen::VectorXd>(L.col(c)) : Eigen::Ref<Eigen::VectorXd>(acceleration);
-      for (Eigen::Index k = 0; k < count; ++k)
-        square += column.points[static_cast<std::size_t>(k)].mass * x.segment<3>(3 * k).squaredNorm();
+      auto x = c < all.L.cols() ? Eigen::Ref<Eigen::VectorXd>(all.L.col(c))
+                                : Eigen::Ref<Eigen::VectorXd>(all.acceleration);
+      for (std::size_t k = 0; k < points.size(); ++k)
+        square += points[k].mass * x.segment<3>(3 * static_cast<Eigen::Index>(k)).squaredNorm();
       if (square > 0) x *= std::sqrt(mass / square);
     }
-    const Eigen::MatrixXd moved = L * mix;
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const auto index = static_cast<std::size_t>(k);
-      const double m = column.points[index].mass;
-      const auto at = moved.middleRows<3>(3 * k);
-      F(column.node[index], 0) += m * at.col(0).dot(at.col(1));
-      F(column.node[index], 1) += m * at.col(2).dot(at.col(3));
-      F(column.node[index], 2) += m * at.col(4).dot(acceleration.segment<3>(3 * k));
-    }
+    return true;
   }
 
   const RestShape& shape_;
   StateRanges ranges_;
 };
 
+/// Returns the values of the parameters at time 0, without rates.
 ParameterValues<double> initial_values(const Part& part) {
   const Parameters& all = part.parameters();
-  VecMax<double> q_s(all.n_dynamic()), still = VecMax<double>::Zero(all.n_dynamic());
+  VecMax<double> q_s(all.n_dynamic()), zero = VecMax<double>::Zero(all.n_dynamic());
   for (int k = 0; k < all.n_dynamic(); ++k) q_s[k] = all.moving(k).initial;
-  return all.expand<double>(q_s, still);
+  return all.expand<double>(q_s, zero);
 }
 
-Laid lay_slices(const RestShape& shape, const MassIntegrands& integrands, int extra) {
+/// Places points in plane sections.
+PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integrands, int extra) {
   auto columns = [&](const std::vector<SliceNode>& nodes) {
     Columns line{{Column{}}, 0};
     for (const SliceNode& node : nodes) {
@@ -136,16 +152,16 @@ Laid lay_slices(const RestShape& shape, const MassIntegrands& integrands, int ex
     }
     return line;
   };
-  Laid laid;
-  laid.level =
-      settle(integrands, laid.left, [&](int level) { return columns(slice_nodes(shape, size_at(level))); });
-  std::vector<SliceNode> nodes = slice_nodes(shape, size_at(laid.level + extra));
+  PlacedPoints placed;
+  placed.level = refine(integrands, placed.remaining,
+                        [&](int level) { return columns(slice_nodes(shape, size_at(level))); });
+  std::vector<SliceNode> nodes = slice_nodes(shape, size_at(placed.level + extra));
   if (shape.follows != Follows::affine) thin(integrands, columns(nodes), nodes);
-  for (const SliceNode& node : nodes) add_slice(shape, node, laid.points);
-  return laid;
+  for (const SliceNode& node : nodes) add_slice(shape, node, placed.points);
+  return placed;
 }
 
-/// The same mass, centroid and second moments on four points.
+/// Returns four points with the mass, the centroid and the second moments of the given ones.
 std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestPoint>& points) {
   const ShapeFace& shape = r.part.shape();
   double m = 0;
@@ -157,8 +173,8 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
     first += p.mass * e;
     second += p.mass * e * e.transpose();
   }
-  // What symmetry makes zero is set to zero: in slender bodies its rounding would couple parameters that are
-  // not coupled.
+  // Moments that are zero by symmetry are set to zero. In slender bodies their rounding errors would couple
+  // parameters that are not coupled.
   constexpr double noise = 1e-14;
   Vec3<double> centre = first / m;
   for (int i = 0; i < 3; ++i)
@@ -180,24 +196,22 @@ std::vector<RestPoint> affine_points(const RestShape& r, const std::vector<RestP
 
 MassPoints place_mass_points(const Part& part, int doublings) {
   const RestShape shape(part);
-  refuse_folds(part, shape.rest, "rest");
-  if (part.n_s() > 0) refuse_folds(part, initial_values(part), "initial");
+  throw_if_folded(part, shape.rest, "rest");
+  if (part.n_s() > 0) throw_if_folded(part, initial_values(part), "initial");
   const MassIntegrands integrands(shape);
   const bool affine = shape.follows == Follows::affine;
-  Laid laid = shape.by_sections ? lay_slices(shape, integrands, 2 * doublings)
-                                : lay_rings(shape, integrands, !affine, 2 * doublings);
-  if (affine) laid.points = affine_points(shape, laid.points);
-  laid.points.erase(std::remove_if(laid.points.begin(), laid.points.end(),
-                                   [](const RestPoint& p) { return !(p.mass > 0); }),
-                    laid.points.end());
-  Packed packed = pack(laid.points, part.density());
+  PlacedPoints placed = shape.by_sections ? place_slices(shape, integrands, 2 * doublings)
+                                          : RingSearch(shape, integrands, !affine, 2 * doublings).run();
+  if (affine) placed.points = affine_points(shape, placed.points);
+  remove_massless(placed.points);
+  Packed packed = pack(placed.points, part.density());
   MassPoints out;
   out.at = std::move(packed.at);
   out.mass = std::move(packed.mass);
-  out.n_points = static_cast<int>(laid.points.size());
+  out.n_points = static_cast<int>(placed.points.size());
   out.rule = affine ? "affine" : shape.by_sections ? "sections" : shape.points_apart ? "full" : "rings";
-  out.level = laid.level;
-  out.unsettled = laid.left;
+  out.level = placed.level;
+  out.unsettled = placed.remaining;
   return out;
 }
 

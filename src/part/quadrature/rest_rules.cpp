@@ -1,5 +1,7 @@
+// Points of plane sections and of material rings at rest.
 #include "rest_rules.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,7 +12,7 @@ namespace pliant {
 
 namespace {
 
-/// How material points follow the dynamic parameters, the chain considered.
+/// Returns how material points follow the dynamic parameters, chain included.
 Follows follows(const Part& part) {
   const Parameters& all = part.parameters();
   Follows worst = Follows::affine;
@@ -21,7 +23,7 @@ Follows follows(const Part& part) {
     if (link.sections != Sections::stay_affine) worst = std::max(worst, Follows::section);
     tilted = tilted || link.sections == Sections::tilt;
   }
-  // A shear after a bend reads z too: affine of an affine section is affine, so it may stay.
+  // A shear after a bend also reads z. It maps an affine section to an affine one, so it is allowed.
   return worst;
 }
 
@@ -31,7 +33,7 @@ bool has_dynamic_exponent(const Part& part) {
   return false;
 }
 
-/// Centre and spread of masses in a plane, as three points of equal mass.
+/// Moments of masses in a plane.
 struct PlaneMoments {
   double m = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
   void add(double mass, double px, double py) {
@@ -42,6 +44,7 @@ struct PlaneMoments {
     xy += mass * px * py;
     yy += mass * py * py;
   }
+  /// Returns three points that, with equal masses, have this centre and these second moments.
   std::array<Eigen::Vector2d, 3> points() const {
     const double cx = x / m, cy = y / m;
     Eigen::Matrix2d spread;
@@ -57,7 +60,7 @@ struct PlaneMoments {
   }
 };
 
-/// By its logarithm, whose slope stays finite where the value underflows.
+/// Returns a sine or cosine from its logarithm, whose slope stays finite where the value underflows.
 Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   const double value = sign * std::exp(log_abs);
   Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};
@@ -65,6 +68,7 @@ Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   t.log_abs.d[0] = log_slope;
   return t;
 }
+/// Returns a sine or cosine with its derivative.
 Trig<Dual<1>> with_slope(double value, double slope) {
   const Trig<double> t = trig(value);
   Trig<Dual<1>> r{Dual<1>(value), Dual<1>(t.sign), Dual<1>(t.log_abs)};
@@ -73,77 +77,106 @@ Trig<Dual<1>> with_slope(double value, double slope) {
   return r;
 }
 
-/// moving: exponents are dynamic, so that no power of the variable stays what it is.
-std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool moving) {
+/// Adds m equidistant nodes of a periodic panel.
+void add_periodic_nodes(const Panel& panel, int m, std::vector<AngleNode>& nodes) {
+  for (int i = 0; i < m; ++i) {
+    const double angle = panel.from + (panel.to - panel.from) * (i + 0.5) / m;
+    const double c = std::cos(angle), s = std::sin(angle);
+    nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) / m});
+  }
+}
+
+/// Adds Gauss nodes of a panel over which the shape is smooth in the angle.
+void add_smooth_nodes(const Panel& panel, int n, std::vector<AngleNode>& nodes) {
+  for (const QuadratureNode& node : gauss_rule(n)) {
+    const double angle = panel.from + (panel.to - panel.from) * node.x;
+    const double c = std::cos(angle), s = std::sin(angle);
+    nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) * node.weight});
+  }
+}
+
+/// A panel from a coordinate axis to 45 degrees, in the variable t = |near|^eps in [0, 2^(-eps/2)], where
+/// near is the sine or the cosine that vanishes at the axis, and far is the other one.
+class PowerPanel {
+ public:
+  PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
+
+  /// Nodes for dynamic exponents: powers t^p of many p are exponentials in y = -log near, slow and fast ones.
+  /// The nodes are dense towards y = 0 and reach to where t underflows relative to 1.
+  void add_for_all_powers(int n) {
+    const double reach = 37 / panel_.eps;
+    for (const QuadratureNode& node : one_end_rule(n, 3)) {
+      const double log_near = kMiddle - reach * node.x;
+      add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * reach * node.weight);
+    }
+  }
+  /// Nodes for a fixed exponent, which gives powers of t^(2/eps): t = x^q with q a multiple of eps makes them
+  /// smooth.
+  void add_for_fixed_power(int n) {
+    double reach = std::exp2(-panel_.eps / 2);
+    if (panel_.eps < 0.25) {
+      // The integrand varies only next to the corner, where log near is the suitable variable. Below e^-16
+      // the far side is constant to rounding.
+      const double to = -16;
+      for (const QuadratureNode& node : gauss_rule(n)) {
+        const double log_near = kMiddle + (to - kMiddle) * node.x;
+        add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * (kMiddle - to) * node.weight);
+      }
+      reach = std::exp(panel_.eps * to);
+    }
+    for (const QuadratureNode& node : one_end_rule(n, panel_.eps * std::ceil(3 / panel_.eps)))
+      add(std::log(reach * node.x) / panel_.eps, reach * node.weight);
+  }
+
+ private:
+  void add(double log_near, double weight) {
+    const double near2 = std::exp(2 * log_near), far2 = -std::expm1(2 * log_near);
+    const double log_near_slope = std::exp(-panel_.eps * log_near) / panel_.eps;  // 1 / (eps t)
+    const double log_far_slope = -near2 * log_near_slope / far2;
+    const double sign_near = panel_.along_sin ? panel_.sign_sin : panel_.sign_cos;
+    const double sign_far = panel_.along_sin ? panel_.sign_cos : panel_.sign_sin;
+    const Trig<Dual<1>> near = from_log(log_near, log_near_slope, sign_near);
+    const Trig<Dual<1>> far = from_log(0.5 * std::log(far2), log_far_slope, sign_far);
+    nodes_.push_back(panel_.along_sin ? AngleNode{far, near, weight} : AngleNode{near, far, weight});
+  }
+
+  const double kMiddle = std::log(std::sqrt(0.5));  // log near at 45 degrees
+  const Panel& panel_;
+  std::vector<AngleNode>& nodes_;
+};
+
+/// Returns the nodes of panels, n in each. dynamic_exponents: whether exponents vary, so that no power of the
+/// variable is fixed.
+std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool dynamic_exponents) {
   std::vector<AngleNode> nodes;
   for (const Panel& panel : panels) {
-    if (panel.kind == Panel::Kind::periodic) {
-      const int m = 2 * n;
-      for (int i = 0; i < m; ++i) {
-        const double angle = panel.from + (panel.to - panel.from) * (i + 0.5) / m;
-        const double c = std::cos(angle), s = std::sin(angle);
-        nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) / m});
-      }
-    } else if (panel.kind == Panel::Kind::smooth) {
-      for (const QuadratureNode& node : gauss_rule(n)) {
-        const double angle = panel.from + (panel.to - panel.from) * node.x;
-        const double c = std::cos(angle), s = std::sin(angle);
-        nodes.push_back({with_slope(c, -s), with_slope(s, c), (panel.to - panel.from) * node.weight});
-      }
-    } else {
-      // Variable t = |near|^eps in [0, 2^(-eps/2)], near the sine or the cosine that vanishes at the axis.
-      auto add = [&](double log_near, double weight) {
-        const double near2 = std::exp(2 * log_near), far2 = -std::expm1(2 * log_near);
-        const double log_near_slope = std::exp(-panel.eps * log_near) / panel.eps;  // 1 / (eps t)
-        const double log_far_slope = -near2 * log_near_slope / far2;
-        const double sign_near = panel.along_sin ? panel.sign_sin : panel.sign_cos;
-        const double sign_far = panel.along_sin ? panel.sign_cos : panel.sign_sin;
-        const Trig<Dual<1>> a = from_log(log_near, log_near_slope, sign_near);
-        const Trig<Dual<1>> b = from_log(0.5 * std::log(far2), log_far_slope, sign_far);
-        nodes.push_back(panel.along_sin ? AngleNode{b, a, weight} : AngleNode{a, b, weight});
-      };
-      const double middle = std::log(std::sqrt(0.5));
-      if (moving) {
-        // Powers t^p of many p: exponentials in y = -log near, slow ones and fast ones; crowded towards y =
-        // 0, and on until t underflows beside 1.
-        const double reach = 37 / panel.eps;
-        for (const QuadratureNode& node : one_end_rule(n, 3)) {
-          const double log_near = middle - reach * node.x;
-          add(log_near, panel.eps * std::exp(panel.eps * log_near) * reach * node.weight);
-        }
-        continue;
-      }
-      // A fixed exponent leaves powers of t^(2/eps): t = x^q with q a multiple of eps makes them smooth.
-      double reach = std::exp2(-panel.eps / 2);
-      if (panel.eps < 0.25) {
-        // All that happens does so next to the corner, where log near is the good variable; below e^-16 the
-        // far side does not change any more.
-        const double to = -16;
-        for (const QuadratureNode& node : gauss_rule(n)) {
-          const double log_near = middle + (to - middle) * node.x;
-          add(log_near, panel.eps * std::exp(panel.eps * log_near) * (middle - to) * node.weight);
-        }
-        reach = std::exp(panel.eps * to);
-      }
-      for (const QuadratureNode& node : one_end_rule(n, panel.eps * std::ceil(3 / panel.eps)))
-        add(std::log(reach * node.x) / panel.eps, reach * node.weight);
-    }
+    if (panel.kind == Panel::Kind::periodic)
+      add_periodic_nodes(panel, 2 * n, nodes);
+    else if (panel.kind == Panel::Kind::smooth)
+      add_smooth_nodes(panel, n, nodes);
+    else if (dynamic_exponents)
+      PowerPanel(panel, nodes).add_for_all_powers(n);
+    else
+      PowerPanel(panel, nodes).add_for_fixed_power(n);
   }
   return nodes;
 }
 
+/// Returns a sine or cosine with its derivative along material direction number `slot`.
 Trig<Dual<3>> lift(const Trig<Dual<1>>& t, std::size_t slot) {
   Trig<Dual<3>> r{Dual<3>(t.x.v), Dual<3>(t.sign.v), Dual<3>(t.log_abs.v)};
   r.x.d[slot] = t.x.d[0];
   r.log_abs.d[slot] = t.log_abs.d[0];
   return r;
 }
+/// Returns a sine or cosine without its derivative.
 Trig<double> drop(const Trig<Dual<1>>& t) {
   return {t.x.v, t.sign.v, t.log_abs.v};
 }
 
+/// Returns whether the rings of a shape are plane. Rings of a shape that a user adds need not be; three
+/// points then cannot represent a ring.
 bool plane_rings(const RestShape& r) {
-  // Rings of a shape of one's own need not be plane; then no three points stand for one.
   for (const AngleNode& u : profile_nodes(r, 3)) {
     double low = kInfinity, high = -kInfinity;
     for (const AngleNode& v : ring_nodes(r, 3)) {
@@ -158,12 +191,12 @@ bool plane_rings(const RestShape& r) {
 
 }  // namespace
 
-RestShape::RestShape(const Part& of)
-    : part(of),
-      rest(of.parameters().rest()),
+RestShape::RestShape(const Part& whole)
+    : part(whole),
+      rest(whole.parameters().rest()),
       a(rest.b.data()),
-      follows(pliant::follows(of)),
-      dynamic_exponents(has_dynamic_exponent(of)) {
+      follows(pliant::follows(whole)),
+      dynamic_exponents(has_dynamic_exponent(whole)) {
   by_sections = !part.shell() && follows <= Follows::section && part.shape().has_sections();
   points_apart =
       follows == Follows::free || (!by_sections && follows != Follows::ring && !plane_rings(*this));
@@ -188,13 +221,13 @@ void add_slice(const RestShape& r, const SliceNode& node, std::vector<RestPoint>
   const Section section = shape.section(node.zeta, node.gap, r.a);
   if (!(section.area > 0)) return;
   const double half_x = std::sqrt(section.xx), half_y = std::sqrt(section.yy);
-  // The determinant of the chain is affine in (x, y) on each section: three samples.
+  // The determinant of the chain is affine in (x, y) on each section, so three samples suffice.
   Eigen::Matrix3Xd samples(3, 3);
   samples << 0, half_x, 0, 0, 0, half_y, z, z, z;
   const std::vector<Mat3<double>> F = r.part.chain_gradient(samples, r.rest);
   const double d0 = F[0].determinant(), dx = F[1].determinant() - d0, dy = F[2].determinant() - d0;
   if (!(d0 > 0)) {
-    if (d0 == 0) return;  // the tip of a full taper carries nothing
+    if (d0 == 0) return;  // the tip of a full taper has no mass
     throw_folded(r.part, "rest");
   }
   const double m = section.area * h * node.weight;
@@ -219,29 +252,55 @@ std::vector<QuadratureNode> depth_nodes(const RestShape& r, int n) {
   return gauss_rule(n);
 }
 
+namespace {
+
+/// The nodes of a ring: undeformed positions e, and [e_u e_v e_w] there.
+struct RingTangents {
+  Eigen::Matrix3Xd e;
+  std::vector<Mat3<double>> tangents;
+
+  RingTangents(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
+               const std::vector<AngleNode>& v_nodes)
+      : e(3, static_cast<Eigen::Index>(v_nodes.size())), tangents(v_nodes.size()) {
+    for (std::size_t k = 0; k < v_nodes.size(); ++k) {
+      const AngleNode& v = v_nodes[k];
+      const Material<Dual<3>> m{lift(u.c, 0), lift(u.s, 0), lift(v.c, 1), lift(v.s, 1),
+                                Dual<3>::variable(w.x, 2)};
+      const Vec3<Dual<3>> at = r.part.shape().rest_tangents(m, r.a);
+      for (int i = 0; i < 3; ++i) {
+        e(i, static_cast<Eigen::Index>(k)) = at[i].v;
+        for (int j = 0; j < 3; ++j) tangents[k](i, j) = at[i].d[static_cast<std::size_t>(j)];
+      }
+    }
+  }
+};
+
+/// Returns the material point of a ring at (X, Y) = (C_v^eps, S_v^eps), eps the exponent of the ring.
+Material<double> on_ring(const AngleNode& u, const QuadratureNode& w, const Eigen::Vector2d& p,
+                         double ring_exponent) {
+  auto coordinate = [&](double x) {
+    Trig<double> t = trig(x);
+    if (x != 0) t.log_abs /= ring_exponent;
+    return t;
+  };
+  return {drop(u.c), drop(u.s), coordinate(p[0]), coordinate(p[1]), w.x};
+}
+
+}  // namespace
+
 void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
               const std::vector<AngleNode>& v_nodes, std::vector<RestPoint>& out) {
   const ShapeFace& shape = r.part.shape();
   const double ring_exponent = shape.ring_exponent(r.a);
-  Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(v_nodes.size()));
-  std::vector<Mat3<double>> tangents(v_nodes.size());
-  for (std::size_t k = 0; k < v_nodes.size(); ++k) {
-    const AngleNode& v = v_nodes[k];
-    const Material<Dual<3>> m{lift(u.c, 0), lift(u.s, 0), lift(v.c, 1), lift(v.s, 1),
-                              Dual<3>::variable(w.x, 2)};
-    const Vec3<Dual<3>> at = shape.rest_tangents(m, r.a);
-    for (int i = 0; i < 3; ++i) {
-      e(i, static_cast<Eigen::Index>(k)) = at[i].v;
-      for (int j = 0; j < 3; ++j) tangents[k](i, j) = at[i].d[static_cast<std::size_t>(j)];
-    }
-  }
-  const std::vector<Mat3<double>> F = r.part.chain_gradient(e, r.rest);
+  const RingTangents nodes(r, u, w, v_nodes);
+  const std::vector<Mat3<double>> F = r.part.chain_gradient(nodes.e, r.rest);
   PlaneMoments ring;
   for (std::size_t k = 0; k < v_nodes.size(); ++k) {
     const AngleNode& v = v_nodes[k];
-    const Mat3<double> now = F[k] * tangents[k];
+    const Mat3<double> deformed = F[k] * nodes.tangents[k];
     if (F[k].determinant() < 0) throw_folded(r.part, "rest");
-    const double measure = r.part.shell() ? now.col(0).cross(now.col(1)).norm() : std::abs(now.determinant());
+    const double measure =
+        r.part.shell() ? deformed.col(0).cross(deformed.col(1)).norm() : std::abs(deformed.determinant());
     const double mass = measure * u.weight * v.weight * w.weight;
     const auto column = static_cast<Eigen::Index>(k);
     if (r.points_apart) {
@@ -250,22 +309,13 @@ void add_ring(const RestShape& r, const AngleNode& u, const QuadratureNode& w,
     } else if (r.follows == Follows::ring) {
       ring.add(mass, signed_power(drop(v.c), ring_exponent), signed_power(drop(v.s), ring_exponent));
     } else {
-      ring.add(mass, e(0, column), e(1, column));
+      ring.add(mass, nodes.e(0, column), nodes.e(1, column));
     }
   }
   if (r.points_apart || ring.m == 0) return;
   for (const Eigen::Vector2d& p : ring.points()) {
-    Material<double> m;
-    if (r.follows == Follows::ring) {
-      auto coordinate = [&](double x) {
-        Trig<double> t = trig(x);
-        if (x != 0) t.log_abs /= ring_exponent;
-        return t;
-      };
-      m = {drop(u.c), drop(u.s), coordinate(p[0]), coordinate(p[1]), w.x};
-    } else {
-      m = shape.label({p[0], p[1], e(2, 0)}, r.a);
-    }
+    const Material<double> m = r.follows == Follows::ring ? on_ring(u, w, p, ring_exponent)
+                                                          : shape.label({p[0], p[1], nodes.e(2, 0)}, r.a);
     out.push_back({m, ring.m / 3});
   }
 }

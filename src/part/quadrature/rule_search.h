@@ -1,13 +1,14 @@
-// The search for a rule of quadrature over the rest shape of a part: along each direction nodes are doubled
-// until no integral changes, then thinned to as few as give the same integrals. Both are judged by integrands
-// at states spread over the ranges of the dynamic parameters, at places spread over the other directions.
-// Integrands says what they are:
-//   what            "mass matrix", for messages
-//   kEach           functions a state
-//   kSettled        relative change by doubling at which a rule has settled; kPromised: what must be reached
-//   kThin           what thinning may change
-//   n()             dynamic parameters
-//   shares(columns, n_states)  what each node contributes to each function
+// The search for a quadrature rule over the rest shape of a part: along each direction the nodes are doubled
+// until no integral changes, then thinned to as few as give equal integrals. Both are judged by integrands
+// at states spread over the ranges of the dynamic parameters, and at places spread over the other directions.
+// A class Integrands defines them:
+//   subject         "mass matrix", for messages
+//   kEach           number of functions a state
+//   kTolerance      relative change by doubling at which a rule has converged
+//   kRequired       relative change that every rule must reach
+//   kThin           relative change that thinning may make
+//   n()             number of dynamic parameters
+//   shares(columns, n_states)  the contribution of each node to the integral of each function
 #pragma once
 
 #include <algorithm>
@@ -24,23 +25,26 @@
 
 namespace pliant::rule_search {
 
-/// Nodes a panel, by level of refinement; two levels double them.
+/// Nodes a panel, by level of refinement. Two levels double them.
 inline constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 inline constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 inline int size_at(int level) {
   return kSizes[static_cast<std::size_t>(std::min<int>(level, static_cast<int>(kSizes.size()) - 1))];
 }
 
-/// xorshift: the same everywhere.
+/// Random numbers by xorshift, equal on every machine.
 class Draw {
  public:
+  /// In [0, 1).
   double uniform() {
     seed_ ^= seed_ << 13;
     seed_ ^= seed_ >> 7;
     seed_ ^= seed_ << 17;
     return static_cast<double>(seed_ >> 11) * 0x1.0p-53;
   }
-  double either_way() { return 2 * uniform() - 1; }
+  /// In [-1, 1).
+  double symmetric() { return 2 * uniform() - 1; }
+  /// An index below n.
   std::size_t below(std::size_t n) {
     return std::min(n - 1, static_cast<std::size_t>(uniform() * static_cast<double>(n)));
   }
@@ -68,21 +72,20 @@ class StateRanges {
     for (int i : all.dynamic()) {
       const Parameter& p = all[i];
       const double rest = p.rest_value();
-      // Lengths scale the body: from half to twice their rest value tells all; offsets up to twice its size.
+      // Lengths scale the body: half to twice their rest value suffices. Offsets range up to twice the size
+      // of the body.
       const bool offset = !p.spec->relative && p.spec->quantity == Quantity::length;
       const double scale = p.spec->relative ? rest : (offset ? part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;
-      // So do numbers that range over orders of magnitude.
+      // Numbers with a range of orders of magnitude are treated like lengths.
       const bool wide = p.spec->relative || p.limits.max > 100 * scale;
       ranges_.push_back({std::max({p.limits.min, wide ? 0.5 * rest : -kInfinity, -reach}),
                          std::min({p.limits.max, wide ? 2 * rest : kInfinity, reach}), rest, scale});
     }
   }
   int n() const { return static_cast<int>(ranges_.size()); }
-  /// A size of the k-th parameter.
-  double scale(int k) const { return ranges_[static_cast<std::size_t>(k)].scale; }
-  /// The values and rates of a state: the first one at rest, every third one at a corner of the ranges, where
-  /// integrands are at their worst.
+  /// Draws values and rates of a state. The first state is at rest. Every third one is at a corner of the
+  /// ranges, where the integrands are hardest.
   void draw(Draw& draw, int state, VecMax<double>& q, VecMax<double>& rate) const {
     q.resize(n());
     rate.resize(n());
@@ -91,7 +94,7 @@ class StateRanges {
       const double inside = draw.uniform();
       const double mix = state % 3 == 1 ? std::round(inside) : inside;
       q[i] = state == 0 ? range.rest : range.low + mix * (range.high - range.low);
-      rate[i] = range.scale * draw.either_way();
+      rate[i] = range.scale * draw.symmetric();
     }
   }
 
@@ -102,10 +105,10 @@ class StateRanges {
   std::vector<RangeOf> ranges_;
 };
 
-/// The smallest level at which doubling changes no integral; columns(level) lays the nodes. Notes the change
-/// that is left if the last level does not suffice.
+/// Returns the smallest level of refinement at which doubling changes no integral. columns(level) places the
+/// nodes. remaining: raised to the change that the last level leaves if no level suffices.
 template <class Integrands, class MakeColumns>
-int settle(const Integrands& integrands, double& left, const MakeColumns& columns) {
+int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
     Eigen::VectorXd value, size;
   };
@@ -118,36 +121,36 @@ int settle(const Integrands& integrands, double& left, const MakeColumns& column
     }
     return known[static_cast<std::size_t>(level)];
   };
-  double least_change = kInfinity;
+  double min_change = kInfinity;
   int best = 0;
   for (int level = 0; level <= kLastLevel; ++level) {
     at(level + 2);
     const Integrals &now = at(level), &finer = at(level + 2);
-    // A place of little mass matters little.
-    const double least = 0.1 * finer.size.mean();
-    if (least == 0) return level;
+    // Changes at places of little mass are relative to a tenth of the mean size.
+    const double min_size = 0.1 * finer.size.mean();
+    if (min_size == 0) return level;
     const double change =
-        ((now.value - finer.value).array().abs() / finer.size.array().max(least)).maxCoeff();
-    if (change <= Integrands::kSettled) return level;
-    if (change < 0.5 * least_change) {
-      least_change = change;
+        ((now.value - finer.value).array().abs() / finer.size.array().max(min_size)).maxCoeff();
+    if (change <= Integrands::kTolerance) return level;
+    if (change < 0.5 * min_change) {
+      min_change = change;
       best = level;
     }
-    // Sums of terms that cancel keep a rounding of their own, which no finer rule takes away.
-    if (least_change <= Integrands::kPromised && level >= best + 2) return best;
+    // Sums of terms that cancel have rounding errors that no finer rule reduces.
+    if (min_change <= Integrands::kRequired && level >= best + 2) return best;
   }
-  left = std::max(left, least_change);
+  remaining = std::max(remaining, min_change);
   return kLastLevel;
 }
 
-/// Keeps of the nodes of one direction as many as their integrals need.
+/// Removes the nodes of one direction that the integrals do not need.
 template <class Integrands, class Node>
 void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& nodes) {
   Eigen::VectorXd factors;
   for (int n_states = 80;; n_states *= 2) {
     Eigen::Index rank = 0;
     factors = thin_rule(integrands.shares(line, n_states), &rank, Integrands::kThin);
-    // Functions enough to span what they are drawn from, or no node to spare.
+    // Stop when there are enough functions to span their space, or when no node can be removed.
     if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
@@ -160,30 +163,37 @@ void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& 
   nodes = std::move(kept);
 }
 
-/// A rule beyond is of no use: a step would take a good part of a second.
-inline constexpr std::size_t kMostPoints = 2'000'000;
-[[noreturn]] inline void too_many_points(const Part& part, const char* what) {
+/// Maximum number of points. With more, a step would last a good part of a second.
+inline constexpr std::size_t kMaxPoints = 2'000'000;
+[[noreturn]] inline void throw_too_many_points(const Part& part, const char* subject) {
   std::string names;
   for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
-  throw std::invalid_argument("part '" + part.name() + "': its " + what + " needs more than " +
-                              std::to_string(kMostPoints) + " points to be exact for all of " + names +
+  throw std::invalid_argument("part '" + part.name() + "': its " + subject + " needs more than " +
+                              std::to_string(kMaxPoints) + " points to be exact for all of " + names +
                               "; narrow the limits of some of them (min, max), or freeze them");
 }
 
-struct Laid {
+/// The result of a search.
+struct PlacedPoints {
   std::vector<RestPoint> points;
-  int level = 0;
-  double left = 0;
+  int level = 0;         ///< of refinement, along the last direction
+  double remaining = 0;  ///< relative change by doubling that no level removed; 0 if the search converged
 };
 
-/// Thinning takes time that grows with the cube of the nodes: more take longer than most runs would save.
-inline constexpr std::size_t kMostThinned = 600;
+inline void remove_massless(std::vector<RestPoint>& points) {
+  points.erase(std::remove_if(points.begin(), points.end(), [](const RestPoint& p) { return !(p.mass > 0); }),
+               points.end());
+}
+
+/// Maximum number of nodes to thin. The time of thinning grows with their cube; beyond this number it exceeds
+/// the time that most runs save.
+inline constexpr std::size_t kMaxThinned = 600;
 
 /// A ring of material points.
 struct RingNode {
   AngleNode u;
   QuadratureNode w;
-  double weight = 1;  ///< on top of those of u and w
+  double weight = 1;  ///< factor on the weights of u and w
 };
 inline void add_ring(const RestShape& shape, const RingNode& ring, const std::vector<AngleNode>& v,
                      std::vector<RestPoint>& out) {
@@ -192,102 +202,121 @@ inline void add_ring(const RestShape& shape, const RingNode& ring, const std::ve
   add_ring(shape, ring.u, w, v, out);
 }
 
-/// Rings of points. thinned: to as few as the integrands need.
+/// The search for rings of points.
 template <class Integrands>
-Laid lay_rings(const RestShape& shape, const Integrands& integrands, bool thinned, int extra) {
-  constexpr int coarse = 5, n_places = 16;
-  std::vector<AngleNode> u = profile_nodes(shape, coarse), v = ring_nodes(shape, coarse);
-  std::vector<QuadratureNode> w = depth_nodes(shape, coarse);
-  const std::size_t no_place = 0;
+class RingSearch {
+ public:
+  /// thinned: whether to thin u and w. extra: levels of refinement beyond those that suffice.
+  RingSearch(const RestShape& shape, const Integrands& integrands, bool thinned, int extra)
+      : shape_(shape), integrands_(integrands), thinned_(thinned), extra_(extra) {}
 
-  // Nodes of one direction at places of the others; where points of a ring do not move apart the ring goes
-  // along.
-  auto along_v = [&](const std::vector<AngleNode>& nodes) {
-    Columns line;
-    Draw draw;
-    for (int k = 0; k < n_places; ++k) {
-      Column column;
-      add_ring(shape, u[draw.below(u.size())], w[draw.below(w.size())], nodes, column.points);
-      for (std::size_t i = 0; i < column.points.size(); ++i)
-        column.node.push_back(shape.points_apart ? static_cast<Eigen::Index>(i) : 0);
-      line.columns.push_back(std::move(column));
-    }
-    line.n_nodes = shape.points_apart ? static_cast<Eigen::Index>(nodes.size()) : 1;
-    return line;
-  };
-  auto ring_at = [&](std::size_t place) { return shape.points_apart ? std::vector<AngleNode>{v[place]} : v; };
-  auto along_w = [&](const std::vector<QuadratureNode>& nodes) {
-    Columns line;
-    Draw draw;
-    for (int k = 0; k < n_places; ++k) {
-      Column column;
-      const AngleNode& at = u[draw.below(u.size())];
-      const std::vector<AngleNode> ring = ring_at(shape.points_apart ? draw.below(v.size()) : no_place);
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        add_ring(shape, at, nodes[i], ring, column.points);
-        column.end_node(static_cast<Eigen::Index>(i));
-      }
-      line.columns.push_back(std::move(column));
-    }
-    line.n_nodes = static_cast<Eigen::Index>(nodes.size());
-    return line;
-  };
-  auto along_u = [&](const std::vector<AngleNode>& nodes) {
-    Columns line;
-    Draw draw;
-    const int places = !shape.points_apart && w.size() == 1 ? 1 : n_places;
-    for (int k = 0; k < places; ++k) {
-      Column column;
-      const QuadratureNode& at = w[draw.below(w.size())];
-      const std::vector<AngleNode> ring = ring_at(shape.points_apart ? draw.below(v.size()) : no_place);
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        add_ring(shape, nodes[i], at, ring, column.points);
-        column.end_node(static_cast<Eigen::Index>(i));
-      }
-      line.columns.push_back(std::move(column));
-    }
-    line.n_nodes = static_cast<Eigen::Index>(nodes.size());
-    return line;
-  };
+  PlacedPoints run() {
+    PlacedPoints placed;
+    search_v(placed);
+    if (!shape_.part.shell()) search_w(placed);
+    search_u(placed);
+    // Rings that vary u and w together need fewer nodes than all pairs of the two.
+    std::vector<RingNode> rings;
+    for (const AngleNode& at : u_)
+      for (const QuadratureNode& depth : w_) rings.push_back({at, depth});
+    if (thinned_ && w_.size() > 1 && rings.size() <= kMaxThinned)
+      thin(integrands_, along_rings(rings), rings);
 
-  Laid laid;
-  int level = settle(integrands, laid.left, [&](int l) { return along_v(ring_nodes(shape, size_at(l))); });
-  v = ring_nodes(shape, size_at(level + extra));
-  if (shape.points_apart) thin(integrands, along_v(v), v);
-  if (!shape.part.shell()) {
-    level = settle(integrands, laid.left, [&](int l) { return along_w(depth_nodes(shape, size_at(l))); });
-    w = depth_nodes(shape, size_at(level + extra));
-    if (thinned) thin(integrands, along_w(w), w);
+    const std::size_t n_points = rings.size() * (shape_.points_apart ? v_.size() : 3);
+    if (n_points > kMaxPoints) throw_too_many_points(shape_.part, Integrands::subject);
+    for (const RingNode& ring : rings) add_ring(shape_, ring, v_, placed.points);
+    return placed;
   }
-  laid.level =
-      settle(integrands, laid.left, [&](int l) { return along_u(profile_nodes(shape, size_at(l))); });
-  u = profile_nodes(shape, size_at(laid.level + extra));
-  if (thinned) thin(integrands, along_u(u), u);
 
-  // Rings that differ in u and w together need fewer than all pairs of the two.
-  std::vector<RingNode> rings;
-  for (const AngleNode& at : u)
-    for (const QuadratureNode& depth : w) rings.push_back({at, depth});
-  auto along_rings = [&](const std::vector<RingNode>& nodes) {
+ private:
+  static constexpr int kCoarse = 5, kPlaces = 16;
+
+  void search_v(PlacedPoints& placed) {
+    const int level =
+        refine(integrands_, placed.remaining, [&](int l) { return along_v(ring_nodes(shape_, size_at(l))); });
+    v_ = ring_nodes(shape_, size_at(level + extra_));
+    if (shape_.points_apart) thin(integrands_, along_v(v_), v_);
+  }
+  void search_w(PlacedPoints& placed) {
+    const int level = refine(integrands_, placed.remaining,
+                             [&](int l) { return along_w(depth_nodes(shape_, size_at(l))); });
+    w_ = depth_nodes(shape_, size_at(level + extra_));
+    if (thinned_) thin(integrands_, along_w(w_), w_);
+  }
+  void search_u(PlacedPoints& placed) {
+    placed.level = refine(integrands_, placed.remaining,
+                          [&](int l) { return along_u(profile_nodes(shape_, size_at(l))); });
+    u_ = profile_nodes(shape_, size_at(placed.level + extra_));
+    if (thinned_) thin(integrands_, along_u(u_), u_);
+  }
+
+  // Nodes of one direction at places of the other directions. If the points of a ring do not move
+  // independently, each place has the whole ring.
+
+  Columns along_v(const std::vector<AngleNode>& nodes) const {
     Columns line;
     Draw draw;
-    for (int k = 0; k < (shape.points_apart ? n_places : 1); ++k) {
+    for (int k = 0; k < kPlaces; ++k) {
       Column column;
-      const std::vector<AngleNode> ring = ring_at(shape.points_apart ? draw.below(v.size()) : no_place);
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        add_ring(shape, nodes[i], ring, column.points);
-        column.end_node(static_cast<Eigen::Index>(i));
-      }
+      add_ring(shape_, u_[draw.below(u_.size())], w_[draw.below(w_.size())], nodes, column.points);
+      for (std::size_t i = 0; i < column.points.size(); ++i)
+        column.node.push_back(shape_.points_apart ? static_cast<Eigen::Index>(i) : 0);
       line.columns.push_back(std::move(column));
+    }
+    line.n_nodes = shape_.points_apart ? static_cast<Eigen::Index>(nodes.size()) : 1;
+    return line;
+  }
+  Columns along_w(const std::vector<QuadratureNode>& nodes) const {
+    Columns line;
+    Draw draw;
+    for (int k = 0; k < kPlaces; ++k) {
+      const AngleNode& u = u_[draw.below(u_.size())];
+      line.columns.push_back(rings_at(draw, nodes, [&](const QuadratureNode& w) { return RingNode{u, w}; }));
     }
     line.n_nodes = static_cast<Eigen::Index>(nodes.size());
     return line;
-  };
-  if (thinned && w.size() > 1 && rings.size() <= kMostThinned) thin(integrands, along_rings(rings), rings);
+  }
+  Columns along_u(const std::vector<AngleNode>& nodes) const {
+    Columns line;
+    Draw draw;
+    const int places = !shape_.points_apart && w_.size() == 1 ? 1 : kPlaces;
+    for (int k = 0; k < places; ++k) {
+      const QuadratureNode& w = w_[draw.below(w_.size())];
+      line.columns.push_back(rings_at(draw, nodes, [&](const AngleNode& u) { return RingNode{u, w}; }));
+    }
+    line.n_nodes = static_cast<Eigen::Index>(nodes.size());
+    return line;
+  }
+  Columns along_rings(const std::vector<RingNode>& nodes) const {
+    Columns line;
+    Draw draw;
+    for (int k = 0; k < (shape_.points_apart ? kPlaces : 1); ++k)
+      line.columns.push_back(rings_at(draw, nodes, [](const RingNode& ring) { return ring; }));
+    line.n_nodes = static_cast<Eigen::Index>(nodes.size());
+    return line;
+  }
 
-  const std::size_t n_points = rings.size() * (shape.points_apart ? v.size() : 3);
-  if (n_points > kMostPoints) too_many_points(shape.part, Integrands::what);
-  for (const RingNode& ring : rings) add_ring(shape, ring, v, laid.points);
-  return laid;
-}
+  /// The points of a ring for each node: all of them, or the point at one drawn place of v if they move
+  /// independently.
+  template <class Node, class MakeRing>
+  Column rings_at(Draw& draw, const std::vector<Node>& nodes, const MakeRing& make_ring) const {
+    const std::vector<AngleNode> v =
+        shape_.points_apart ? std::vector<AngleNode>{v_[draw.below(v_.size())]} : v_;
+    Column column;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      add_ring(shape_, make_ring(nodes[i]), v, column.points);
+      column.end_node(static_cast<Eigen::Index>(i));
+    }
+    return column;
+  }
+
+  const RestShape& shape_;
+  const Integrands& integrands_;
+  bool thinned_;
+  int extra_;
+  // The nodes found so far; coarse ones along directions that have not been searched yet.
+  std::vector<AngleNode> u_ = profile_nodes(shape_, kCoarse), v_ = ring_nodes(shape_, kCoarse);
+  std::vector<QuadratureNode> w_ = depth_nodes(shape_, kCoarse);
+};
+
 }  // namespace pliant::rule_search

@@ -1,4 +1,5 @@
-#include "strain_rule.h"
+// The placement of quadrature points for the strain energy.
+#include <pliant/part/quadrature/strain_rule.h>
 
 #include <cmath>
 #include <sstream>
@@ -6,7 +7,8 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 
-#include "part/strain.h"
+#include <pliant/part/strain.h>
+
 #include "rule_search.h"
 
 namespace pliant {
@@ -15,16 +17,42 @@ using namespace rule_search;
 
 namespace {
 
-/// Points with derivatives along X: of a solid x, y, z at rest, of a shell two tangents.
-StrainPoints with_directions(const Part& part, const ParameterValues<double>& rest,
-                             const std::vector<RestPoint>& points) {
+/// The material directions of the points and their derivatives.
+using TangentPoints = std::vector<Material<Dual<3>>>;
+
+/// Rotates the derivatives of a material point: new directions are columns of `from_X`, in the old ones.
+void change_directions(Material<Dual<3>>& m, const Mat3<double>& from_X) {
+  auto change = [&](Dual<3>& x) {
+    const Eigen::RowVector3d d = Eigen::RowVector3d(x.d[0], x.d[1], x.d[2]) * from_X;
+    for (std::size_t r = 0; r < 3; ++r) x.d[r] = d[static_cast<Eigen::Index>(r)];
+  };
+  for (Trig<Dual<3>>* t : {&m.cu, &m.su, &m.cv, &m.sv}) {
+    change(t->x);
+    change(t->log_abs);
+  }
+  change(m.w);
+}
+
+/// Returns the material directions of unit steps along X, columns, from [s_u s_v s_w] at rest: along x, y, z
+/// of a solid, along two orthonormal tangents of a shell.
+Mat3<double> material_directions(const Mat3<double>& at_rest, bool shell) {
+  if (!shell) return at_rest.inverse();
+  Mat3<double> from_X = Mat3<double>::Zero();
+  const Eigen::Matrix<double, 3, 2> surface = at_rest.leftCols<2>();
+  const Vec3<double> first = surface.col(0).normalized();
+  Eigen::Matrix<double, 3, 2> frame;
+  frame << first, (surface.col(1) - first * first.dot(surface.col(1))).normalized();
+  from_X.topLeftCorner<2, 2>() = Eigen::Matrix2d(frame.transpose() * surface).inverse();
+  return from_X;
+}
+
+/// Returns the points with derivatives along X.
+TangentPoints with_derivatives(const Part& part, const ParameterValues<double>& rest,
+                               const std::vector<RestPoint>& points) {
   const std::size_t n = points.size();
-  StrainPoints out;
-  out.n_points = static_cast<int>(n);
-  out.directions = part.shell() ? 2 : 3;
   Eigen::Matrix3Xd e(3, static_cast<Eigen::Index>(n));
   std::vector<Mat3<double>> tangents(n);
-  std::vector<Material<Dual<3>>> moving(n);
+  TangentPoints moving(n);
   for (std::size_t k = 0; k < n; ++k) {
     moving[k] = material_with_tangents(points[k].at);
     const Vec3<Dual<3>> at = part.shape().tangents(moving[k], rest.b.data());
@@ -34,28 +62,19 @@ StrainPoints with_directions(const Part& part, const ParameterValues<double>& re
     }
   }
   const std::vector<Mat3<double>> F = part.chain_gradient(e, rest);
-  for (std::size_t k = 0; k < n; ++k) {
-    const Mat3<double> now = F[k] * tangents[k];
-    Mat3<double> from_X = Mat3<double>::Zero();  // material directions a unit along X
-    if (part.shell()) {
-      const Eigen::Matrix<double, 3, 2> surface = now.leftCols<2>();
-      const Vec3<double> first = surface.col(0).normalized();
-      Eigen::Matrix<double, 3, 2> frame;
-      frame << first, (surface.col(1) - first * first.dot(surface.col(1))).normalized();
-      from_X.topLeftCorner<2, 2>() = Eigen::Matrix2d(frame.transpose() * surface).inverse();
-    } else {
-      from_X = now.inverse();
-    }
-    auto turn = [&](Dual<3>& x) {
-      const Eigen::RowVector3d d = Eigen::RowVector3d(x.d[0], x.d[1], x.d[2]) * from_X;
-      for (std::size_t r = 0; r < 3; ++r) x.d[r] = d[static_cast<Eigen::Index>(r)];
-    };
-    for (Trig<Dual<3>>* t : {&moving[k].cu, &moving[k].su, &moving[k].cv, &moving[k].sv}) {
-      turn(t->x);
-      turn(t->log_abs);
-    }
-    turn(moving[k].w);
-  }
+  for (std::size_t k = 0; k < n; ++k)
+    change_directions(moving[k], material_directions(F[k] * tangents[k], part.shell()));
+  return moving;
+}
+
+/// Returns the points in packs of four, with derivatives along X.
+StrainPoints with_directions(const Part& part, const ParameterValues<double>& rest,
+                             const std::vector<RestPoint>& points) {
+  const std::size_t n = points.size();
+  StrainPoints out;
+  out.n_points = static_cast<int>(n);
+  out.directions = part.shell() ? 2 : 3;
+  const TangentPoints moving = with_derivatives(part, rest, points);
   for (std::size_t first = 0; first < n; first += Pack::kLanes) {
     std::array<Material<Dual<3>>, Pack::kLanes> four;
     Pack weight(0.0);
@@ -70,14 +89,14 @@ StrainPoints with_directions(const Part& part, const ParameterValues<double>& re
   return out;
 }
 
-/// Energy, force and stiffness along random directions at random states, each in units of its root mean
-/// square over the body, so that soft states count as much as stiff ones; and the volume.
+/// Integrands: energy, force and stiffness along random directions at random states, each scaled to a root
+/// mean square of 1 over the body, so that soft states count as much as stiff ones; and the volume.
 class StrainIntegrands {
  public:
-  static constexpr const char* what = "strain energy";
+  static constexpr const char* subject = "strain energy";
   static constexpr int kEach = 4;
-  static constexpr double kSettled = kStrainSettled, kThin = 1e-2 * kStrainSettled;
-  static constexpr double kPromised = 1e2 * kStrainSettled;
+  static constexpr double kTolerance = kStrainSettled, kThin = 1e-2 * kStrainSettled,
+                          kRequired = 1e2 * kStrainSettled;
 
   StrainIntegrands(const RestShape& shape, const ContinuumLaw& law)
       : shape_(shape), law_(law), ranges_(shape.part) {
@@ -119,7 +138,7 @@ class StrainIntegrands {
     VecMax<double> q, first, second;
   };
 
-  /// act(number, densities) for n points.
+  /// Calls act(number, densities) for the first n points.
   template <class Act>
   void for_each_point(const StrainPoints& points, std::size_t n, const State& state, Act&& act) const {
     const auto values = shape_.part.parameters().expand<Dual<1>>(
@@ -128,7 +147,7 @@ class StrainIntegrands {
     strain::Block block;
     for (int begin = 0; begin < packs; begin += strain::kBlock) {
       const int count = std::min(strain::kBlock, packs - begin);
-      strain::evaluate(shape_.part, values, points, begin, count, n_s, Level::jacobian, block);
+      strain::evaluate({shape_.part, values, points, begin, count}, n_s, Level::jacobian, block);
       for (int i = 0; i < count; ++i) {
         const std::array<Pack, kEach> four =
             densities(block.F[static_cast<std::size_t>(i)], block.dF[static_cast<std::size_t>(i)], state);
@@ -140,9 +159,10 @@ class StrainIntegrands {
     }
   }
 
+  /// Returns the integrands at four points.
   std::array<Pack, kEach> densities(const Mat3<Pack>& F, const std::array<Mat3<Pack>, kMaxGlobal>& by_q,
                                     const State& state) const {
-    const Mat3<Pack> dF = strain::combine(by_q, state.first), other = strain::combine(by_q, state.second);
+    const Mat3<Pack> dF = strain::combine(by_q, state.first), second_dF = strain::combine(by_q, state.second);
     Mat3<Dual<1, Pack>> along;
     for (int c = 0; c < 9; ++c) {
       along.data()[c] = Dual<1, Pack>(F.data()[c]);
@@ -154,14 +174,15 @@ class StrainIntegrands {
           Pack force(0.0), stiffness(0.0);
           for (int c = 0; c < 9; ++c) {
             force += P.data()[c].v * dF.data()[c];
-            stiffness += P.data()[c].d[0] * other.data()[c];
+            stiffness += P.data()[c].d[0] * second_dF.data()[c];
           }
           return {law.density(F), force, stiffness, Pack(1.0)};
         },
         law_);
   }
 
-  /// Root mean squares over the body in a state; of what is but rounding beside the stiffness, infinite.
+  /// Returns the root mean squares over the body in a state; infinite for those that are rounding errors
+  /// relative to the stiffness.
   const Densities& units(int number, const State& state) const {
     const auto known = units_.size();
     if (static_cast<std::size_t>(number) < known) return units_[static_cast<std::size_t>(number)];
@@ -173,8 +194,8 @@ class StrainIntegrands {
     });
     constexpr double noise = 1e-10;
     constexpr std::size_t stiffness = 2;
-    const double least = noise * noise * squares[stiffness];
-    for (double& square : squares) square = square > least ? std::sqrt(square / mass) : kInfinity;
+    const double min_square = noise * noise * squares[stiffness];
+    for (double& square : squares) square = square > min_square ? std::sqrt(square / mass) : kInfinity;
     units_.push_back(squares);
     return units_.back();
   }
@@ -182,12 +203,13 @@ class StrainIntegrands {
   const RestShape& shape_;
   const ContinuumLaw& law_;
   StateRanges ranges_;
-  std::vector<RestPoint> sample_;  ///< over the whole body
+  std::vector<RestPoint> sample_;  // over the whole body
   StrainPoints sample_points_;
-  mutable std::vector<Densities> units_;  ///< of each state, in the order in which they are drawn
+  mutable std::vector<Densities> units_;  // of each state, in the order in which they are drawn
 };
 
-/// Keeps as many of all points as the integrals need; many a group at a time, as long as that helps.
+/// Removes points that the integrals do not need, in groups, as long as a pass removes more than a quarter of
+/// the points.
 void thin_points(const StrainIntegrands& integrands, std::vector<RestPoint>& points) {
   constexpr std::size_t group = 400;
   struct Weighted {
@@ -213,6 +235,7 @@ void thin_points(const StrainIntegrands& integrands, std::vector<RestPoint>& poi
   }
 }
 
+/// Returns the names of the dynamic parameters.
 std::string dynamic_names(const Part& part) {
   std::string names;
   for (int i : part.parameters().dynamic()) names += (names.empty() ? "" : ", ") + part.parameters()[i].name;
@@ -224,7 +247,7 @@ std::string dynamic_names(const Part& part) {
 StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume) {
   RestShape shape(part);
   if (shape.follows == Follows::affine && !part.shell()) {
-    // Every point is strained alike: any stands for all.
+    // All points have equal strains: any point represents all.
     StrainPoints one = with_directions(part, shape.rest, {{material_at(0.4, 0.7, 0.5), volume}});
     one.rule = "affine";
     return one;
@@ -232,22 +255,20 @@ StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, doub
   shape.by_sections = false;
   shape.points_apart = true;
   const StrainIntegrands integrands(shape, law);
-  Laid laid = lay_rings(shape, integrands, true, 0);
-  if (laid.left > StrainIntegrands::kPromised || !std::isfinite(laid.left)) {
+  PlacedPoints placed = RingSearch(shape, integrands, true, 0).run();
+  if (placed.remaining > StrainIntegrands::kRequired || !std::isfinite(placed.remaining)) {
     std::ostringstream message;
     message << "part '" << part.name()
-            << "': the strain energy of its elasticity does not settle over the ranges of "
-            << dynamic_names(part) << " (the finest rule still changes it by " << laid.left
-            << " of itself); freeze some of them, or narrow their limits (min, max)";
+            << "': the quadrature of its strain energy does not converge over the ranges of "
+            << dynamic_names(part) << " (doubling the finest rule changes the energy by " << placed.remaining
+            << ", relative); freeze some of them, or narrow their limits (min, max)";
     throw std::invalid_argument(message.str());
   }
-  laid.points.erase(std::remove_if(laid.points.begin(), laid.points.end(),
-                                   [](const RestPoint& p) { return !(p.mass > 0); }),
-                    laid.points.end());
-  thin_points(integrands, laid.points);
-  StrainPoints points = with_directions(part, shape.rest, laid.points);
+  remove_massless(placed.points);
+  thin_points(integrands, placed.points);
+  StrainPoints points = with_directions(part, shape.rest, placed.points);
   points.rule = "rings";
-  points.settled = std::max(laid.left, kStrainSettled);
+  points.settled = std::max(placed.remaining, kStrainSettled);
   return points;
 }
 

@@ -1,6 +1,6 @@
-// EGL without window or surface: on Mesa's surfaceless platform, or on its software device, which is last
-// because it needs two more extensions. Displays are shared by the whole process, so they are never
-// terminated.
+// EGL without a window or a surface: on Mesa's surfaceless platform, or on its software device. The software
+// device is tried last, because it needs two more extensions. Displays are shared by the whole process and
+// are therefore never terminated.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -43,12 +43,12 @@ class EglPlatform : public GlContext::Platform {
 
     display_ = entry<GetPlatformDisplay>("eglGetPlatformDisplay")(
         kind, kind == kDevice ? software_device() : nullptr, nullptr);
-    if (!display_) fail("eglGetPlatformDisplay gives no display");
+    if (!display_) fail("eglGetPlatformDisplay returned no display");
     if (!entry<Initialize>("eglInitialize")(display_, nullptr, nullptr)) fail("eglInitialize failed");
-    if (!bind_api_(kOpenGlApi)) fail("it has no desktop OpenGL");
+    if (!bind_api_(kOpenGlApi)) fail("EGL has no desktop OpenGL");
     const int attributes[] = {kMajorVersion, 3, kMinorVersion, 3, kProfileMask, kCoreProfile, kNone};
     context_ = entry<CreateContext>("eglCreateContext")(display_, nullptr, nullptr, attributes);
-    if (!context_) fail("it gives no OpenGL 3.3 core context");
+    if (!context_) fail("EGL cannot create an OpenGL 3.3 core context");
   }
   ~EglPlatform() override { destroy_(display_, context_); }
   EglPlatform(const EglPlatform&) = delete;
@@ -65,7 +65,7 @@ class EglPlatform : public GlContext::Platform {
   template <class F>
   F entry(const char* name) const {
     void* address = get_proc_address_(name);
-    if (!address) throw std::runtime_error(std::string("it has no ") + name);
+    if (!address) throw std::runtime_error(std::string("EGL has no function ") + name);
     return reinterpret_cast<F>(address);
   }
 
@@ -84,7 +84,7 @@ class EglPlatform : public GlContext::Platform {
       const char* extensions = query(devices[i], kExtensions);
       if (extensions && std::strstr(extensions, "EGL_MESA_device_software")) return devices[i];
     }
-    throw std::runtime_error("it has no software device");
+    throw std::runtime_error("EGL has no software device");
   }
 
   GetProcAddress get_proc_address_ = nullptr;

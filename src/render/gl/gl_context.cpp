@@ -1,4 +1,4 @@
-// Which backends are tried, in which order, and what is said when none opens.
+// The backends in the order in which they are tried, and the message if none opens.
 #include <pliant/render/gl/gl_context.h>
 
 #include <dlfcn.h>
@@ -12,12 +12,12 @@ namespace {
 
 constexpr unsigned kGlRenderer = 0x1F01, kGlVersion = 0x1F02;
 
-struct Way {
+struct Backend {
   const char* name;
   GlBackend backend;
   std::unique_ptr<GlContext::Platform> (*open)();
 };
-constexpr Way kWays[] = {
+constexpr Backend kBackends[] = {
     {"OSMesa", GlBackend::osmesa, open_osmesa},
     {"EGL surfaceless", GlBackend::egl, open_egl_surfaceless},
     {"EGL software device", GlBackend::egl, open_egl_software_device},
@@ -27,13 +27,13 @@ std::string gl_string(const GlContext::Platform& platform, unsigned name) {
   const auto get_string =
       reinterpret_cast<const unsigned char* (*)(unsigned)>(platform.function("glGetString"));
   const unsigned char* text = get_string ? get_string(name) : nullptr;
-  if (!text) throw std::runtime_error("its context does not answer");
+  if (!text) throw std::runtime_error("the context opens but glGetString returns nothing");
   return reinterpret_cast<const char*>(text);
 }
 
-// A context of one way that is known to answer.
-std::unique_ptr<GlContext::Platform> open(const Way& way, std::string& renderer, std::string& version) {
-  auto platform = way.open();
+// Opens a context with one backend and reads its strings, which proves that it works.
+std::unique_ptr<GlContext::Platform> open(const Backend& entry, std::string& renderer, std::string& version) {
+  auto platform = entry.open();
   platform->make_current();
   renderer = gl_string(*platform, kGlRenderer);
   version = gl_string(*platform, kGlVersion);
@@ -60,20 +60,20 @@ void* library_symbol(void* library, const char* name) {
 
 GlContext::GlContext(GlBackend backend) {
   std::string tried;
-  for (const Way& way : kWays) {
-    if (backend != GlBackend::automatic && backend != way.backend) continue;
+  for (const Backend& entry : kBackends) {
+    if (backend != GlBackend::automatic && backend != entry.backend) continue;
     try {
-      platform_ = open(way, renderer_, version_);
-      backend_ = way.name;
+      platform_ = open(entry, renderer_, version_);
+      backend_ = entry.name;
       return;
     } catch (const std::runtime_error& error) {
-      tried += std::string("\n  ") + way.name + ": " + error.what();
+      tried += std::string("\n  ") + entry.name + ": " + error.what();
     }
   }
   const char* packages = backend == GlBackend::osmesa ? "libosmesa6"
                          : backend == GlBackend::egl  ? "libegl1 and libgl1-mesa-dri"
                                                       : "libosmesa6, or libegl1 and libgl1-mesa-dri";
-  throw std::runtime_error(std::string("no OpenGL library for pictures: install ") + packages +
+  throw std::runtime_error(std::string("found no OpenGL library for pictures; install ") + packages +
                            " (Debian names). Tried:" + tried);
 }
 
@@ -92,11 +92,11 @@ GlContext::Current::~Current() {
 
 std::vector<GlProbe> probe_gl_backends() {
   std::vector<GlProbe> probes;
-  for (const Way& way : kWays) {
+  for (const Backend& entry : kBackends) {
     GlProbe probe;
-    probe.name = way.name;
+    probe.name = entry.name;
     try {
-      open(way, probe.renderer, probe.version);
+      open(entry, probe.renderer, probe.version);
       probe.opened = true;
     } catch (const std::runtime_error& error) {
       probe.reason = error.what();

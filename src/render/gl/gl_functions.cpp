@@ -1,4 +1,4 @@
-// Fills the table of entry points from the context.
+// Loads the table of entry points from a context.
 #include "gl_functions.h"
 
 #include <stdexcept>
@@ -8,7 +8,7 @@ namespace pliant::gl {
 Functions::Functions(const GlContext& context) {
   const auto find = [&](const char* name) {
     if (void* address = context.function(name)) return address;
-    throw std::runtime_error(context.backend() + " (" + context.version() + ") has no " + name);
+    throw std::runtime_error(context.backend() + " (" + context.version() + ") has no function " + name);
   };
 #define PLIANT_GL_LOAD(member, name, result, arguments) \
   member = reinterpret_cast<decltype(member)>(find(#name));

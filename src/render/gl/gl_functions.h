@@ -1,5 +1,5 @@
-// The OpenGL entry points and values that the renderer uses, declared by hand: no GL header and no loader
-// library, both of which fail under OSMesa.
+// The OpenGL entry points and constants that the renderer uses, declared by hand. GL headers and loader
+// libraries are not used, because both fail under OSMesa.
 #pragma once
 
 #include <cstddef>
@@ -32,7 +32,7 @@ inline constexpr Enum kTriangles = 0x0004, kTriangleStrip = 0x0005, kLessEqual =
                       kFramebuffer = 0x8D40, kRenderbuffer = 0x8D41, kBorderColor = 0x1004;
 inline constexpr unsigned kDepthBufferBit = 0x0100;
 
-// One line an entry point: member, GL name, result, arguments.
+// One line for each entry point: member, GL name, result, arguments.
 #define PLIANT_GL_FUNCTIONS(X)                                                                         \
   X(active_texture, glActiveTexture, void, (Enum))                                                     \
   X(attach_shader, glAttachShader, void, (Uint, Uint))                                                 \
@@ -100,7 +100,7 @@ inline constexpr unsigned kDepthBufferBit = 0x0100;
   X(viewport, glViewport, void, (Int, Int, Size, Size))
 
 struct Functions {
-  /// Throws std::runtime_error naming the entry point that the context does not have.
+  /// Throws std::runtime_error that names the entry point that the context does not have.
   explicit Functions(const GlContext& context);
 
 #define PLIANT_GL_MEMBER(member, name, result, arguments) result(*member) arguments = nullptr;

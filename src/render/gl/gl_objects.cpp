@@ -1,4 +1,4 @@
-// Compiles and links programs.
+// Compilation and linking of programs.
 #include "gl_objects.h"
 
 #include <array>
@@ -21,7 +21,8 @@ Uint compile(const Functions& gl, Enum stage, const char* name, const char* star
   std::array<char, 2000> log{};
   gl.get_shader_info_log(shader, static_cast<Size>(log.size()), nullptr, log.data());
   gl.delete_shader(shader);
-  throw std::runtime_error(std::string("shader ") + name + " does not compile here: " + log.data());
+  throw std::runtime_error(std::string("shader ") + name +
+                           " does not compile with this OpenGL: " + log.data());
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ Program::Program(const Functions& gl, const char* name, const char* vertex_text,
     std::array<char, 2000> log{};
     gl.get_program_info_log(name_, static_cast<Size>(log.size()), nullptr, log.data());
     gl.delete_program(name_);
-    throw std::runtime_error(std::string("shader ") + name + " does not link here: " + log.data());
+    throw std::runtime_error(std::string("shader ") + name +
+                             " does not link with this OpenGL: " + log.data());
   }
   const Uint block = gl.get_uniform_block_index(name_, "Frame");
   if (block != ~0u) gl.uniform_block_binding(name_, block, shaders::kFrameBinding);

@@ -1,11 +1,11 @@
-// Owners of GL objects. Made and destroyed while their context is current.
+// Owners of GL objects. Their context must be current when they are constructed and destroyed.
 #pragma once
 
 #include "gl_functions.h"
 
 namespace pliant::gl {
 
-/// Owns one object of the kind that Gen makes and Delete unmakes.
+/// Owns one object, which Gen creates and Delete destroys.
 template <void (*Functions::*Gen)(Size, Uint*), void (*Functions::*Delete)(Size, const Uint*)>
 class Object {
  public:
@@ -26,10 +26,10 @@ using Texture = Object<&Functions::gen_textures, &Functions::delete_textures>;
 using Framebuffer = Object<&Functions::gen_framebuffers, &Functions::delete_framebuffers>;
 using Renderbuffer = Object<&Functions::gen_renderbuffers, &Functions::delete_renderbuffers>;
 
-/// A linked program. GLSL 330; the text of shaders.h that all stages share is put in front.
+/// A linked program in GLSL 330. Each stage begins with the shared text of shaders.h.
 class Program {
  public:
-  /// fragment_start: goes in front of fragment_text. Throws std::runtime_error with the compiler's words.
+  /// fragment_start: text before fragment_text. Throws std::runtime_error with the message of the compiler.
   Program(const Functions& gl, const char* name, const char* vertex_text, const char* fragment_text,
           const char* fragment_start = "");
   ~Program();

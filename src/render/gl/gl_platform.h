@@ -1,5 +1,5 @@
-// What a backend does for GlContext. The libraries stay loaded until the process ends: Mesa's threads and
-// exit handlers do not survive dlclose.
+// The interface of a backend of GlContext. The libraries stay loaded until the process ends, because Mesa's
+// threads and exit handlers fail after dlclose.
 #pragma once
 
 #include <memory>
@@ -15,14 +15,15 @@ struct GlContext::Platform {
   virtual void* function(const char* name) const = 0;
 };
 
-// Each throws std::runtime_error with the reason.
+// Each opens a context and throws std::runtime_error with the reason if it cannot.
 std::unique_ptr<GlContext::Platform> open_osmesa();
 std::unique_ptr<GlContext::Platform> open_egl_surfaceless();
 std::unique_ptr<GlContext::Platform> open_egl_software_device();
 
-/// The first library of the list that opens; throws with the loader's words when none does.
+/// Opens the first library of the list that can be loaded. Throws std::runtime_error with the messages of the
+/// loader if none can.
 void* open_library(std::initializer_list<const char*> names);
-/// A symbol of a library; throws when it is not there.
+/// Returns the address of a symbol of a library. Throws std::runtime_error if there is none.
 void* library_symbol(void* library, const char* name);
 
 }  // namespace pliant

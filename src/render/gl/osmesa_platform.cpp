@@ -1,5 +1,5 @@
-// OSMesa: draws into memory, no display. Its header is not used: it drags in the old GL header. We draw to a
-// framebuffer object of our own, so the buffer that OSMesa insists on is one small block.
+// OSMesa draws into memory and needs no display. Its header is not used, because it includes the old GL
+// header. The renderer draws to its own framebuffer object, so the buffer that OSMesa requires is small.
 #include <array>
 #include <stdexcept>
 
@@ -31,7 +31,7 @@ class OsmesaPlatform : public GlContext::Platform {
     const int attributes[] = {kFormat,  kRgba,        kDepthBits,    0, kStencilBits,  0, kAccumBits, 0,
                               kProfile, kCoreProfile, kMajorVersion, 3, kMinorVersion, 3, 0,          0};
     context_ = create(attributes, nullptr);
-    if (!context_) throw std::runtime_error("it gives no OpenGL 3.3 core context");
+    if (!context_) throw std::runtime_error("OSMesa cannot create an OpenGL 3.3 core context");
   }
   ~OsmesaPlatform() override { destroy_(context_); }
   OsmesaPlatform(const OsmesaPlatform&) = delete;

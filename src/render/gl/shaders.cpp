@@ -1,5 +1,5 @@
-// Shading in linear light. What reaches the framebuffer is the square root of it (see resolve.h): cheaper
-// than sRGB, and as fine in the dark.
+// Shading in linear light. The framebuffer stores its square root (see resolve.h), which is cheaper than sRGB
+// and equally accurate in dark areas.
 #include "shaders.h"
 
 namespace pliant::shaders {
@@ -31,8 +31,8 @@ vec3 background(float y) {
   return mix(background_bottom.rgb, background_top.rgb, t * t * (3.0 - 2.0 * t));
 }
 
-// Part of the key light that arrives, from a 4x4 grid of filtered comparisons. Each of the 2x2 samples of a pixel takes
-// the four that its place in the pixel names; their mean is the whole grid.
+// Returns the unshadowed share of the key light, from a 4x4 grid of filtered comparisons. Each of the 2x2 samples of a
+// pixel evaluates four of them, so that the mean of the samples covers the whole grid.
 float key_light(sampler2DShadow map, vec3 place, vec2 sample_place) {
   float step = 2.0 * viewport.z;
   vec2 corner = place.xy + (mod(floor(sample_place), 2.0) - 1.5) * step;
@@ -61,13 +61,14 @@ const char* const kContactVertex = R"(
 void main() { gl_Position = vec4(4.0 * float(gl_VertexID & 1) - 1.0, 2.0 * float(gl_VertexID & 2) - 1.0, 0.0, 1.0); }
 )";
 
-// Rings of growing radius around the place. A horizontal patch at height h that fills a ring takes from the
-// light of an even sky h^2/(r0^2 + h^2) - h^2/(r1^2 + h^2) of the whole.
+// Occlusion of the sky by rings of increasing radius around a point of the ground. A horizontal patch at
+// height h that fills the ring from r0 to r1 blocks the share h^2/(r0^2 + h^2) - h^2/(r1^2 + h^2) of a
+// uniform sky.
 const char* const kContactFragment = R"(
 uniform sampler2D heights;
 out vec4 result;
 float inside(float r, float h2) { return h2 / (r * r + h2); }
-float taken(vec2 at, float r0, float r1) {
+float blocked(vec2 at, float r0, float r1) {
   float depth = textureLod(heights, at, 0.0).r;
   float h = depth * fade.w + 0.25 * fade.z;
   return depth < 1.0 ? inside(r0, h * h) - inside(r1, h * h) : 0.0;
@@ -75,14 +76,14 @@ float taken(vec2 at, float r0, float r1) {
 void main() {
   vec2 size = vec2(textureSize(heights, 0));
   vec2 at = gl_FragCoord.xy / size;
-  float sum = taken(at, 0.0, fade.z);
+  float sum = blocked(at, 0.0, fade.z);
   float inner = 1.0;
   vec2 turn = vec2(1.0, 0.0);
   for (int ring = 0; ring < 6; ++ring) {
     float outer = inner * 1.85;
     float middle = sqrt(inner * outer);
     for (int sector = 0; sector < 12; ++sector) {
-      sum += taken(at + turn * middle / size, inner * fade.z, outer * fade.z) / 12.0;
+      sum += blocked(at + turn * middle / size, inner * fade.z, outer * fade.z) / 12.0;
       turn = vec2(0.8660254 * turn.x - 0.5 * turn.y, 0.5 * turn.x + 0.8660254 * turn.y);
     }
     turn = vec2(0.95106 * turn.x - 0.30902 * turn.y, 0.30902 * turn.x + 0.95106 * turn.y);
@@ -129,7 +130,7 @@ uniform vec3 own_color;
 vec3 albedo() { return own_color; }
 )";
 
-// The mixing of color_map.h.
+// The interpolation of color_map.h.
 const char* const kLevelColor = R"(
 const int kColors = 11;
 uniform vec3 color_map[kColors];
@@ -152,7 +153,7 @@ void main() {
   vec3 v = normalize(eye.xyz - at);
   float nl = dot(n, to_key.xyz);
   float nv = max(dot(n, v), 0.0);
-  // The last degrees before the terminator turn dark smoothly, whatever the shadow map says there.
+  // The shadow map is unreliable near the terminator, so the light fades out smoothly there.
   float arrives = key_light(shadow_map, on_map, gl_FragCoord.xy) * smoothstep(0.0, 0.18, nl);
   float diffuse = max(nl, 0.0) * arrives;
 
@@ -189,7 +190,8 @@ uniform sampler2D contact_map;
 in vec3 at;
 out vec4 result;
 
-// How much of a line, `wide` samples across, through every whole number covers the sample; thin grids melt away.
+// Returns the share of a sample that is covered by lines at the integers, `wide` samples wide. Grids finer than the
+// samples fade out.
 vec2 lines(vec2 place, vec2 cell_per_sample, float wide) {
   vec2 off = abs(fract(place - 0.5) - 0.5) / cell_per_sample;
   return clamp(0.5 * wide + 0.5 - off, 0.0, 1.0) * (1.0 - smoothstep(0.06, 0.22, cell_per_sample));
@@ -224,8 +226,9 @@ out vec4 result;
 void main() { result = encode(background(gl_FragCoord.y)); }
 )";
 
-// One instance a segment: a rectangle on the screen around it, half a line width and a sample larger on every
-// side. It stands a little nearer to the eye than it is, so that a track on a surface is not eaten by it.
+// One instance for each segment: a rectangle on the screen around it, larger by half the line width and one
+// sample on each side. The segment is moved slightly towards the eye, so that a surface does not hide a track
+// on it.
 const char* const kTrackVertex = R"(
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;

@@ -1,4 +1,4 @@
-// GLSL 330 text of every program; kShared goes in front of each stage.
+// GLSL 330 text of every program. kShared is placed before each stage.
 #pragma once
 
 namespace pliant::shaders {
@@ -10,13 +10,13 @@ extern const char* const kShared;
 extern const char* const kShadowVertex;  ///< depth of the bodies from the key light
 extern const char* const kHeightVertex;  ///< depth of the bodies from below the ground
 extern const char* const kDepthFragment;
-extern const char* const kContactVertex;  ///< how much of the sky each place of the ground sees
+extern const char* const kContactVertex;  ///< share of the sky that is visible from each point of the ground
 extern const char* const kContactFragment;
 extern const char* const kBodyVertex;
-extern const char* const kOwnColor;  ///< albedo of a body; in front of kBodyFragment
+extern const char* const kOwnColor;  ///< albedo of a body; before kBodyFragment
 extern const char* const kBodyFragment;
-extern const char* const kLeveledVertex;  ///< of one coloured by values
-extern const char* const kLevelColor;     ///< its albedo
+extern const char* const kLeveledVertex;  ///< of a body coloured by values
+extern const char* const kLevelColor;     ///< albedo of such a body; before kBodyFragment
 extern const char* const kGroundVertex;
 extern const char* const kGroundFragment;
 extern const char* const kBackgroundVertex;

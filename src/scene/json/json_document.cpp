@@ -14,7 +14,7 @@ namespace pliant {
 
 namespace {
 
-/// The keys of a pointer; false when it is none.
+/// Splits a pointer into its keys. Returns false if it is not a JSON pointer.
 bool split(std::string_view pointer, std::vector<std::string>* keys) {
   if (pointer.empty()) return true;
   if (pointer[0] != '/') return false;
@@ -32,13 +32,14 @@ bool split(std::string_view pointer, std::vector<std::string>* keys) {
   return true;
 }
 
-/// The index that a key of a pointer stands for; false when it is none.
+/// Converts a key of a pointer to an index. Returns false if it is not an index.
 bool index_of(const std::string& key, std::size_t* index) {
   const bool leading_zero = key.size() > 1 && key[0] == '0';
   const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), *index);
   return !leading_zero && error == std::errc() && end == key.data() + key.size();
 }
 
+/// Returns the value of a key or index of `parent`, or null.
 const JsonValue* child(const JsonValue& parent, const std::string& key) {
   if (parent.is_object()) return parent.find(key);
   std::size_t index = 0;
@@ -46,6 +47,8 @@ const JsonValue* child(const JsonValue& parent, const std::string& key) {
   return &parent.array()[index];
 }
 
+/// Extends `pointer` by the path from a value to the value with address `wanted`. Returns false if it is not
+/// found.
 bool find_address(const JsonValue& from, const JsonValue* wanted, std::string* pointer) {
   if (&from == wanted) return true;
   const std::size_t length = pointer->size();
@@ -65,12 +68,13 @@ bool find_address(const JsonValue& from, const JsonValue* wanted, std::string* p
   return false;
 }
 
-std::string counted(std::size_t n, const char* what) {
-  return std::to_string(n) + " " + what + (n == 1 ? "" : "s");
+std::string counted(std::size_t n, const char* noun) {
+  return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
 }
 
-/// Text that the shell left without quotes, --set /name=arm or --set /force=2*t: what cannot be meant as
-/// JSON.
+/// Returns whether a text is clearly not JSON and therefore a string whose quotes the shell has removed, as
+/// in
+/// --set /name=arm or --set /force=2*t.
 bool is_bare_text(std::string_view text) {
   if (text.empty() || text == "true" || text == "false" || text == "null") return false;
   if (std::string_view("{[\"").find(text[0]) != std::string_view::npos) return false;
@@ -83,7 +87,7 @@ bool is_bare_text(std::string_view text) {
   return letter || text.find_first_not_of("0123456789+-.eE \t\r\n") != std::string_view::npos;
 }
 
-/// Why `key` leads nowhere from `parent`, which stands at `pointer`.
+/// Returns the message that `parent`, the value at `pointer`, has no child `key`.
 std::string dead_end(const JsonValue& parent, const std::string& pointer, const std::string& key) {
   const std::string here = pointer.empty() ? "the document" : pointer;
   if (parent.is_array()) {
@@ -211,7 +215,7 @@ void JsonDocument::set(const std::string& pointer, const std::string& text, Diag
   if (!sound) return;
   sources_.push_back(make_source(option, std::move(written)));
 
-  // The document owns what it looks at: it may change it.
+  // The document owns these values, so the const_cast is safe.
   if (old != nullptr) {
     *const_cast<JsonValue*>(old) = std::move(value);
     return;
@@ -242,12 +246,12 @@ std::string JsonDocument::pointer_to(const JsonValue& value) const {
 }
 
 std::string JsonDocument::shown(const JsonValue& value) const {
-  constexpr std::size_t kMost = 60;
+  constexpr std::size_t kMaxShown = 60;  // bytes
   if (value.is_array()) {
     std::string list;
     for (const JsonValue& element : value.array()) {
       if (!element.is_object()) list += (list.empty() ? "" : ", ") + shown(element);
-      if (element.is_object() || list.size() > kMost)
+      if (element.is_object() || list.size() > kMaxShown)
         return "an array of " + counted(value.array().size(), "value");
     }
     return "[" + list + "]";
@@ -257,15 +261,15 @@ std::string JsonDocument::shown(const JsonValue& value) const {
     for (const JsonValue::Member& member : value.members()) {
       if (member.key == "//") continue;
       keys += (keys.empty() ? "\"" : ", \"") + member.key + "\"";
-      if (keys.size() > kMost) return "an object";
+      if (keys.size() > kMaxShown) return "an object";
     }
     return keys.empty() ? "an empty object" : "an object with " + keys;
   }
   const std::string_view text = sources_[value.place().source].text;
   const std::size_t begin = value.place().offset;
   std::size_t end = value.is_string() ? json::string_end(text, begin) : json::word_end(text, begin);
-  if (end - begin <= kMost) return std::string(text.substr(begin, end - begin));
-  end = begin + kMost;
+  if (end - begin <= kMaxShown) return std::string(text.substr(begin, end - begin));
+  end = begin + kMaxShown;
   while ((static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return std::string(text.substr(begin, end - begin)) + "...";
 }

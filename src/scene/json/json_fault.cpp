@@ -33,6 +33,7 @@ std::string hex_byte(char c) {
   return text;
 }
 
+/// Finds the fault at which the parser stopped and describes it.
 class Explainer {
  public:
   explicit Explainer(const Progress& progress) : p_(progress), text_(progress.text) {}
@@ -55,7 +56,7 @@ class Explainer {
         break;
     }
     if (begins_comment(at)) return comment(at);
-    return fault(at, found(at) + " after the end of the document; a file holds one value");
+    return fault(at, found(at) + " after the end of the document; a file contains one value");
   }
 
  private:
@@ -70,7 +71,7 @@ class Explainer {
     return fault(at, "JSON has no comments; write one as a key: \"//\": \"text\" (it may repeat)");
   }
 
-  /// The token at a place, quoted and shortened.
+  /// Returns the token at a place, quoted and shortened.
   std::string found(std::size_t at) const {
     if (ended(at)) return "the end of the file";
     std::size_t end = look(at) == '"' ? string_end(text_, at) : word_end(text_, at);
@@ -167,7 +168,7 @@ class Explainer {
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), x);
     const bool whole = end == token.data() + token.size();
     if (whole && (error == std::errc::result_out_of_range || std::isinf(x))) {
-      return fault(at, found(at) + "; too large for a number; expected at most 1.797e308 in size");
+      return fault(at, found(at) + "; too large for a number; expected at most 1.797e308 in magnitude");
     }
     if (look(at) == '+') return fault(at, found(at) + "; a number has no leading \"+\"");
     if (size.size() > 1 && size[0] == '0' && (is_digit(size[1]) || size[1] == 'x')) {
@@ -175,14 +176,14 @@ class Explainer {
     }
     if (whole) return fault(at, found(at) + "; a number has digits before and after its point");
     const bool unit = !token.empty() && is_digit(token[0]) && is_letter(token.back()) && small.back() != 'e';
-    return fault(at, found(at) + (unit ? "; expected a number alone; units are fixed and not written"
+    return fault(at, found(at) + (unit ? "; expected a number without a unit; the unit of each key is fixed"
                                        : "; expected a number"));
   }
 
   Fault string(std::size_t quote) const {
     for (std::size_t i = quote + 1; i < text_.size();) {
       const char c = text_[i];
-      if (c == '"') return fault(quote, "expected other than " + found(quote) + " here");
+      if (c == '"') return fault(quote, "unexpected " + found(quote) + " here");
       if (c == '\n' || c == '\r') {
         return fault(
             quote,
@@ -209,7 +210,7 @@ class Explainer {
     return fault(quote, "the text that begins here is not closed; expected '\"'");
   }
 
-  /// Bytes of the escape at `at`; 0 when it is none.
+  /// Returns the length of the escape at `at` in bytes, or 0 if it is not a valid escape.
   std::size_t escape_length(std::size_t at) const {
     const char c = look(at + 1);
     if (c != 'u')
@@ -229,10 +230,9 @@ class Explainer {
       return fault(
           at, std::string(text_.substr(at, 6)) + " is half of a surrogate pair; write the character itself");
     }
-    return fault(
-        at,
-        std::string("\\") + std::string(text_.substr(at + 1, 1)) +
-            " is no escape; expected one of \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a backslash is \\\\");
+    return fault(at, std::string("\\") + std::string(text_.substr(at + 1, 1)) +
+                         " is not an escape; expected one of \\\" \\\\ \\/ \\b \\f \\n \\r \\t \\uXXXX; a "
+                         "backslash is \\\\");
   }
 
   const Progress& p_;

@@ -1,4 +1,4 @@
-// What is wrong with a text that is not JSON, in words that say what to do.
+// Messages for a text that is not JSON: the fault and its correction.
 #pragma once
 
 #include <cstddef>
@@ -8,31 +8,31 @@
 
 namespace pliant::json {
 
-/// A fault that leaves no value to go on with.
+/// A fault of the text.
 struct Fault {
-  std::size_t offset;
+  std::size_t offset;  ///< byte
   std::string pointer;
   std::string message;
 };
 
-/// What has been read last, and so what may follow.
+/// The last item that was read; it determines what may follow.
 enum class After { kNothing, kObjectStart, kKey, kMember, kArrayStart, kElement, kDocument };
 
-/// How far reading came before it failed.
+/// The state of the parser when it failed.
 struct Progress {
   std::string_view text;
-  std::size_t at;  ///< just behind the last good token
+  std::size_t at;  ///< offset just after the last good token
   After after;
-  std::size_t opening;  ///< the innermost bracket that is open, if any
+  std::size_t opening;  ///< offset of the innermost open bracket, if `open`
   bool open;
-  std::function<std::string(std::size_t)> place;  ///< offset as words, "line 3, column 5"
+  std::function<std::string(std::size_t)> place;  ///< converts an offset to words, "line 3, column 5"
 };
 
-/// The fault at which reading stopped (its pointer is left empty).
+/// Returns the fault at which the parser stopped; its pointer is empty.
 Fault explain(const Progress& progress);
 
-/// A text that is no JSON from its first bytes on: empty, compressed, a picture, UTF-16. True when it is,
-/// with the fault.
+/// Returns whether the first bytes of a text show that it is not JSON (empty, compressed, a picture, UTF-16),
+/// and sets *fault.
 bool is_foreign(std::string_view text, Fault* fault);
 
 }  // namespace pliant::json

@@ -23,14 +23,14 @@ bool is_comment(std::string_view key) {
   return key == "//";
 }
 
-/// Builds the tree from the parser's events. A callback that cannot go on throws Fault.
+/// Builds the tree of values from the parser's events. A callback throws Fault to end the parsing.
 class Builder final : public nlohmann::json_sax<json> {
  public:
   Builder(std::string_view text, const ParseOptions& options) : text_(text), options_(options) {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF") at_ = 3;
   }
 
-  JsonValue take_root() { return std::move(root_); }
+  JsonValue release_root() { return std::move(root_); }
 
   bool null() override { return add(word_token(), std::monostate()); }
   bool boolean(bool value) override { return add(word_token(), value); }
@@ -87,20 +87,20 @@ class Builder final : public nlohmann::json_sax<json> {
 
   JsonPlace place(std::size_t offset) const { return {options_.source, static_cast<std::uint32_t>(offset)}; }
 
-  /// The next token: behind white space and the comma or colon before it.
+  /// Returns the offset of the next token, after white space and a comma or colon.
   std::size_t next() const {
     std::size_t at = skip_space(text_, at_);
     if (at < text_.size() && (text_[at] == ',' || text_[at] == ':')) at = skip_space(text_, at + 1);
     return at;
   }
-  /// Moves the cursor behind the next token, a string; returns its beginning.
+  /// Moves the cursor past the next token, a string. Returns the offset of the token.
   std::size_t string_token() {
     const std::size_t begin = next();
     at_ = string_end(text_, begin);
     return begin;
   }
-  /// The same for a number or a literal. The event parser reads "truex" and "1.5m" as a value that something
-  /// follows; here they are what is wrong.
+  /// Moves the cursor past the next token, a number or a literal. Returns the offset of the token. The event
+  /// parser reads "truex" and "1.5m" as a value followed by other text; here the whole word is the fault.
   std::size_t word_token() {
     const std::size_t begin = next();
     const std::size_t end = word_end(text_, begin);
@@ -109,7 +109,7 @@ class Builder final : public nlohmann::json_sax<json> {
     return begin;
   }
 
-  /// Pointer to the value that is being read.
+  /// Returns the pointer of the value that is being read.
   std::string pointer() const {
     std::string result;
     for (const Container& c : open_) {
@@ -127,7 +127,7 @@ class Builder final : public nlohmann::json_sax<json> {
       options_.report(
           {begin, pointer(),
            written +
-               "; too small for a number, it would become 0; expected 0 or at least 4.95e-324 in size"});
+               "; too small for a number, it would become 0; expected 0 or at least 4.95e-324 in magnitude"});
       value = 0;
     }
     return add(begin, JsonValue::Number{value, integer});
@@ -136,7 +136,7 @@ class Builder final : public nlohmann::json_sax<json> {
   void refuse_nul(std::size_t begin, const std::string& value) const {
     const std::size_t nul = value.find('\0');
     if (nul == std::string::npos) return;
-    options_.report({string_byte(text_, begin, nul), pointer(), "\\u0000; a text cannot hold a NUL"});
+    options_.report({string_byte(text_, begin, nul), pointer(), "\\u0000; a text cannot contain a NUL"});
   }
 
   bool open(bool object) {
@@ -210,7 +210,7 @@ JsonValue parse(std::string_view text, const ParseOptions& options) {
   if (is_foreign(text, &foreign)) throw foreign;
   Builder builder(text, options);
   json::sax_parse(text.begin(), text.end(), &builder);
-  return builder.take_root();
+  return builder.release_root();
 }
 
 }  // namespace pliant::json

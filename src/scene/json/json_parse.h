@@ -1,6 +1,6 @@
-// From text to values, through nlohmann-json's event parser. Its events carry no places: since it reports
-// tokens in the order of the text and only after checking them, a cursor that skips from token to token knows
-// the place of each.
+// From text to values, with the event parser of nlohmann-json. Its events contain no places. It reports
+// checked tokens in the order of the text, so a cursor that moves from token to token finds the place of
+// each.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 namespace pliant::json {
 
 struct ParseOptions {
-  std::uint32_t source = 0;                       ///< goes into the places
-  int depth = 0;                                  ///< nesting around the text
-  std::function<std::string(std::size_t)> place;  ///< an offset in words, for messages
-  std::function<void(const Fault&)> report;       ///< faults after which reading goes on
+  std::uint32_t source = 0;                       ///< JsonPlace::source of the values
+  int depth = 0;                                  ///< nesting depth of the place of the text
+  std::function<std::string(std::size_t)> place;  ///< converts an offset to words, for messages
+  std::function<void(const Fault&)> report;       ///< receives faults that do not end the parsing
 };
 
-/// Throws Fault when the text has no value.
+/// Returns the value of a text. Throws Fault after a syntax fault.
 JsonValue parse(std::string_view text, const ParseOptions& options);
 
 }  // namespace pliant::json

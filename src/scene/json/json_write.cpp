@@ -33,7 +33,7 @@ std::string json_string(std::string_view text) {
 std::string shortest(double x) {
   char text[32];
   std::string written(text, std::to_chars(text, text + sizeof text, x).ptr);
-  const std::size_t exponent = written.find('e');  // 1e+12 and 1e-05 as people write them
+  const std::size_t exponent = written.find('e');  // 1e+12 becomes 1e12, 1e-05 becomes 1e-5
   if (exponent == std::string::npos) return written;
   if (written[exponent + 1] == '+') written.erase(exponent + 1, 1);
   const std::size_t digits = exponent + (written[exponent + 1] == '-' ? 2 : 1);

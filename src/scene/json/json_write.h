@@ -1,4 +1,4 @@
-// JSON and number text for messages and for files.
+// Conversion of strings and numbers to JSON text, for messages and files.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace pliant {
 
-/// The text in quotes, escaped; bytes that are not UTF-8 become U+FFFD.
+/// Returns the text as a JSON string with quotes and escapes; bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
-/// The shortest decimal text that reads back as x.
+/// Returns the shortest decimal text that reads back as x.
 std::string shortest(double x);
 
 }  // namespace pliant

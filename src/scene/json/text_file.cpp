@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "; did you mean "NAME"?" from the names in the folder of a path that does not exist.
+/// Returns "; did you mean "NAME"?" with the most similar name in the folder of a path that does not exist.
 std::string nearest_file(const fs::path& path) {
   std::error_code ignored;
   std::vector<std::string> names;
@@ -29,15 +29,15 @@ std::string nearest_file(const fs::path& path) {
   return did_you_mean(path.filename().string(), names);
 }
 
-[[noreturn]] void refuse_size(const std::string& path, const std::string& size, std::size_t most) {
+[[noreturn]] void refuse_size(const std::string& path, const std::string& size, std::size_t max_bytes) {
   throw FileError(FileError::Reason::kTooLarge, escaped(path) + ": " + size + "; the limit is " +
-                                                    std::to_string(most >> 20) + " MiB (" +
-                                                    std::to_string(most) + " bytes)");
+                                                    std::to_string(max_bytes >> 20) + " MiB (" +
+                                                    std::to_string(max_bytes) + " bytes)");
 }
 
 }  // namespace
 
-std::string read_text_file(const std::string& path, std::size_t most) {
+std::string read_text_file(const std::string& path, std::size_t max_bytes) {
   const auto refuse = [&](int error) {
     const bool missing = error == ENOENT;
     throw FileError(
@@ -51,7 +51,8 @@ std::string read_text_file(const std::string& path, std::size_t most) {
     if (fs::is_directory(status)) refuse(EISDIR);
     if (fs::is_regular_file(status)) {
       const std::uintmax_t size = fs::file_size(path, error);
-      if (!error && size > most) refuse_size(path, "the file has " + std::to_string(size) + " bytes", most);
+      if (!error && size > max_bytes)
+        refuse_size(path, "the file has " + std::to_string(size) + " bytes", max_bytes);
     }
   }
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> opened(
@@ -66,7 +67,7 @@ std::string read_text_file(const std::string& path, std::size_t most) {
     errno = 0;
     const std::size_t n = std::fread(block.data(), 1, block.size(), file);
     text.append(block.data(), n);
-    if (text.size() > most) refuse_size(path, "more bytes than allowed", most);
+    if (text.size() > max_bytes) refuse_size(path, "more bytes than allowed", max_bytes);
     if (n < block.size()) {
       if (std::ferror(file)) refuse(errno == 0 ? EIO : errno);
       return text;

@@ -1,4 +1,4 @@
-// UTF-8, strictly: no overlong forms, no surrogates, nothing above U+10FFFF.
+// Strict decoding of UTF-8: overlong forms, surrogates and code points above U+10FFFF are invalid.
 #pragma once
 
 #include <cstddef>
@@ -6,10 +6,10 @@
 
 namespace pliant::utf8 {
 
-/// Bytes of the character that begins at `at`; 0 when the bytes there are not UTF-8.
+/// Returns the number of bytes of the character at `at`, or 0 if the bytes there are not UTF-8.
 std::size_t length(std::string_view text, std::size_t at);
 
-/// The character that begins at `at`, where length() is not 0.
+/// Returns the character at `at`; length() must not be 0 there.
 char32_t decode(std::string_view text, std::size_t at);
 
 }  // namespace pliant::utf8

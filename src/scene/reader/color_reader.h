@@ -1,4 +1,4 @@
-// Colours of a scene.
+// Reading the colours of a scene.
 #pragma once
 
 #include <pliant/scene/json/json_value.h>
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// "#rrggbb" or [red, green, blue].
+/// Returns the colour of a value "#rrggbb" or [red, green, blue].
 Color read_color(const JsonValue& value);
 
 }  // namespace pliant

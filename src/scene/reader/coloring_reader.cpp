@@ -8,7 +8,7 @@ schema::Record coloring_record() {
   using namespace schema;
   std::vector<Choice> quantities;
   for (const QuantityInfo& info : all_quantities()) quantities.push_back({info.name, info.meaning});
-  const Type range = array(number(any(), "m or 1"), 2, 2)
+  const Type range = array(number(unbounded(), "m or 1"), 2, 2)
                          .checked([](const JsonValue& value, const ReportAt& report) {
                            const JsonValue::Array& ends = value.array();
                            const double span = ends[1].number() - ends[0].number();
@@ -16,13 +16,14 @@ schema::Record coloring_record() {
                              report(value, "expected [from, to] with from < to", kWholeValue);
                          })
                          .expecting("[from, to], two numbers (m or 1)");
-  return {"coloring",
-          "Parts coloured by how they are deformed, with a colour bar; in their own colours when not given.",
-          {required("by", choice(std::move(quantities)), "What the colours tell.", "\"strain\""),
-           optional("range", range,
-                    "Values with the first and the last colour; when not given, from 0 to what 99 of 100 "
-                    "vertices stay below in the whole motion."),
-           optional("parts", array(name(), 1), "Names of the parts; all that deform when not given.")}};
+  return {
+      "coloring",
+      "Colours of parts by their deformation, with a colour bar. When absent, parts have their own colours.",
+      {required("by", choice(std::move(quantities)), "The quantity that the colours show.", "\"strain\""),
+       optional("range", range,
+                "Values of the first and the last colour; when absent, from 0 to the 99th percentile of all "
+                "vertices in the whole motion."),
+       optional("parts", array(name(), 1), "Names of the parts; when absent, all parts that deform.")}};
 }
 
 Coloring read_coloring(const Reader& coloring, const std::map<std::string, NamedPart>& parts,

@@ -1,4 +1,4 @@
-// Reading how parts are coloured in pictures.
+// Reading the colouring of parts by their deformation.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@ namespace pliant {
 
 schema::Record coloring_record();
 
-/// coloring: an object of the record above that is complete. parts: by name.
+/// Reads the coloring of a scene. coloring: a complete object of coloring_record(). parts: by name.
 Coloring read_coloring(const Reader& coloring, const std::map<std::string, NamedPart>& parts,
                        SceneFaults& faults);
 

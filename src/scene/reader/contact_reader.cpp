@@ -13,60 +13,80 @@
 
 namespace pliant {
 
-schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
+namespace {
+
+schema::Record plane_record(const schema::Type& color) {
   using namespace schema;
   const Record shown{
       "shown",
-      "A rectangle about the point of a plane.",
-      {required("width", number(above(0), "m"), "Its level sides; along x of a level plane.", "1"),
-       required("height", number(above(0), "m"), "Its other sides.", "1"),
+      "A visible rectangle centred at the point of a plane.",
+      {required("width", number(above(0), "m"),
+                "Length of its horizontal sides; for a horizontal plane, the sides along x.", "1"),
+       required("height", number(above(0), "m"), "Length of its other sides.", "1"),
        optional("color", color, "Colour in pictures.", "\"#9a9488\"")}};
-  const Record plane{
+  return {
       "plane",
-      "What lies behind a plane is solid.",
-      {required("name", name(), "Name, that no part has.", "\"floor\""),
-       optional("point", time_vector("m"), "A point on it; it may move in time.", "[0, 0, 0]"),
-       optional("normal", vector3("1"), "Its direction, away from what is solid.", "[0, 0, 1]"),
-       optional("on", number(at_least(0), "s"), "When it appears.", "0"),
-       optional("off", number(above(0), "s"), "When it goes; never when not given."),
+      "An impenetrable half space behind a plane.",
+      {required("name", name(), "Name that no part has.", "\"floor\""),
+       optional("point", time_vector("m"), "A point of the plane; it may move in time.", "[0, 0, 0]"),
+       optional("normal", vector3("1"), "Normal, pointing out of the half space.", "[0, 0, 1]"),
+       optional("on", number(at_least(0), "s"), "Time at which the plane appears.", "0"),
+       optional("off", number(above(0), "s"), "Time at which the plane disappears; when absent, never."),
        optional("shown", record(shown),
-                "What pictures and meshes show of it while it is there, which is all solid; nothing when not "
-                "given.")}};
-  const Record pair{
+                "Rectangle that pictures and meshes show while the plane acts. The whole plane acts. When "
+                "absent, the plane is invisible.")}};
+}
+
+schema::Record pair_record() {
+  using namespace schema;
+  return {
       "pair",
-      "How two parts, or a part and a plane or an obstacle, touch; a group stands for all of its members.",
-      {required("between", array(name(), 2, 2), "Their names, or those of groups.", "[\"ball\", \"floor\"]"),
+      "Contact of two parts, or of a part and a plane or an obstacle. A group stands for all its members.",
+      {required("between", array(name(), 2, 2), "Two names of things or groups.", "[\"ball\", \"floor\"]"),
        optional("touch", boolean(),
-                "Whether they touch; parts that a joint ties do so only where a pair names both.", "true"),
-       optional("friction", number(at_least(0), "1"), "As below \"contact\", where that is not given."),
-       optional("restitution", number(between(0, 1), "1"), "Likewise.")}};
-  const Record sleep{
+                "Whether they touch. Parts tied by a joint touch only where a pair names both.", "true"),
+       optional("friction", number(at_least(0), "1"),
+                "Coulomb's coefficient of this pair; when absent, that of \"contact\"."),
+       optional("restitution", number(between(0, 1), "1"),
+                "Restitution of this pair; when absent, that of \"contact\".")}};
+}
+
+schema::Record sleep_record() {
+  using namespace schema;
+  return {
       "sleep",
-      "Bodies at rest, and all that they touch and are tied to with them, are left as they are until "
-      "something meets or drives them.",
-      {required("speed", number(above(0), "m/s"), "No point of a body at rest is faster.", "0.001"),
-       optional("after", number(above(0), "s"), "How long they have rested before.", "0.5")}};
-  return {"contact",
-          "Parts touch planes, obstacles and each other; when not given, they pass through everything.",
-          {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
-           optional("restitution", number(between(0, 1), "1"), "Speed after an impact over the speed before.",
-                    "0"),
-           optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
-           optional("longest_step", number(above(0), "s"),
-                    "Longest step to a tolerance in which many bodies lie on each other, or some that deform "
-                    "locally, whose errors are not controlled, or any where forces act; to tolerances above "
-                    "5e-4 steps are longer in proportion, up to ten times.",
-                    "0.002"),
-           optional("sleep", record(sleep), "Whether bodies at rest sleep; they do not when not given."),
-           optional("planes", array(record(plane)), "Planes that nothing passes.", "[]"),
-           optional("obstacles", array(record(obstacle_record(orientation, color))),
-                    "Meshes and plates that do not move.", "[]"),
-           optional("groups", map(array(name(), 1)),
-                    "Names of parts, planes and obstacles by the name of their group.", "{}"),
-           optional("pairs", array(record(pair)),
-                    "Pairs that are out of the ordinary. Where several fit, the one with the fewest groups "
-                    "counts, and of these the last.",
-                    "[]")}};
+      "Sleep of bodies at rest: they and all bodies that they touch or are tied to keep their state until "
+      "something touches or drives them.",
+      {required("speed", number(above(0), "m/s"), "Largest speed of a point of a body at rest.", "0.001"),
+       optional("after", number(above(0), "s"), "Time at rest after which a body sleeps.", "0.5")}};
+}
+
+}  // namespace
+
+schema::Record contact_record(const schema::Type& orientation, const schema::Type& color) {
+  using namespace schema;
+  return {
+      "contact",
+      "Contact of parts with planes, obstacles and each other. When absent, they pass through everything.",
+      {optional("friction", number(at_least(0), "1"), "Coulomb's coefficient.", "0.5"),
+       optional("restitution", number(between(0, 1), "1"),
+                "Ratio of the normal speed after an impact to the speed before it.", "0"),
+       optional("between_parts", boolean(), "Whether parts touch parts.", "true"),
+       optional("longest_step", number(above(0), "s"),
+                "Longest step of error control while a force acts or while many bodies, or locally deformed "
+                "ones, rest on each other (the error of these contacts is not controlled). For tolerances "
+                "above 5e-4 the longest step grows in proportion, up to ten times.",
+                "0.002"),
+       optional("sleep", record(sleep_record()), "Sleep of bodies at rest; when absent, no body sleeps."),
+       optional("planes", array(record(plane_record(color))), "Impenetrable planes.", "[]"),
+       optional("obstacles", array(record(obstacle_record(orientation, color))),
+                "Immobile meshes and plates.", "[]"),
+       optional("groups", map(array(name(), 1)),
+                "For each group, the names of its parts, planes and obstacles.", "{}"),
+       optional("pairs", array(record(pair_record())),
+                "Pairs with settings of their own. If several pairs match, the pair with the fewest groups "
+                "applies; among equals, the last one.",
+                "[]")}};
 }
 
 namespace {
@@ -85,7 +105,7 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
   if (part != parts.end()) return faults.twice(*part->second.name, r.at("name"));
   for (const ContactPlane& other : body.contact.planes)
     if (other.name == r.text("name"))
-      return faults.value(r.at("name"), "another plane has this name; expected one of its own");
+      return faults.value(r.at("name"), "another plane has this name; expected a different name");
   ContactPlane& plane = body.plane(r.text("name"), *point, normal);
   plane.on = r.number("on");
   if (r.given("off")) plane.off = r.number("off");
@@ -96,7 +116,7 @@ void read_plane(const Reader& r, const std::map<std::string, NamedPart>& parts, 
                             read_color(shown.at("color"))});
 }
 
-/// Whether all names of a list are among those known; faults tell which are not.
+/// Returns whether all names of a list are known; each unknown name is reported.
 bool are_known(const JsonValue& list, const char* kind, const std::vector<std::string>& known,
                SceneFaults& faults) {
   bool all = true;
@@ -108,7 +128,7 @@ bool are_known(const JsonValue& list, const char* kind, const std::vector<std::s
   return all;
 }
 
-/// Adds the groups, and their names to those of things.
+/// Reads the groups into the settings and appends their names to `names`, the names of all things.
 void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFaults& faults,
                  ContactSettings& settings) {
   if (!contact.given("groups")) return;
@@ -119,7 +139,7 @@ void read_groups(const Reader& contact, std::vector<std::string>& names, SceneFa
     names.push_back(group.key);
     if (contact.is_faulty(group.value)) continue;
     if (std::find(things.begin(), things.end(), group.key) != things.end())
-      faults.key(groups, group.key, "a part, plane or obstacle has this name; expected one of its own");
+      faults.key(groups, group.key, "a part, plane or obstacle has this name; expected a different name");
     if (!are_known(group.value, "part, plane or obstacle", things, faults)) continue;
     settings.groups.push_back({group.key, {}});
     for (const JsonValue& member : group.value.array())
@@ -138,7 +158,7 @@ void read_pair(const Reader& r, const std::vector<std::string>& names, std::size
   const auto things_end = names.begin() + static_cast<std::ptrdiff_t>(n_things);
   if (pair.a == pair.b && std::find(names.begin(), things_end, pair.a) != things_end)
     return faults.value(between.array()[1],
-                        "it is named twice; expected two things, or a group of them twice");
+                        "this thing is named twice; expected two different things, or a group twice");
   pair.touch = r.boolean("touch");
   if (r.given("friction")) pair.friction = r.number("friction");
   if (r.given("restitution")) pair.restitution = r.number("restitution");

@@ -1,4 +1,4 @@
-// Reading what touches what.
+// Reading the contact settings of a scene: planes, obstacles, groups and pairs.
 #pragma once
 
 #include <map>
@@ -17,7 +17,8 @@ namespace pliant {
 
 schema::Record contact_record(const schema::Type& orientation, const schema::Type& color);
 
-/// contact: an object of the record above. parts: by name. folder: of the files it names.
+/// Reads the contact settings into the scene. contact: an object of contact_record(). parts: by name. folder:
+/// of the mesh files.
 void read_contact(const Reader& contact, const std::map<std::string, NamedPart>& parts,
                   const TimeReader& times, const MeshFolder& folder, SceneFaults& faults, Scene& scene);
 

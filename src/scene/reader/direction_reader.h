@@ -1,4 +1,4 @@
-// Directions and orientations of a scene.
+// Reading directions and orientations of a scene.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,10 +9,11 @@
 
 namespace pliant {
 
-/// A vector of any length but 0 as a unit vector; (0, 0, 1) with a fault when it has none.
+/// Returns the unit vector along a vector. Reports a fault and returns (0, 0, 1) if the vector is zero.
 Vec3<double> read_direction(const JsonValue& value, SceneFaults& faults);
 
-/// {"quaternion"} or {"axis", "angle"}; no turn with a fault when it is neither.
+/// Returns the rotation {"quaternion"} or {"axis", "angle"}. Reports a fault and returns the identity if it
+/// is neither.
 Eigen::Quaterniond read_orientation(const Reader& r, SceneFaults& faults);
 
 }  // namespace pliant

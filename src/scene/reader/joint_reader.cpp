@@ -36,15 +36,15 @@ Stabilization read_stabilization(const Reader& r, SceneFaults& faults) {
   rule.projection = r.boolean("projection");
   if (rule.rule == BaumgarteRule::free && rule.stab_beta == 0 && !r.faulty("stab_beta"))
     faults.place(r.json(),
-                 "the rule \"free\" without \"stab_beta\" closes no gap; expected a number > 0 (1/s)");
+                 "the rule \"free\" closes no gap without \"stab_beta\"; expected a number > 0 (1/s)");
   return rule;
 }
 
 namespace {
 
-/// Whether two ends are both of the world or of parts that do not move, or of one part between whose points
-/// nothing changes.
-bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
+/// Returns whether a joint between two ends constrains no motion, and reports the fault: both ends are
+/// immobile, they are one point, or they are on one rigid part.
+bool constrains_nothing(const Reader& r, const Point& from, const Point& to, SceneFaults& faults) {
   auto moves = [](const Point& point) { return point.part != nullptr && !point.part->fixed(); };
   if (!moves(from) && !moves(to)) {
     faults.place(r.json(), "neither end is on a part that moves; expected at least one");
@@ -62,20 +62,21 @@ bool ties_nothing(const Reader& r, const Point& from, const Point& to, SceneFaul
   return true;
 }
 
-/// Whether an end is moved in time by a path that jumps in place while the joint acts.
+/// Returns whether the prescribed path of an end has a jump in position while the joint acts, and reports the
+/// fault.
 bool jumps(const Reader& r, const char* key, const Point& end, const PointReader& points,
            SceneFaults& faults) {
   const double on = r.given("on") ? r.number("on") : 0;
   const double off = r.given("off") ? r.number("off") : std::numeric_limits<double>::infinity();
   const std::optional<double> time = points.jump(end, on, off);
   if (!time) return false;
-  faults.place(r.at(key), "it jumps in place at t = " + brief(*time) +
-                              " s, which no part can follow; expected a path of which the rate alone jumps, "
-                              "such as key frames");
+  faults.place(r.at(key),
+               "its position jumps at t = " + brief(*time) +
+                   " s, and no part can follow; expected a continuous path, for example key frames");
   return true;
 }
 
-/// What the type of a joint takes from the scene; none of it when there are faults.
+/// Reads the keys that the type of a joint uses. Returns false if there are faults.
 bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneFaults& faults) {
   const std::size_t before = faults.errors();
   if (keys.has(JointKey::length)) {
@@ -100,14 +101,14 @@ bool read_setting(const Reader& r, JointKeys keys, JointSetting& setting, SceneF
 
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body) {
   const std::optional<Point> from = points.end(r, "from"), to = points.end(r, "to");
-  if (!from || !to || !r.complete() || ties_nothing(r, *from, *to, faults)) return;
+  if (!from || !to || !r.complete() || constrains_nothing(r, *from, *to, faults)) return;
   if (jumps(r, "from", *from, points, faults) || jumps(r, "to", *to, points, faults)) return;
   const auto info = std::find_if(all_joints().begin(), all_joints().end(),
                                  [&](const JointInfo& i) { return i.name == r.name(); });
   JointSetting setting{*from, *to};
   if (!read_setting(r, info->keys, setting, faults)) return;
   std::string name = name_of(r, info->name, body.joints().size());
-  while (body.has_joint(name)) name += "'";  // a name of the scene's own can be one that is made here
+  while (body.has_joint(name)) name += "'";  // the scene may have given a generated name to another joint
   try {
     Joint& joint = body.join(info->make(std::move(name), setting));
     if (r.given("off"))

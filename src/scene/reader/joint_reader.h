@@ -1,4 +1,4 @@
-// Joints of a scene, and how they close and hold.
+// Reading the joints of a scene and their stabilization.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@
 
 namespace pliant {
 
+/// Returns the solver with this name in the schema.
 JointSolver::Choice joint_solver(const std::string& name);
 
 Stabilization read_stabilization(const Reader& r, SceneFaults& faults);
 
-/// Adds a joint to the body, or faults.
+/// Reads a joint and adds it to the body; faults are reported.
 void read_joint(const Reader& r, const PointReader& points, SceneFaults& faults, MultiBody& body);
 
 }  // namespace pliant

@@ -9,13 +9,14 @@ namespace pliant {
 
 namespace {
 
+/// A Gaussian initial displacement and velocity around a centre.
 struct Dent {
   Vec3<double> at, displacement, velocity;
   double radius;
   double share(const Vec3<double>& X) const { return std::exp(-((X - at) / radius).squaredNorm()); }
 };
 
-/// The basis and the keys that go with it.
+/// Reads the basis and the keys that belong to it.
 void read_basis(const Reader& local, SceneFaults& faults, const Part& part, LocalSettings& settings) {
   using Basis = LocalSettings::Basis;
   const std::string name = local.text("basis");
@@ -24,28 +25,29 @@ void read_basis(const Reader& local, SceneFaults& faults, const Part& part, Loca
   settings.modes = static_cast<int>(local.integer("modes"));
   if (settings.basis == Basis::polynomial && part.shell())
     faults.place(local.at("basis"),
-                 "polynomials are of the body of a solid, and the part is a shell; expected \"nodes\" or "
+                 "the basis \"polynomial\" is for solids, and the part is a shell; expected \"nodes\" or "
                  "\"modes\"");
-  const auto only = [&](const char* key, Basis basis, const char* of) {
+  const auto only = [&](const char* key, Basis basis, const char* basis_name) {
     if (local.given(key) && settings.basis != basis)
-      faults.place(local.at(key), std::string("this is of the basis \"") + of + "\", and the basis is \"" +
-                                      name + "\"; expected no \"" + key + "\"");
+      faults.place(local.at(key), std::string("this key is for the basis \"") + basis_name +
+                                      "\", and the basis is \"" + name + "\"; expected no \"" + key + "\"");
   };
   only("degree", Basis::polynomial, "polynomial");
   only("modes", Basis::modes, "modes");
   if (local.given("order") && settings.basis == Basis::polynomial)
-    faults.place(local.at("order"), "polynomials have no elements; expected no \"order\"");
+    faults.place(local.at("order"), "the basis \"polynomial\" has no elements; expected no \"order\"");
 }
 
-/// Whether a basis takes a law; a fault where not.
-bool takes(const LocalSettings& settings, const LocalLawInfo& info, const Reader& law, SceneFaults& faults) {
+/// Returns whether a basis can be used with a law; reports a fault if not.
+bool accepts(const LocalSettings& settings, const LocalLawInfo& info, const Reader& law,
+             SceneFaults& faults) {
   using Basis = LocalSettings::Basis;
   if (settings.basis == Basis::nodes) return true;
   if (settings.basis == Basis::modes ? info.quadratic : std::string(info.name) == "elastic") return true;
   faults.place(law.json(),
                std::string("the law '") + info.name + "' is not " +
-                   (settings.basis == Basis::modes ? "quadratic in d, as those of modes are"
-                                                   : "linear elasticity, the law of polynomials") +
+                   (settings.basis == Basis::modes ? "quadratic in d, which the basis \"modes\" needs"
+                                                   : "'elastic', which the basis \"polynomial\" needs") +
                    "; expected the basis \"nodes\", or another law");
   return false;
 }
@@ -62,18 +64,18 @@ void read_local(const Reader& local, const MakeSparseFactor& make_factor, SceneF
   settings.alpha = local.number("alpha");
   settings.beta = local.number("beta");
   if (part.shell() && local.given("order"))
-    faults.place(local.at("order"), "a shell has triangles; expected no \"order\"");
+    faults.place(local.at("order"), "the elements of a shell have no order; expected no \"order\"");
   for (const Reader& law : local.objects("laws")) {
     const auto info = std::find_if(all_local_laws().begin(), all_local_laws().end(),
                                    [&](const LocalLawInfo& i) { return i.name == law.name(); });
     if (info == all_local_laws().end() || !law.complete()) continue;
     if (info->shell != part.shell()) {
-      faults.place(law.json(), std::string("this is a law of ") + (info->shell ? "shells" : "solids") +
+      faults.place(law.json(), std::string("this law is for ") + (info->shell ? "shells" : "solids") +
                                    ", and the part is a " + (part.shell() ? "shell" : "solid") +
                                    (info->shell ? "; expected \"shell\": true" : ""));
       continue;
     }
-    if (!takes(settings, *info, law, faults)) continue;
+    if (!accepts(settings, *info, law, faults)) continue;
     std::vector<double> values;
     for (const LocalLawInfo::Number& n : info->numbers) values.push_back(law.number(n.key));
     settings.energies.push_back(local_law(info->name, std::move(values)));

@@ -1,4 +1,4 @@
-// The local deformation of a part of a scene.
+// Reading the local deformation of a part of a scene.
 #pragma once
 
 #include <pliant/part/part.h>
@@ -8,7 +8,8 @@
 
 namespace pliant {
 
-/// From its record; faults are reported.
+/// Reads an object of local_record() and sets the local deformation of the part, unless there are faults;
+/// they are reported. make_factor: see LocalSettings.
 void read_local(const Reader& local, const MakeSparseFactor& make_factor, SceneFaults& faults, Part& part);
 
 }  // namespace pliant

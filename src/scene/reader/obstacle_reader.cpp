@@ -17,19 +17,21 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
   using namespace schema;
   Record obstacle{
       "obstacle",
-      "A mesh or a plate that does not move.",
-      {required("name", name(), "Name, that no part or plane has.", "\"bowl\""),
-       optional("mesh", text(1),
-                "Its surface: a file .obj, .ply, .stl, .gltf or .glb, found from the folder of the scene. "
-                "Triangles are counter-clockwise seen from the side that is free; what comes from behind an "
-                "open mesh passes."),
+      "An immobile triangle mesh or plate.",
+      {required("name", name(), "Name that no part or plane has.", "\"bowl\""),
+       optional(
+           "mesh", text(1),
+           "Surface mesh: a file .obj, .ply, .stl, .gltf or .glb, relative to the folder of the scene. "
+           "Triangles are counter-clockwise seen from the free side. Bodies pass an open mesh from behind."),
        optional("half_extents", array(number(above(0), "m"), 2, 2),
-                "Instead: a rectangle across z that reaches so far along x and y, solid from both sides."),
-       optional("scale", number(above(0), "1"), "Metres in a unit of the file.", "1"),
-       optional("position", vector3("m"), "Of its origin.", "[0, 0, 0]"),
-       optional("orientation", orientation, "Of its axes.", "{\"quaternion\": [1, 0, 0, 0]}"),
-       optional("on", number(at_least(0), "s"), "When it appears.", "0"),
-       optional("off", number(above(0), "s"), "When it goes; never when not given."),
+                "Instead of a mesh: half extents along x and y of a rectangle normal to z, solid from both "
+                "sides."),
+       optional("scale", number(above(0), "1"), "Metres per unit of the file.", "1"),
+       optional("position", vector3("m"), "Position of the origin of the mesh or plate.", "[0, 0, 0]"),
+       optional("orientation", orientation, "Orientation of the axes of the mesh or plate.",
+                "{\"quaternion\": [1, 0, 0, 0]}"),
+       optional("on", number(at_least(0), "s"), "Time at which the obstacle appears.", "0"),
+       optional("off", number(above(0), "s"), "Time at which the obstacle disappears; when absent, never."),
        optional("color", color, "Colour in pictures.", "\"#9a9488\""),
        optional("visible", boolean(), "Whether pictures and meshes show it.", "true")}};
   obstacle.exclusive = {{{"mesh", "half_extents"}, true}};
@@ -38,7 +40,7 @@ schema::Record obstacle_record(const schema::Type& orientation, const schema::Ty
 
 namespace {
 
-/// The mesh of a file; none when there is a fault in it.
+/// Returns the mesh of an obstacle, or nothing after a fault, which is reported.
 std::optional<MeshFile> read_mesh(const Reader& r, const MeshFolder& folder, SceneFaults& faults) {
   const std::filesystem::path file =
       folder.path / (folder.of_a_run ? recorded_mesh_name(r.text("name")) : r.text("mesh"));
@@ -63,7 +65,7 @@ void read_obstacle(const Reader& r, const std::vector<std::string>& taken, const
   const std::string& name = r.text("name");
   if (std::find(taken.begin(), taken.end(), name) != taken.end())
     return faults.value(r.at("name"),
-                        "another part, plane or obstacle has this name; expected one of its own");
+                        "another part, plane or obstacle has this name; expected a different name");
   ObstacleLook look;
   look.color = read_color(r.at("color"));
   look.visible = r.boolean("visible");

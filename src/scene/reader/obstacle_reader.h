@@ -1,4 +1,4 @@
-// Reading obstacles: meshes from files, and plates.
+// Reading the obstacles of a scene: meshes from files, and plates.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,16 @@
 
 namespace pliant {
 
-/// Where the files are that a scene names.
+/// The folder of the mesh files of a scene.
 struct MeshFolder {
   std::filesystem::path path;
-  bool of_a_run = false;  ///< meshes are there under the names that a run gives them
+  bool of_a_run = false;  ///< whether the files have the names that a run gives them (recorded_mesh_name)
 };
 
 schema::Record obstacle_record(const schema::Type& orientation, const schema::Type& color);
 
-/// Adds an obstacle to the scene, unless there is a fault in it. taken: names of other things.
+/// Reads an obstacle and adds it to the scene; faults are reported. taken: names of parts, planes and other
+/// obstacles.
 void read_obstacle(const Reader& r, const std::vector<std::string>& taken, const MeshFolder& folder,
                    SceneFaults& faults, Scene& scene);
 

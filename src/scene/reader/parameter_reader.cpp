@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace {
 
-/// "a number in [0.1, 1.9] (m)".
+/// Returns the words for an expected number: "a number in [0.1, 1.9] (m)".
 std::string words(const Range& range, const char* unit) {
   return schema::number(schema::between(range.min, range.max), unit).words();
 }
@@ -34,9 +34,9 @@ void ParameterReader::read(const Reader& part) {
 ParameterReader::Entry ParameterReader::entry(const std::string& name, const JsonValue& value) const {
   const auto find = [&](const char* key) { return value.is_object() ? value.find(key) : nullptr; };
   const bool in_matrix = std::count(in_matrix_.begin(), in_matrix_.end(), name) > 0;
-  const JsonValue *said = find("dynamic"), *initial = find("initial"), *stiffness = find("stiffness");
+  const JsonValue *flag = find("dynamic"), *initial = find("initial"), *stiffness = find("stiffness");
   const bool dynamic = in_matrix || initial != nullptr || stiffness != nullptr ||
-                       find("initial_rate") != nullptr || (said != nullptr && said->boolean());
+                       find("initial_rate") != nullptr || (flag != nullptr && flag->boolean());
   return {part_.parameters()[part_.parameters().find(name)],
           value,
           value.is_object() ? value.find("rest") : &value,
@@ -44,7 +44,7 @@ ParameterReader::Entry ParameterReader::entry(const std::string& name, const Jso
           stiffness,
           find("min"),
           find("max"),
-          said,
+          flag,
           in_matrix,
           dynamic};
 }
@@ -52,14 +52,14 @@ ParameterReader::Entry ParameterReader::entry(const std::string& name, const Jso
 void ParameterReader::unknown(const JsonValue& parameters, const std::string& name) {
   const Parameters& known = part_.parameters();
   std::vector<std::string> names;
-  std::string longer;  // taper.tx for tx
+  std::string longer;  // the name with its link, taper.tx for tx
   for (int i = 0; i < known.size(); ++i) {
     names.push_back(known[i].name);
     const std::size_t dot = known[i].name.find('.');
     if (longer.empty() && dot != std::string::npos && known[i].name.substr(dot + 1) == name)
       longer = known[i].name;
   }
-  std::string hint = longer.empty() ? among(name, names) : "; did you mean \"" + longer + "\"?";
+  std::string hint = longer.empty() ? name_hint(name, names) : "; did you mean \"" + longer + "\"?";
   const std::string link = name.substr(0, name.find('.'));
   const auto is_link = [&](const DeformationInfo& info) { return info.name == link; };
   const auto has_link = [&](const LinkInfo& info) { return info.type == link; };
@@ -84,11 +84,11 @@ void ParameterReader::read(const Entry& e) {
 
 bool ParameterReader::contradicts(const Entry& e) {
   const std::string& name = e.parameter.name;
-  if (e.dynamic && e.said != nullptr && !e.said->boolean()) {
+  if (e.dynamic && e.flag != nullptr && !e.flag->boolean()) {
     std::string because = "a row of \"stiffness_matrix\"";
     for (const char* key : {"initial", "initial_rate", "stiffness"})
       if (e.value.find(key) != nullptr) because = std::string("\"") + key + "\"";
-    faults_.value(*e.said, name + " has " + because + ", which only a dynamic parameter has; expected true");
+    faults_.value(*e.flag, name + " has " + because + ", which only a dynamic parameter has; expected true");
     return true;
   }
   if (e.stiffness != nullptr && e.in_matrix) {
@@ -117,15 +117,16 @@ bool ParameterReader::read_rest(const Entry& e) {
     return false;
   }
   if (!e.dynamic && !f->is_constant()) {
-    faults_.value(*e.rest, "it moves in time, but " + e.parameter.name +
-                               " is frozen; expected a number, or \"dynamic\": true beside it");
+    faults_.value(*e.rest, "it changes in time, but " + e.parameter.name +
+                               " is frozen; expected a number, or \"dynamic\": true");
     return false;
   }
   part_.rest(e.parameter.name, *f);
   return true;
 }
 
-/// Whether the limits given lie where the parameter may move, and in their order.
+/// Returns whether the given limits are within the range of the parameter and in ascending order; faults are
+/// reported.
 bool ParameterReader::admissible(const Entry& e, const Range& allowed) {
   const std::size_t before = faults_.errors();
   for (const JsonValue* limit : {e.min, e.max}) {

@@ -1,5 +1,5 @@
-// The global parameters of a part in a scene: rest values, limits and starting values, each judged at its
-// place.
+// Reading the global parameters of a part: rest values, limits and initial values. Each is checked against
+// the range of the parameter, and a fault is reported at its place.
 #pragma once
 
 #include <string>
@@ -15,18 +15,20 @@ namespace pliant {
 
 class ParameterReader {
  public:
-  /// in_matrix: the parameters of the part's stiffness matrix, which makes them dynamic. end: of the run, s.
+  /// in_matrix: the parameters of the part's stiffness matrix, which makes them dynamic. end: end of the run,
+  /// s.
   ParameterReader(Part& part, const std::vector<std::string>& in_matrix, double end, SceneFaults& faults)
       : part_(part), in_matrix_(in_matrix), times_(end, faults), faults_(faults) {}
 
-  /// Reads the key "parameters" of a part; values with known faults are passed over.
+  /// Reads the key "parameters" of a part. Faulty values are skipped.
   void read(const Reader& part);
 
  private:
+  /// A parameter with the values of its keys; null for an absent key.
   struct Entry {
     const Parameter& parameter;
     const JsonValue& value;
-    const JsonValue *rest, *initial, *stiffness, *min, *max, *said;  ///< said: "dynamic"
+    const JsonValue *rest, *initial, *stiffness, *min, *max, *flag;  ///< flag: the key "dynamic"
     bool in_matrix, dynamic;
   };
 
@@ -35,7 +37,7 @@ class ParameterReader {
   void read(const Entry& e);
   bool contradicts(const Entry& e);
   bool read_rest(const Entry& e);
-  /// The limits, with the rest value and the initial value of a dynamic parameter between them.
+  /// Reads the limits and checks that rest value and initial value of a dynamic parameter are within them.
   void read_limits(const Entry& e);
   bool admissible(const Entry& e, const Range& allowed);
 

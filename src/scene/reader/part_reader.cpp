@@ -29,7 +29,8 @@ MatX<double> matrix(const JsonValue& rows) {
   return M;
 }
 
-/// A mass (kg) and moments of inertia (kg m^2) that leave room for the products of a step.
+/// Returns whether a mass (kg) or moment of inertia (kg m^2) is far enough from overflow and underflow for
+/// the products formed in a step.
 bool is_workable(double x) {
   return x > 1e-100 && x < 1e100;
 }
@@ -47,7 +48,8 @@ std::unique_ptr<Part> PartReader::read() {
   if (r_.boolean("shell"))
     part_->make_shell();
   else if (r_.given("thickness"))
-    faults_.place(r_.at("thickness"), "a solid has none; expected \"shell\": true, or no \"thickness\"");
+    faults_.place(r_.at("thickness"),
+                  "only a shell has a thickness; expected \"shell\": true, or no \"thickness\"");
   part_->damping(property("alpha"), property("beta"), property("drag"));
   if (r_.given("mass")) part_->mass(r_.number("mass"));
 
@@ -60,7 +62,7 @@ std::unique_ptr<Part> PartReader::read() {
     ParameterReader(*part_, in_matrix, end_, faults_).read(r_);
     if (has_matrix) read_stiffness(r_.object("stiffness_matrix"));
   } catch (const std::invalid_argument& e) {
-    refused(e);
+    report_at_parameters(e);
   }
   if (r_.given("inertia")) read_inertia(r_.object("inertia"));
   part_->place(r_.vector3("position"), read_orientation(r_.object("orientation"), faults_));
@@ -69,13 +71,13 @@ std::unique_ptr<Part> PartReader::read() {
   if (r_.given("motion")) read_motion(r_.object("motion"));
   if (r_.given("local") || r_.faulty("local")) read_local(r_.object("local"), make_factor_, faults_, *part_);
   read_elasticity();
-  check_rigid();
+  check_rigid_keys();
   const bool known = !r_.faulty("parameters") && !r_.faulty("stiffness_matrix") && !r_.faulty("inertia");
   if (known && faults_.errors() == before) prepare();
   return std::move(part_);
 }
 
-/// Of the part, else of its material, else the default.
+/// Returns a number of the part, or else of its material, or else the default.
 double PartReader::property(const char* key) const {
   if (!r_.given(key) && r_.given("material")) {
     const auto material = materials_.find(r_.text("material"));
@@ -84,7 +86,7 @@ double PartReader::property(const char* key) const {
   return r_.number(key);
 }
 
-/// Of the part, else of its material.
+/// Reads the elasticity of the part, or else of its material.
 void PartReader::read_elasticity() {
   const Reader* from = r_.given("elasticity") ? &r_ : nullptr;
   if (from == nullptr && r_.given("material")) {
@@ -111,8 +113,8 @@ void PartReader::read_stiffness(const Reader& r) {
   const MatX<double> full = matrix(K);
   const double lowest = symmetric_eigenvalues(full).minCoeff();
   if (!(lowest >= -1e-12 * full.cwiseAbs().maxCoeff()))
-    return faults_.value(K, "it has the negative eigenvalue " + brief(lowest) +
-                                ", a direction in which it pushes away; expected none below 0");
+    return faults_.value(K, "the matrix has the negative eigenvalue " + brief(lowest) +
+                                ", so its energy has no minimum; expected no eigenvalue below 0");
   std::vector<std::string> all;
   for (const JsonValue& name : names.array()) all.push_back(name.string());
   part_->stiffness(all, full);
@@ -163,7 +165,7 @@ bool PartReader::check_symmetric(const JsonValue& rows) {
       if (std::abs(M(i, j) - M(j, i)) <= rounding) continue;
       faults_.value(
           rows.array()[static_cast<std::size_t>(i)].array()[static_cast<std::size_t>(j)],
-          "expected " + shortest(M(j, i)) + ", as across the diagonal: the matrix must be symmetric");
+          "expected " + shortest(M(j, i)) + ", the value across the diagonal: the matrix must be symmetric");
       symmetric = false;
     }
   }
@@ -182,11 +184,11 @@ void PartReader::read_inertia(const Reader& r) {
     return faults_.value(
         moments, "about the centre of mass its principal moments are " + brief(I[0]) + ", " + brief(I[1]) +
                      " and " + brief(I[2]) +
-                     " kg m^2; expected each > 0 and none larger than the other two together");
+                     " kg m^2; expected each > 0 and none larger than the sum of the other two");
   part_->inertia(r.number("mass"), about_origin, c);
 }
 
-const JsonValue* PartReader::unmoved() const {
+const JsonValue* PartReader::fixed_or_motion() const {
   if (r_.boolean("fixed")) return &r_.at("fixed");
   return r_.given("motion") ? &r_.at("motion") : nullptr;
 }
@@ -195,7 +197,7 @@ void PartReader::read_motion(const Reader& r) {
   if (r.given("position") && r_.given("position"))
     faults_.place(r_.at("position"), "\"motion\" has a position too; expected only one of the two");
   if (!r.given("position") && !r.given("turn") && r.complete())
-    return faults_.place(r.json(), "it does not say how; expected \"position\", \"turn\" or both");
+    return faults_.place(r.json(), "it prescribes no motion; expected \"position\", \"turn\" or both");
   const TimeReader times(end_, faults_);
   PrescribedMotion motion;
   motion.orientation = part_->R0();
@@ -214,8 +216,8 @@ void PartReader::read_motion(const Reader& r) {
   part_->prescribe(std::move(motion));
 }
 
-/// What only parts without dynamic parameters can be.
-void PartReader::check_rigid() {
+/// Checks the keys that need a part without dynamic parameters or without local deformation.
+void PartReader::check_rigid_keys() {
   const Parameters& all = part_->parameters();
   if (all.n_dynamic() > 0) {
     const std::string because = all.moving(0).name + " is dynamic; expected ";
@@ -224,37 +226,39 @@ void PartReader::check_rigid() {
     else if (r_.given("motion"))
       faults_.place(r_.at("motion"), because + "only frozen parameters in a part that moves as prescribed");
     if (r_.given("inertia"))
-      faults_.place(r_.at("inertia"), because + "only frozen parameters beside a given inertia");
+      faults_.place(r_.at("inertia"), because + "only frozen parameters in a part with a given inertia");
   }
   if (r_.given("local")) {
-    if (unmoved() != nullptr)
+    if (fixed_or_motion() != nullptr)
       faults_.place(r_.at("local"),
                     std::string(r_.given("motion") ? "a part that moves as prescribed" : "a fixed part") +
                         " does not deform; expected no \"local\"");
     if (r_.given("inertia"))
-      faults_.place(r_.at("inertia"),
-                    "a part that deforms locally takes its inertia from its density or mass");
+      faults_.place(
+          r_.at("inertia"),
+          "the inertia of a part with local deformation follows from its density or mass; expected no "
+          "\"inertia\"");
   }
-  if (unmoved() == nullptr) return;
+  if (fixed_or_motion() == nullptr) return;
   for (const char* key : {"velocity", "angular_velocity"})
     if (!r_.vector3(key).isZero(0))
-      faults_.warn(r_.at(key), r_.given("motion") ? "it has no effect beside \"motion\""
+      faults_.warn(r_.at(key), r_.given("motion") ? "it has no effect, because \"motion\" prescribes it"
                                                   : "it has no effect, because the part is fixed");
 }
 
-/// What shows only when all parameters come together: too many that are dynamic, a shape that folds.
-void PartReader::refused(const std::invalid_argument& e) {
+/// Reports a fault of all parameters together: too many dynamic parameters, a shape that folds.
+void PartReader::report_at_parameters(const std::invalid_argument& e) {
   faults_.place(r_.given("parameters") ? r_.at("parameters") : r_.json(), without_name(e));
 }
 
-void PartReader::refused_locally(const LocalFault& e) {
+void PartReader::report_local_fault(const LocalFault& e) {
   const Reader local = r_.object("local");
   const JsonValue& at =
       e.law < 0 ? local.json() : local.objects("laws")[static_cast<std::size_t>(e.law)].json();
   faults_.place(at, without_name(e));
 }
 
-/// What an error says, the name of the part left out.
+/// Returns the message of an error without the name of the part, which the pointer shows.
 std::string PartReader::without_name(const std::invalid_argument& e) const {
   std::string message = e.what();
   const std::string who = "part '" + part_->name() + "': ";
@@ -266,16 +270,16 @@ void PartReader::prepare() {
   try {
     part_->prepare();
   } catch (const LocalFault& e) {
-    return refused_locally(e);
+    return report_local_fault(e);
   } catch (const std::invalid_argument& e) {
-    return refused(e);
+    return report_at_parameters(e);
   }
   const Inertia<double>& inertia = part_->rest_inertia();
   for (int i = 0; i < 3; ++i) {
     const double moment = inertia.M(3 + i, 3 + i);
     if (is_workable(inertia.mass) && is_workable(moment)) continue;
-    return faults_.place(r_.json(), "size and density make a mass of " + brief(inertia.mass) +
-                                        " kg with a moment of inertia of " + brief(moment) +
+    return faults_.place(r_.json(), "size and density give a mass of " + brief(inertia.mass) +
+                                        " kg and a moment of inertia of " + brief(moment) +
                                         " kg m^2; expected both from 1e-100 to 1e100");
   }
   prepared_ = true;

@@ -1,4 +1,4 @@
-// A part of a scene: from its record to a Part.
+// Reading a part of a scene: from its record to a Part.
 #pragma once
 
 #include <map>
@@ -16,14 +16,14 @@ namespace pliant {
 
 class PartReader {
  public:
-  /// materials: those of the scene by name. make_factor: see LocalSettings. end: of the run, s.
+  /// materials: of the scene, by name. make_factor: see LocalSettings. end: end of the run, s.
   PartReader(const Reader& part, const std::map<std::string, Reader>& materials,
              const MakeSparseFactor& make_factor, double end, SceneFaults& faults)
       : r_(part), materials_(materials), make_factor_(make_factor), end_(end), faults_(faults) {}
 
-  /// The part; null when its shape or its deformations are not known. Faults are reported.
+  /// Returns the part, or null if its shape or its deformations are unknown. Faults are reported.
   std::unique_ptr<Part> read();
-  /// Its rest shape is known and its constants are taken: points on it can be resolved.
+  /// Returns whether the part is prepared without faults, so that points on it can be resolved.
   bool prepared() const { return prepared_; }
 
  private:
@@ -32,15 +32,15 @@ class PartReader {
   void read_stiffness(const Reader& r);
   bool check_names(const JsonValue& names);
   bool check_square(const JsonValue& K, std::size_t n);
-  /// Numbers across the diagonal of [[...], ...] that differ are reported.
+  /// Returns whether the matrix [[...], ...] is symmetric; differing numbers are reported.
   bool check_symmetric(const JsonValue& rows);
   void read_inertia(const Reader& r);
-  /// What prescribes its motion, "fixed" or "motion"; null when it is free.
-  const JsonValue* unmoved() const;
+  /// Returns the value of "fixed" or "motion" if the motion of the part is prescribed, or null if it is free.
+  const JsonValue* fixed_or_motion() const;
   void read_motion(const Reader& r);
-  void check_rigid();
-  void refused(const std::invalid_argument& e);
-  void refused_locally(const LocalFault& e);
+  void check_rigid_keys();
+  void report_at_parameters(const std::invalid_argument& e);
+  void report_local_fault(const LocalFault& e);
   std::string without_name(const std::invalid_argument& e) const;
   void prepare();
 

@@ -11,20 +11,21 @@ namespace pliant {
 
 namespace {
 
-/// Angles are often written with few digits, 1.5708 for a pole.
+/// Tolerance of a latitude, rad: users write rounded angles, such as 1.5708 for a pole.
 constexpr double kAngleRounding = 1e-4;
 
-/// Places this far outside, as the inside-outside function tells it, lie near no point of the body.
+/// Largest w - 1 of a position outside the part that is still projected to the surface.
 constexpr double kFarOutside = 1;
 
-/// Where the ray from the part's origin leaves its rest shape for good.
+/// Returns the outermost intersection of a ray from the part's origin with its rest shape (m, body frame), or
+/// nothing if the ray does not meet the shape.
 std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>& direction) {
   const Vec3<double> ray = direction.stableNormalized() * part.size();
   auto outside = [&](double t) {
     try {
       const double value = part.inside_outside(t * ray, part.parameters().rest());
       return std::isnan(value) ? kInfinity : value;
-    } catch (const std::runtime_error&) {  // no material point leads there
+    } catch (const std::runtime_error&) {  // no material point maps to this position
       return kInfinity;
     }
   };
@@ -36,7 +37,7 @@ std::optional<Vec3<double>> surface_towards(const Part& part, const Vec3<double>
     double in = spacing * i, out = spacing * (i + 1);
     const auto at = static_cast<std::size_t>(i);
     if (!(sample[at] < 0)) {
-      // A body thinner than the spacing lies at a minimum, if anywhere: golden section.
+      // A body thinner than the spacing can only be at a minimum of the samples: golden section search.
       if (i == 0 || sample[at] > sample[at - 1] || sample[at] > sample[at + 1]) continue;
       constexpr double golden = 0.6180339887498949;
       double low = spacing * (i - 1), high = out;
@@ -80,7 +81,7 @@ std::optional<Point> PointReader::on_part(const Reader& r) const {
   if (!at) return {};
   const double patch = read_material_point(r.at("at")).patch;
   if (patch > 0 && found->part->local() == nullptr) {
-    faults_.value(*r.at("at").find("patch"), "it is a radius among nodes, and part \"" + found->part->name() +
+    faults_.value(*r.at("at").find("patch"), "a patch selects nodes, and part \"" + found->part->name() +
                                                  "\" has no local deformation; expected no \"patch\"");
     return {};
   }
@@ -113,7 +114,7 @@ std::optional<double> PointReader::jump(const Point& point, double after, double
   return {};
 }
 
-/// Resolved at the rest shape.
+/// Returns the material point that a value describes, resolved at the rest shape, or nothing after a fault.
 std::optional<Material<double>> PointReader::material(const Part& part, const JsonValue& at) const {
   using Form = MaterialPointValue::Form;
   const MaterialPointValue value = read_material_point(at);
@@ -145,7 +146,7 @@ std::optional<Material<double>> PointReader::material(const Part& part, const Js
   }
   faults_.value(
       *at.find(by_direction ? "direction" : "near"),
-      "no material point of part \"" + part.name() + "\" lies there; expected a place on its rest shape");
+      "part \"" + part.name() + "\" has no material point there; expected a place on its rest shape");
   return {};
 }
 

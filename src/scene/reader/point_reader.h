@@ -1,4 +1,5 @@
-// Points of a scene, on parts or of the world: names resolved to parts, places to material points.
+// Reading points of a scene, on parts or of the world. Names are resolved to parts and places to material
+// points.
 #pragma once
 
 #include <map>
@@ -13,29 +14,29 @@
 
 namespace pliant {
 
-/// A part that the scene names, as far as it could be made.
+/// A name of a part in the scene and the part, if it has no faults.
 struct NamedPart {
-  const JsonValue* name = nullptr;  ///< where it is named
-  Part* part = nullptr;             ///< null when it could not be made
-  bool prepared = false;            ///< its points can be resolved
+  const JsonValue* name = nullptr;  ///< the value of its key "name"
+  Part* part = nullptr;             ///< null if the part could not be made
+  bool prepared = false;            ///< whether points on it can be resolved
 };
 
 class PointReader {
  public:
-  /// parts: by name. end: of the run, s.
+  /// parts: by name. end: end of the run, s.
   PointReader(const std::map<std::string, NamedPart>& parts, double end, SceneFaults& faults)
       : parts_(parts), times_(end, faults), faults_(faults) {}
 
-  /// The part that a key names; null, with a fault if nobody is called so.
+  /// Returns the part that a key names, or null. An unknown name is reported.
   Part* part(const Reader& r, const char* key = "part") const;
-  /// {"part", "at"}; none when it could not be resolved.
+  /// Returns the point {"part", "at"}, or nothing if it cannot be resolved; faults are reported.
   std::optional<Point> on_part(const Reader& r) const;
-  /// {"part", "at"} or {"world"}.
+  /// Returns the point {"part", "at"} or {"world"}, or nothing if it cannot be resolved; faults are reported.
   std::optional<Point> anywhere(const Reader& r) const;
-  /// The same under a key of a spring or joint.
+  /// Returns the point under a key of a spring or joint, as anywhere().
   std::optional<Point> end(const Reader& r, const char* key) const;
-  /// The first time of the run, after one and no later than another (s), at which a point that is moved in
-  /// time jumps in place, as far as many looks tell.
+  /// Returns the first time in (after, until] and within the run (s) at which the position of a moving point
+  /// of the world jumps, or nothing. The path is searched in 256 intervals.
   std::optional<double> jump(const Point& point, double after, double until) const;
 
  private:
@@ -47,9 +48,10 @@ class PointReader {
   SceneFaults& faults_;
 };
 
+/// Returns whether two material points are identical.
 bool same_point(const Material<double>& a, const Material<double>& b);
 
-/// Where a point is at time 0, m.
+/// Returns the position of a point at time 0, m, world. Local deformation is ignored.
 Vec3<double> position_at_start(const Point& point);
 
 }  // namespace pliant

@@ -105,7 +105,7 @@ Reader Reader::object(const std::string& key) const {
     if (const schema::Record* record = chosen_record(type, *value)) return {*value, *record, faulty_};
   }
   if (type.kind == schema::Type::Kind::kRecord) return {empty_object(), *type.records[0], faulty_};
-  throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" holds no record");
+  throw std::logic_error("key \"" + key + "\" of \"" + record_->name + "\" contains no record");
 }
 
 std::vector<Reader> Reader::objects(const std::string& key) const {

@@ -1,5 +1,5 @@
-// Functions of time in a scene, tried out over the whole run: those that are not finite are refused at their
-// place.
+// Reading functions of time. Each function is evaluated at many times of the run, and a value that is not
+// finite is reported at its place.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,20 @@
 
 namespace pliant {
 
-/// What a use of a function of time asks of it.
+/// Quantities that a user of a function of time evaluates.
 enum class Needs { value, value_and_rate };
 
 class TimeReader {
  public:
-  /// end: of the run, s.
+  /// end: end of the run, s.
   TimeReader(double end, SceneFaults& faults) : end_(end), faults_(faults) {}
 
-  /// Of the run, s.
+  /// End of the run, s.
   double end() const { return end_; }
-  /// The function of a sound value; none, with a fault, when it is not finite at one of many times from 0 to
-  /// the end.
+  /// Returns the function of a sound value. Reports a fault and returns nothing if it is not finite at one of
+  /// 257 times from 0 to the end.
   std::optional<TimeFunction> function(const JsonValue& value, Needs needs) const;
-  /// The three functions under a key, with faults for each; none when one is not good.
+  /// Returns the three functions under a key, or nothing if one is faulty; each fault is reported.
   std::optional<TimeVector> vector(const Reader& r, const char* key, Needs needs) const;
 
  private:

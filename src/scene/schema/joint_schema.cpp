@@ -14,29 +14,36 @@ Type joint_type(const Type& end_point, const Type& orientation) {
         std::string("A joint: ") + info.formula + ".",
         {optional("name", name(), "Name in the outputs."),
          required("from", end_point,
-                  "Its first point, x_0: on a part, or of the world. Where it is moved in time its "
-                  "rate may jump, which takes an impulse; its place may not.",
+                  "First point x_0, on a part or of the world. If it moves in time, its position must be "
+                  "continuous; a jump of its velocity causes an impulse.",
                   "{\"world\": [0, 0, 1]}"),
-         required("to", end_point, "Its second point, x_1, likewise; on the same part only if that deforms.",
-                  "{\"part\": \"ball\", \"at\": {\"u\": 1.5708, \"v\": 0}}")}};
+         required(
+             "to", end_point,
+             "Second point x_1, on a part or of the world. It may be on the part of \"from\" only if that "
+             "part deforms.",
+             "{\"part\": \"ball\", \"at\": {\"u\": 1.5708, \"v\": 0}}")}};
     auto add = [&](JointKey key, Field field) {
       if (info.keys.has(key)) record.fields.push_back(std::move(field));
     };
     add(JointKey::length, optional("length", number(above(0), "m"),
-                                   "Its length; the distance of its points at time 0 when not given."));
+                                   "Length; when absent, the distance of the two points at time 0."));
     add(JointKey::axis,
         optional("axis", vector3("1"),
-                 "Direction at \"to\", in the frame of its part at rest or of the world.", "[0, 0, 1]"));
-    add(JointKey::from_axis, optional("from_axis", vector3("1"),
-                                      "The axis at \"from\" likewise; as \"axis\" stands at time 0 when not "
-                                      "given, the parts undeformed."));
+                 "Direction at \"to\", in the frame of its undeformed part or of the world.", "[0, 0, 1]"));
+    add(JointKey::from_axis,
+        optional(
+            "from_axis", vector3("1"),
+            "Direction at \"from\", in the frame of its undeformed part or of the world. When absent, it is "
+            "parallel to \"axis\" in the pose of time 0, with undeformed parts."));
     add(JointKey::rotation,
-        optional("rotation", orientation,
-                 "Orientation of the frame at \"from\" in that at \"to\"; as they stand at time 0 "
-                 "when not given, the parts undeformed."));
-    record.fields.push_back(optional("on", number(at_least(0), "s"), "When it begins to act.", "0"));
+        optional(
+            "rotation", orientation,
+            "Orientation of the frame at \"from\" relative to the frame at \"to\". When absent, the relative "
+            "orientation at time 0, with undeformed parts."));
     record.fields.push_back(
-        optional("off", number(above(0), "s"), "When it ceases to; never when not given."));
+        optional("on", number(at_least(0), "s"), "Time at which the joint begins to act.", "0"));
+    record.fields.push_back(
+        optional("off", number(above(0), "s"), "Time at which the joint ceases to act; when absent, never."));
     records.push_back(std::move(record));
   }
   return tagged("type", std::move(records));
@@ -45,28 +52,29 @@ Type joint_type(const Type& end_point, const Type& orientation) {
 Record stabilization_record() {
   return {
       "stabilization",
-      "How open joints close, C_ddot + 2 alpha C_dot + beta^2 C = 0, and how closed ones are kept so.",
-      {optional("rule",
-                choice({{"automatic", "step_consistent for semi_implicit_euler, critical for all others"},
-                        {"free", "stab_alpha and stab_beta as given, the latter > 0"},
-                        {"critical", "alpha = beta = rate"},
-                        {"step_consistent",
-                         "r = exp(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): stable for "
-                         "any step"}}),
-                "Where alpha and beta come from.", "\"automatic\""),
+      "Closing of open joints by C_ddot + 2 alpha C_dot + beta^2 C = 0, and projection of closed joints.",
+      {optional(
+           "rule",
+           choice({{"automatic", "step_consistent for semi_implicit_euler, critical for other integrators"},
+                   {"free", "alpha = stab_alpha, beta = stab_beta > 0"},
+                   {"critical", "alpha = beta = rate"},
+                   {"step_consistent",
+                    "r = exp(-rate h), beta = (1 - r) / h, alpha = (1 - r^2) / (2 h): stable for "
+                    "all steps h"}}),
+           "Rule for alpha and beta.", "\"automatic\""),
        optional("rate", number(above(0), "1/s"), "Decay rate of a gap.", "10"),
        optional("stab_alpha", number(at_least(0), "1/s"), "alpha of the rule \"free\".", "0"),
        optional("stab_beta", number(at_least(0), "1/s"),
-                "beta of the rule \"free\", which needs it: no gap closes without.", "0"),
+                "beta of the rule \"free\"; it must be above 0 there, or no gap closes.", "0"),
        optional("speed", number(above(0), "1"),
-                "Most speed at which a gap closes, in units of rate times the size of the smaller part.",
-                "3"),
-       optional("assembly",
-                choice({{"in_time", "open joints close while time runs"},
-                        {"before_start",
-                         "parts are brought together before time 0 without inertia: rigid motion first, "
-                         "parameters as far as their stiffness says"}}),
-                "When open joints close.", "\"in_time\""),
+                "Largest closing speed of a gap, in units of rate times the size of the smaller part.", "3"),
+       optional(
+           "assembly",
+           choice({{"in_time", "open joints close during the run"},
+                   {"before_start",
+                    "parts are assembled before time 0 without inertia: by rigid motion first, then by the "
+                    "parameters according to their stiffness"}}),
+           "Phase in which open joints close.", "\"in_time\""),
        optional("projection", boolean(),
                 "Whether closed joints are projected onto C = 0 and C_dot = 0 after each step.", "true")}};
 }

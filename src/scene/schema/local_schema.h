@@ -1,12 +1,15 @@
-// What a scene may say of the elasticity of a part: of its local deformation, and of the whole map.
+// The records of the elasticity of a part: of its local deformation, and of the dynamic parameters of a part
+// without nodes.
 #pragma once
 
 #include <pliant/scene/schema/schema.h>
 
 namespace pliant {
 
+/// Returns the record of a local deformation.
 schema::Record local_record();
-/// The elastic material of a part without nodes: a law of the same name and numbers as that of nodes.
+/// Returns the type of the elastic material of a part without nodes. Its laws have the names and numbers of
+/// the laws of nodes.
 schema::Type elasticity_type();
 
 }  // namespace pliant

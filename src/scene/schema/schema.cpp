@@ -11,6 +11,7 @@ namespace pliant::schema {
 
 namespace {
 
+/// Parses the JSON text of an example or a default value in the declaration of a key.
 JsonValue parse_declared(const std::string& key, const std::string& text) {
   json::ParseOptions options;
   options.place = [](std::size_t offset) { return "character " + std::to_string(offset + 1); };
@@ -18,7 +19,7 @@ JsonValue parse_declared(const std::string& key, const std::string& text) {
   try {
     return json::parse(text, options);
   } catch (const json::Fault& fault) {
-    throw std::logic_error("the declaration of \"" + key + "\" holds bad JSON: " + text + ": " +
+    throw std::logic_error("the declaration of \"" + key + "\" contains bad JSON: " + text + ": " +
                            fault.message);
   }
 }
@@ -69,13 +70,13 @@ std::string record_words(const Record& record) {
   return keys.empty() ? "an object" : "an object with " + keys;
 }
 
-bool takes_objects(const Type& type) {
+bool accepts_objects(const Type& type) {
   using Kind = Type::Kind;
-  if (type.kind == Kind::kOneOf) return std::any_of(type.inner.begin(), type.inner.end(), takes_objects);
+  if (type.kind == Kind::kOneOf) return std::any_of(type.inner.begin(), type.inner.end(), accepts_objects);
   return type.kind == Kind::kMap || type.kind == Kind::kRecord || type.kind == Kind::kTagged;
 }
 
-/// How much the keys of an object speak for a type: a required key weighs more than any number of optional
+/// Returns a measure of how well a type fits the keys of an object. A required key outweighs all optional
 /// ones.
 int weight(const Type& type, const JsonValue& object) {
   if (type.kind == Type::Kind::kTagged) return object.find(type.tag) != nullptr ? 1000 : 0;
@@ -98,7 +99,7 @@ int weight(const Type& type, const JsonValue& object) {
 bool Range::contains(double x) const {
   return (min_excluded ? x > min : x >= min) && (max_excluded ? x < max : x <= max);
 }
-Range any() {
+Range unbounded() {
   return {};
 }
 Range at_least(double min) {
@@ -276,15 +277,15 @@ const Field* Record::find(const std::string& key) const {
 const Type* chosen_alternative(const Type& one_of, const JsonValue& object) {
   const Type* best = nullptr;
   const Type* only = nullptr;
-  int most = 0, candidates = 0;
+  int best_weight = 0, candidates = 0;
   for (const Type& inner : one_of.inner) {
-    if (!takes_objects(inner)) continue;
+    if (!accepts_objects(inner)) continue;
     only = &inner;
     ++candidates;
-    const int heavy = weight(inner, object);
-    if (heavy > most) {
+    const int inner_weight = weight(inner, object);
+    if (inner_weight > best_weight) {
       best = &inner;
-      most = heavy;
+      best_weight = inner_weight;
     }
   }
   return candidates == 1 ? only : best;

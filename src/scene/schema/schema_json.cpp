@@ -1,4 +1,4 @@
-// The JSON Schema of a scene, from its records.
+// Writing the JSON Schema (draft-07) of a scene from its records.
 #include <cmath>
 #include <stdexcept>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The unit of the numbers in a value of this type; empty when it holds none.
+/// Returns the unit of the numbers in a value of this type, or an empty text if it contains none.
 std::string unit_of(const Type& type) {
   if (type.kind == Type::Kind::kNumber) return type.unit;
   for (const Type& inner : type.inner) {
@@ -126,7 +126,7 @@ class Writer {
     if (!f.default_text.empty()) out["default"] = Json::parse(f.default_text);
     if (!f.example.empty()) out["examples"] = Json::array({Json::parse(f.example)});
     if (written.contains("$ref")) {
-      out["allOf"] = Json::array({written});  // draft-07 ignores what stands beside $ref
+      out["allOf"] = Json::array({written});  // draft-07 ignores all other keys of an object with $ref
     } else {
       out.update(written);
     }

@@ -1,9 +1,9 @@
 // The augmented matrix of Eq. (14) for the joints of an island,
 //   [ M    C_q^T ]
 //   [ C_q   -d I ]
-// sparse and quasi-definite: a small d keeps rows that depend on others harmless, and iterative refinement
-// takes its error out again for all others. It answers what W_c = C_q M^-1 C_q^T would, whose blocks it never
-// forms.
+// It is sparse. A small d makes it quasi-definite, so that dependent rows of C_q do no harm; iterative
+// refinement removes the error of d for all other rows. The result is W_c^-1 for W_c = C_q M^-1 C_q^T, whose
+// blocks are never formed.
 #pragma once
 
 #include <memory>
@@ -24,24 +24,26 @@ class AugmentedFactor {
  public:
   AugmentedFactor(const Model& model, const Island& island);
 
-  /// Factors it for the joints that act, or the closed ones alone; C_q and M^-1 C_q^T are in work.
+  /// Factors the matrix for the joints that act, or for the closed ones only. C_q and M^-1 C_q^T must be in
+  /// work.
   void factor(const std::vector<PartWorkspace<double>>& parts, const ConstraintWorkspace<double>& work,
               bool closed_only);
-  /// x = W_c^-1 x.
+  /// x = W_c^-1 x; NaN if the factorisation failed.
   void solve(VecX<double>& x) const;
 
  private:
   const Model* model_;
   const Island* island_;
-  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< of each part: joint, side
+  std::vector<std::vector<std::pair<int, int>>> sides_of_;  ///< of each part: joint, its side
   SparseMatrix K_;
   std::unique_ptr<SparseFactor> factor_;
   bool sound_ = false;
 };
 
-/// Which rows of C_q of an island depend on others, by a sparse QR factorisation: for people, not for steps.
-/// In islands of more than kMostForRank rows none is looked for.
-inline constexpr int kMostForRank = 900;
+/// Largest number of rows of an island for dependent_rows().
+inline constexpr int kMaxRankRows = 900;
+/// Returns which rows of C_q of an island depend on others, by a sparse QR factorisation. It serves messages,
+/// not steps. In islands of more than kMaxRankRows rows, no row is reported.
 std::vector<bool> dependent_rows(const Model& model, const Island& island,
                                  const ConstraintWorkspace<double>& work);
 

@@ -1,6 +1,8 @@
-// The joints of all parts at an evaluation, Eqs. (12)-(14): their rows, and the forces lambda from
+// The joints at an evaluation, Eqs. (12)-(14): their rows C, C_dot, bias and C_q, and the forces lambda from
 //   W_c lambda = -(C_q a + bias + 2 alpha C_dot + beta^2 C),   W_c = C_q M^-1 C_q^T,
-// a being the accelerations without joints. What is found is added to them: a + M^-1 C_q^T lambda.
+// where a are the accelerations without joints, and bias = -gamma of Eq. (13). The accelerations with joints
+// are a + M^-1 C_q^T lambda. The sign of lambda is opposite to the paper's: the force on the parts is +C_q^T
+// lambda.
 #pragma once
 
 #include <functional>
@@ -19,42 +21,44 @@ struct PartWorkspace;
 template <class S>
 struct Workspace;
 
-/// A one-sided row of parts that act on each other: sign * x >= bound for velocity 6 + k of a part, or a
-/// string's C_q x >= bound.
+/// A one-sided row of a group of parts: sign * x >= bound for velocity 6 + k of a part, or C_q x >= bound for
+/// a string.
 struct OneSidedRow {
-  int part;  ///< its number in the group; -1: k is the number of a string in the island
+  int part;  ///< number of the part in the group; -1: k is the number of a string of the island
   int k;
   double sign;  ///< 1 at a lower limit and for a string, -1 at an upper limit
   double bound;
-  double softness = 0;  ///< it is met but for this share of its own push: rows that contradict each other end
+  /// The row may miss its bound by this share of the effect of its own push, so that contradicting rows have
+  /// a solution.
+  double softness = 0;
 };
 
-/// W_c of an island, factored by blocks or within the augmented matrix.
+/// The factor of W_c of an island: by the blocks of W_c, or by the augmented matrix.
 template <class S>
 class JointFactor {
  public:
-  /// Factors it for the joints that act, or the closed ones alone. prepare(j), called of each joint in turn,
-  /// lays its C_q and M^-1 C_q^T in `work` where they are not there yet.
+  /// Factors W_c for the joints that act, or for the closed ones only. Calls prepare(j) for each joint in
+  /// turn, which computes its C_q and M^-1 C_q^T in `work` if they are not there yet.
   template <class F>
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
               const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
-  /// The blocks of W_c, to be filled in and factored by others.
+  /// The blocks of W_c, for a caller that fills them in and factors them itself.
   BlockFactor<S>& blocks() { return blocks_; }
-  /// That of the values, for a derivative of the augmented matrix.
+  /// Sets the factor of the values, for a derivative with the augmented matrix.
   void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
 
-  /// x = W_c^-1 x, with zeros for rows that depend on others. A derivative by the augmented matrix takes W_c
-  /// for constant, which is exact once what is left is solved again.
+  /// x = W_c^-1 x, with zeros for dependent rows. A derivative with the augmented matrix treats W_c as
+  /// constant; it is exact after a second solution for the residual.
   void solve(VecX<S>& x) const;
   bool exact() const { return values_ == nullptr; }
-  /// Which rows depend on others.
+  /// Returns which rows depend on others.
   std::vector<bool> dependent(const Model& model, const Island& island,
                               const ConstraintWorkspace<S>& work) const;
-  /// Whether solutions are to be refined.
+  /// Whether solutions need refinement.
   bool is_rough() const;
 
  private:
-  /// Adds what two joints do to each other, through a part, to its block.
+  /// Adds the coupling of two joints through a part to its block.
   void couple(const Model& model, const Coupling& coupling, const ConstraintWorkspace<S>& work);
 
   friend class JointFactor<Dual<1>>;
@@ -63,93 +67,95 @@ class JointFactor {
   const AugmentedFactor* values_ = nullptr;
 };
 
-/// Vectors of parts that act on each other at once, see group.h. Those of islands are kept, so that a step
-/// takes nothing from the heap.
+/// Vectors of a group, see group.h. Those of islands stay in the workspace, so that a step allocates no
+/// memory.
 template <class S, int Max>
 struct GroupVectors {
-  VecMax<S, Max> before, joined, x;  ///< accelerations or velocities: without joints, with them, with all
-  VecX<S> rows, lambda;              ///< of the joints
-  VecX<S> correction, change;        ///< of lambda and of x, by Group::correct
-  VecMax<S, Max> start, gain;        ///< velocities at which joints were evaluated, and what came to them,
-  VecX<S> gained;                    ///< and to their rows
-  VecX<S> q, v;                      ///< coordinates and velocities of a state
+  VecMax<S, Max> before, joined,
+      x;                       ///< accelerations or velocities: without joints, with them, with all rows
+  VecX<S> rows, lambda;        ///< rows C_q x of the joints, and their forces
+  VecX<S> correction, change;  ///< lambda and change of x of the last Group::correct()
+  VecMax<S, Max> start, gain;  ///< velocities at which the joints were evaluated, and the change since,
+  VecX<S> gained;              ///< and the change of their rows
+  VecX<S> q, v;                ///< coordinates and velocities of a state
 };
 
-/// What is recomputed at each evaluation. The rows of all joints stand in the order of the joints.
+/// The quantities of all joints at an evaluation. Rows of all joints are in the order of the joints. In the
+/// order of their computation:
 template <class S>
 struct ConstraintWorkspace {
-  std::vector<JointMode> modes;      ///< as they were at the evaluation
-  Gains gains;                       ///< of Baumgarte's terms of joints that close
-  bool stabilise_closed = true;      ///< whether closed joints have them too
-  RankRule rank = RankRule::decide;  ///< of the factors
-  double most_speed = 0;             ///< cap of the speed at which a gap closes, body lengths / s
-  VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2
-  VecX<S> Cq, Y;                     ///< C_q^T and M^-1 C_q^T of each side, n_v x rows, on v_r
-  VecX<S> lambda;                    ///< N; on the parts act C_q^T lambda
-  std::vector<JointFactor<S>> W_c;   ///< of each island, of the joints that act
-  /// The same of the closed joints alone, where there are others that close: impulses keep the closed ones
-  /// and may open the others.
+  std::vector<JointMode> modes;  ///< mode of each joint at this evaluation
+  Gains gains;                   ///< alpha and beta of Baumgarte's terms
+  bool stabilise_closed = true;  ///< whether closed joints have Baumgarte's terms; closing joints always do
+  RankRule rank = RankRule::decide;  ///< rule of the factors of W_c for dependent rows
+  double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
+  VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2; bias = -gamma, n_rows each
+  VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
+  std::vector<JointFactor<S>> W_c;   ///< of each island: the joints that act
+  /// Of each island with closing joints: the closed joints only. Impulses keep the closed joints closed and
+  /// may open the others.
   std::vector<JointFactor<S>> W_closed;
-  std::vector<std::vector<OneSidedRow>> pushed;          ///< of each island
+  VecX<S> lambda;                                ///< N, n_rows; the force on the parts is C_q^T lambda
+  std::vector<std::vector<OneSidedRow>> pushed;  ///< of each island: the one-sided rows with a push > 0
   std::vector<GroupVectors<S, Eigen::Dynamic>> vectors;  ///< of each island
 };
 
-/// Brings a part of an island to where its joints can be evaluated.
+/// A function that evaluates a part (by its number) as far as its joints need it.
 using PlacePart = std::function<void(int)>;
 
-/// Rows of the joints: C, C_dot, bias, C_q. place(i), if given, is called for each part of the island, before
-/// the first of its joints is evaluated; so the caches hold it still.
+/// Computes C, C_dot, bias and C_q of the joints of an island at time t (s). Calls place(i), if given, for
+/// each part of the island just before the first of its joints is evaluated, while both are in the cache.
 template <class S>
 void evaluate_joints(const Model& model, const Island& island, double t,
                      const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                      const PlacePart& place = {});
 
-/// M^-1 C_q^T and the factors of W_c; rows of joints that do not act are held.
+/// Computes M^-1 C_q^T and the factors of W_c of an island. Rows of joints that do not act are left out.
 template <class S>
 void factor_joints(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
                    ConstraintWorkspace<S>& work);
 
-/// Both, a joint at a time.
+/// Does evaluate_joints() and factor_joints() joint by joint.
 template <class S>
 void evaluate_and_factor_joints(const Model& model, const Island& island, double t,
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                                 const PlacePart& place = {});
 
-/// The diagonal entry of W_c of a row of a joint. Of a joint between points of one part it is that of its two
-/// sides each alone, which cancel where nothing changes between the points: what is left is to be measured
-/// against them.
+/// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between points of one part, returns
+/// the sum of the entries of its two sides alone: if the part does not change between the points, the sides
+/// cancel in W_c, and the true entry is rounding relative to this sum.
 template <class S>
-double entry_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
+double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
 
-/// Finds lambda and adds M^-1 C_q^T lambda to the accelerations of the parts. One-sided rows that could push
-/// are those of the strings that act and of `limits`; which of them do is told in work.joints.pushed.
+/// Solves for lambda and adds M^-1 C_q^T lambda to the accelerations a_r of the parts, Eq. (14). The
+/// candidates for one-sided pushes are the strings that act and the rows `limits`. Stores in
+/// work.joints.pushed which of them push.
 void solve_joints(const Model& model, const Island& island, std::vector<OneSidedRow> limits,
                   Workspace<double>& work);
-/// The same for a derivative, with the rows of work.joints.pushed pushing.
+/// Solves for the derivative of lambda; the rows of work.joints.pushed push.
 void solve_joints(const Model& model, const Island& island, Workspace<Dual<1>>& work);
 
-/// bias + 2 alpha C_dot + beta^2 C of a joint: what C_ddot is to be minus, but for what the accelerations
-/// give.
+/// Returns bias + 2 alpha C_dot + beta^2 C of joint j: the accelerations a have to satisfy C_q a = -wanted.
+/// In terms of the paper it is -(gamma - 2 alpha C_dot - beta^2 C).
 template <class S>
 VecMax<S, kMaxJointRows> wanted(const Model& model, const ConstraintWorkspace<S>& joints, int j);
-/// How far an evaluation is from giving a joint that, m/s^2: not at all, unless its rows depend on others
-/// that disagree.
+/// Returns |C_q a + wanted| of joint j for the accelerations of an evaluation, m/s^2. It is zero within
+/// rounding, unless rows of the joint depend on rows that contradict them.
 double disagreement(const Model& model, const Workspace<double>& work, int j);
 
-/// Rates of the works of the joints, W.
+/// Returns the rates of the works of the joints, W.
 template <class S>
 Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work);
 
-/// Of each joint, the number of its rows that follow from those of others, which hold them; after an
-/// evaluation.
+/// Returns for each joint the number of its rows that depend on rows of other joints, after an evaluation.
 std::vector<int> redundant_rows(const Model& model, const ConstraintWorkspace<double>& work);
 
-/// Whether a joint acts in this mode.
+/// Whether a joint with this mode acts.
 inline bool acts(JointMode mode) {
   return mode == JointMode::closing || mode == JointMode::closed;
 }
-/// The same, or whether it is closed.
-inline bool counts(JointMode mode, bool closed_only) {
+/// Whether a factor contains a joint with this mode: a closed one if closed_only, or else one that acts.
+inline bool is_selected(JointMode mode, bool closed_only) {
   return closed_only ? mode == JointMode::closed : acts(mode);
 }
 

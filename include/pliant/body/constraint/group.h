@@ -1,7 +1,7 @@
-// A group: parts whose velocities act on each other at once, the parts of an island or one part alone. Its
-// velocities v_r = (R^T c_dot, omega, q_s_dot) of part after part make one vector x; after those of a part
-// that deforms locally stand the d_dot of the points at which joints hold it. One-sided rows (limits
-// of parameters, strings) push on it while its joints hold.
+// A group: one part without joints, or the parts of an island. The velocities v_r = (R^T c_dot, omega,
+// q_s_dot) of its parts, one after the other, form one vector x. The entries of a part that deforms locally
+// continue with d_dot of the points at its joints. Joints and one-sided rows (limits of parameters, strings)
+// act on x.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +11,22 @@
 
 namespace pliant {
 
-/// The velocities x of a part as its group has them, of v.
+/// Sets x to the velocities of a part in its group, from the velocities v of all parts.
 void gather_velocity(const PartModel& m, const PartWorkspace<double>& w, const VecX<double>& v,
                      Eigen::Ref<VecX<double>> x);
 
-/// Max: most velocities; Eigen::Dynamic for an island.
+/// Max: largest number of velocities of a part without joints; Eigen::Dynamic for an island.
 template <class S, int Max>
 class Group {
  public:
   using Vector = VecMax<S, Max>;
   static constexpr int kMax = Max;
 
-  /// Of a part alone.
+  /// The group of one part without joints.
   Group(const Model& model, Workspace<S>& work, int part)
       : model_(&model), work_(&work), alone_(part), size_(velocities(part)) {}
-  /// Of an island; which of its joints hold against pushes and corrections: all that act, or the closed ones.
+  /// The group of an island. closed_only: pushes and corrections keep the closed joints closed, and may open
+  /// the joints that are still closing; otherwise they respect all joints that act.
   Group(const Model& model, Workspace<S>& work, const Island& island, bool closed_only)
       : model_(&model), work_(&work), island_(&island), size_(island.n_v) {
     closed_only_ = closed_only && std::any_of(island.joints.begin(), island.joints.end(), [&](int j) {
@@ -36,24 +37,25 @@ class Group {
   int size() const { return size_; }
   int parts() const { return island_ == nullptr ? 1 : static_cast<int>(island_->parts.size()); }
   int part(int i) const { return island_ == nullptr ? alone_ : island_->parts[at(i)]; }
-  /// Where its part i begins in x.
+  /// First entry of its part i in x.
   int first(int i) const { return island_ == nullptr ? 0 : island_->first[at(i)]; }
   const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
   const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
   const Island* island() const { return island_; }
-  /// The number of its island.
+  /// Number of its island.
   std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
-  /// x of what `of` gives for each of its parts, all of its velocities in x.
+  /// Sets x from velocities_of(i), the velocities of each part i in the group.
   template <class F>
-  void gather(Vector& x, F&& of) const {
+  void gather(Vector& x, F&& velocities_of) const {
     x.resize(size_);
-    for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = of(i);
+    for (int i = 0; i < parts(); ++i) x.segment(first(i), velocities(part(i))) = velocities_of(i);
   }
+  /// The entries of part i in x.
   auto share(Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
   auto share(const Vector& x, int i) const { return x.segment(first(i), velocities(part(i))); }
 
-  /// What a row bounds from below.
+  /// Returns the value that a row bounds from below.
   S value(const OneSidedRow& row, const Vector& x) const {
     if (row.part >= 0) return x[first(row.part) + 6 + row.k] * S(row.sign);
     const JointModel& string = model_->joints()[at(island_->strings[at(row.k)])];
@@ -64,7 +66,7 @@ class Group {
     }
     return sum * S(row.sign);
   }
-  /// The change of x by a unit push of a row, as if there were no joints.
+  /// Returns the change of x by a unit push of a row, without joints.
   Vector push(const OneSidedRow& row) const {
     Vector x = Vector::Constant(size_, S(0.0));
     if (row.part >= 0) {
@@ -80,7 +82,7 @@ class Group {
     }
     return x;
   }
-  /// The same while the joints hold.
+  /// Returns the change of x by a unit push of a row, with joints.
   Vector response(const OneSidedRow& row) const {
     Vector x = push(row);
     if (island_ == nullptr) return x;
@@ -90,7 +92,7 @@ class Group {
     return x;
   }
 
-  /// rows = C_q x of the joints of the island.
+  /// Computes rows = C_q x of the joints of the island.
   template <class V>
   void joint_rows(const V& x, VecX<S>& rows) const {
     rows.setConstant(island_->rows, S(0.0));
@@ -103,26 +105,27 @@ class Group {
         for (int i = 0; i < n; ++i) rows[row + r] += Cq[r * n + i] * x[start + i];
     });
   }
-  /// Whether what correct() gives is to be refined.
+  /// Whether a result of correct() needs refinement.
   bool is_rough() const { return factor().is_rough() || (island_ != nullptr && island_->uneven); }
-  /// The least change of x in the mass metric that takes -rows off C_q x: M^-1 C_q^T lambda with W_c lambda =
-  /// -rows. Returns lambda, which the next call changes. When W_c is that of an earlier configuration, lambda
-  /// is near to it, and the forces still pull with C_q^T as it is now: two ends of a joint are pushed by
-  /// opposite forces. as_factored: nothing was evaluated since, and M^-1 C_q^T is known.
+  /// Adds to x the least change in the mass metric that removes `rows` from C_q x: M^-1 C_q^T lambda with
+  /// W_c lambda = -rows. Returns lambda, which the next call overwrites. W_c may be that of an earlier
+  /// configuration; lambda is approximate then, but the forces act along the present C_q^T, so that the two
+  /// ends of a joint get opposite forces. as_factored: nothing was evaluated since the factorisation, and
+  /// M^-1 C_q^T in the workspace is valid.
   const VecX<S>& correct(const VecX<S>& rows, Vector& x, bool as_factored = false) const {
     const JointFactor<S>& factor = this->factor();
     GroupVectors<S, Eigen::Dynamic>& kept = work_->joints.vectors[number()];
     VecX<S>&lambda = kept.correction, &change = kept.change;
     lambda = -rows;
     factor.solve(lambda);
-    moved_by(lambda, as_factored, change);
+    response_to(lambda, as_factored, change);
     if (!factor.exact()) {
       VecX<S> more;
       joint_rows(change, more);
       more = -(rows + more);
       factor.solve(more);
       lambda += more;
-      moved_by(lambda, as_factored, change);
+      response_to(lambda, as_factored, change);
     }
     x += change;
     return lambda;
@@ -135,29 +138,29 @@ class Group {
   const JointFactor<S>& factor() const {
     return (closed_only_ ? work_->joints.W_closed : work_->joints.W_c)[number()];
   }
-  /// act(first row, rows, first velocity, velocities, its share) for each side of each joint of the island;
-  /// shares: C_q^T or M^-1 C_q^T of all sides.
+  /// Calls act(first row, rows, first velocity, velocities, values) for each side of each joint of the
+  /// island. side_values: C_q^T or M^-1 C_q^T of all sides.
   template <class F>
-  void for_each_side(const VecX<S>& shares, F&& act) const {
+  void for_each_side(const VecX<S>& side_values, F&& act) const {
     for (const int j : island_->joints) {
       const JointModel& joint = model_->joints()[at(j)];
       for (const JointSide& side : joint.sides)
         act(joint.island_row, joint.rows, island_->first[at(side.place)], velocities(side.part),
-            shares.data() + side.offset);
+            side_values.data() + side.offset);
     }
   }
-  /// x = M^-1 C_q^T lambda.
-  void moved_by(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const {
+  /// Computes x = M^-1 C_q^T lambda.
+  void response_to(const VecX<S>& lambda, bool as_factored, VecX<S>& x) const {
     x.setConstant(size_, S(0.0));
     const ConstraintWorkspace<S>& joints = work_->joints;
     for_each_side(
-        as_factored ? joints.Y : joints.Cq, [&](int row, int n_rows, int start, int n, const S* of) {
+        as_factored ? joints.Y : joints.Cq, [&](int row, int n_rows, int start, int n, const S* side) {
           if (n == 6 && n_rows == 3) {
-            x.template segment<6>(start) += BallSide(of).lazyProduct(lambda.template segment<3>(row));
+            x.template segment<6>(start) += BallSide(side).lazyProduct(lambda.template segment<3>(row));
             return;
           }
           for (int r = 0; r < n_rows; ++r)
-            for (int i = 0; i < n; ++i) x[start + i] += of[r * n + i] * lambda[row + r];
+            for (int i = 0; i < n; ++i) x[start + i] += side[r * n + i] * lambda[row + r];
         });
     if (as_factored) return;
     for (int i = 0; i < parts(); ++i) workspace(i).solve_mass(x.segment(first(i), velocities(part(i))));

@@ -1,5 +1,5 @@
-// One-sided rows of a group and the pushes that meet them: the least change of x in the mass metric, made of
-// pushes lambda >= 0 that act only where their row is tight, while the joints of the group hold.
+// One-sided rows of a group and the pushes that satisfy them: the least change of x in the mass metric by
+// pushes lambda >= 0, each zero unless its row is at its bound, while the joints of the group act.
 #pragma once
 
 #include <array>
@@ -15,12 +15,13 @@ template <int Max>
 class OneSidedRows {
  public:
   using Vector = VecMax<double, Max>;
-  static constexpr bool kAlone = Max != Eigen::Dynamic;  ///< of a part alone: nothing comes from the heap
+  static constexpr bool kAlone = Max != Eigen::Dynamic;  ///< one part without joints: no heap memory
   static constexpr int kMaxRows = kAlone ? kMaxLimitRows : Eigen::Dynamic;
 
   explicit OneSidedRows(const Group<double, Max>& group) : group_(group) {}
 
   bool empty() const { return n_ == 0; }
+  /// Adds a row.
   void add(const OneSidedRow& row) {
     if constexpr (!kAlone) {
       rows_.emplace_back();
@@ -29,30 +30,30 @@ class OneSidedRows {
     rows_[n_] = row;
     responses_[n_++] = group_.response(row);
   }
-  /// Adds the rows, of all that the group has, that x does not meet; false when there is none. bound: of a
-  /// row whose own is not set yet.
+  /// Adds all rows of the group that x violates. Returns whether there is any. bound(row): the bound of a
+  /// row.
   template <class Bound>
-  bool add_unmet(const Vector& x, Bound&& bound) {
+  bool add_violated(const Vector& x, Bound&& bound) {
     const std::size_t before = n_;
-    auto judge = [&](OneSidedRow row) {
+    auto check = [&](OneSidedRow row) {
       row.bound = bound(row);
       if (group_.value(row, x) < row.bound && !has(row)) add(row);
     };
     for (int i = 0; i < group_.parts(); ++i)
       for (int k = 0; k < group_.model(i).n_s; ++k) {
         if (group_.workspace(i).held(6 + k)) continue;
-        judge({i, k, 1, 0});
-        judge({i, k, -1, 0});
+        check({i, k, 1, 0});
+        check({i, k, -1, 0});
       }
     for (int k = 0; group_.island() != nullptr && k < static_cast<int>(group_.island()->strings.size());
          ++k) {
-      judge({-1, k, 1, 0});
-      judge({-1, k, -1, 0});
+      check({-1, k, 1, 0});
+      check({-1, k, -1, 0});
     }
     return n_ > before;
   }
 
-  /// x with the pushes of the rows.
+  /// Returns x with the pushes of the rows.
   Vector meet(const Vector& x) {
     const auto n = static_cast<Eigen::Index>(n_);
     MatMax<double, kMaxRows> W(n, n);
@@ -71,20 +72,21 @@ class OneSidedRows {
     for (std::size_t i = 0; i < n_; ++i) {
       const OneSidedRow& row = rows_[i];
       if (!pushed(i)) continue;
-      if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // to the last bit
+      if (row.part >= 0) after[group_.first(row.part) + 6 + row.k] = row.sign * row.bound;  // exact
     }
     return after;
   }
-  /// Takes x to where every row of bound(row) is met that it passes, if only by what the others push.
+  /// Changes x so that it satisfies all rows of the group with bound(row), including rows that the pushes of
+  /// others would violate.
   template <class Bound>
   void meet_all(Vector& x, Bound&& bound) {
-    if (!add_unmet(x, bound)) return;
+    if (!add_violated(x, bound)) return;
     Vector now = meet(x);
-    while (add_unmet(now, bound)) now = meet(x);
+    while (add_violated(now, bound)) now = meet(x);
     x = now;
   }
 
-  /// act(row, lambda) for each row that the last meet() pushed; returns their number.
+  /// Calls act(row, lambda) for each row with a push in the last meet(); returns their number.
   template <class F>
   int for_each_pushed(F&& act) const {
     int count = 0;
@@ -96,7 +98,7 @@ class OneSidedRows {
     return count;
   }
 
-  /// Makes the rows soft of which which(row).
+  /// Sets the softness of the rows for which which(row) is true.
   template <class Which>
   void soften(double softness, Which&& which) {
     for (std::size_t i = 0; i < n_; ++i)

@@ -1,5 +1,5 @@
-// The list of joints. A new one is its file and an entry here; registry, schema, `pliant list` and the law
-// tests follow.
+// The list of joints. A new joint needs its file and an entry here; the registry, the schema, `pliant list`
+// and the law tests follow from this list.
 #pragma once
 
 #include <tuple>

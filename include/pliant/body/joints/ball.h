@@ -1,6 +1,6 @@
-// The point-to-point joint of the paper: two points coincide. With a moving point of the world it is a moving
-// anchor or a prescribed path.
-//   C = x_0 - x_1
+// The point-to-point joint of the paper: two points coincide,
+//   C = x_0 - x_1.
+// With a moving point of the world it is a moving anchor or a prescribed path.
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
-// A hinge: two points coincide, and so do the directions of two axes.
+// A hinge: two points coincide, and the directions of two axes coincide.
 //   C = (x_0 - y_0, size (theta / sin theta) (a . b_2, a . b_3)),   cos theta = a . b_1
-// a is the first axis of the frame at x_0, b the frame at y_0; the last rows are the angle between the axes.
+// Here a is the first axis of the frame at x_0, b is the frame at y_0, and theta is the angle between the
+// axes.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>
@@ -16,7 +17,7 @@ struct Hinge {
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
-  double size = 1;  ///< m, makes angles lengths
+  double size = 1;  ///< m; scales angles to lengths
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {
@@ -26,7 +27,7 @@ struct Hinge {
     return C;
   }
 
-  /// The turn that takes the first axis of a frame b to a unit vector a, about its other two.
+  /// Returns (theta / sin theta) (a . b_2, a . b_3) for a unit vector a and a frame b.
   template <class T>
   static Vec<T, 2> axis_angle(const Vec3<T>& a, const Mat3<T>& b) {
     Vec3<T> of_b = b.transpose() * a;

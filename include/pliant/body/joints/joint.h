@@ -1,8 +1,9 @@
-// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it ties. Its formula is one struct
-// (body/joints/*.h), templated on its scalar; everything else follows from it:
-//   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q vdot + bias,   bias = -gamma of Eq. (13)
-// bias is what C_ddot is when no velocity changes: x moves along (x, x_dot, Ldot v), moving points of the
-// world along their path, and so C_tt and C_qt are in it.
+// A joint: a constraint C(x, t) = 0, Eq. (12), on the world points x that it ties. The formula of a joint is
+// one struct (body/joints/*.h), templated on its scalar; all other quantities are derived from it:
+//   C_dot = C_x x_dot + C_t,   C_q = C_x L,   C_ddot = C_q v_dot + bias,   bias = -gamma of Eq. (13)
+// bias is C_ddot for constant generalised velocities. It is the second derivative of C along a motion of the
+// points with velocity x_dot and acceleration L_dot v; prescribed points follow their paths. It contains C_tt
+// and C_qt.
 #pragma once
 
 #include <array>
@@ -20,18 +21,18 @@
 
 namespace pliant {
 
-/// Most rows of a joint, and most points that it ties.
+/// Largest numbers of rows and of points of a joint.
 inline constexpr int kMaxJointRows = 6;
 inline constexpr int kMaxJointPoints = 8;
 
-/// The motion of a point in the world: position, velocity, and the acceleration it has when no generalised
-/// velocity changes.
+/// The motion of a point in the world: position (m), velocity (m/s), and acceleration (m/s^2) for constant
+/// generalised velocities.
 template <class S>
 struct PointMotion {
   Vec3<S> x, x_dot, x_ddot;
 };
 
-/// A joint's formula at a motion of its points.
+/// The rows of a joint for a motion of its points.
 template <class S>
 struct JointRows {
   VecMax<S, kMaxJointRows> C;      ///< m
@@ -41,7 +42,7 @@ struct JointRows {
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJointRows, 3 * kMaxJointPoints> C_x;
 };
 
-/// What every joint has, whatever its formula.
+/// The interface of all joints.
 class Joint {
  public:
   Joint(std::string name, std::vector<Point> points, int n_first, int n_points)
@@ -49,8 +50,8 @@ class Joint {
   virtual ~Joint() = default;
 
   const std::string& name() const { return name_; }
-  /// It acts from time `on` (s) until before `off`; always by default. Throws std::invalid_argument unless on
-  /// < off.
+  /// Sets the times at which the joint acts: from `on` (s) until before `off`; the default is always. Throws
+  /// std::invalid_argument unless on < off.
   Joint& during(double on, double off = std::numeric_limits<double>::infinity()) {
     if (!(on < off)) throw std::invalid_argument("joint '" + name_ + "' needs times on < off");
     on_ = on;
@@ -62,19 +63,19 @@ class Joint {
   bool acts_at(double t) const { return t >= on_ && t < off_; }
   virtual const char* type() const = 0;
   virtual int rows() const = 0;
-  /// Whether it only holds one way: C >= 0 with a multiplier >= 0, instead of C = 0.
+  /// Whether the constraint is C >= 0 with a multiplier >= 0, instead of C = 0.
   virtual bool one_sided() const = 0;
 
-  /// The points of its first side, then those of its second; all points of a side are on one part, or all of
-  /// the world.
+  /// The points of the first side, then the points of the second side. All points of a side are on one part,
+  /// or all are points of the world.
   const std::vector<Point>& points() const { return points_; }
   int n_first() const { return n_first_; }
   int n_points() const { return n_points_; }
 
-  /// x: one motion a point. The rows of out take the joint's sizes.
+  /// Computes the rows of the joint at time t (s). x: the motion of each point. out is resized.
   virtual void evaluate(double t, const PointMotion<double>* x, JointRows<double>& out) const = 0;
   virtual void evaluate(double t, const PointMotion<Dual<1>>* x, JointRows<Dual<1>>& out) const = 0;
-  /// C alone, at positions.
+  /// Returns C at positions x of the points.
   virtual VecMax<double, kMaxJointRows> gap(double t, const Vec3<double>* x) const = 0;
 
  private:
@@ -84,34 +85,40 @@ class Joint {
   double on_ = -std::numeric_limits<double>::infinity(), off_ = std::numeric_limits<double>::infinity();
 };
 
-/// A formula that is linear in x, without a constant and without t, says so by
+/// A formula that is linear in x, without a constant and without t, declares
 ///   static constexpr bool linear = true;
 template <class F, class = void>
 struct IsLinear : std::false_type {};
 template <class F>
 struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::linear> {};
 
-/// A formula of points with axes instead of points says so by
+/// A formula of points with axes declares
 ///   static constexpr bool framed = true;
-/// It has MaterialFrames `from` and `to`, of a side of four points; one of a single point has no axes; and
+/// It has MaterialFrames `from` and `to`. A side with axes has four points; a side with one point has no
+/// axes. Its formula is
+/// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const;
+/// @endcode
 template <class F, class = void>
 struct IsFramed : std::false_type {};
 template <class F>
 struct IsFramed<F, std::void_t<decltype(F::framed)>> : std::bool_constant<F::framed> {};
 
+/// Whether a formula has a function fault(), which returns a message for invalid numbers, else nullptr.
 template <class F, class = void>
 struct HasFault : std::false_type {};
 template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
-/// The joint of a formula F. F says, as static constants, `name` and `formula` in words, how many `rows` it
-/// has, how many points on its `first` and `second` side (none on the second: the world itself), and whether
-/// it is `one_sided`; and it has
+/// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
+/// rows; `first` and `second`, the numbers of points of its sides (second = 0: the world itself); and
+/// `one_sided`. Its formula is
+/// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;
-/// Formulas that scenes know also say in `keys` what of a JointSetting they use.
+/// @endcode
+/// Formulas for scenes also declare `keys`, the members of JointSetting that they use.
 template <class F>
 class JointOf final : public Joint {
  public:
@@ -130,7 +137,7 @@ class JointOf final : public Joint {
   template <class T>
   using Points = std::array<Vec3<T>, kPoints>;
 
-  /// The formula at the points.
+  /// Returns C at the points.
   template <class T>
   Vec<T, kRows> C(const Points<T>& x, const T& t) const {
     if constexpr (IsFramed<F>::value)
@@ -204,7 +211,7 @@ class JointOf final : public Joint {
     }
   }
 
-  /// dC/dx.
+  /// Returns dC/dx.
   template <class S>
   Eigen::Matrix<S, kRows, 3 * kPoints> slope(const S& t, const Points<S>& x) const {
     if constexpr (IsFramed<F>::value) {
@@ -222,7 +229,8 @@ class JointOf final : public Joint {
       return C_x;
     }
   }
-  /// The same by how points and axes move, and those by the points of the frames.
+  /// Returns dC/dx by the chain rule: dC by points and rotations of the axes, and these by the points of the
+  /// frames.
   template <class S>
   Eigen::Matrix<S, kRows, 3 * kPoints> framed_slope(const Points<S>& x) const {
     using D = Dual<12, S>;
@@ -241,17 +249,17 @@ class JointOf final : public Joint {
     C_x.template middleCols<3>(3 * F::first) += C_u.template middleCols<3>(6);
     return C_x;
   }
-  /// x + dx and the axes A + A [phi]x, dx and phi being the variables from `first` on.
+  /// Returns x + dx and the axes A + A [phi]x, where dx and phi are the dual variables from `first` on.
   template <class D, class S>
-  static Framed<D> varied(const Framed<S>& of, std::size_t first) {
+  static Framed<D> varied(const Framed<S>& frame, std::size_t first) {
     Framed<D> out;
     for (int i = 0; i < 3; ++i) {
-      out.x[i] = D::variable(of.x[i], static_cast<int>(first) + i);
+      out.x[i] = D::variable(frame.x[i], static_cast<int>(first) + i);
       for (int c = 0; c < 3; ++c) {
         const int next = (c + 1) % 3, last = (c + 2) % 3;
-        out.axes(i, c) = D(of.axes(i, c));
-        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(last)] = of.axes(i, next);
-        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(next)] = -of.axes(i, last);
+        out.axes(i, c) = D(frame.axes(i, c));
+        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(last)] = frame.axes(i, next);
+        out.axes(i, c).d[first + 3 + static_cast<std::size_t>(next)] = -frame.axes(i, last);
       }
     }
     return out;
@@ -263,7 +271,7 @@ class JointOf final : public Joint {
   }
 
   F formula_;
-  Eigen::Matrix<double, IsLinear<F>::value ? kRows : 0, 3 * kPoints> slope_;  ///< of a linear formula
+  Eigen::Matrix<double, IsLinear<F>::value ? kRows : 0, 3 * kPoints> slope_;  ///< dC/dx of a linear formula
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The joints that scenes know, by name: those of body/joints/all_joints.h.
+// The joints of scenes by name: those of body/joints/all_joints.h.
 #pragma once
 
 #include <memory>
@@ -14,15 +14,17 @@ struct JointInfo {
   const char* name;
   const char* formula;
   int rows;
-  JointKeys keys;  ///< what of a setting it uses
-  /// Parts of the setting must be prepared. Throws std::invalid_argument when the setting makes no joint.
+  JointKeys keys;  ///< members of JointSetting that it uses
+  /// Makes a joint. Parts of the setting must be prepared. Throws std::invalid_argument for an invalid
+  /// setting.
   std::unique_ptr<Joint> (*make)(std::string name, const JointSetting& setting);
 };
 
+/// Returns all types of joints.
 const std::vector<JointInfo>& all_joints();
 
-/// A joint of a type, "hinge" say. Throws std::invalid_argument likewise, and listing the types for an
-/// unknown one.
+/// Makes a joint of a type, for instance "hinge". Throws std::invalid_argument for an invalid setting, and
+/// for an unknown type with the list of types.
 std::unique_ptr<Joint> make_joint(const std::string& type, std::string name, const JointSetting& setting);
 
 }  // namespace pliant

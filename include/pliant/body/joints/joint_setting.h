@@ -1,5 +1,4 @@
-// How a joint is set up by the name of its type: what scenes say, and MultiBody's functions for common
-// joints.
+// The settings of a joint that is made by the name of its type, by scenes and by the functions of MultiBody.
 #pragma once
 
 #include <initializer_list>
@@ -12,22 +11,22 @@
 namespace pliant {
 
 struct JointSetting {
-  Point from, to;     ///< its points x_0 and x_1 (weld: x_0 and y_0)
-  double length = 0;  ///< of a rod or string, m
-  /// A direction at `to`, in the frame of its part at rest or of the world: normal, line or hinge pin.
+  Point from, to;     ///< the points x_0 and x_1 (weld: x_0 and y_0)
+  double length = 0;  ///< length of a rod or string, m
+  /// Direction at `to` in the frame of its part at rest, or in the world: normal, line or hinge pin.
   Vec3<double> axis{0, 0, 1};
-  /// The pin of a hinge at `from` likewise; the direction that `axis` has at time 0, the
-  /// parts undeformed, when not given.
+  /// Direction of the pin of a hinge at `from`, in the frame of its part at rest or in the world. Default:
+  /// the direction of `axis` at time 0 with undeformed parts.
   std::optional<Vec3<double>> from_axis{};
-  /// Orientation of the frame at `from` in that at `to`; as they stand at time 0, the parts
-  /// undeformed, when not given.
+  /// Orientation of the frame at `from` in the frame at `to`. Default: the orientation at time 0 with
+  /// undeformed parts.
   std::optional<Eigen::Quaterniond> rotation{};
 };
 
-/// What of a setting, beside the points, a type of joint uses.
+/// A member of JointSetting, besides the points, that a type of joint uses.
 enum class JointKey : unsigned { length = 1, axis = 2, from_axis = 4, rotation = 8 };
 
-/// A set of them.
+/// A set of JointKey.
 struct JointKeys {
   unsigned set = 0;
   constexpr JointKeys() = default;

@@ -1,5 +1,6 @@
-// A point on a straight line, which stands still in the world or moves with a part: an axis of it.
-//   C = (b_2, b_3) . (x_0 - x_1),   b the frame at x_1, whose first axis is the line
+// A point on a straight line, which is fixed in the world or in a part.
+//   C = (b_2, b_3) . (x_0 - x_1)
+// Here b is the frame at x_1; its first axis is the direction of the line.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>

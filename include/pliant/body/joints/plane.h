@@ -1,5 +1,6 @@
-// A point in a plane, which stands still in the world or moves with a part.
-//   C = n . (x_0 - x_1),   n the first axis of the frame at x_1
+// A point in a plane, which is fixed in the world or in a part.
+//   C = n . (x_0 - x_1)
+// Here n is the first axis of the frame at x_1.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>

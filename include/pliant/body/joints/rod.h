@@ -1,6 +1,6 @@
-// A massless rod: the distance of two points is its length l > 0. Where the points meet it has no direction,
-// and no force.
+// A massless rod: the distance of two points is its length l > 0.
 //   C = |x_0 - x_1| - l
+// While the two points coincide, the rod has no direction and no force.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct Rod {
   static constexpr bool one_sided = false;
   double length = 1;  ///< m
 
-  /// What is wrong with it, in words; nullptr if nothing is.
+  /// Returns a message if the length is invalid, else nullptr.
   const char* fault() const {
     return length > 0 && length < std::numeric_limits<double>::infinity() ? nullptr : "needs a length > 0";
   }

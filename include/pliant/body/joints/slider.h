@@ -1,6 +1,6 @@
-// A slider: a point on a line, without turning.
+// A slider: a point on a line, without relative rotation.
 //   C = ((b_2, b_3) . (x_0 - y_0), size times the rotation vector of b^T a)
-// a and b are the frames at x_0 and y_0; the first axis of b is the line.
+// Here a and b are the frames at x_0 and y_0; the first axis of b is the direction of the line.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>
@@ -16,7 +16,7 @@ struct Slider {
   static constexpr int rows = 5, first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
-  double size = 1;  ///< m, makes angles lengths
+  double size = 1;  ///< m; scales angles to lengths
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

@@ -1,6 +1,6 @@
-// An inextensible string: the distance of two points is at most its length l > 0; slack it does nothing, taut
-// it pulls.
+// An inextensible string: the distance of two points is at most its length l > 0.
 //   C = l - |x_0 - x_1| >= 0
+// A taut string pulls; a slack string has no force.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // A weld: two frames coincide.
-//   C = (x_0 - y_0, size times the rotation vector of b^T a),   a and b the frames at x_0 and y_0
+//   C = (x_0 - y_0, size times the rotation vector of b^T a)
+// Here a and b are the frames at x_0 and y_0.
 #pragma once
 
 #include <pliant/body/joints/joint_setting.h>
@@ -15,7 +16,7 @@ struct Weld {
   static constexpr int rows = 6, first = MaterialFrame::points, second = MaterialFrame::points;
   static constexpr bool one_sided = false, framed = true;
   MaterialFrame from, to;
-  double size = 1;  ///< m, makes angles lengths
+  double size = 1;  ///< m; scales angles to lengths
 
   template <class T>
   Vec<T, rows> C(const Framed<T>& a, const Framed<T>& b) const {

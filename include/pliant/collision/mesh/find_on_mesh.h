@@ -1,7 +1,7 @@
-// Contacts of a part without local deformation with a mesh: on the flat faces its low points, as on a plane;
-// on ridges and at corners what of them is deepest in the part, where the part's normal there lies between
-// those of the faces that meet. So the joints of a flat floor are not felt, and a ball rolls over a ridge
-// smoothly.
+// Contacts of a part without local deformation with an obstacle mesh. On a flat face of the mesh they are the
+// low points of the part, as over a plane. On a ridge or at a corner the contact is the point of the mesh
+// that is deepest inside the part, if the normal of the part there is between the normals of the faces that
+// meet. Thus edges inside a flat floor have no effect, and a ball rolls over a ridge smoothly.
 #pragma once
 
 #include <functional>
@@ -14,28 +14,27 @@
 
 namespace pliant {
 
-/// A part where it is.
+/// A part and its pose.
 struct PlacedSurface {
   const Part& part;
   const CollisionSurface& surface;
   const ParameterValues<double>& values;
-  const Vec3<double>& c;                    ///< of its frame, world
+  const Vec3<double>& c;                    ///< origin of the frame, m, world
   const Mat3<double>& R;                    ///< body to world
-  const std::optional<Vec3<double>>& axes;  ///< semi-axes of an ellipsoid
-  Eigen::AlignedBox3d box;                  ///< around it, world
-  /// Points of the surface, body frame; ellipsoids do without.
+  const std::optional<Vec3<double>>& axes;  ///< semi-axes of an ellipsoid, m
+  Eigen::AlignedBox3d box;                  ///< contains the part, world
+  /// Returns the sample points of the surface, body frame, m; not called for ellipsoids.
   std::function<const Eigen::Matrix3Xd&()> points;
 };
 
-/// What a search works with, kept from call to call: triangles near a part, and the faces, sharp edges and
-/// corners of these.
+/// Scratch storage of a search: the triangles near a part, and their faces, sharp edges and corners.
 struct MeshSearch {
   std::vector<int> triangles, faces, edges, vertices;
 };
 
-/// Adds the contacts whose gap is at most `most` (m): material of side a, x, normal and gap; the rest is the
-/// caller's.
-void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double most, MeshSearch& search,
+/// Appends the contacts whose gap is at most max_gap (m). Sets the material of side a, x, normal and gap; the
+/// caller sets the rest.
+void find_on_mesh(const PlacedSurface& a, const ObstacleMesh& mesh, double max_gap, MeshSearch& search,
                   std::vector<Contact>& found);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Contacts of parts that deform locally: their nodes on planes, their surfaces as meshes against obstacles
-// and other parts.
+// Contact search of parts that deform locally: their nodes against planes, and their surface meshes against
+// obstacles and other parts.
 #pragma once
 
 #include <map>
@@ -17,14 +17,14 @@ namespace pliant {
 
 class MeshFinder {
  public:
-  /// The model and its obstacles must outlive it.
+  /// model, obstacles: must outlive this object.
   MeshFinder(const Model& model, const std::vector<ObstacleMesh>& obstacles = {});
 
   bool empty() const { return meshes_.empty(); }
-  /// Where surfaces have gone through each other at a state and a time, s. Appends.
+  /// Appends the contacts of surfaces that overlap at a state and a time t (s).
   void find(const State& state, double t, std::vector<Contact>& found) const;
-  /// What a step from a state comes near to, on top of what is in `near` already. after: the state that it
-  /// has led to; nullptr of one to come.
+  /// Adds to a neighbourhood of a step of h seconds what the parts of this class may touch. after: the end of
+  /// a step that is done; nullptr for a coming step. reach: see ContactFinder::neighbourhood().
   void approach(const State& state, const State* after, double t, double h, double reach,
                 ContactFinder::Neighbourhood& near) const;
 
@@ -40,32 +40,35 @@ class MeshFinder {
     const ObstacleMesh* mesh;
     ContactRule rule;
   };
-  /// A ball that a part is in, and the vertices of its mesh (body frame, m) where they told it.
-  struct Around {
+  /// A ball that contains a part, and the vertices of its mesh (body frame, m) if the radius was computed
+  /// from all of them.
+  struct BoundingBall {
     int part;
     Vec3<double> c;
     double reach;
     Eigen::Matrix3Xd p;
   };
-  bool is_soft(int part) const;
+  bool deforms_locally(int part) const;
   ContactSide side(const PlacedMesh& placed, int part, const State& state, const MeshPoint& point,
                    const Vec3<double>& x) const;
-  std::map<int, Around> balls(const State& state, double t) const;
-  PlacedMesh place(const State& state, double t, const Around& ball) const;
-  /// act(one, other) for each two things of a map over parts that may touch: meshes, whose boxes meet.
+  std::map<int, BoundingBall> balls(const State& state, double t) const;
+  PlacedMesh place(const State& state, double t, const BoundingBall& ball) const;
+  /// Calls act(one, other, rule) for each pair of entries of a map over parts whose balls meet and that may
+  /// touch.
   template <class Thing, class F>
   void each_pair(const State& state, const std::map<int, Thing>& all, F&& act) const;
-  Vec3<double> carries(int part, double t, const Vec3<double>& x) const;
-  double own_way(const State& state, double t, const Around& ball) const;
-  /// Whether parts are deeper in each other than a step leads them; touches: of their meshes.
-  bool are_deep(const State& state, double t, const Around& one, const Around& other, const PlacedMesh& a,
-                const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
-  /// The way on which such parts leave each other as wholes.
-  Contact way_out(const State& state, double t, const Around& one, const Around& other, const PlacedMesh& a,
-                  const PlacedMesh& b) const;
+  Vec3<double> frame_velocity(int part, double t, const Vec3<double>& x) const;
+  double local_travel(const State& state, double t, const BoundingBall& ball) const;
+  /// Whether two parts overlap more deeply than the last step can have moved them. touches: of their meshes.
+  /// Seven parameters, because the caller has computed the balls and the meshes already.
+  bool is_deep_overlap(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
+                       const PlacedMesh& a, const PlacedMesh& b, const std::vector<MeshTouch>& touches) const;
+  /// Returns the contact that separates two such parts as wholes.
+  Contact separation_contact(const State& state, double t, const BoundingBall& one, const BoundingBall& other,
+                             const PlacedMesh& a, const PlacedMesh& b) const;
 
   const Model* model_;
-  std::map<int, ContactMesh> meshes_;  // of each part that needs one
+  std::map<int, ContactMesh> meshes_;  // mesh of each part that needs one
   std::vector<OnPlane> planes_;
   std::vector<OnObstacle> on_obstacles_;
   ContactRules rules_;

@@ -1,5 +1,5 @@
-// Where two triangle meshes have gone through each other: vertices of one behind triangles of the other, and
-// edges across edges.
+// Overlaps of two triangle meshes: vertices of one mesh behind triangles of the other, and pairs of edges
+// that have passed through each other.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// A mesh where it is, world.
+/// A mesh and the positions of its vertices in the world.
 struct PlacedMesh {
   const ContactMesh* mesh;
   Eigen::Matrix3Xd x;  ///< vertices, m
@@ -19,7 +19,7 @@ struct PlacedMesh {
   PlacedMesh(const ContactMesh& of, Eigen::Matrix3Xd at);
 };
 
-/// A point of a mesh between vertices, as many as are not -1.
+/// A point of a mesh as a weighted mean of up to three vertices; -1 marks an unused entry.
 struct MeshPoint {
   std::array<int, 3> vertex{-1, -1, -1};
   Vec3<double> weight = Vec3<double>::UnitX();
@@ -27,15 +27,16 @@ struct MeshPoint {
 
 struct MeshTouch {
   MeshPoint a, b;
-  Vec3<double> x;       ///< m
-  Vec3<double> normal;  ///< out of b, of length 1
-  double gap;           ///< negative, m
+  Vec3<double> x;       ///< m, world
+  Vec3<double> normal;  ///< unit vector out of b
+  double gap;           ///< m, negative
 };
 
-/// Appends them, in an order that depends on the meshes alone.
+/// Appends the overlaps of two meshes, in an order that depends on the meshes alone.
 void find_touches(const PlacedMesh& a, const PlacedMesh& b, std::vector<MeshTouch>& found);
-/// Likewise where b is an obstacle, whose points are not told. What is deeper behind it than this (m) came
-/// from elsewhere, and so did what faces the way a triangle does.
+/// Appends the overlaps of a mesh with an obstacle; the points of side b are not set for vertices of a.
+/// Vertices that are deeper behind the obstacle than `deepest` (m) are ignored: they came from another side.
+/// Ignored too are vertices whose outward direction agrees with the normal of the triangle.
 void find_touches(const PlacedMesh& a, const ObstacleMesh& b, double deepest, std::vector<MeshTouch>& found);
 
 }  // namespace pliant

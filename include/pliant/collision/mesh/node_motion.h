@@ -1,4 +1,4 @@
-// Velocities of the nodes of the mesh of a part that deforms locally.
+// Velocities of the mesh nodes of a part that deforms locally.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pliant {
 
-/// Of some nodes of a part, columns, m/s, world.
+/// Computes the velocities of some nodes of a part: one column for each node, m/s, world.
 void node_velocities(const Model& model, const State& state, int part, const std::vector<int>& nodes,
                      Eigen::Matrix3Xd& x_dot);
 

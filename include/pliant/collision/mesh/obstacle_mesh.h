@@ -1,5 +1,5 @@
-// An immobile triangle mesh as contact sees it: checked, its equal vertices one, with its edges, its flat
-// faces and a tree of boxes.
+// An immobile triangle mesh for contact search: checked, with equal vertices merged, and with its edges, its
+// flat faces and a tree of boxes.
 #pragma once
 
 #include <array>
@@ -15,18 +15,18 @@ namespace pliant {
 
 class ObstacleMesh {
  public:
-  /// vertices: m, world. triangles: columns of these, counter-clockwise seen from the side that is free; what
-  /// comes from the other side passes. Throws std::invalid_argument with the element and its place: a vertex
-  /// that is not finite or in no triangle, a triangle of no vertex or without area, an edge with more than
-  /// two triangles or with two that are turned against each other.
+  /// vertices: m, world. triangles: vertex numbers, counter-clockwise seen from the free side; parts pass
+  /// through a triangle from its other side. Throws std::invalid_argument that names the element and its
+  /// position for a vertex that is not finite or in no triangle, a triangle with an unknown vertex or without
+  /// area, and an edge with more than two triangles or with two triangles of opposite orientation.
   ObstacleMesh(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
 
   struct Edge {
     std::array<int, 2> vertex;    ///< triangle[0] is on its left, seen from the free side
-    std::array<int, 2> triangle;  ///< the second is -1 at the border of an open mesh
-    bool sharp;                   ///< what is outside of both faces may touch it: a ridge, or the border
+    std::array<int, 2> triangle;  ///< the second one is -1 at the border of an open mesh
+    bool sharp;                   ///< a ridge or the border: a part outside both faces may touch it
   };
-  /// Triangles that are connected and in one plane.
+  /// A set of connected triangles in one plane.
   struct Face {
     Vec3<double> point, normal;
   };
@@ -34,45 +34,45 @@ class ObstacleMesh {
   const Eigen::Matrix3Xd& vertices() const { return x_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
   const std::vector<Edge>& edges() const { return edges_; }
-  /// Of the corners 0 to 1, 1 to 2 and 2 to 0 of a triangle.
+  /// Returns the edges of a triangle between its corners 0 and 1, 1 and 2, 2 and 0.
   const std::array<int, 3>& edges_of(int triangle) const { return edges_of_[at(triangle)]; }
   Vec3<double> normal(int triangle) const { return normals_.col(triangle); }
-  /// Along an edge, of length 1.
+  /// Unit vector along an edge.
   Vec3<double> along(const Edge& edge) const {
     return (x_.col(edge.vertex[1]) - x_.col(edge.vertex[0])).normalized();
   }
   const std::vector<Face>& faces() const { return faces_; }
   int face_of(int triangle) const { return face_of_[at(triangle)]; }
-  /// Numbers of the edges that end in a vertex; empty where none of them is sharp.
+  /// Returns the edges that end in a vertex; empty if none of them is sharp.
   const std::vector<int>& corner(int vertex) const { return corners_[at(vertex)]; }
-  /// Whether a direction, of length 1, at an edge or a corner points away from the faces that meet there, but
-  /// for this sine.
-  bool leads_out(const Edge& edge, const Vec3<double>& direction, double sine) const;
-  bool leads_out(int vertex, const Vec3<double>& direction, double sine) const;
-  /// Whether it has no border.
+  /// Whether a unit vector at an edge or a corner points away from all faces that meet there. `sine` is the
+  /// tolerance, as the sine of an angle.
+  bool points_outward(const Edge& edge, const Vec3<double>& direction, double sine) const;
+  bool points_outward(int vertex, const Vec3<double>& direction, double sine) const;
+  /// Whether the mesh has no border.
   bool closed() const { return closed_; }
-  /// Whether it is flat and has two sides.
+  /// Whether the mesh is flat and has two sides.
   bool is_plate() const { return closed_ && faces_.size() == 2; }
   const Eigen::AlignedBox3d& box() const { return nodes_.front().box; }
 
-  /// Triangles whose boxes meet a box, in order; `found` is overwritten.
+  /// Finds the triangles whose boxes meet a box, in ascending order; `found` is overwritten.
   void query(const Eigen::AlignedBox3d& box, std::vector<int>& found) const;
-  /// The point of a triangle that is nearest to x.
+  /// Returns the point of a triangle that is nearest to x.
   Vec3<double> nearest(int triangle, const Vec3<double>& x) const;
-  /// Whether any triangle is nearer to x than this, m.
+  /// Whether some triangle is at most this distance (m) away from x.
   bool comes_near(const Vec3<double>& x, double distance) const;
 
  private:
   struct Node {
     Eigen::AlignedBox3d box;
-    int first, count;  ///< in order_; its children follow it at once and at `second` when it has no triangles
-    int second;
+    int first, count;  ///< range of order_ for a leaf; count is 0 for an inner node
+    int second;        ///< second child of an inner node; the first child follows its parent
   };
   void weld(const Eigen::Matrix3Xd& vertices, const Eigen::Matrix3Xi& triangles);
-  void lay_edges();
-  void lay_faces();
+  void build_edges();
+  void build_faces();
   void mark_sharp();
-  void lay_tree(int first, int count);
+  void build_tree(int first, int count);
 
   Eigen::Matrix3Xd x_, normals_;
   Eigen::Matrix3Xi triangles_;

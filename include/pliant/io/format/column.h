@@ -1,4 +1,4 @@
-// A column of a table that a run writes: what layout.json says of it.
+// The description of a table column, as written to layout.json.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@ namespace pliant {
 
 struct Column {
   std::string name;
-  std::string unit;     ///< "1" for none
-  std::string meaning;  ///< empty where name and unit say it
+  std::string unit;     ///< "1" for a dimensionless number
+  std::string meaning;  ///< empty if the name is sufficient
 };
 
 }  // namespace pliant

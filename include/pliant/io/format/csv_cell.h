@@ -1,10 +1,11 @@
+// Text as a cell of a CSV file.
 #pragma once
 
 #include <string>
 
 namespace pliant {
 
-/// A cell of a CSV file: in quotes where it has to be.
+/// Returns a text as a cell of a CSV file, quoted if it contains a comma, a quote or a line break.
 inline std::string csv_cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

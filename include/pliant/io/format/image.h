@@ -1,4 +1,4 @@
-// A picture in memory: what the renderer draws and the PNG writer takes.
+// A picture in memory: the output of the renderer and the input of the PNG writer.
 #pragma once
 
 #include <cstdint>

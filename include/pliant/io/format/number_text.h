@@ -1,4 +1,4 @@
-// Numbers as text: the shortest decimals that read back as the same number, whatever the locale.
+// Numbers as text: the shortest decimal text that reads back exactly, independent of the locale.
 #pragma once
 
 #include <charconv>
@@ -20,13 +20,13 @@ inline std::string number_text(double x) {
   append_number(text, x);
   return text;
 }
-/// A few significant digits, for people.
+/// Returns a number rounded to a few significant digits, for messages.
 inline std::string rounded_text(double x, int significant = 4) {
   char digits[32];
   return {digits,
           std::to_chars(digits, digits + sizeof digits, x, std::chars_format::general, significant).ptr};
 }
-/// "1 frame", "2 frames".
+/// Returns a number with its noun: "1 frame", "2 frames".
 inline std::string count_text(std::int64_t n, const std::string& noun) {
   std::string text;
   append_number(text, n);

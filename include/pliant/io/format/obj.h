@@ -1,4 +1,4 @@
-// Wavefront OBJ files: one group a part, vertex normals, colours through a material file.
+// Wavefront OBJ files: one group per mesh, vertex normals, colours through a material file.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace pliant {
 
-/// The text of a file with these meshes. Positions in the shortest form that reads back exactly, normals with
-/// six decimals. material_file: name of the file with the colours, empty for none.
+/// Returns the text of a file with these meshes: positions in the shortest form that reads back exactly,
+/// normals with six decimals. material_file: name of the file with the colours; empty for none.
 std::string obj_text(const std::vector<NamedMesh>& meshes, const std::string& material_file = "");
-/// The text of the material file: one material a mesh, called like it.
+/// Returns the text of the material file: one material per mesh, with the name of the mesh.
 std::string mtl_text(const std::vector<NamedMesh>& meshes);
 
-/// Writes a file (whole or absent). Throws std::system_error.
+/// Writes an OBJ file (whole or absent). Throws std::system_error.
 void write_obj(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& material_file = "");
-/// The surface of one part of a simulation as it is now; folders of the path are made.
+/// Writes the surface of one part at the current state of a simulation. Creates the folders of the path.
 void write_obj(const std::filesystem::path& path, const Simulation& simulation, const Part& part,
                const Surface& surface);
 

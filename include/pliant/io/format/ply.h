@@ -1,5 +1,5 @@
-// Binary PLY files of a frame: one closed mesh a part, with colours and the number of the part at every
-// vertex. A vertex has one normal here (the mean of its corners'), so that meshes stay closed.
+// Binary PLY files of a frame. Each vertex has the colour and the number of its mesh, and one normal (the
+// mean over its triangles), so that closed meshes stay closed.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,12 @@
 
 namespace pliant {
 
-/// The bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar: of the part), part
-/// (int); triangles. values: the name under which the values of the vertices follow (double), empty for none.
+/// Returns the bytes of a file: vertices x y z (double), nx ny nz (float), red green blue (uchar), part (int:
+/// index of the mesh); then triangles. values: name of a further property with the values of the vertices
+/// (double); empty for none.
 std::string ply_bytes(const std::vector<NamedMesh>& meshes, const std::string& values = "");
 
-/// Writes a file (whole or absent). Throws std::system_error.
+/// Writes a PLY file (whole or absent). Throws std::system_error.
 void write_ply(const std::filesystem::path& path, const std::vector<NamedMesh>& meshes,
                const std::string& values = "");
 

@@ -1,4 +1,4 @@
-// Writes pictures as PNG files.
+// Writing pictures as PNG files.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,12 @@
 
 namespace pliant {
 
-/// 8 bits a channel, sRGB; the same image always gives the same bytes. The file is whole or absent
-/// (io/whole_file.h). Throws std::invalid_argument when the image's size does not fit its bytes,
-/// std::system_error or std::runtime_error with path and reason when the file cannot be written.
+/// Writes a picture with 8 bits per channel, sRGB. Equal images give equal bytes. The file is whole or absent
+/// (io/format/whole_file.h). Throws std::invalid_argument if the size of the image does not match its bytes,
+/// std::system_error or std::runtime_error with path and reason if the file cannot be written.
 void write_png(const Image& image, const std::filesystem::path& path);
 
-/// Version of the PNG library in use.
+/// Returns the version of the PNG library in use.
 const char* png_library_version();
 
 }  // namespace pliant

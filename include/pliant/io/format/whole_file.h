@@ -1,6 +1,6 @@
-// Files that are whole or absent: written under a temporary name beside the target, closed with a check, then
-// renamed. A reader sees the old file or the new one, never a part; a symbolic link of the target's name is
-// replaced, not followed.
+// Files that are whole or absent. A file is written under a temporary name in the folder of the target,
+// closed with a check, and then renamed. A reader sees either the old or the new file, never a part. A
+// symbolic link with the name of the target is replaced, not followed.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,13 @@
 
 namespace pliant {
 
-/// Whether a file must reach the disk before it takes its name: yes survives a power cut, no is faster and
+/// Whether a file must reach the disk before it is renamed: yes survives a power cut; no is faster and
 /// survives the end of the process.
 enum class Durable { no, yes };
 
-/// A file that is being written piece by piece. Every member throws std::system_error with path and reason
-/// (of a full disk also the bytes needed and free); the target is then as it was, and the temporary file goes
-/// away.
+/// A file that is written piece by piece. All members throw std::system_error with path and reason (for a
+/// full disk also the needed and free bytes). The target is then unchanged, and the temporary file is
+/// removed.
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path target);
@@ -25,7 +25,7 @@ class WholeFile {
 
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Closes the file and gives it the target's name.
+  /// Closes the file and renames it to the target.
   void become_target(Durable durable = Durable::no);
 
  private:
@@ -34,7 +34,7 @@ class WholeFile {
   bool renamed_ = false;
 };
 
-/// Makes `path` hold exactly these bytes, replacing a file of that name.
+/// Writes a file with exactly these bytes; an existing file is replaced.
 void write_whole_file(const std::filesystem::path& path, const void* bytes, std::size_t size,
                       Durable durable = Durable::no);
 

@@ -1,5 +1,5 @@
-// Which program wrote a file: a run goes on only with the build that began it, since only that gives the same
-// bits.
+// The identity of the program that wrote a run. A run is resumed only by the build that began it, because
+// another build may give other bits.
 #pragma once
 
 #include <string>
@@ -8,8 +8,10 @@
 
 namespace pliant {
 
-/// Name and value: what may change the last bits of a result, from the version to the processor.
+/// Names and values of all properties that may change the last bits of a result: version, compiler,
+/// processor, ...
 using BuildInfo = std::vector<std::pair<std::string, std::string>>;
+/// Returns the properties of this program.
 BuildInfo build_info();
 
 }  // namespace pliant

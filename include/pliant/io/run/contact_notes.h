@@ -1,4 +1,4 @@
-// What is to be said of contacts: how deep bodies are in each other.
+// Notes of a run about overlaps of bodies in contact.
 #pragma once
 
 #include <array>
@@ -10,19 +10,21 @@
 
 namespace pliant {
 
-/// The deepest contact at the state of a simulation, as a share of the size of the smaller of its parts;
-/// 0 where nothing touches.
+/// Returns the depth of the deepest contact at the state of a simulation, relative to the size of its smaller
+/// part; 0 without contact.
 double deepest_share(const Simulation& simulation);
 
-/// Overlaps below this share of the size of the smaller part are told by nothing but run.json.
-inline constexpr double kToldOverlap = 1e-3;
+/// Overlaps above this depth, relative to the size of the smaller part, are reported by a note. Smaller ones
+/// appear only as "max_depth" in run.json.
+inline constexpr double kReportedOverlap = 1e-3;
 
-/// Two things that touch: their parts, the second -1 of a plane or an obstacle, and the numbers of these.
+/// Two things in contact: part, part (-1 if none), plane (-1 if none), obstacle (-1 if none).
 using TouchingPair = std::array<int, 4>;
 
-/// Bodies that overlap at the state of a simulation by more than kToldOverlap, in words, the deepest contact
-/// of each pair that was not told of, with the joints that may hold it there; of many the deepest ones and
-/// how many there are. told: gets them; of each once.
-std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& told);
+/// Returns notes on the pairs that overlap by more than kReportedOverlap at the state of a simulation: the
+/// deepest contact of each pair that is not yet in `reported`, with a joint that may keep the overlap. If
+/// there are many, only the deepest ones are listed, with the number of the others. The pairs are added to
+/// `reported`.
+std::vector<std::string> overlap_notes(const Simulation& simulation, std::set<TouchingPair>& reported);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// How wrong a run is: it is run again, to a tenth of its tolerance, with half the steps where bodies lie on
-// each other, or with half its step, and compared at every recorded time.
+// The error estimate of a run. The run is repeated more accurately and compared at every recorded time: with
+// a tenth of its tolerance and half the longest contact step, or with half its fixed step.
 #pragma once
 
 #include <string>
@@ -10,27 +10,29 @@
 
 namespace pliant {
 
-/// The largest differences over all parts and recorded times; rates likewise.
+/// The largest absolute differences between a run and its repetition, over all parts and recorded times.
 struct ErrorEstimate {
-  double place = 0;                ///< of frames, m
+  double place = 0;                ///< position of body frames, m
   double rotation = 0;             ///< rad
-  double length = 0;               ///< of parameters that are lengths, m
-  double parameter = 0;            ///< of all others
-  double displacement = 0;         ///< local, of coordinates of nodes or modes, in their unit
-  double velocity = 0;             ///< of frames, m/s
+  double length = 0;               ///< parameters that are lengths, m
+  double parameter = 0;            ///< other parameters, rad or 1
+  double displacement = 0;         ///< local coordinates (nodes, polynomials or modes), in their unit
+  double velocity = 0;             ///< of body frames, m/s
   double angular_velocity = 0;     ///< rad/s
-  double energy = 0;               ///< kinetic and potential, J
-  double joint_force = 0;          ///< on the parts of joints, N
+  double energy = 0;               ///< total energy, J
+  double joint_force = 0;          ///< N
   double joint_torque = 0;         ///< N m
-  double gap = 0;                  ///< of joints of the run that hold, m
-  double tolerance = 0, step = 0;  ///< of the run that it was compared with; one of them is 0
+  double gap = 0;                  ///< largest gap of a closed joint of the run, m
+  double tolerance = 0, step = 0;  ///< of the repetition; one of them is 0
 };
 
-/// Throws std::invalid_argument of a scene whose tolerance is the least that there is.
+/// Throws std::invalid_argument if the scene has the smallest possible tolerance, so that no more accurate
+/// run exists.
 void require_better_run(const Scene& scene);
 
-/// integrator: name of the method of the run. Throws what steps of a simulation throw, RecordingMismatch, and
-/// as require_better_run() does.
+/// Repeats a run more accurately and returns the differences. integrator: name of the method of the run;
+/// step: its fixed step, s; run: its recording. Throws as the steps of a simulation, RecordingMismatch, and
+/// as require_better_run().
 ErrorEstimate estimate_error(Scene& scene, const std::string& integrator, double step, const Recording& run,
                              int threads, Progress& progress);
 

@@ -1,4 +1,4 @@
-// What is to be said of a system of joints, before a run and at its end.
+// Notes about joints: redundant constraints, open joints, impulses of engaging joints.
 #pragma once
 
 #include <string>
@@ -8,23 +8,25 @@
 
 namespace pliant {
 
-/// Which joints have rows that follow from those of others at the state of the simulation, in words, and
-/// which such rows disagree with those others, or have no direction; nothing where none has. Rows that follow
-/// change no motion, and the forces are shared out as if they were not there.
+/// Returns notes on the constraint rows at the state of the simulation that are redundant, that contradict
+/// other rows, or that have no direction; empty if there are none. Redundant rows change no motion; the
+/// constraint forces are those without them.
 std::vector<std::string> redundancy_notes(const Simulation& simulation);
 
-/// How many joints have yet to close, and the widest of them, in words; empty when none has.
+/// Returns a note with the number of open joints and the widest gap, or an empty text if all joints are
+/// closed.
 std::string open_joints_note(const Simulation& simulation);
 
-/// The impulses of joints that took hold of moving parts, from number `first` of simulation.engage_impulses()
-/// on, in words: of each moment the largest; and those of paths whose rate jumps, of each joint the first.
-std::vector<std::string> hold_notes(const Simulation& simulation, std::size_t first);
+/// Returns notes on the impulses of simulation.engage_impulses() from number `first` on: for joints that
+/// engage, the largest impulse of each time; for paths whose velocity jumps, the first impulse of each joint.
+std::vector<std::string> engage_notes(const Simulation& simulation, std::size_t first);
 
-/// How the systems of the joints are solved: "blocks", "augmented", "blocks and augmented", or nothing.
+/// Returns the solvers of the joints: "blocks", "augmented", "blocks and augmented", or an empty text.
 std::string solver_note(const Model& model);
 
-/// Widest gaps at the state of a simulation, m; 0 where there is no such joint. A joint counts as closed when
-/// it is held so by projection, and without projection when its gap is one that would be (kClosedGap).
+/// Widest gaps at the state of a simulation, m; 0 if there is no such joint. With projection, a joint is
+/// closed if its mode is; without projection, a joint with a gap of at most kClosedGap lengths of its smaller
+/// part is closed too.
 struct Gaps {
   double closed = 0, open = 0;
 };

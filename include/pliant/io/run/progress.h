@@ -1,4 +1,4 @@
-// How a long task tells how far it is; what is shown of it is up to the program.
+// The interface by which a long task reports its progress; the program decides what to display.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// Thrown by Progress::advance() to end a task early; what is finished stays.
+/// Thrown by Progress::advance() to end a task early; finished files remain.
 class Interrupted : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -14,12 +14,12 @@ class Interrupted : public std::runtime_error {
 class Progress {
  public:
   virtual ~Progress() = default;
-  /// A stage begins: `total` of `unit` will be done ("s" of simulated time, "frames").
+  /// Called when a stage begins. total: amount of work in `unit` ("s" of simulated time, "frames").
   virtual void begin(const std::string& /*stage*/, double /*total*/, const std::string& /*unit*/) {}
-  /// So much is done; called often, must be cheap.
+  /// Called with the amount of work done since begin(). It is called often and must be cheap.
   virtual void advance(double /*done*/) {}
   virtual void end() {}
-  /// Something the user should read.
+  /// Called with a text that the user should read.
   virtual void note(const std::string& /*text*/) {}
 };
 

@@ -1,5 +1,5 @@
-// Runs a scene into a folder: simulates, records, and keeps run.json true. Everything here happens without a
-// GL library.
+// Running a scene into a folder: simulation, recording, and the run record run.json. No graphics library is
+// needed.
 #pragma once
 
 #include <chrono>
@@ -17,45 +17,47 @@
 #include <pliant/io/run/run_folder.h>
 #include <pliant/io/run/run_record.h>
 #include <pliant/scene/scene.h>
+#include <pliant/simulate/stable_step.h>
 
 namespace pliant {
 
 struct RunOptions {
   std::filesystem::path folder;
   Existing existing = Existing::refuse;
-  int threads = 0;                   ///< 0: as many as the scene and the machine have a use for
-  std::string scene_file;            ///< path it was read from, "-" for standard input; empty for none
+  int threads = 0;                   ///< 0: chosen by automatic_threads()
+  std::string scene_file;            ///< path of the scene, "-" for standard input; empty for none
   std::vector<std::string> command;  ///< the command line, for run.json
-  std::string graphics;              ///< what draws pictures, for run.json; empty without
-  std::function<bool()> stop;        ///< asked after every step; true ends the run in good order
+  std::string graphics;              ///< graphics library, for run.json; empty without pictures
+  std::function<bool()> stop;  ///< called before every step; true ends the run so that it can be resumed
 };
 
-/// A run in its folder. The scene's end, step, frame rate, integrator and picture size are what the run uses;
-/// they may be changed before it begins.
+/// A run in its folder. It uses end, step, tolerance, frame rate, integrator and picture size of the scene,
+/// which may be changed before the run is constructed.
 class Run {
  public:
-  /// Prepares the model first, then makes, locks and begins the folder (or, resuming, reads it). Throws
-  /// std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming another scene, build,
-  /// step, method or frame rate), std::system_error. The scene must outlive the run.
+  /// Prepares the model, then creates and locks the folder and records the first state; or, resuming, reads
+  /// the folder. Throws std::invalid_argument (a bad scene), OutputRefused, RecordingMismatch (resuming with
+  /// another scene, build, step, method or frame rate), std::system_error. The scene must outlive the run.
   Run(Scene& scene, RunOptions options, Progress& progress);
   ~Run();
   Run(const Run&) = delete;
   Run& operator=(const Run&) = delete;
 
-  /// Steps to the end and writes trajectory.csv. False when `stop` ended it: the last state is recorded and
-  /// the run can be resumed. Throws StepFailure (the last good state is then recorded),
+  /// Steps to the end and writes trajectory.csv. Returns false if `stop` ended the run; the last state is
+  /// then recorded and the run can be resumed. Throws StepFailure (the last good state is then recorded),
   /// std::system_error.
   bool simulate();
 
-  /// A stage after the simulation, its wall time and files noted in run.json: write("meshes",
-  /// "meshes/frame_*.obj", ...).
+  /// Performs a task after the simulation and records its wall time and files in run.json: write("meshes",
+  /// {"meshes/frame_*.obj"}, ...).
   void write(const std::string& stage, const std::vector<std::string>& files,
              const std::function<void()>& task);
 
-  /// Runs it again more exactly and notes how far the two are apart; a stage like those of write().
+  /// Estimates the error of the run (pliant::estimate_error) and records it in run.json; a stage as in
+  /// write().
   const ErrorEstimate& estimate_error();
 
-  /// Writes the last word into run.json: complete, or stopped with a message.
+  /// Writes the final status to run.json: complete, or stopped with a message.
   void finish(RunRecord::Status status, const std::string& message = "");
 
   const Scene& scene() const { return *scene_; }
@@ -63,25 +65,33 @@ class Run {
   const FrameSchedule& schedule() const { return schedule_; }
   const std::filesystem::path& folder() const { return folder_->path(); }
   const RunRecord& record() const { return record_; }
-  /// The states recorded so far.
+  /// Returns the states recorded so far.
   Recording recording() const { return {folder_->path(), simulation_->model()}; }
 
  private:
-  void start_cold();
-  void begin_again();
+  /// Writes the first state and the files of a new run.
+  void begin_recording();
+  /// Checks that the recorded run fits to the scene, and sets the simulation to its last state.
+  void resume_recording();
+  void check_resumable() const;
+  void set_last_state(const Recording& recorded, std::int64_t& keep);
+  void describe(const StableStep& stable);
+  void note_setup(const StableStep& stable);
+  void list_files();
   void record_state();
   bool at_end() const;
-  bool take_step();
+  bool step_once();
   void step_to_end();
   void flush(bool to_disk = false);
   void save(bool to_disk = false);
-  /// What people read: trajectory.csv, and what touched where the scene asks for it.
+  /// Writes trajectory.csv and, if the scene asks for them, the tables of contacts.
   void write_tables();
   void write_record();
   void fail(const std::string& message) noexcept;
+  /// Shows a note and adds it to run.json, unless it is there already.
   void note(const std::string& text);
   void note_redundancy();
-  void note_holds();
+  void note_engagements();
   void note_turns();
 
   Scene* scene_;
@@ -93,22 +103,24 @@ class Run {
   std::unique_ptr<RecordingWriter> writer_;
   std::unique_ptr<ContactRecordingWriter> contacts_;  // where the scene asks for them
   RunRecord record_;
-  double recorded_time_ = -1;                           // of the last recorded state
-  std::size_t told_holds_ = 0;                          ///< of the impulses of joints that took hold
-  std::set<std::string> told_redundant_, told_turned_;  // texts; names of parts
-  std::set<TouchingPair> told_overlaps_;
-  std::vector<bool> told_acting_;  ///< the joints that acted when redundant rows were told of
-  StepCounters counted_steps_;     // of the sessions before
-  Counters counted_work_;
+  double recorded_time_ = -1;  // of the last recorded state, s
+  // Reported in notes so far: impulses of engaging joints, texts on redundant constraints, parts whose
+  // surface rotates too far, overlapping pairs, and the acting joints at the last check of redundancy.
+  std::size_t reported_impulses_ = 0;
+  std::set<std::string> reported_redundant_, reported_turned_;
+  std::set<TouchingPair> reported_overlaps_;
+  std::vector<bool> reported_acting_;
+  StepCounters earlier_steps_;  // of earlier sessions of a resumed run
+  Counters earlier_counters_;
   std::chrono::steady_clock::time_point saved_;
   bool stopped_ = false;
 };
 
-/// The steps and frames of a scene.
+/// Returns the steps and frames of a scene.
 FrameSchedule schedule_of(const Scene& scene);
 
-/// As many threads as the parts of a scene have a use for, at most what the machine has; results do not
-/// depend on it. Prepares the parts, and throws what that throws.
+/// Returns the number of threads that the parts of a scene can use, at most that of the machine. Results do
+/// not depend on it. Prepares the parts and throws as Part::prepare().
 int automatic_threads(Scene& scene);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// The folder of a run: never shared by two runs, never mixed with files of another, never over anything a run
-// did not write.
+// The folder of a run. Two runs never share a folder, and a run never overwrites files that a run did not
+// write.
 #pragma once
 
 #include <filesystem>
@@ -8,23 +8,23 @@
 
 namespace pliant {
 
-/// The folder would have to be overwritten, or is in use.
+/// Thrown if files would have to be overwritten or the folder is in use.
 class OutputRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 enum class Existing {
   refuse,  ///< a folder that is not empty is refused
-  force,   ///< the files of the run in it are removed, and nothing else
-  resume,  ///< it must hold a run
+  force,   ///< the files of the run in it are removed, but no other files
+  resume,  ///< the folder must contain a run
 };
 
-/// Holds the folder: while it lives, a lock file with the number of the process keeps other runs out.
+/// A locked folder. During its lifetime a lock file with the process number excludes other runs.
 class RunFolder {
  public:
-  /// Makes the folder and those above it. scene: the file that is read, which must not lie in a folder to be
-  /// emptied; may be empty. Throws OutputRefused (not empty, a file, a symbolic link, in use, not a run's),
-  /// std::system_error.
+  /// Creates the folder and its parents, and locks it. scene: path of the scene file, which must not be in a
+  /// folder whose files are removed; may be empty. Throws OutputRefused (not empty, a file, a symbolic link,
+  /// in use, not a folder of a run), std::system_error.
   RunFolder(std::filesystem::path folder, Existing existing, const std::filesystem::path& scene = {});
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -40,8 +40,8 @@ class RunFolder {
   std::unique_ptr<Lock> lock_;
 };
 
-/// Makes a folder inside a run's folder. Throws OutputRefused when something else has its name (a symbolic
-/// link counts).
+/// Creates a folder inside the folder of a run. Throws OutputRefused if a file or a symbolic link has its
+/// name.
 void make_subfolder(const std::filesystem::path& folder);
 
 }  // namespace pliant

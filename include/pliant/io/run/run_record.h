@@ -1,5 +1,5 @@
-// run.json: what a run was asked to do, how far it came, what it cost and what was noticed. Rewritten whole
-// while the run goes on, so that its status always tells the truth about the files beside it.
+// run.json: the options of a run, its progress, its cost and its notes. The file is replaced as a whole
+// during the run, so that its status always agrees with the other files of the folder.
 #pragma once
 
 #include <cstdint>
@@ -20,61 +20,62 @@ struct RunRecord {
   enum class Status { running, complete, stopped, failed };
 
   Status status = Status::running;
-  std::string message;  ///< why it stopped or failed
+  std::string message;  ///< reason of stopped or failed
 
-  // What was asked.
+  // Options.
   BuildInfo build;
-  std::vector<std::string> command;  ///< the command line, for people
+  std::vector<std::string> command;  ///< the command line
   std::string scene;                 ///< name
   std::string scene_file;
-  std::vector<std::string> overrides;  ///< of the scene, "/json/pointer=value"
+  std::vector<std::string> overrides;  ///< assignments "/json/pointer=value" applied to the scene
   std::uint64_t scene_hash = 0;
-  double end = 0;         ///< s, as asked
-  double asked_step = 0;  ///< s
-  double step = 0;        ///< s, as taken: asked_step, or a little less so that steps fill the run
-  double tolerance = 0;   ///< of the error of steps that find their own length, both above are 0 then; or 0
-  double frame_rate = 0;  ///< 1/s
-  std::string integrator, asked_integrator;  ///< the latter may be kAutomatic
+  double end = 0;         ///< requested end time, s
+  double asked_step = 0;  ///< requested fixed step, s; 0 with a tolerance
+  double step = 0;  ///< fixed step in use, s: asked_step, or slightly less so that steps divide the run; or 0
+  double tolerance = 0;                      ///< bound on the error of a step; 0: fixed steps
+  double frame_rate = 0;                     ///< 1/s
+  std::string integrator, asked_integrator;  ///< method in use; requested method, which may be kAutomatic
   std::string joint_solver;                  ///< "blocks", "augmented", both, or empty without joints
   int threads = 1;
-  int width = 0, height = 0;  ///< of pictures
-  std::string graphics;       ///< library that drew them; empty without
+  int width = 0, height = 0;  ///< size of pictures, pixels
+  std::string graphics;       ///< graphics library of the pictures; empty without pictures
 
-  // How far it came.
-  std::int64_t steps = 0, steps_done = 0;
-  double time = 0;          ///< of the last state, s
-  std::int64_t states = 0;  ///< recorded
-  int resumed = 0;          ///< how often it was gone on with
+  // Progress.
+  std::int64_t steps = 0, steps_done = 0;  ///< of the whole run (0 with a tolerance); done so far
+  double time = 0;                         ///< of the last state, s
+  std::int64_t states = 0;                 ///< number of recorded states
+  int resumed = 0;                         ///< number of times the run was resumed
 
-  // What it cost, over all resumptions.
-  std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage
+  // Cost, summed over all sessions of a resumed run.
+  std::vector<std::pair<std::string, double>> seconds;  ///< wall time of each stage, s
   StepCounters step_counters;
   Counters counters;
 
-  // What was noticed.
-  double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest, s
-  double max_balance_error = 0;                                  ///< J, largest |balance| at a recorded state
-  double max_energy = 0;                                         ///< J, largest |energy| at a recorded state
-  double max_kinetic = 0;                                        ///< J
-  double max_gap = 0;                                            ///< m, of a closed joint at a recorded state
-  double max_depth = 0;                ///< of contacts at a recorded state, in sizes of the smaller part
-  double open_gap = 0;                 ///< m, widest of the joints that have yet to close at the last state
-  int asleep = 0;                      ///< parts that sleep in the last state
-  std::optional<ErrorEstimate> error;  ///< where it was asked for
-  std::vector<std::string> held;       ///< parameters that had no inertia and were held
-  std::vector<std::string> skipped;    ///< what the scene did not need
-  std::vector<std::string> notes;      ///< warnings and choices
-  std::vector<std::string> files;      ///< written, relative to the folder; series as "meshes/frame_*.obj"
+  // Monitors and notes. A balance error is relative to the energies that move: compare it with max_kinetic
+  // and with the range of the energies, not with max_energy, whose zero is arbitrary.
+  double stable_step = std::numeric_limits<double>::infinity();  ///< predicted largest stable step, s
+  double max_balance_error = 0;                                  ///< largest |balance| at a recorded state, J
+  double max_energy = 0;   ///< largest |total energy| at a recorded state, J
+  double max_kinetic = 0;  ///< largest kinetic energy at a recorded state, J
+  double max_gap = 0;      ///< largest gap of a closed joint at a recorded state, m
+  double max_depth = 0;    ///< largest contact depth at a recorded state / size of the smaller part
+  double open_gap = 0;     ///< widest gap of an open joint at the last state, m
+  int asleep = 0;          ///< number of sleeping parts at the last state
+  std::optional<ErrorEstimate> error;  ///< if requested
+  std::vector<std::string> held;       ///< parameters without inertia, which were kept constant
+  std::vector<std::string> skipped;    ///< computations that the scene did not need
+  std::vector<std::string> notes;      ///< warnings and automatic choices
+  std::vector<std::string> files;  ///< written files, relative to the folder; series as "meshes/frame_*.obj"
 
   /// Adds to the wall time of a stage.
   void add_seconds(const std::string& stage, double seconds);
-  /// Adds a file or series once.
+  /// Adds a file or a series of files, unless it is listed already.
   void add_file(const std::string& name);
 };
 
-/// Throws std::system_error.
+/// Writes run.json (whole or absent). Throws std::system_error.
 void write_run_record(const std::filesystem::path& file, const RunRecord& record);
-/// Throws FileError when there is none, RecordingMismatch when it is damaged.
+/// Reads run.json. Throws FileError if there is none, RecordingMismatch if it is damaged.
 RunRecord read_run_record(const std::filesystem::path& file);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// What a model does not need, in words for people (design section 2).
+// The computations that a model does not need, as texts for "skipped" in run.json.
 #pragma once
 
 #include <string>
@@ -8,6 +8,7 @@
 
 namespace pliant {
 
+/// Returns one text per computation that the model skips.
 std::vector<std::string> skipped_work(const Model& model);
 
 }  // namespace pliant

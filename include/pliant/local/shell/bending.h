@@ -1,16 +1,22 @@
-// Bending of thin shells by mid-edge normals (the plate element of Morley 1968; on surfaces Grinspun et al.
-// 2006). Each edge has a normal at its middle that turns about the edge. It stands between those of its two
-// triangles, turned on by phi, an own coordinate of the energy, so that against the triangles it has turned
-// by
-//   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (phi alone on the boundary),
-// dtheta: change of the angle between the triangles since rest. Each triangle is bent by the constant
-// curvature
-//   kappa = 1/A sum_k alpha_k |e_k| n_k n_k^T,   n_k across edge k, outwards;   E = 1/2 sum_T alpha Q alpha.
-// alpha also has what the strain of the triangle itself turns, C q (edge_strain.h), so that kappa is the
-// change of Koiter and Sanders. It converges on any mesh; angles alone do not. phi is no part of any motion
-// of the nodes: it has inertia (rotary, rho t^3/12) but no momentum, and rigid motion leaves it alone. Free
-// edges have no moment.
+// Bending of thin shells by mid-edge normals (plate element of Morley 1968; on surfaces Grinspun et al.
+// 2006). Each edge has a normal at its middle, which can rotate about the edge. Its rotation phi from the
+// mean of the normals of both triangles is an own coordinate of the energy (nodal_energy.h). Relative to the
+// two triangles the normal has rotated since rest by
+//   alpha = dtheta/2 + phi on the left,  dtheta/2 - phi on the right   (boundary edge: alpha = phi),
+// with dtheta the change of the angle between the triangles (hinge.h). The curvature of a triangle is
+// constant,
+//   kappa = 1/A sum_k alpha_k |e_k| n_k n_k^T,   n_k normal to edge k in the plane of the triangle, outwards,
+// and the energy is
+//   E = 1/2 sum over triangles of alpha Q alpha,
+//   Q_kl = D/A [(1 - nu)(e_k . e_l)^2/(|e_k||e_l|) + nu |e_k||e_l|]   (D: sheet.h).
+// On a curved rest shape alpha also has a term C q of the triangle's own strain q (edge_strain.h), which
+// makes kappa the bending strain of Koiter and Sanders. The element converges on any mesh; dtheta alone does
+// not. phi has rotary inertia rho t^3/12 but no momentum, and rigid motion leaves it at rest. Boundary edges
+// are free of moments.
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/shell/hinges.h>
@@ -18,16 +24,17 @@
 
 namespace pliant {
 
-/// Hinges: LinearHinges (of displacements, angles linear in them about rest) or FoldingHinges (of positions,
-/// any folds short of half a turn from rest).
+/// Hinges: LinearHinges (energy of displacements, dtheta linear in them) or FoldingHinges (energy of
+/// positions; each angle may change by less than pi from rest).
 template <class Hinges>
 class MidEdgeBending final : public NodalEnergy {
  public:
-  /// area_density: kg/m^2. Throws std::invalid_argument for a sheet that cannot be, and as shell_edges.
+  /// area_density: mass of the shell for each unit of area, kg/m^2. Throws std::invalid_argument unless it is
+  /// positive and finite, and as Sheet::check and shell_edges.
   MidEdgeBending(const ShellMesh& mesh, const Sheet& sheet, double area_density);
 
   Of of() const override { return Hinges::kOf; }
-  /// phi of the edges in the order of shell_edges: kg m^2.
+  /// Returns the inertia of phi for the edges in the order of shell_edges, kg m^2.
   VecX<double> own_inertia() const override { return own_inertia_; }
   double energy(const Coordinates& x) const override;
   void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
@@ -39,58 +46,83 @@ class MidEdgeBending final : public NodalEnergy {
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
-  using Three = std::array<Pack, 3>;
+  /// One number for each edge of a triangle.
+  using PerEdge = std::array<Pack, 3>;
   using Corners = HingeCorners<Pack>;
   using TriangleCorners = ElementBatches<3>::Corners;
+  /// Four triangles.
   struct Triangles {
-    Three Q_diagonal, Q_off;  ///< Q_00 Q_11 Q_22, Q_12 Q_20 Q_01
-    std::array<Three, 3> C;   ///< C_kl
-    Three side;               ///< 1 where the triangle is on the left of its edge, -1 on the right
-    std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< numbers of phi and of dtheta
+    PerEdge Q_diagonal, Q_off_diagonal;  ///< Q_00 Q_11 Q_22, Q_12 Q_20 Q_01, N m
+    std::array<PerEdge, 3> C;            ///< C_kl, 1/m^2
+    PerEdge side;                        ///< 1: the triangle is on the left of its edge; -1: on the right
+    std::array<std::array<int, Pack::kLanes>, 3> edge, angle;  ///< indices of phi and of dtheta
   };
-  /// Where a buffer keeps the changes of angles and the moments dE/dalpha; the forces of corners come first.
-  struct Places {
+  /// Parts of the buffer: corner forces of batches, dtheta of hinges, moments m = dE/dalpha of triangles.
+  struct Scratch {
     double *corners, *angles, *moments;
   };
-  Places places(Buffer& buffer, int copies) const;
-  int n_angles() const { return Pack::kLanes * batches_.n_batches() + 1; }
+  Scratch scratch(Buffer& buffer) const;
+  /// Length of an array of dtheta. Its last entry is 0, for boundary edges.
+  int n_angles() const { return Pack::kLanes * hinge_batches_.n_batches() + 1; }
   std::size_t n_moments() const { return 3 * Pack::kLanes * triangles_.size(); }
 
+  // Constructor: coupling C.
   void set_coupling(const ShellMesh& mesh);
-  /// alpha of a batch of triangles that are strained by q.
-  static Three turns(const Triangles& triangles, const double* angles, const double* phi, const Three& q);
-  static Three moments(const Triangles& triangles, const Three& alpha);
-  /// C^T m.
-  static Three tensions(const Triangles& triangles, const Three& m);
-  Three moments_at(int batch, const double* m) const;
-  /// angles and strains, strain(batch), -> moments of all triangles.
-  template <class F>
-  void fill_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
-                    F&& strain) const;
-  template <class F>
-  void fill_angles(double* angles, ThreadPool* pool, F&& f) const;
-  /// dE/dtheta of the edges of a batch.
+  void set_coupling(const ShellMesh& mesh, int t, const double* angles, const double* phi);
+  std::vector<double> rest_angles(const ShellMesh& mesh) const;
+  VecX<double> rest_rotations(const double* angles) const;
+
+  /// Returns alpha of four triangles with strain q.
+  static PerEdge rotations(const Triangles& triangles, const double* angles, const double* phi,
+                           const PerEdge& q);
+  /// Returns m = Q alpha, N m.
+  static PerEdge moments(const Triangles& triangles, const PerEdge& alpha);
+  /// Returns the tensions C^T m, N/m.
+  static PerEdge tensions(const Triangles& triangles, const PerEdge& m);
+  PerEdge moments_at(int batch, const double* m) const;
+  /// Computes dtheta of all hinges. angle(batch): dtheta of a batch.
+  template <class Angle>
+  void compute_angles(double* angles, ThreadPool* pool, Angle&& angle) const;
+  /// Computes the moments of all triangles from dtheta, phi and strain(batch), the strain of a batch.
+  template <class Strain>
+  void compute_moments(const double* angles, const double* phi, double* moments, ThreadPool* pool,
+                       Strain&& strain) const;
+  /// Computes angles and moments at x.
+  void compute_state(const Coordinates& x, const Scratch& to, ThreadPool* pool) const;
+  /// Computes the changes of angles and moments along dx.
+  void compute_changes(const Coordinates& x, const Coordinates& dx, const Scratch& to,
+                       ThreadPool* pool) const;
+  /// Returns dE/dtheta of the hinges of a batch, N m.
   Pack hinge_moment(int batch, const double* moments) const;
+  /// Adds the forces of moments on the nodes at x and on phi.
+  void add_forces(const Coordinates& x, const double* moments, VecX<double>& f, double* corners,
+                  ThreadPool* pool) const;
+  /// Adds the forces of moments on phi.
   void add_own_forces(VecX<double>& f, const double* moments) const;
-  /// What the turns of angles at dx do to angles and moments.
-  void fill_changes(const Coordinates& x, const Coordinates& dx, double* angles, double* moments,
-                    ThreadPool* pool) const;
-  /// What moments push on nodes at x and on the own coordinates.
-  void push(const Coordinates& x, const double* moments, VecX<double>& f, double* corners,
-            ThreadPool* pool) const;
+
+  /// Stiffness of one triangle while it is assembled.
+  struct Stiffness;
+  /// Returns K of triangle t at x. angles: dtheta of all hinges at x.
+  Stiffness triangle_stiffness(int t, const Coordinates& x, const double* angles) const;
+  /// Adds edge k of triangle t with the given moment. The edge has a hinge unless it is a boundary edge.
+  void add_edge(int t, int k, double moment, const Coordinates& x, Stiffness& to) const;
+  /// Adds the terms of the strain q, with the edges and tensions of the batch of the triangle.
+  static void add_strain(const Triangles& triangles, int lane, const Edges<Pack>& edges,
+                         const PerEdge& tension, Stiffness& to);
+  /// Calls visit(ElementMatrix) with the stiffness of every triangle at x.
   template <class Visit>
   void each_element(const Coordinates& x, Visit&& visit) const;
 
   Eigen::Index n_nodes_;
-  Eigen::Matrix3Xi corners_;
+  Eigen::Matrix3Xi triangle_nodes_;
   std::vector<ShellEdge> edges_;
-  int n_inside_ = 0;  ///< edges between two triangles
-  ElementBatches<4> batches_;
-  ElementBatches<3> corner_batches_;
-  bool curved_ = false;  ///< at rest; C = 0 on a flat mesh
+  int n_hinges_ = 0;  ///< edges between two triangles; they come first in edges_
+  ElementBatches<4> hinge_batches_;
+  ElementBatches<3> triangle_batches_;
+  bool curved_ = false;  ///< whether the rest shape is curved; C = 0 on a flat mesh
   Hinges hinges_;
   std::vector<Triangles> triangles_;
-  std::vector<std::array<int, 2>> moment_places_;  ///< of an edge: on its left, on its right
+  std::vector<std::array<int, 2>> moment_index_;  ///< of each edge: its moment on the left, on the right
   VecX<double> own_inertia_;
 };
 

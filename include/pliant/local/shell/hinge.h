@@ -1,7 +1,9 @@
-// The angle between two triangles that share the edge from a to b, c on the left of it and d on the right:
-//   theta = atan2(e/|e| . (n x m), n . m),   e = b - a,  n = e x (c - a),  m = (d - a) x e,
-// positive on a ridge. Its slope: raising c by z above its triangle closes the angle by z/height (and
-// likewise d), and a and b carry the opposite, split by where the foot of the height stands.
+// Angle between two triangles that share the edge from a to b. Corner c is on the left of the edge, d on its
+// right:
+//   theta = atan2(e/|e| . (n x m), n . m),   e = b - a,  n = e x (c - a),  m = (d - a) x e.
+// theta is positive on a ridge. Its gradient: moving c by z along the normal of its triangle changes theta by
+// -z/height, where height is the distance of c from the edge; d has the same form. The gradients at a and b
+// have the opposite sum, split by the foot of each height on the edge.
 #pragma once
 
 #include <array>
@@ -13,11 +15,11 @@
 
 namespace pliant {
 
-/// a, b, c, d.
+/// Vectors at the corners a, b, c, d.
 template <class T>
 using HingeCorners = std::array<Vec3<T>, 4>;
 
-/// The sine and cosine of theta, both times 4 |area of one| |area of the other|.
+/// Returns the sine and cosine of theta, both times |n| |m|.
 template <class T>
 math::SinCos<T> hinge_sin_cos(const HingeCorners<T>& x) {
   const Vec3<T> e = x[1] - x[0];
@@ -25,7 +27,7 @@ math::SinCos<T> hinge_sin_cos(const HingeCorners<T>& x) {
   return {n.cross(m).dot(e) / math::sqrt(T(e.dot(e))), n.dot(m)};
 }
 
-/// dtheta/dx.
+/// Returns dtheta/dx, 1/m.
 template <class T>
 HingeCorners<T> hinge_gradient(const HingeCorners<T>& x) {
   const Vec3<T> e = x[1] - x[0], c = x[2] - x[0], d = x[3] - x[0];
@@ -36,7 +38,7 @@ HingeCorners<T> hinge_gradient(const HingeCorners<T>& x) {
   return {left * T(1.0 - c_foot) + right * T(1.0 - d_foot), left * c_foot + right * d_foot, -left, -right};
 }
 
-/// Sum of the products of corners.
+/// Returns the sum of the scalar products over the corners.
 template <class T>
 T dot(const HingeCorners<T>& a, const HingeCorners<T>& b) {
   return a[0].dot(b[0]) + a[1].dot(b[1]) + a[2].dot(b[2]) + a[3].dot(b[3]);

@@ -1,8 +1,9 @@
-// What bending knows of the hinges (hinge.h) and triangles of a mesh: changes of angles and strains since
-// rest, and along what they push. Either linear in displacements about rest, or of positions wherever they
-// are.
+// Angles of all hinges (hinge.h) and strains of all triangles of a mesh since rest, with their gradients, in
+// batches of four. Bending (bending.h) uses one of two versions: linear in the displacements, or exact in the
+// positions.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <pliant/local/nodal_energy.h>
@@ -11,19 +12,23 @@
 
 namespace pliant {
 
-/// Angles and strains that are linear in the displacements: dtheta = dtheta/dx(rest) . d.
+/// Angles and strains linear in the displacements d: dtheta = dtheta/dx(rest) . d. X: positions at rest, m.
 class LinearHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::displacement;
   LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles, const VecX<double>& X);
 
+  /// Returns dtheta, rad, of four hinges with corner displacements d.
   Pack angle(int batch, const HingeCorners<Pack>& d) const;
+  /// Returns the gradient of angle(), 1/m.
   const HingeCorners<Pack>& gradient(int batch, const HingeCorners<Pack>&) const {
     return gradients_[static_cast<std::size_t>(batch)];
   }
+  /// Returns q of four triangles (edge_strain.h), m^2.
   std::array<Pack, 3> strain(int batch, const std::array<Vec3<Pack>, 3>& d) const {
     return strain_change(edges(batch, d), edges_of(d));
   }
+  /// Returns the edges along which the tensions of q act, m.
   const Edges<Pack>& edges(int batch, const std::array<Vec3<Pack>, 3>&) const {
     return edges_[static_cast<std::size_t>(batch)];
   }
@@ -33,7 +38,8 @@ class LinearHinges {
   std::vector<Edges<Pack>> edges_;
 };
 
-/// Angles and strains of the positions as they are, less those at rest.
+/// Exact angles and strains at positions x, less those at rest. dtheta is between -pi and pi. Members as in
+/// LinearHinges, with x in place of d.
 class FoldingHinges {
  public:
   static constexpr NodalEnergy::Of kOf = NodalEnergy::Of::position;
@@ -45,8 +51,8 @@ class FoldingHinges {
   Edges<Pack> edges(int, const std::array<Vec3<Pack>, 3>& x) const { return edges_of(x); }
 
  private:
-  std::vector<math::SinCos<Pack>> rest_;
-  std::vector<std::array<Pack, 3>> rest_strain_;
+  std::vector<math::SinCos<Pack>> rest_;          // of theta
+  std::vector<std::array<Pack, 3>> rest_strain_;  // |e_k|^2/2, m^2
 };
 
 }  // namespace pliant

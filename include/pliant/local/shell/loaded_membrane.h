@@ -1,37 +1,45 @@
-// The loaded membrane (Terzopoulos & Metaxas 1991), a deformation d that costs by its size and its variation:
+// The loaded membrane (Terzopoulos & Metaxas 1991): the displacement d has an energy for its size and for its
+// variation,
 //   E = 1/2 int w1 |grad d|^2 + w0 |d|^2,
-// on linear triangles, K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12, the same for x, y and z.
-// The integral is over the parameters du dv, as in the paper, where the material is stiffer towards poles; or
-// over the surface itself (its gradient by the cotangents of the triangles), which knows no poles.
+// on linear triangles with area A,
+//   K_ij = w1 A grad N_i . grad N_j + w0 A (1 + delta_ij)/12,
+// for each of the directions x, y and z. Two domains of integration are available:
+//   ParameterMesh   the parameters, du dv, as published; the material is stiffer near poles
+//   ShellMesh       the surface itself, with the cotangent formula for the gradient; poles have no influence
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/shell/edge_strain.h>
 
 namespace pliant {
 
+/// Weights of the loaded membrane.
 struct Load {
+  /// Integration of w0 |d|^2: exact, or with a third of each triangle at each corner.
   enum class Size { consistent, lumped };
-  double w0;  ///< of the size: per area of what is integrated over, N/m per unit
-  double w1;  ///< of the variation: N/m on parameters, N m per area on the surface
-  Size size =
-      Size::consistent;  ///< how w0 is integrated: exactly, or a third of each triangle at each corner
+  double w0;  ///< of the size |d|^2: N/m on parameters, N/m^3 on the surface
+  double w1;  ///< of the variation |grad d|^2: N/m
+  Size size = Size::consistent;
 };
 
-/// A mesh of the parameter plane. A node at a pole has many v: its coordinates are the corner's, and a cell
-/// at a pole is two triangles, of which one has the pole twice.
+/// A triangle mesh of the parameter rectangle. A node at a pole has a different v in each triangle, so that
+/// (u, v) are stored for each corner. A cell at a pole has two triangles, and one of them contains the pole
+/// twice.
 struct ParameterMesh {
   Eigen::Index n_nodes;
   Eigen::Matrix3Xi triangles;
-  Eigen::Matrix2Xd uv;  ///< of corner k of triangle t in column 3 t + k
+  Eigen::Matrix2Xd uv;  ///< (u, v) of corner k of triangle t in column 3 t + k
 };
 
 class LoadedMembrane final : public NodalEnergy {
  public:
-  /// Over du dv. Throws std::invalid_argument when w0 or w1 is negative or not finite, or when a triangle
-  /// names a node that is not there or has no area in the plane.
+  /// Integrates over du dv. Throws std::invalid_argument if w0 or w1 is negative or not finite, if a triangle
+  /// refers to an unknown node, or if it has no area in the plane.
   LoadedMembrane(const ParameterMesh& mesh, const Load& load);
-  /// Over the surface. Throws likewise.
+  /// Integrates over the surface. Throws std::invalid_argument if w0 or w1 is negative or not finite.
   LoadedMembrane(const ShellMesh& mesh, const Load& load);
 
   Of of() const override { return Of::displacement; }
@@ -44,21 +52,23 @@ class LoadedMembrane final : public NodalEnergy {
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
-  struct Triangle {
-    std::array<Pack, 3> spring;  ///< between the ends of edge k: w1 cot(angle k)/2
-    Pack alone, together;        ///< of w0: for a corner, and for all three
+  /// Four triangles, K_ij of one direction.
+  struct Triangles {
+    std::array<Pack, 3> spring;  ///< -K_ij of w1 between the ends of edge k: w1 cot(angle k)/2
+    Pack diagonal, uniform;      ///< K_ij of w0: uniform + diagonal delta_ij
   };
   using Corners = ElementBatches<3>::Corners;
 
   LoadedMembrane(const Eigen::Matrix3Xi& triangles, Eigen::Index n_nodes, const Load& load);
-  void set(int batch, int lane, const Edges<double>& e, const Load& load);
-  /// K d at the corners of a batch.
-  Corners pull(int b, const Corners& d) const;
+  void set_triangle(int batch, int lane, const Edges<double>& e, const Load& load);
+  /// Returns K d at the corners of a batch.
+  Corners K_times(int batch, const Corners& d) const;
+  /// Calls visit(ElementMatrix) with the stiffness of every triangle.
   template <class Visit>
   void each_element(Visit&& visit) const;
 
   ElementBatches<3> batches_;
-  std::vector<Triangle> triangles_;
+  std::vector<Triangles> triangles_;
 };
 
 }  // namespace pliant

@@ -1,22 +1,27 @@
-// Membranes that deform by any amount, of the whole map from rest to now: constant-strain triangles with
-// tensions tau_k = dW/dq_k along the edges as they are now, q_k = (|e_k|^2 - |e_k|_rest^2)/2 (edge_strain.h).
-// Exact second derivatives:   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k,   dq_k = e_k . de_k.
+// Membranes for large deformation: constant-strain triangles, with the energy of the whole map from rest to
+// the current positions. Tensions tau_k = dW/dq_k act along the current edges e_k (edge_strain.h):
+//   q_k = (|e_k|^2 - |e_k|_rest^2)/2,   dq_k = e_k . de_k,
+//   d(tau_k e_k) = (dtau_k/dq . dq) e_k + tau_k de_k.
+// Derivatives are exact.
 #pragma once
+
+#include <array>
+#include <vector>
 
 #include <pliant/local/nodal_energy.h>
 #include <pliant/local/shell/membrane_laws.h>
 
 namespace pliant {
 
-/// Law: StVenantKirchhoffSheet or NeoHookeanSheet.
+/// Law: StVenantKirchhoffSheet or NeoHookeanSheet (membrane_laws.h).
 template <class Law>
 class Membrane final : public NodalEnergy {
  public:
-  /// Throws std::invalid_argument for a sheet that cannot be.
+  /// Throws std::invalid_argument as Sheet::check.
   Membrane(const ShellMesh& mesh, const Sheet& sheet);
 
   Of of() const override { return Of::position; }
-  /// Not finite where a triangle of a neo-Hookean membrane has lost its area.
+  /// Returns E, J; infinite or NaN where a neo-Hookean triangle has no area.
   double energy(const Coordinates& x) const override;
   void add_force(const Coordinates& x, VecX<double>& f, Buffer& buffer, ThreadPool* pool) const override;
   void add_derivative(const Coordinates& x, const Coordinates& dx, VecX<double>& f, Buffer& buffer,
@@ -27,15 +32,18 @@ class Membrane final : public NodalEnergy {
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
+  /// Four triangles.
   struct Batch {
     typename Law::Triangles law;
-    std::array<Pack, 3> rest;  ///< |e_k|^2 / 2
+    std::array<Pack, 3> rest;  ///< |e_k|^2 / 2 at rest, m^2
 
+    /// Returns q at the current edges e, m^2.
     std::array<Pack, 3> strain(const Edges<Pack>& e) const {
       return {0.5 * e[0].dot(e[0]) - rest[0], 0.5 * e[1].dot(e[1]) - rest[1], 0.5 * e[2].dot(e[2]) - rest[2]};
     }
   };
   const Batch& batch(int b) const { return triangles_[static_cast<std::size_t>(b)]; }
+  /// Calls visit(ElementMatrix) with the stiffness of every triangle at x.
   template <class Visit>
   void each_element(const Coordinates& x, Visit&& visit) const;
 

@@ -1,9 +1,9 @@
-// Material laws of membranes that deform by any amount, as energies W(q) of a triangle, J, with q the half
-// changes of its squared edges (edge_strain.h). With Green's strain G = sum q_k B_k, C = 1 + 2 G:
+// Laws of membranes for large deformation: the energy W(q) of a triangle, J, with q from its edges
+// (edge_strain.h). With Green's strain G = sum_k q_k B_k, C = 1 + 2 G, rest area A and thickness t,
 //   St. Venant-Kirchhoff   W = A t [lambda/2 (tr G)^2 + mu G:G] = 1/2 q S q
-//   neo-Hookean            W = A t mu/2 [tr C - 2 + (D^-k - 1)/k],  D = det C,  k = nu/(1 - nu)
-// The second is the compressible material of Blatz & Ko (1962) with the thickness that plane stress gives,
-// which is D^(-k/2) times that at rest; k = 1 is incompressible rubber; k -> 0 leaves -log D.
+//   neo-Hookean            W = A t mu/2 [tr C - 2 + (D^-k - 1)/k],  D = det C,  k = nu/(1 - nu).
+// The second law is the compressible material of Blatz & Ko (1962) in plane stress, whose thickness is
+// D^(-k/2) t. k = 1 is incompressible rubber; for k -> 0 the last term becomes -log D.
 #pragma once
 
 #include <array>
@@ -14,18 +14,20 @@
 
 namespace pliant {
 
+/// Members of a law: its name, and `Triangles`, the constants of four triangles with W and its derivatives.
+/// tension() returns tau = dW/dq, N/m; linear_tension() is its linearisation at rest; T is Pack or a dual
+/// number.
 struct StVenantKirchhoffSheet {
   static constexpr const char* name = "st_venant_kirchhoff";
 
-  /// Constants of four triangles.
   struct Triangles {
-    std::array<Pack, 3> diagonal, off;  ///< S_00 S_11 S_22, S_12 S_20 S_01
+    std::array<Pack, 3> diagonal, off_diagonal;  ///< S_00 S_11 S_22, S_12 S_20 S_01
 
     void set(int lane, const Edges<double>& e, const Sheet& sheet) {
       const Mat3<double> S = edge_stiffness(e, sheet);
       for (int k = 0; k < 3; ++k) {
         diagonal[static_cast<std::size_t>(k)].set(lane, S(k, k));
-        off[static_cast<std::size_t>(k)].set(lane, S((k + 1) % 3, (k + 2) % 3));
+        off_diagonal[static_cast<std::size_t>(k)].set(lane, S((k + 1) % 3, (k + 2) % 3));
       }
     }
     template <class T>
@@ -33,11 +35,10 @@ struct StVenantKirchhoffSheet {
       std::array<T, 3> tau;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        tau[k] = q[k] * diagonal[k] + q[i] * off[j] + q[j] * off[i];
+        tau[k] = q[k] * diagonal[k] + q[i] * off_diagonal[j] + q[j] * off_diagonal[i];
       }
       return tau;
     }
-    /// As far as strains are small.
     std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return tension(q); }
     Pack energy(const std::array<Pack, 3>& q) const {
       const std::array<Pack, 3> tau = tension(q);
@@ -46,15 +47,16 @@ struct StVenantKirchhoffSheet {
   };
 };
 
+/// See StVenantKirchhoffSheet for the members.
 struct NeoHookeanSheet {
   static constexpr const char* name = "neo_hookean";
 
   struct Triangles {
     std::array<Pack, 3> trace;  ///< tr B_k
-    Pack inverse;               ///< 1/(2A)^2
-    Pack stiffness;             ///< A t mu / 2
+    Pack inverse;               ///< 1/(2 A)^2, 1/m^4
+    Pack stiffness;             ///< A t mu / 2, J
     double k = 0;
-    StVenantKirchhoffSheet::Triangles small;  ///< the same material, as far as strains are small
+    StVenantKirchhoffSheet::Triangles linear;  ///< this material at small strains
 
     void set(int lane, const Edges<double>& e, const Sheet& sheet) {
       const Vec3<double> tr = edge_traces(e);
@@ -63,39 +65,41 @@ struct NeoHookeanSheet {
       inverse.set(lane, 1 / (twice_area * twice_area));
       stiffness.set(lane, 0.25 * twice_area * sheet.thickness * sheet.mu());
       k = sheet.nu / (1 - sheet.nu);
-      small.set(lane, e, sheet);
+      linear.set(lane, e, sheet);
     }
-    std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return small.tension(q); }
+    std::array<Pack, 3> linear_tension(const std::array<Pack, 3>& q) const { return linear.tension(q); }
+    /// Returns tr G.
     template <class T>
-    T trace_of(const std::array<T, 3>& q) const {
+    T strain_trace(const std::array<T, 3>& q) const {
       return q[0] * trace[0] + q[1] * trace[1] + q[2] * trace[2];
     }
-    /// D - 1 = 2 tr G + 4 det G, by Heron's formula for the second.
+    /// Returns D - 1 = 2 tr G + 4 det G. det G comes from Heron's formula for the area.
     template <class T>
-    T stretch_of(const std::array<T, 3>& q) const {
+    T D_minus_1(const std::array<T, 3>& q) const {
       const T det = q[0] * (q[1] + q[1] - q[0]) + q[1] * (q[2] + q[2] - q[1]) + q[2] * (q[0] + q[0] - q[2]);
-      return 2.0 * trace_of(q) + det * inverse;
+      return 2.0 * strain_trace(q) + det * inverse;
     }
     template <class T>
     std::array<T, 3> tension(const std::array<T, 3>& q) const {
-      // dW = stiffness (2 tr dG - D^(-k-1) dD), each as its own small difference from rest.
-      const T D = 1.0 + stretch_of(q);
-      const T rise = 1.0 - power(D);
+      // dW = stiffness (2 tr dG - D^(-k-1) dD) with dD = 2 tr dG + d(4 det G). The terms are written with
+      // `loss`, which is small near rest, to avoid cancellation.
+      const T D = 1.0 + D_minus_1(q);
+      const T loss = 1.0 - power(D);
       std::array<T, 3> tau;
       for (std::size_t i = 0; i < 3; ++i) {
         const T slope = 2.0 * (q[(i + 1) % 3] + q[(i + 2) % 3] - q[i]) * inverse;  // d(4 det G)/dq_i
-        tau[i] = (2.0 * trace[i] * rise - (1.0 - rise) * slope) * stiffness;
+        tau[i] = (2.0 * trace[i] * loss - (1.0 - loss) * slope) * stiffness;
       }
       return tau;
     }
     Pack energy(const std::array<Pack, 3>& q) const {
-      const Pack D = 1.0 + stretch_of(q);
-      const Pack squeeze = k == 0 ? -log(D) : (D * power(D) - 1.0) / k;
-      return stiffness * (2.0 * trace_of(q) + squeeze);
+      const Pack D = 1.0 + D_minus_1(q);
+      const Pack volumetric = k == 0 ? -log(D) : (D * power(D) - 1.0) / k;
+      return stiffness * (2.0 * strain_trace(q) + volumetric);
     }
 
    private:
-    /// D^(-k-1).
+    /// Returns D^(-k-1).
     template <class T>
     T power(const T& D) const {
       if (k == 1) return 1.0 / (D * D);

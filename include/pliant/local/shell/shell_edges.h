@@ -1,4 +1,4 @@
-// The edges of a triangle mesh: which two triangles meet at each.
+// Edges of a triangle mesh and the triangles on their two sides.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,19 @@
 
 namespace pliant {
 
-/// From node a to node b, as the triangle on its left runs; the other triangle runs from b to a.
+/// An edge from node a to node b. The left triangle contains it in this direction, the right triangle from b
+/// to a.
 struct ShellEdge {
   int a, b;
-  int left, left_corner;    ///< a triangle, and its corner opposite the edge
-  int right, right_corner;  ///< -1 on the boundary of the mesh
+  int left, left_corner;    ///< triangle, and its corner opposite the edge
+  int right, right_corner;  ///< both -1 on the boundary of the mesh
+  /// Returns whether the edge has two triangles.
   bool inside() const { return right >= 0; }
 };
 
-/// All edges in the order of the triangles, those between two triangles before those of the boundary.
-/// Throws std::invalid_argument when an edge has more than two triangles, or two that do not run the same way
-/// round; the message names the nodes.
+/// Returns all edges in the order of the triangles; edges between two triangles come before boundary edges.
+/// Throws std::invalid_argument if an edge has more than two triangles, or two triangles of opposite
+/// orientation. The message gives the nodes of the edge.
 std::vector<ShellEdge> shell_edges(const ShellMesh& mesh);
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// A triangulated shell at rest: X of its nodes (m) and the triangles, counter-clockwise seen from outside.
+// A triangulated shell at rest: positions X of its nodes (m) and its triangles. The corners of a triangle run
+// counter-clockwise when seen from outside.
 #pragma once
 
 #include <pliant/local/nodes.h>
@@ -7,8 +8,8 @@ namespace pliant {
 
 class ShellMesh {
  public:
-  /// Throws std::invalid_argument when a triangle names a node that is not there, or has no area, or when a
-  /// position is not finite; the message names the triangle.
+  /// Throws std::invalid_argument if there is no triangle, if a triangle refers to an unknown node or has no
+  /// area, or if a position is not finite. The message gives the number of the triangle or node.
   ShellMesh(Nodes X, Eigen::Matrix3Xi triangles);
 
   const Nodes& X() const { return X_; }
@@ -16,9 +17,9 @@ class ShellMesh {
   Eigen::Index n_nodes() const { return X_.rows(); }
   Eigen::Index n_triangles() const { return triangles_.cols(); }
 
-  /// Corner 0, 1 or 2 of triangle t.
+  /// Returns the position of corner k = 0, 1 or 2 of triangle t, m.
   Vec3<double> corner(Eigen::Index t, int k) const { return X_.row(triangles_(k, t)); }
-  /// Half the cross product of two edges: along the normal, as long as the area.
+  /// Returns the outward normal of triangle t times its area, m^2.
   Vec3<double> area_vector(Eigen::Index t) const;
   double area(Eigen::Index t) const { return area_vector(t).norm(); }
 

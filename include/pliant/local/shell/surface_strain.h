@@ -1,6 +1,7 @@
-// How much a surface is stretched, for pictures: Green's strain G = (F^T F - 1)/2 of each triangle from rest
-// to now, of which the largest principal value counts; +0.1 is a stretch by 9.5 %. A vertex has the mean of
-// the triangles around it, weighted by their areas at rest.
+// Stretch of a triangulated surface for pictures: the largest principal value of Green's strain
+//   G = (F^T F - 1)/2
+// from rest to the current positions. A value of 0.1 is an elongation of 9.5 %. A vertex has the mean of its
+// triangles, weighted by their areas at rest.
 #pragma once
 
 #include <vector>
@@ -11,22 +12,22 @@ namespace pliant {
 
 class SurfaceStrain {
  public:
-  /// X: vertices at rest, m, one a column. Triangles without area at rest count for nothing.
+  /// X: vertices at rest, m, one column for each. Triangles without area at rest are ignored.
   SurfaceStrain(const Eigen::Matrix3Xd& X, Eigen::Matrix3Xi triangles);
 
-  /// Of every vertex, with the vertices at x.
+  /// Returns the strain at each vertex for current vertices x, m; 0 at a vertex without triangles.
   VecX<double> at(const Eigen::Matrix3Xd& x) const;
 
  private:
   struct Triangle {
-    Vec3<double> rest;         // half the squares of its edges
-    Mat3<double> along_edges;  // (G_11, G_22, G_12) in the plane of the triangle at rest, from their changes
-    double area;               // m^2; 0 of one without
+    Vec3<double> rest;    // |e_k|^2/2 at rest, m^2
+    Mat3<double> G_of_q;  // (G_11, G_22, G_12) in the plane of the triangle at rest = G_of_q q
+    double area;          // m^2; 0: ignored
   };
 
   Eigen::Matrix3Xi triangles_;
   std::vector<Triangle> rest_;
-  VecX<double> area_around_;  // of each vertex
+  VecX<double> area_around_;  // sum of the areas of each vertex's triangles, m^2
 };
 
 }  // namespace pliant

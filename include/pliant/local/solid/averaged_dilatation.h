@@ -1,8 +1,8 @@
-// What keeps nearly incompressible solids from locking: the dilatation enters by means over patches c,
-//   E = lambda/2 sum_c V_c theta_c^2,   V_c theta_c = int over c of div d
-// instead of point by point. 4 nodes: a patch is a node with a quarter of each element around it (nodal
-// pressure, Bonet & Burton 1998); 10 and 15 nodes: the element. By Jensen no more than the energy with the
-// dilatation itself.
+// Linear elasticity with averaged dilatation, which prevents nearly incompressible solids from locking. The
+// dilatation div d enters the energy through its means theta_c over patches c of volume V_c,
+//   E = int mu eps:eps + lambda/2 sum_c V_c theta_c^2,   V_c theta_c = int over c of div d.
+// 4 nodes: a patch is a node with a quarter of each adjacent element (Bonet & Burton 1998). 10 and 15 nodes:
+// a patch is an element. By Jensen's inequality E is at most the energy without averages.
 #pragma once
 
 #include <pliant/local/nodal_energy.h>
@@ -12,12 +12,13 @@
 
 namespace pliant {
 
-/// Linear elasticity with averaged dilatation, mu eps:eps and E above: for nu_P up to 0.4999.
+/// Suitable for nu_P from 0 to 0.4999.
 template <class Element>
 class AveragedLinearSolid final : public NodalEnergy {
  public:
   static constexpr int N = Element::n_nodes;
-  /// As SolidEnergy; throws std::invalid_argument for nu_P < 0, where averages would weaken the solid.
+  /// Arguments of SolidEnergy. Throws std::invalid_argument as SolidEnergy does, and for nu_P < 0: averages
+  /// would increase E there, and frequency_bound would not hold.
   AveragedLinearSolid(const Nodes& rest, const Eigen::MatrixXi& elements, const Elasticity& material);
 
   Of of() const override { return Of::displacement; }
@@ -28,24 +29,25 @@ class AveragedLinearSolid final : public NodalEnergy {
     add_force(dx, f, buffer, pool);
   }
   void add_stiffness(const Coordinates& x, std::vector<Eigen::Triplet<double>>& K) const override;
-  /// That of the solid without averages, which is no less.
+  /// Returns the bound of the solid without averages, which is at least as large.
   double frequency_bound(const Coordinates& x, const VecX<double>& M) const override;
 
  private:
   static constexpr bool kNodal = N == 4;
-  /// int of div d over the elements of a pack.
-  Pack spread(const Coordinates& x, int pack) const;
-  /// lambda theta of all patches. sums: room for corners_.buffer_size(1) numbers.
-  void pressures(const Coordinates& x, double* sums, double* pressure, ThreadPool* pool) const;
+  /// Returns int of div d over the elements of a pack, m^3.
+  Pack volume_change(const Coordinates& x, int pack) const;
+  /// Computes lambda theta_c of all patches, Pa, positive in expansion. sums: scratch storage of
+  /// corners_.buffer_size(1) numbers.
+  void compute_pressures(const Coordinates& x, double* sums, double* pressure, ThreadPool* pool) const;
   const Pack* gradients(int pack) const {
     return gradients_.data() + static_cast<std::ptrdiff_t>(pack) * 3 * N;
   }
 
-  SolidEnergy<Element, LinearLaw> whole_, shear_;
+  SolidEnergy<Element, LinearLaw> full_, shear_;  // full_: without averages; shear_: lambda = 0
   ElementCorners<N> corners_;
-  std::vector<Pack> gradients_;  // pack, corner, direction: int of dN_a/dX_r
-  std::vector<double> volume_;   // of patches
-  double lambda_;
+  std::vector<Pack> gradients_;  // [pack][corner][direction]: int of dN_a/dX_r, m^2
+  std::vector<double> volume_;   // of each patch, m^3
+  double lambda_;                // Pa
 };
 
 extern template class AveragedLinearSolid<LinearTetrahedron>;

@@ -1,7 +1,7 @@
-// Corotated linear elasticity: F = R S with the rotation R nearest to F = dx/dX,
+// Corotated linear elasticity. F = dx/dX = R S with R the rotation nearest to F,
 //   W = mu |F - R|^2 + lambda/2 (tr S - 3)^2,   P = 2 mu (F - R) + lambda (tr S - 3) R
-//   dR = R [omega]x,   (tr(S) I - S) omega = axial vector of R^T dF - dF^T R
-// R by Newton's iteration with scaling (Higham 1986).
+//   dR = R [omega]x,   (tr(S) I - S) omega = axial vector of R^T dF - dF^T R.
+// The polar decomposition uses scaled Newton iteration (Higham 1986).
 #pragma once
 
 #include <pliant/local/elasticity.h>
@@ -11,33 +11,36 @@
 
 namespace pliant {
 
-/// The rotation nearest to F; throws InvertedElement unless det F > 0.
+/// Returns the rotation nearest to F. Throws InvertedElement unless det F > 0.
 template <class T>
 Mat3<T> nearest_rotation(const Mat3<T>& F) {
   using std::sqrt;
-  constexpr int most_iterations = 60;
-  constexpr double settled = 1e-20;  // of the square of the last step; the next one squares it
+  constexpr int max_iterations = 60;
+  // Bound on the squared norm of a step. Convergence is quadratic, so that the error is below rounding then.
+  constexpr double tolerance = 1e-20;
   Mat3<T> R = F;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const Mat3<T> C = cofactors(R);
     const T J = determinant(R, C);
     if (!(least_of(J) > 0))
       throw InvertedElement(
-          "an element of corotated material is turned inside out; a smaller step keeps it from that, "
-          "neo-Hookean material bears it");
+          "an element of corotated material is inverted (det F <= 0); use a smaller step, or the neo-Hookean "
+          "law, which allows inverted elements");
     const T g = sqrt(sqrt(contraction(C, C) / (contraction(R, R) * J * J)));
-    const T keep = T(0.5) * g, inverse = T(0.5) / (g * J);
+    const T a = T(0.5) * g, b = T(0.5) / (g * J);  // next R = a R + b cofactors(R)
     T step(0.0);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
-        const T next = keep * R(i, j) + inverse * C(i, j), change = next - R(i, j);
+        const T next = a * R(i, j) + b * C(i, j), change = next - R(i, j);
         step += change * change;
         R(i, j) = next;
       }
-    if (least_of(T(settled) - step) > 0) return R;
+    if (least_of(T(tolerance) - step) > 0) return R;
   }
   throw InvertedElement(
-      "an element of corotated material is squeezed flat; a smaller step keeps it from that");
+      "an element of corotated material is almost flat: no nearest rotation was found in 60 iterations; use "
+      "a "
+      "smaller step");
 }
 
 struct Corotated {
@@ -50,17 +53,17 @@ struct Corotated {
   template <class T>
   T density(const Mat3<T>& F) const {
     const Mat3<T> R = nearest_rotation(F);
-    const Mat3<T> off = F - R;
-    const T growth = contraction(R, F) - T(3);
-    return T(mu) * contraction(off, off) + T(lambda / 2) * growth * growth;
+    const Mat3<T> strain = F - R;
+    const T dilatation = contraction(R, F) - T(3);
+    return T(mu) * contraction(strain, strain) + T(lambda / 2) * dilatation * dilatation;
   }
   template <class T>
   Mat3<T> stress(const Mat3<T>& F) const {
     const Mat3<T> R = nearest_rotation(F);
-    const T push = pressure(F, R);
+    const T p = pressure(F, R);
     Mat3<T> P;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) P(i, j) = T(2 * mu) * F(i, j) + push * R(i, j);
+      for (int j = 0; j < 3; ++j) P(i, j) = T(2 * mu) * F(i, j) + p * R(i, j);
     return P;
   }
   template <class T>
@@ -75,15 +78,15 @@ struct Corotated {
     for (int i = 0; i < 3; ++i)
       omega[i] = (C(i, 0) * axial[0] + C(i, 1) * axial[1] + C(i, 2) * axial[2]) * inverse;
     const Mat3<T> dR = product(R, skew(omega));
-    const T push = pressure(F, R), dpush = T(lambda) * contraction(R, dF);
+    const T p = pressure(F, R), dp = T(lambda) * contraction(R, dF);
     Mat3<T> dP;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) dP(i, j) = T(2 * mu) * dF(i, j) + dpush * R(i, j) + push * dR(i, j);
+      for (int j = 0; j < 3; ++j) dP(i, j) = T(2 * mu) * dF(i, j) + dp * R(i, j) + p * dR(i, j);
     return dP;
   }
 
  private:
-  /// What multiplies R in P.
+  /// Returns the factor of R in P.
   template <class T>
   T pressure(const Mat3<T>& F, const Mat3<T>& R) const {
     return T(lambda) * (contraction(R, F) - T(3)) - T(2 * mu);

@@ -1,7 +1,8 @@
-// Elements of K corners in batches of Pack lanes. Each element leaves what it pushes at its corners in a
-// place of its own; then each node adds up its corners in the order of the elements. Sums therefore do not
-// depend on the number of threads, and no two threads write one place.
-// The corner buffer is [batch][corner][x, y, z][lane]; lanes beyond the last element repeat it, unread.
+// Elements with K corners in batches of Pack lanes, one element in each lane. Each element writes the forces
+// at its corners to its own part of a buffer; then each node sums its corners in the order of the elements.
+// No two threads write one number, and the sums do not depend on the number of threads. The corner buffer is
+// [batch][corner][x, y, z][lane]. Free lanes of the last batch repeat the last element; they are written but
+// not read.
 #pragma once
 
 #include <array>
@@ -14,11 +15,13 @@
 
 namespace pliant {
 
+/// Reads four numbers from memory.
 inline Pack load(const double* from) {
   Pack p;
   std::memcpy(&p, from, sizeof p);
   return p;
 }
+/// Writes the four lanes to memory.
 inline void store(const Pack& p, double* to) {
   std::memcpy(to, &p, sizeof p);
 }
@@ -29,32 +32,33 @@ class ElementBatches {
   using Elements = Eigen::Matrix<int, K, Eigen::Dynamic>;
   using Corners = std::array<Vec3<Pack>, K>;
 
-  /// elements: node numbers, one column an element.
+  /// elements: node numbers below n_nodes, one column for each element. They are not checked.
   ElementBatches(const Elements& elements, Eigen::Index n_nodes);
 
   int n_elements() const { return n_elements_; }
   int n_nodes() const { return n_nodes_; }
   int n_batches() const { return static_cast<int>(nodes_.size()); }
-  /// The element in a lane of a batch; the last one in lanes beyond it.
+  /// Returns the element in a lane of a batch; in free lanes, the last element.
   int element(int batch, int lane) const { return std::min(Pack::kLanes * batch + lane, n_elements_ - 1); }
-  /// Lanes of a batch that are elements of their own.
+  /// Returns the number of used lanes of a batch.
   int lanes(int batch) const { return std::min(Pack::kLanes, n_elements_ - Pack::kLanes * batch); }
   int node(int batch, int corner, int lane) const {
     return nodes_[static_cast<std::size_t>(batch)][static_cast<std::size_t>(corner)]
                  [static_cast<std::size_t>(lane)];
   }
-  /// Where the corners of an element stand in local coordinates: x, y, z of the first, of the second, ...
+  /// Returns the indices of an element's local coordinates: x, y, z of its first corner, then of the second,
+  /// ...
   std::array<int, 3 * K> coordinates(int batch, int lane) const {
-    std::array<int, 3 * K> at;
+    std::array<int, 3 * K> index;
     for (int k = 0; k < K; ++k)
       for (int i = 0; i < 3; ++i)
-        at[static_cast<std::size_t>(3 * k + i)] = node(batch, k, lane) + i * n_nodes_;
-    return at;
+        index[static_cast<std::size_t>(3 * k + i)] = node(batch, k, lane) + i * n_nodes_;
+    return index;
   }
-  /// Numbers in the corner buffer.
+  /// Length of the corner buffer.
   std::size_t buffer_size() const { return nodes_.size() * static_cast<std::size_t>(kBatchSize); }
 
-  /// The three coordinates of the corners of a batch, from local coordinates (nodes.h).
+  /// Reads the vectors at the corners of a batch from local coordinates (nodes.h).
   Corners corners(const Coordinates& x, int batch) const {
     Corners c;
     const auto& at = nodes_[static_cast<std::size_t>(batch)];
@@ -66,13 +70,14 @@ class ElementBatches {
     return c;
   }
 
-  /// f += push(batch), the forces at the corners of a batch, for all batches.
-  template <class Push>
-  void add(VecX<double>& f, double* buffer, ThreadPool* pool, Push&& push) const {
+  /// Adds the nodal forces of all batches to f. forces(batch) returns the forces at the corners of a batch.
+  /// buffer: scratch storage of buffer_size() numbers.
+  template <class Forces>
+  void add(VecX<double>& f, double* buffer, ThreadPool* pool, Forces&& forces) const {
     for_ranges(
         n_batches(), kBatchesInRange, pool, [&](int first, int last) __attribute__((flatten)) {
           for (int b = first; b < last; ++b) {
-            const Corners force = push(b);
+            const Corners force = forces(b);
             double* to = buffer + b * kBatchSize;
             for (std::size_t k = 0; k < K; ++k)
               for (int i = 0; i < 3; ++i, to += Pack::kLanes) store(force[k][i], to);
@@ -85,12 +90,14 @@ class ElementBatches {
   static constexpr std::ptrdiff_t kBatchSize = std::ptrdiff_t{3} * K * Pack::kLanes;
   static constexpr int kBatchesInRange = 512, kNodesInRange = 2048;
 
+  /// Adds the corner forces in the buffer to the nodes.
   void add_corners(VecX<double>& f, const double* buffer, ThreadPool* pool) const;
 
   int n_elements_, n_nodes_;
   std::vector<std::array<std::array<int, Pack::kLanes>, K>> nodes_;
-  // Corners of node i: the places of their x in the buffer, first_[i] to first_[i + 1] of places_.
-  std::vector<int> first_, places_;
+  // Corners of node i: buffer_index_[first_[i]] .. buffer_index_[first_[i + 1] - 1] are the buffer indices of
+  // their x.
+  std::vector<int> first_, buffer_index_;
 };
 
 template <int K>
@@ -99,7 +106,7 @@ ElementBatches<K>::ElementBatches(const Elements& elements, Eigen::Index n_nodes
       n_nodes_(static_cast<int>(n_nodes)),
       nodes_(static_cast<std::size_t>((elements.cols() + Pack::kLanes - 1) / Pack::kLanes)),
       first_(static_cast<std::size_t>(n_nodes) + 1, 0),
-      places_(static_cast<std::size_t>(K * elements.cols())) {
+      buffer_index_(static_cast<std::size_t>(K * elements.cols())) {
   for (int b = 0; b < n_batches(); ++b)
     for (int lane = 0; lane < Pack::kLanes; ++lane)
       for (int k = 0; k < K; ++k)
@@ -111,7 +118,7 @@ ElementBatches<K>::ElementBatches(const Elements& elements, Eigen::Index n_nodes
   std::vector<int> next(first_.begin(), first_.end() - 1);
   for (int e = 0; e < n_elements_; ++e)
     for (int k = 0; k < K; ++k)
-      places_[static_cast<std::size_t>(next[static_cast<std::size_t>(elements(k, e))]++)] =
+      buffer_index_[static_cast<std::size_t>(next[static_cast<std::size_t>(elements(k, e))]++)] =
           ((e / Pack::kLanes) * K + k) * 3 * Pack::kLanes + e % Pack::kLanes;
 }
 
@@ -123,7 +130,7 @@ void ElementBatches<K>::add_corners(VecX<double>& f, const double* buffer, Threa
     for (int i = first; i < last; ++i) {
       double sum[3] = {0, 0, 0};
       for (int p = first_[static_cast<std::size_t>(i)]; p < first_[static_cast<std::size_t>(i) + 1]; ++p) {
-        const double* from = buffer + places_[static_cast<std::size_t>(p)];
+        const double* from = buffer + buffer_index_[static_cast<std::size_t>(p)];
         for (int c = 0; c < 3; ++c) sum[c] += from[static_cast<std::ptrdiff_t>(c) * Pack::kLanes];
       }
       for (int c = 0; c < 3; ++c) out[c * n + i] += sum[c];

@@ -1,6 +1,6 @@
-// A bound on omega^2 of K u = omega^2 M u from elements: with the mass of a node shared out over its
-// elements, M = sum of M_e, the largest omega^2 is at most the largest of K_e u = omega^2 M_e u (Irons &
-// Treharne 1971).
+// Upper bound on omega^2 of K u = omega^2 M u from single elements. The mass of each node is split among its
+// elements in proportion to their volumes, M = sum of M_e. Then the largest omega^2 is at most the largest of
+// K_e u = omega^2 M_e u over all elements (Irons & Treharne 1971).
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,15 @@
 
 namespace pliant {
 
-/// stiffness(e): K_e, row 3 a + i; volume(e): what shares out masses. M: diagonal, directions one after
-/// another. Infinite where a mass is not positive.
+/// Returns the bound, 1/s^2; infinity if a mass is not positive. M: diagonal of the mass matrix in the order
+/// of nodes.h, kg. stiffness(e): K_e, whose row 3 a + i is direction i of corner a. volume(e): weight by
+/// which the mass of a node is split among its elements.
 template <int N, class Stiffness, class Volume>
 double element_frequency_bound(const ElementCorners<N>& corners, const VecX<double>& M, Stiffness&& stiffness,
                                Volume&& volume) {
-  VecX<double> around = VecX<double>::Zero(corners.n_nodes());
+  VecX<double> node_volume = VecX<double>::Zero(corners.n_nodes());
   for (int e = 0; e < corners.n_elements(); ++e)
-    for (int a = 0; a < N; ++a) around[corners.node(e, a)] += volume(e);
+    for (int a = 0; a < N; ++a) node_volume[corners.node(e, a)] += volume(e);
   double bound = 0;
   for (int e = 0; e < corners.n_elements(); ++e) {
     Eigen::Matrix<double, 3 * N, 1> root;
@@ -27,12 +28,12 @@ double element_frequency_bound(const ElementCorners<N>& corners, const VecX<doub
         const int node = corners.node(e, a);
         const double mass = M[static_cast<Eigen::Index>(i) * corners.n_nodes() + node];
         if (!(mass > 0)) return std::numeric_limits<double>::infinity();
-        root[3 * a + i] = std::sqrt(around[node] / (mass * volume(e)));
+        root[3 * a + i] = std::sqrt(node_volume[node] / (mass * volume(e)));
       }
     const Eigen::Matrix<double, 3 * N, 3 * N> K = root.asDiagonal() * stiffness(e) * root.asDiagonal();
     bound = std::max(bound, symmetric_eigenvalues(K).maxCoeff());
   }
-  return bound * (1 + 1e-12);  // rounding of the eigenvalues
+  return bound * (1 + 1e-12);  // margin for rounding of the eigenvalues
 }
 
 }  // namespace pliant

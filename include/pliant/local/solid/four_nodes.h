@@ -1,4 +1,5 @@
-// Four nodes at a time: reads and writes them in columns of numbers, one a node, as Packs.
+// Reads and writes nodal values four nodes at a time as Packs. The values are columns of numbers, one number
+// for each node.
 #pragma once
 
 #include <algorithm>
@@ -9,28 +10,31 @@
 
 namespace pliant {
 
-/// whole: known to have four, so that sums over nodes stay in registers.
-template <bool whole = false>
+/// Four neighbouring nodes, or fewer at the end. full: all four exist; the compiler then keeps sums over
+/// nodes in registers.
+template <bool full = false>
 class FourNodes {
  public:
+  /// Nodes first .. first + 3 of n.
   FourNodes(Eigen::Index first, Eigen::Index n)
       : first_(first), count_(static_cast<int>(std::min<Eigen::Index>(Pack::kLanes, n - first))) {}
 
   Eigen::Index first() const { return first_; }
-  /// Lanes beyond the last node are zero.
+  /// Reads one number for each node; lanes without a node are 0.
   [[gnu::always_inline]] Pack load(const double* column) const {
-    if constexpr (!whole)
+    if constexpr (!full)
       if (count_ != Pack::kLanes) return load_some(column + first_);
     Pack x;
     std::memcpy(x.vectors, column + first_, sizeof x.vectors);
     return x;
   }
+  /// Writes one number for each node.
   [[gnu::always_inline]] void store(double* column, const Pack& x) const {
-    if constexpr (!whole)
+    if constexpr (!full)
       if (count_ != Pack::kLanes) return store_some(column + first_, x);
     std::memcpy(column + first_, x.vectors, sizeof x.vectors);
   }
-  /// The same of three columns that stand one after the other.
+  /// Read and write vectors: three columns of `rows` numbers, one after the other.
   [[gnu::always_inline]] Vec3<Pack> load(const double* columns, Eigen::Index rows) const {
     return {load(columns), load(columns + rows), load(columns + 2 * rows)};
   }
@@ -50,7 +54,7 @@ class FourNodes {
   int count_;
 };
 
-/// act(four) for all of n nodes; four is of one or the other type.
+/// Calls act(four) for all n nodes; four is a FourNodes<true>, at the end possibly a FourNodes<>.
 template <class F>
 void for_each_four(Eigen::Index n, F&& act) {
   Eigen::Index first = 0;

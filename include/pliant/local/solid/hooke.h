@@ -1,20 +1,23 @@
-// Green's strain and Hooke's law of an isotropic material, of F = dx/dX:
+// Green's strain, Hooke's law of an isotropic material and Kelvin-Voigt damping, from F = dx/dX:
 //   G = (F^T F - I)/2,   Gdot = (F^T Fdot + Fdot^T F)/2,   S(G) = lambda tr(G) I + 2 mu G
-// and what Kelvin and Voigt's damping makes of them: P_v = F S(Gdot), per unit of beta. It is that of every
-// isotropic law about rest; rigid motion and motion of the frame leave Gdot = 0, and the power it takes, P_v
-// : Fdot = S(Gdot) : Gdot, is never negative. Of a surface (Dim = 2) F has two columns and I two ones.
+//   P_v = F S(Gdot)   viscous stress for beta = 1 s
+// P_v damps every isotropic law as its own stiffness at rest would. Rigid motion has Gdot = 0. The dissipated
+// power P_v : Fdot = S(Gdot) : Gdot is never negative.
+// Dim = 2: F maps a surface and has two non-zero columns; I has two ones.
 #pragma once
 
 #include <pliant/local/tensor.h>
 
 namespace pliant {
 
+/// Returns G.
 template <int Dim = 3, class T>
 Mat3<T> green_strain(const Mat3<T>& F) {
   Mat3<T> G = scaled(T(0.5), transposed_product(F, F));
   for (int i = 0; i < Dim; ++i) G(i, i) -= T(0.5);
   return G;
 }
+/// Returns Gdot, 1/s.
 template <class T>
 Mat3<T> green_strain_rate(const Mat3<T>& F, const Mat3<T>& F_dot) {
   const Mat3<T> A = transposed_product(F, F_dot);
@@ -23,6 +26,7 @@ Mat3<T> green_strain_rate(const Mat3<T>& F, const Mat3<T>& F_dot) {
     for (int j = 0; j < 3; ++j) G_dot(i, j) = T(0.5) * (A(i, j) + A(j, i));
   return G_dot;
 }
+/// Returns S(G), Pa.
 template <int Dim = 3, class T>
 Mat3<T> hooke_stress(double lambda, double mu, const Mat3<T>& G) {
   Mat3<T> S = scaled(T(2 * mu), G);
@@ -30,6 +34,7 @@ Mat3<T> hooke_stress(double lambda, double mu, const Mat3<T>& G) {
   for (int i = 0; i < Dim; ++i) S(i, i) += pressure;
   return S;
 }
+/// Returns P_v; times beta (s) it is a stress in Pa.
 template <int Dim = 3, class T>
 Mat3<T> viscous_stress(double lambda, double mu, const Mat3<T>& F, const Mat3<T>& F_dot) {
   return product(F, hooke_stress<Dim>(lambda, mu, green_strain_rate(F, F_dot)));

@@ -1,11 +1,11 @@
-// Where the energy of a material is not defined.
+// The exception of materials whose energy is not defined for inverted or flat elements.
 #pragma once
 
 #include <stdexcept>
 
 namespace pliant {
 
-/// An element is turned inside out or squeezed flat.
+/// An element is inverted (det F < 0) or flat (det F = 0).
 struct InvertedElement : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -1,4 +1,4 @@
-// Energies of solids chosen at run time, by law and by the nodes of an element.
+// Factory of solid energies: the law and the number of nodes of an element are chosen at run time.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,9 @@ namespace pliant {
 
 enum class SolidLaw { linear, averaged_linear, st_venant_kirchhoff, neo_hookean, corotated };
 
-/// rest: positions of the nodes, m. elements: 4, 10 or 15 rows. Throws std::invalid_argument as the energies
-/// do.
+/// Returns the energy of a solid. rest: positions of the nodes at rest, m. elements: 4, 10 or 15 node numbers
+/// in each column. Throws std::invalid_argument for another number of rows, and for elements or constants
+/// that the energy refuses (solid_energy.h, averaged_dilatation.h).
 std::unique_ptr<NodalEnergy> make_solid_energy(SolidLaw law, const Nodes& rest,
                                                const Eigen::MatrixXi& elements, const Elasticity& material);
 

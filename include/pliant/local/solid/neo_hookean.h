@@ -1,9 +1,9 @@
-// Neo-Hookean material without logarithms (Smith, De Goes & Kim 2018, their energy without the term that
-// keeps collapsed points from resting): of F = dx/dX, J = det F, C = cofactors of F = dJ/dF,
+// Neo-Hookean material without logarithms (Smith, De Goes & Kim 2018, without their term that removes the
+// rest state of collapsed elements). From F = dx/dX, with J = det F and C = cofactors of F = dJ/dF,
 //   W = mu/2 (F:F - 3) - mu (J - 1) + (lambda + mu)/2 (J - 1)^2
-//   P = mu F + ((lambda + mu)(J - 1) - mu) C
-// At small strains that of lambda and mu. It is a polynomial: defined, and pushing back, for elements that
-// are turned inside out.
+//   P = mu F + ((lambda + mu)(J - 1) - mu) C.
+// For small strains the constants are those of Hooke's law. W is a polynomial, so that it is defined for
+// inverted elements and drives them back.
 #pragma once
 
 #include <pliant/local/elasticity.h>
@@ -21,29 +21,30 @@ struct NeoHookean {
 
   template <class T>
   T density(const Mat3<T>& F) const {
-    const T growth = determinant(F, cofactors(F)) - T(1);
-    return T(mu / 2) * (contraction(F, F) - T(3)) + growth * (T((lambda + mu) / 2) * growth - T(mu));
+    const T J_1 = determinant(F, cofactors(F)) - T(1);
+    return T(mu / 2) * (contraction(F, F) - T(3)) + J_1 * (T((lambda + mu) / 2) * J_1 - T(mu));
   }
   template <class T>
   Mat3<T> stress(const Mat3<T>& F) const {
     const Mat3<T> C = cofactors(F);
-    const T push = pressure(F, C);
+    const T p = pressure(F, C);
     Mat3<T> P;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) P(i, j) = T(mu) * F(i, j) + push * C(i, j);
+      for (int j = 0; j < 3; ++j) P(i, j) = T(mu) * F(i, j) + p * C(i, j);
     return P;
   }
   template <class T>
   Mat3<T> stress_along(const Mat3<T>& F, const Mat3<T>& dF) const {
     const Mat3<T> C = cofactors(F), dC = mixed_cofactors(F, dF);
-    const T push = pressure(F, C), dpush = T(lambda + mu) * contraction(C, dF);
+    const T p = pressure(F, C), dp = T(lambda + mu) * contraction(C, dF);
     Mat3<T> dP;
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) dP(i, j) = T(mu) * dF(i, j) + dpush * C(i, j) + push * dC(i, j);
+      for (int j = 0; j < 3; ++j) dP(i, j) = T(mu) * dF(i, j) + dp * C(i, j) + p * dC(i, j);
     return dP;
   }
 
  private:
+  /// Returns the factor of C in P.
   template <class T>
   T pressure(const Mat3<T>& F, const Mat3<T>& C) const {
     return T(lambda + mu) * (determinant(F, C) - T(1)) - T(mu);

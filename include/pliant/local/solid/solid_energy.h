@@ -1,11 +1,14 @@
-// Energy of a solid over tetrahedra: E = sum over elements and points of weight * W(G),
-//   G = grad of d (linear law) or of p = s + d (the others),  from nodal vectors x: G = (dx/dxi) (dX/dxi)^-1
-//   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,  P = dW/dG;   K dx likewise with dP along the gradient of
-//   dx
-// One kernel for every element (tetrahedron.h) and law; the inverse of dX/dxi is kept for each point.
+// Elastic energy of a solid made of tetrahedra: E = sum over elements and quadrature points of weight * W(G).
+// For nodal vectors x the gradient is
+//   G = sum_a x_a (dN_a/dX)^T = (dx/dxi) (dX/dxi)^-1,
+// of x = d for the linear law and of x = p = s + d for the other laws. The force on node a is
+//   f_a = -sum of weight * P (dX/dxi)^-T dN_a/dxi,   P = dW/dG,
+// and K dx has the form of -f with dP, the change of P along the gradient of dx, in place of P. One kernel
+// serves every element (tetrahedron.h) and every law; (dX/dxi)^-1 is stored for each point.
 #pragma once
 
-#include <type_traits>
+#include <array>
+#include <vector>
 
 #include <pliant/local/linear_law.h>
 #include <pliant/local/nodal_energy.h>
@@ -18,13 +21,15 @@
 
 namespace pliant {
 
+/// Element: a type of tetrahedron.h. Law: LinearLaw, StVenantKirchhoff, NeoHookean or Corotated.
 template <class Element, class Law>
 class SolidEnergy final : public NodalEnergy {
  public:
   static constexpr int N = Element::n_nodes;
 
-  /// rest: positions X of the nodes at rest, m. elements: N rows; their Jacobians must be positive at the
-  /// points of the rule, else std::invalid_argument.
+  /// rest: positions X of the nodes at rest, m. elements: N node numbers in each column. Throws
+  /// std::invalid_argument for another number of rows, for unknown nodes, and if det dX/dxi <= 0 at a point
+  /// of the rule.
   SolidEnergy(const Nodes& rest, const Eigen::MatrixXi& elements, const Law& law);
 
   Of of() const override { return Law::of; }
@@ -39,32 +44,43 @@ class SolidEnergy final : public NodalEnergy {
 
   const Law& law() const { return law_; }
   int n_elements() const { return corners_.n_elements(); }
-  /// K of one element, corner by corner: row 3 a + i is direction i of corner a.
+  /// Returns K of one element at x; row 3 a + i is direction i of corner a.
   Eigen::Matrix<double, 3 * N, 3 * N> element_stiffness(const Coordinates& x, int element) const;
-  /// The volume of an element by its rule, m^3.
+  /// Returns the volume of an element by its rule, m^3.
   double volume(int element) const;
 
  private:
   static constexpr int kPoints = static_cast<int>(Element::rule.size());
-  /// Of a point of the rule in four elements: (dX/dxi)^-1 and weight times its determinant.
+  /// One point of the rule in four elements.
   struct Point {
-    Mat3<Pack> inverse;
-    Pack weight;
+    Mat3<Pack> inverse;  ///< (dX/dxi)^-1, 1/m
+    Pack weight;         ///< weight of the rule times det dX/dxi, m^3; 0 in lanes without an element
   };
-  /// Sums what P(point, gradients) pushes, over all packs, into f.
+  /// dP/dG and dG/dx_a; see the functions below.
+  using StressDerivative = Eigen::Matrix<double, 9, 9>;
+  using GradientMatrix = Eigen::Matrix<double, 9, 3 * N>;
+  /// Subtracts from f the nodal forces of the stress P = stress(G) of all elements. G: gradients of the given
+  /// nodal fields at a point, G[k] of fields[k].
   template <int Fields, class Stress>
-  void add(const std::array<const double*, Fields>& fields, VecX<double>& f, Buffer& buffer, ThreadPool* pool,
-           Stress&& stress) const;
+  void subtract_forces(const std::array<const double*, Fields>& fields, VecX<double>& f, Buffer& buffer,
+                       ThreadPool* pool, Stress&& stress) const;
+  /// Returns dG/dx_a at a point of an element. Row 3 r + c is G_rc, column 3 a + i is direction i of corner
+  /// a.
+  static GradientMatrix gradient_matrix(const TetrahedronPoint& at, const Mat3<double>& inverse);
+  /// Returns dP/dG of the law at G, components in the order of gradient_matrix.
+  StressDerivative stress_derivative(const Mat3<double>& G) const;
   const Point* points(int pack) const { return points_.data() + static_cast<std::ptrdiff_t>(pack) * kPoints; }
 
   Law law_;
   ElementCorners<N> corners_;
-  std::vector<Point> points_;  // pack, point of the rule; weight 0 in lanes without an element
+  std::vector<Point> points_;  // [pack][point of the rule]
 };
 
+/// The linear solid: K does not depend on x.
 template <class Element>
 using LinearSolid = SolidEnergy<Element, LinearLaw>;
 
+/// Every combination of element and law that the library contains.
 #define PLIANT_SOLID_ENERGIES(prefix)                                         \
   prefix template class SolidEnergy<LinearTetrahedron, LinearLaw>;            \
   prefix template class SolidEnergy<LinearTetrahedron, StVenantKirchhoff>;    \

@@ -1,9 +1,9 @@
-// Masses of the nodes of tetrahedra, from a density per rest volume (kg/m^3): M_ab = int of density N_a N_b.
-//   lumped       4 nodes: a quarter of each element to each corner (row sums); 10 nodes, whose row sums are
-//                negative at corners: the diagonal of M scaled to the mass of the element (Hinton, Rock &
-//                Zienkiewicz 1976), which costs them their order; 15 nodes: the weights of the element's own
-//                rule
-//   consistent   M itself, for modes
+// Masses of the nodes of tetrahedra, M_ab = int of density N_a N_b over the rest volume.
+//   lumped       4 nodes: each corner receives a quarter of the element's mass (row sums of M).
+//                10 nodes: the diagonal of M is scaled to the element's mass (Hinton, Rock & Zienkiewicz
+//                1976), because row sums are negative at corners. The element loses its order of convergence.
+//                15 nodes: weights of the element's own nodal rule (kEnrichedNodes in tetrahedron.h).
+//   consistent   M itself, for modes.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,12 @@
 
 namespace pliant {
 
-/// kg, one a node. elements: 4, 10 or 15 rows, else std::invalid_argument.
+/// Returns the lumped mass of each node, kg. rest: positions of the nodes, m. elements: 4, 10 or 15 node
+/// numbers in each column. density: kg/m^3. Throws std::invalid_argument for another number of rows.
 VecX<double> lumped_mass(const Nodes& rest, const Eigen::MatrixXi& elements, double density);
 
-/// Entries over nodes, kg; the same for each direction.
+/// Returns the entries of the consistent mass matrix over nodes, kg, which applies to each direction.
+/// Arguments and errors of lumped_mass.
 std::vector<Eigen::Triplet<double>> consistent_mass(const Nodes& rest, const Eigen::MatrixXi& elements,
                                                     double density);
 

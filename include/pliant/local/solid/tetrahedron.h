@@ -1,12 +1,13 @@
-// Tetrahedral elements: x(L) = sum_a N_a(L) x_a with barycentric coordinates L_0 .. L_3; xi_k = L_k, k
-// = 1..3.
+// Tetrahedral elements: x(L) = sum_a N_a(L) x_a with barycentric coordinates L_0 .. L_3. The reference
+// coordinates are xi_k = L_k, k = 1..3.
 //   4 nodes    N_a = L_a
 //   10 nodes   N_a = L_a (2 L_a - 1) at corners, 4 L_a L_b on the edges 01 12 20 03 13 23
-//   15 nodes   those, and bubbles 27 L_a L_b L_c on faces (the one without corner f is node 10 + f) and
-//              256 L_0 L_1 L_2 L_3 in the middle: what masses at the nodes need to be positive and of fourth
-//              order (Geevers, Mulder & van der Vegt 2018)
-// Rules: weights over the reference tetrahedron (volume 1/6). Stiffness: exact to degree 1 and 3, so that a
-// uniform stress is in balance on curved elements as well, 5 with bubbles. Mass: degree 5 (Walkington 2000).
+//   15 nodes   the 10-node functions enriched with bubbles: 27 L_a L_b L_c on faces (node 10 + f is on the
+//              face without corner f) and 256 L_0 L_1 L_2 L_3 in the middle (node 14). The bubbles make the
+//              lumped masses positive and keep fourth order (Geevers, Mulder & van der Vegt 2018).
+// Weights of quadrature rules sum to the volume 1/6 of the reference tetrahedron. The stiffness rules are
+// exact for degree 1 (4 nodes), 3 (10 nodes) and 5 (15 nodes), so that a uniform stress is in balance on
+// curved elements too. The mass rule is exact for degree 5 (Walkington 2000).
 #pragma once
 
 #include <array>
@@ -15,6 +16,7 @@
 
 namespace pliant {
 
+/// A point of a quadrature rule: barycentric coordinates and weight.
 struct TetrahedronPoint {
   std::array<double, 4> L;
   double weight;
@@ -22,6 +24,8 @@ struct TetrahedronPoint {
 
 namespace detail {
 
+/// Stores the four points whose coordinates are 1 - 3 a once and a three times, from points[n] on. share:
+/// weight of each point divided by the volume of the tetrahedron.
 template <std::size_t N>
 constexpr void add_corner_orbit(std::array<TetrahedronPoint, N>& points, std::size_t& n, double a,
                                 double share) {
@@ -31,6 +35,7 @@ constexpr void add_corner_orbit(std::array<TetrahedronPoint, N>& points, std::si
   }
 }
 
+/// Rule with 8 points, exact for polynomials of degree 3.
 constexpr std::array<TetrahedronPoint, 8> eight_points() {
   std::array<TetrahedronPoint, 8> points{};
   std::size_t n = 0;
@@ -39,6 +44,7 @@ constexpr std::array<TetrahedronPoint, 8> eight_points() {
   return points;
 }
 
+/// Rule with 14 points, exact for polynomials of degree 5 (Walkington 2000).
 constexpr std::array<TetrahedronPoint, 14> fourteen_points() {
   std::array<TetrahedronPoint, 14> points{};
   std::size_t n = 0;
@@ -55,12 +61,15 @@ constexpr std::array<TetrahedronPoint, 14> fourteen_points() {
 
 }  // namespace detail
 
-/// Ends of the edges of a tetrahedron, in the order of the nodes on them.
+/// Corners at the ends of each edge. Node 4 + e is the midpoint of edge e.
 inline constexpr std::array<std::array<std::size_t, 2>, 6> kTetrahedronEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
+/// Rule of the consistent mass matrix of all elements.
 inline constexpr std::array<TetrahedronPoint, 14> kTetrahedronMassRule = detail::fourteen_points();
 
+/// Members of every element: the quadrature rule of the stiffness, the shape functions N, the gradient of
+/// nodal vectors and the transpose of the gradient. T: double, Pack or a dual number.
 struct LinearTetrahedron {
   static constexpr int n_nodes = 4;
   static constexpr std::array<TetrahedronPoint, 1> rule{{{{0.25, 0.25, 0.25, 0.25}, 1.0 / 6}}};
@@ -69,7 +78,7 @@ struct LinearTetrahedron {
     return Eigen::Map<const Vec<double, 4>>(at.L.data());
   }
 
-  /// dx/dxi, one column for each xi_k, of nodal vectors x.
+  /// Returns dx/dxi of nodal vectors x, one column for each xi_k.
   template <class T>
   static Mat3<T> gradient(const TetrahedronPoint&, const Vec3<T>* x) {
     Mat3<T> D;
@@ -77,9 +86,9 @@ struct LinearTetrahedron {
       for (int r = 0; r < 3; ++r) D(r, k) = x[k + 1][r] - x[0][r];
     return D;
   }
-  /// f_a += Q dN_a/dxi, the transpose of gradient().
+  /// Adds Q dN_a/dxi to f_a at each node: the transpose of gradient().
   template <class T>
-  static void push(const TetrahedronPoint&, const Mat3<T>& Q, Vec3<T>* f) {
+  static void add_nodal_forces(const TetrahedronPoint&, const Mat3<T>& Q, Vec3<T>* f) {
     for (int r = 0; r < 3; ++r) {
       f[0][r] -= Q(r, 0) + Q(r, 1) + Q(r, 2);
       for (int k = 0; k < 3; ++k) f[k + 1][r] += Q(r, k);
@@ -100,30 +109,30 @@ struct QuadraticTetrahedron {
     return n;
   }
 
-  /// By way of dx/dL_c: dN_c/dL_c = 4 L_c - 1, and 4 L_d for the node between c and d.
+  /// From dx/dL_c, with dN_c/dL_c = 4 L_c - 1 and dN/dL_c = 4 L_d for the node between corners c and d.
   template <class T>
   static Mat3<T> gradient(const TetrahedronPoint& at, const Vec3<T>* x) {
     Mat3<T> D;
     for (int r = 0; r < 3; ++r) {
-      T along[4];
-      for (std::size_t c = 0; c < 4; ++c) along[c] = x[c][r] * T(4 * at.L[c] - 1);
+      T dx_dL[4];
+      for (std::size_t c = 0; c < 4; ++c) dx_dL[c] = x[c][r] * T(4 * at.L[c] - 1);
       for (std::size_t e = 0; e < 6; ++e) {
         const auto [c, d] = kTetrahedronEdges[e];
-        along[c] += x[4 + e][r] * T(4 * at.L[d]);
-        along[d] += x[4 + e][r] * T(4 * at.L[c]);
+        dx_dL[c] += x[4 + e][r] * T(4 * at.L[d]);
+        dx_dL[d] += x[4 + e][r] * T(4 * at.L[c]);
       }
-      for (int k = 0; k < 3; ++k) D(r, k) = along[k + 1] - along[0];
+      for (int k = 0; k < 3; ++k) D(r, k) = dx_dL[k + 1] - dx_dL[0];
     }
     return D;
   }
   template <class T>
-  static void push(const TetrahedronPoint& at, const Mat3<T>& Q, Vec3<T>* f) {
+  static void add_nodal_forces(const TetrahedronPoint& at, const Mat3<T>& Q, Vec3<T>* f) {
     for (int r = 0; r < 3; ++r) {
-      const T along[4]{-(Q(r, 0) + Q(r, 1) + Q(r, 2)), Q(r, 0), Q(r, 1), Q(r, 2)};
-      for (std::size_t c = 0; c < 4; ++c) f[c][r] += along[c] * T(4 * at.L[c] - 1);
+      const T Q_L[4]{-(Q(r, 0) + Q(r, 1) + Q(r, 2)), Q(r, 0), Q(r, 1), Q(r, 2)};
+      for (std::size_t c = 0; c < 4; ++c) f[c][r] += Q_L[c] * T(4 * at.L[c] - 1);
       for (std::size_t e = 0; e < 6; ++e) {
         const auto [c, d] = kTetrahedronEdges[e];
-        f[4 + e][r] += along[c] * T(4 * at.L[d]) + along[d] * T(4 * at.L[c]);
+        f[4 + e][r] += Q_L[c] * T(4 * at.L[d]) + Q_L[d] * T(4 * at.L[c]);
       }
     }
   }
@@ -144,7 +153,7 @@ struct EnrichedTetrahedron {
       double face[4], middle;
       bubbles(unit, 0, face, middle);
       n[a] = (a < 10 ? quadratic[a] : 0) + 256 * all * middle;
-      for (std::size_t f = 0; f < 4; ++f) n[a] += face[f] * 27 * others(at, f);
+      for (std::size_t f = 0; f < 4; ++f) n[a] += face[f] * 27 * product_without(at, f);
     }
     return n;
   }
@@ -153,29 +162,29 @@ struct EnrichedTetrahedron {
   static Mat3<T> gradient(const TetrahedronPoint& at, const Vec3<T>* x) {
     Mat3<T> D = QuadraticTetrahedron::gradient(at, x);
     for (int r = 0; r < 3; ++r) {
-      T face[4], middle, along[4];
+      T face[4], middle, dx_dL[4];
       bubbles(x, r, face, middle);
       for (std::size_t c = 0; c < 4; ++c) {
-        along[c] = middle * T(256 * others(at, c));
+        dx_dL[c] = middle * T(256 * product_without(at, c));
         for (std::size_t f = 0; f < 4; ++f)
-          if (f != c) along[c] += face[f] * T(27 * others(at, c, f));
+          if (f != c) dx_dL[c] += face[f] * T(27 * product_without(at, c, f));
       }
-      for (int k = 0; k < 3; ++k) D(r, k) += along[k + 1] - along[0];
+      for (int k = 0; k < 3; ++k) D(r, k) += dx_dL[k + 1] - dx_dL[0];
     }
     return D;
   }
   template <class T>
-  static void push(const TetrahedronPoint& at, const Mat3<T>& Q, Vec3<T>* f) {
-    QuadraticTetrahedron::push(at, Q, f);
+  static void add_nodal_forces(const TetrahedronPoint& at, const Mat3<T>& Q, Vec3<T>* f) {
+    QuadraticTetrahedron::add_nodal_forces(at, Q, f);
     for (int r = 0; r < 3; ++r) {
-      const T along[4]{-(Q(r, 0) + Q(r, 1) + Q(r, 2)), Q(r, 0), Q(r, 1), Q(r, 2)};
-      // On the sizes of the bubbles, and from these on the nodes: the transpose of bubbles().
+      const T Q_L[4]{-(Q(r, 0) + Q(r, 1) + Q(r, 2)), Q(r, 0), Q(r, 1), Q(r, 2)};
+      // Forces on the bubble coefficients, then on the nodes by the transpose of bubbles().
       T middle(0.0), corners(0.0), edges(0.0), face[4];
-      for (std::size_t c = 0; c < 4; ++c) middle += along[c] * T(256 * others(at, c));
+      for (std::size_t c = 0; c < 4; ++c) middle += Q_L[c] * T(256 * product_without(at, c));
       for (std::size_t g = 0; g < 4; ++g) {
         face[g] = middle * T(-27.0 / 64);
         for (std::size_t c = 0; c < 4; ++c)
-          if (c != g) face[g] += along[c] * T(27 * others(at, c, g));
+          if (c != g) face[g] += Q_L[c] * T(27 * product_without(at, c, g));
         f[10 + g][r] += face[g];
         corners += face[g];
       }
@@ -188,13 +197,14 @@ struct EnrichedTetrahedron {
     }
   }
 
-  /// Sizes of the bubbles: what the values at faces and in the middle add to the quadratic function.
+  /// Computes the coefficients of the bubbles for component r of nodal vectors x: on each face and in the
+  /// middle, the nodal value less the value of the other shape functions there.
   template <class T>
   static void bubbles(const Vec3<T>* x, int r, T* face, T& middle) {
     T corners = x[0][r] + x[1][r] + x[2][r] + x[3][r], edges(0.0), faces(0.0);
     for (std::size_t e = 0; e < 6; ++e) edges += x[4 + e][r];
     for (std::size_t f = 0; f < 4; ++f) {
-      T around = edges;  // the three edges of the face
+      T around = edges;  // becomes the sum over the three edges of the face
       for (std::size_t e = 0; e < 6; ++e)
         if (kTetrahedronEdges[e][0] == f || kTetrahedronEdges[e][1] == f) around -= x[4 + e][r];
       face[f] = x[10 + f][r] + (corners - x[f][r]) * T(1.0 / 9) - around * T(4.0 / 9);
@@ -204,8 +214,8 @@ struct EnrichedTetrahedron {
   }
 
  private:
-  /// The product of the coordinates but L_c, or but L_c and L_f.
-  static constexpr double others(const TetrahedronPoint& at, std::size_t c, std::size_t f = 4) {
+  /// Returns the product of the barycentric coordinates without L_c, and without L_f if f < 4.
+  static constexpr double product_without(const TetrahedronPoint& at, std::size_t c, std::size_t f = 4) {
     double product = 1;
     for (std::size_t d = 0; d < 4; ++d)
       if (d != c && d != f) product *= at.L[d];
@@ -213,7 +223,8 @@ struct EnrichedTetrahedron {
   }
 };
 
-/// Nodes of the enriched element, weighed by what they carry of its mass.
+/// Nodes of the enriched element. The weight is the share of the reference volume (1/6) that is lumped to the
+/// node.
 inline constexpr std::array<TetrahedronPoint, 15> kEnrichedNodes = [] {
   std::array<TetrahedronPoint, 15> nodes{};
   for (std::size_t c = 0; c < 4; ++c) {

@@ -1,5 +1,5 @@
-// Dual numbers: x = v + sum_i d_i e_i with e_i e_j = 0. A formula evaluated on duals gives its value and its
-// N partial derivatives, exactly. T is double, Pack (four points at once), another Dual, or long double.
+// Dual numbers: x = v + sum_i d_i e_i with e_i e_j = 0. A formula evaluated on dual numbers returns its value
+// and its N exact partial derivatives. T is double, Pack (four points at once), another Dual, or long double.
 #pragma once
 
 #include <array>
@@ -10,21 +10,22 @@
 
 namespace pliant {
 
+/// A number with N partial derivatives over the scalar T.
 template <int N, class T = double>
 struct Dual {
-  T v;
-  std::array<T, N> d;
+  T v;                 ///< value
+  std::array<T, N> d;  ///< partial derivatives
 
-  /// What enters a formula as a constant: anything that converts to T.
+  /// Constants of a formula: all types that convert to T.
   template <class C>
   using IfConstant = std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, Dual>, int>;
 
   Dual() = default;
   template <class C, IfConstant<C> = 0>
-  Dual(const C& value) : v(value), d{} {}  // NOLINT(google-explicit-constructor): constants mix in
+  Dual(const C& value) : v(value), d{} {}  // NOLINT(google-explicit-constructor): constants convert silently
 
-  /// From the same number of partials over a narrower scalar (double to Pack). A dual that T can hold is a
-  /// constant.
+  /// Converts from a dual over a narrower scalar C (double to Pack) with N partials. If Dual<N, C> converts
+  /// to T itself, it is a constant (constructor above).
   template <class C, std::enable_if_t<std::is_convertible_v<C, T> && !std::is_same_v<C, T> &&
                                           !std::is_convertible_v<Dual<N, C>, T>,
                                       int> = 0>
@@ -32,7 +33,7 @@ struct Dual {
     for (std::size_t i = 0; i < N; ++i) d[i] = T(o.d[i]);
   }
 
-  /// The variable number i, at a value.
+  /// Returns the independent variable number i at a value: its partial derivative i is 1, the others are 0.
   static Dual variable(const T& value, int i) {
     Dual x(value);
     x.d[static_cast<std::size_t>(i)] = T(1);
@@ -73,7 +74,7 @@ struct Dual {
     return r;
   }
 
-  // With constants, whose derivatives are not worth multiplying by.
+  // Operations with constants skip the products with zero derivatives.
   template <class C, IfConstant<C> = 0>
   friend Dual operator+(Dual a, const C& c) {
     a.v += T(c);
@@ -116,7 +117,7 @@ struct Dual {
     return Dual(c) / a;
   }
 
-  /// f(a) from the value and the slope of f at a.v.
+  /// Returns f(a) from the value and the slope of f at a.v.
   friend Dual chain_rule(const Dual& a, const T& value, const T& slope) {
     Dual r;
     r.v = value;
@@ -150,7 +151,7 @@ struct Dual {
   }
 };
 
-/// Whether x is the number c and nothing else: no derivative of it differs from zero.
+/// Returns whether x equals the number c and all its derivatives are zero.
 inline bool is_constant(double x, double c) {
   return x == c;
 }
@@ -163,6 +164,7 @@ bool is_constant(const Dual<N>& x, double c) {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <int N, class T>
 struct Eigen::NumTraits<pliant::Dual<N, T>> : Eigen::NumTraits<double> {
   using Real = pliant::Dual<N, T>;
@@ -170,3 +172,4 @@ struct Eigen::NumTraits<pliant::Dual<N, T>> : Eigen::NumTraits<double> {
   using Nested = pliant::Dual<N, T>;
   enum { RequireInitialization = 1 };
 };
+#endif

@@ -1,12 +1,12 @@
-// Sine, cosine and exponential by arithmetic alone, for a double or for a Pack: the same bits in every lane
-// as alone, on every machine, and four at the price of one. Errors were measured below one unit in the last
-// place (tests/math/scalars.cpp).
-// Arguments are brought near 0 by multiples of pi/2 or log 2, kept in pieces of few bits (Cody & Waite 1980);
-// Taylor series do the rest.
+// Sine, cosine and exponential from additions and multiplications alone, for a double or for a Pack. A lane
+// of a Pack has the bits of the result for a double, on every machine; four lanes cost about as much as one
+// double. The measured errors are below one unit in the last place (tests/math/scalars.cpp). Method: the
+// argument is reduced by multiples of pi/2 or log 2, which are split into constants with few bits (Cody &
+// Waite 1980); Taylor series evaluate the reduced argument.
 #pragma once
 
 #ifdef __FAST_MATH__
-#error "pliant needs arithmetic as it is written: compile without -ffast-math"
+#error "pliant needs IEEE arithmetic in the written order: compile without -ffast-math"
 #endif
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace pliant::math {
 
-/// x where c > 0, else y; for a pack lane by lane, for a derivative number along the branch taken.
+/// Returns x if c > 0, else y. A Pack selects lane by lane; a Dual or Taylor2 selects the derivatives too.
 inline double select_positive(double c, double x, double y) {
   return c > 0 ? x : y;
 }
@@ -32,15 +32,16 @@ inline T abs(const T& x) {
 
 namespace elementary {
 
-/// Added to a number below 2^51 it leaves the nearest integer in the last bits.
+/// The sum of a number below 2^51 and this constant has the nearest integer in its last bits.
 inline constexpr double kRounder = 0x1.8p52;
 
+/// Returns the integer nearest to x, |x| < 2^51.
 template <class T>
 inline T nearest_integer(const T& x) {
   return (x + kRounder) - kRounder;
 }
 
-/// 2^n, for an integer -1023 < n < 1024.
+/// Returns 2^n for an integer -1023 < n < 1024.
 inline double power_of_two(double n) {
   const double shifted = n + kRounder;
   std::uint64_t bits;
@@ -51,7 +52,8 @@ inline double power_of_two(double n) {
   return power;
 }
 
-/// sum of c_k x^k, N even: the odd powers apart, which keeps the arithmetic units busy.
+/// Returns the sum of c_k x^k, N even. Even and odd powers are two independent sums, which run in parallel on
+/// the arithmetic units.
 template <class T, int N>
 inline T polynomial(const double (&c)[N], const T& x) {
   static_assert(N % 2 == 0);
@@ -64,27 +66,28 @@ inline T polynomial(const double (&c)[N], const T& x) {
   return even + odd * x;
 }
 
+/// Returns e^x for every x.
 template <class T>
-inline T exp(const T& any) {
+inline T exp(const T& x) {
   constexpr double log2_e = 0x1.71547652b82fep+0, ln2_high = 0x1.62e42fefp-1, ln2_low = 0x1.473de6af278edp-34;
   // (e^r - 1 - r) / r^2
   constexpr double series[] = {1. / 2,       1. / 6,        1. / 24,        1. / 120,
                                1. / 720,     1. / 5040,     1. / 40320,     1. / 362880,
                                1. / 3628800, 1. / 39916800, 1. / 479001600, 1. / 6227020800};
-  const T least(-746), most(710);  // e^x is 0 below and infinite above; what is not a number passes
-  const T above = where_positive(T(least - any), least, any);
-  const T x = where_positive(T(above - most), most, above);
-  const T n = nearest_integer(T(x * log2_e));
-  const T r = (x - n * ln2_high) - n * ln2_low;
+  const T lowest(-746), highest(710);  // e^x is 0 below and infinite above; NaN passes through
+  const T above = where_positive(T(lowest - x), lowest, x);
+  const T clamped = where_positive(T(above - highest), highest, above);
+  const T n = nearest_integer(T(clamped * log2_e));
+  const T r = (clamped - n * ln2_high) - n * ln2_low;
   const T e = r * r * polynomial(series, r) + r + 1.0;
-  const T half = nearest_integer(T(n * 0.5));  // in two steps, so that results below 1e-308 are met
+  const T half = nearest_integer(T(n * 0.5));  // two factors, so that subnormal results are exact too
   return e * power_of_two(half) * power_of_two(T(n - half));
 }
 
-/// Up to here sin_cos reduces its arguments.
+/// The largest |x| (rad) for which the argument reduction of sin_cos is accurate.
 inline constexpr double kLargestAngle = 1e6;
 
-/// Of |x| <= kLargestAngle.
+/// Computes sine and cosine of x (rad), |x| <= kLargestAngle.
 template <class T>
 inline void sin_cos(const T& x, T& sine, T& cosine) {
   constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
@@ -97,7 +100,7 @@ inline void sin_cos(const T& x, T& sine, T& cosine) {
       1. / 24,        -1. / 720,         1. / 40320,           -1. / 3628800,
       1. / 479001600, -1. / 87178291200, 1. / 20922789888000., -1. / 6402373705728000.};
   const T n = nearest_integer(T(x * two_over_pi));
-  // r + rest = x - n pi/2; the products with high and middle are exact, and so is the first difference.
+  // r + rest = x - n pi/2. The products with high and middle and the first difference are exact.
   const T near = x - n * high, step = n * middle;
   const T reduced = near - step, moved = reduced - near;
   const T rounding = (near - (reduced - moved)) - (step + moved);
@@ -108,7 +111,7 @@ inline void sin_cos(const T& x, T& sine, T& cosine) {
   const T s = r + (r * r2 * polynomial(sine_series, r2) + rest * (-half + 1.0));
   const T less = -half + 1.0;
   const T c = less + (((-less + 1.0) - half) + (r2 * r2 * polynomial(cosine_series, r2) - r * rest));
-  // Quarter turns, -2 to 2: the odd ones swap sine and cosine.
+  // Number of quarter turns, -2 to 2; an odd number swaps sine and cosine.
   const T quarters = n - nearest_integer(T(n * 0.25)) * 4.0;
   const T size = abs(quarters), even = -size + 1.0;
   const T odd = -abs(even) + 0.5;

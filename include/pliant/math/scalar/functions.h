@@ -1,5 +1,5 @@
-// The elementary functions of the engine's formulas. Formulas call math::sin(x) and so on, whatever the
-// scalar (double, long double, Pack, Dual, Taylor2): the scalar's own overload is found beside its type.
+// The elementary functions of the engine's formulas. A formula calls math::sin(x) for every scalar (double,
+// long double, Pack, Dual, Taylor2); argument-dependent lookup finds the overload of the scalar.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace pliant {
 inline constexpr double kPi = 3.14159265358979323846;
 
-/// The plain number in a scalar, for decisions.
+/// Returns the value of a scalar without its derivatives, for comparisons.
 inline double plain(double x) {
   return x;
 }
@@ -38,7 +38,7 @@ inline double exp(double x) {
   return elementary::exp(x);
 }
 
-/// Sine and cosine of the same angle, at the price of one.
+/// Sine and cosine of one angle.
 template <class T>
 struct SinCos {
   T sin, cos;
@@ -52,6 +52,7 @@ inline SinCos<double> sin_cos_of(double x) {
 inline SinCos<long double> sin_cos_of(long double x) {
   return {std::sin(x), std::cos(x)};
 }
+/// Returns sine and cosine of x (rad); both together cost about as much as one.
 template <class T>
 inline SinCos<T> sin_cos(const T& x) {
   return sin_cos_of(x);
@@ -75,7 +76,7 @@ template <class T>
 inline T square(const T& x) {
   return x * x;
 }
-/// The root of x >= 0 whose slope at 0 is taken to be 0 (a length at its origin).
+/// Returns the square root of x >= 0, with value and derivatives 0 at x = 0 (the length of a zero vector).
 template <class T>
 inline T sqrt_from_zero(const T& x) {
   const T inside = x - T(1e-300);

@@ -1,5 +1,5 @@
-// Pack: four doubles that move through a formula together, so that one evaluation serves four material
-// points. Arithmetic maps onto the vector units of the target; results do not depend on their width.
+// Pack: four doubles that a formula evaluates together, so that one evaluation serves four material points.
+// The arithmetic maps to the vector units of the target; results do not depend on their width.
 #pragma once
 
 #include <cmath>
@@ -10,30 +10,31 @@
 
 #include <pliant/math/scalar/functions.h>
 
-// The kernels are inlined; the note about passing wide vectors by value concerns calls that never happen.
+// GCC notes that the ABI of wide vectors passed by value has changed. All these calls are inlined.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 namespace pliant {
 
-// How a Pack is passed between functions depends on the target, so its name does: code compiled for different
-// targets does not link instead of failing at run time.
+// The calling convention of a Pack depends on the target, and so does its namespace. Object files for
+// different targets therefore fail to link, instead of failing at run time.
 #ifdef __AVX__
 inline namespace avx {
 #else
 inline namespace baseline {
 #endif
 
+/// Four doubles; all operations act lane by lane.
 struct Pack {
   static constexpr int kLanes = 4;
-  // As wide as a register: compilers break comparisons of wider ones up into single numbers.
+  // Vectors have the width of a register, because compilers split comparisons of wider vectors into scalars.
 #ifdef __AVX__
   static constexpr int kWidth = 4;
 #else
   static constexpr int kWidth = 2;
 #endif
-  // No more aligned than Eigen aligns its arrays.
+  // The alignment is that of Eigen's arrays (EIGEN_MAX_STATIC_ALIGN_BYTES).
   using Vector [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = double;
   using Bits [[gnu::vector_size(kWidth * sizeof(double)), gnu::aligned(16)]] = std::uint64_t;
   static constexpr int kVectors = kLanes / kWidth;
@@ -42,7 +43,7 @@ struct Pack {
 
   Pack() = default;
   Pack(double all) {                               // NOLINT(google-explicit-constructor): scalars broadcast
-    for (Vector& v : vectors) v = all - Vector{};  // minus 0 keeps the sign of a zero
+    for (Vector& v : vectors) v = all - Vector{};  // subtracting 0 keeps the sign of a zero
   }
 
   Pack(double a, double b, double c, double d) {
@@ -94,7 +95,7 @@ struct Pack {
     return a;
   }
 
-  /// A function of one double, lane by lane.
+  /// Applies a function of one double to each lane.
   template <class F>
   Pack map(F&& f) const {
     Pack r;
@@ -115,7 +116,7 @@ struct Pack {
   friend Pack cos(const Pack& a) {
     return sin_cos_of(a).cos;
   }
-  /// 2^n, for integers.
+  /// Returns 2^n for integers n.
   friend Pack power_of_two(const Pack& n) {
     Pack power;
     for (int k = 0; k < kVectors; ++k) {
@@ -142,7 +143,7 @@ struct Pack {
     return r;
   }
 
-  /// Sum of the lanes, in a fixed order.
+  /// Returns the sum of the lanes, in a fixed order.
   friend double sum(const Pack& a) {
     return (a[0] + a[1]) + (a[2] + a[3]);
   }
@@ -159,9 +160,11 @@ struct Pack {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <>
 struct Eigen::NumTraits<pliant::Pack> : Eigen::NumTraits<double> {
   using Real = pliant::Pack;
   using NonInteger = pliant::Pack;
   using Nested = pliant::Pack;
 };
+#endif

@@ -1,6 +1,6 @@
-// Signed powers of a sine or cosine, C^eps = sgn(x) |x|^eps, the building block of the superquadrics
-// (design 1.1). The logarithm of |x| is kept with x, so that a power costs one exponential, and 0^eps log 0
-// is 0, never NaN.
+// Signed powers of a sine or cosine, C^eps = sgn(x) |x|^eps, which the maps of the superquadrics consist of
+// (include/pliant/shape/README.md). Each value x is stored with log |x|. A power then costs one exponential,
+// and 0^eps log 0 is 0 and never NaN.
 #pragma once
 
 #include <limits>
@@ -11,34 +11,36 @@
 
 namespace pliant {
 
-/// A cosine or sine of a material angle with its sign and the logarithm of its size.
+/// A cosine or sine of a material angle, with its sign and the logarithm of its absolute value.
 template <class U = double>
 struct Trig {
-  U x{};        ///< the value, in [-1, 1], exact zeros at poles and seams
+  U x{};        ///< the value, in [-1, 1]; exactly zero at poles and seams
   U sign{};     ///< -1, 0 or 1
   U log_abs{};  ///< log |x|; kLogZero for x = 0
 };
 
-/// Stands for log 0: finite, so that 0 * log 0 is 0, and exp(eps * kLogZero) is 0 for every exponent in use.
+/// Represents log 0. It is finite, so that 0 * log 0 is 0; exp(eps * kLogZero) is 0 for all admissible
+/// exponents.
 inline constexpr double kLogZero = -1e6;
 
-/// A value whose exact size is exp(log_abs), with a sign.
+/// Returns the value sign * exp(log_abs).
 inline Trig<double> trig_from_log(double log_abs, double sign) {
   return {sign * math::exp(log_abs), sign, log_abs};
 }
 
+/// Returns x with its sign and logarithm.
 inline Trig<double> trig(double x) {
   const double sign = x > 0 ? 1.0 : (x < 0 ? -1.0 : 0.0);
   return {x, sign, sign != 0 ? std::log(std::abs(x)) : kLogZero};
 }
 
-/// sgn(x) |x|^eps; T is the scalar of the exponent.
+/// Returns sgn(x) |x|^eps. T is the scalar of the exponent.
 template <class T, class U>
 T signed_power(const Trig<U>& c, const T& eps) {
   return math::exp(T(eps * c.log_abs)) * c.sign;
 }
 
-/// d/d eps multiplies by the logarithm.
+/// Returns sgn(x) |x|^eps with derivatives: d/d eps multiplies the power by log |x|.
 template <int N, class T, class U>
 Dual<N, T> signed_power(const Trig<U>& c, const Dual<N, T>& eps) {
   const T p = signed_power(c, eps.v);
@@ -50,8 +52,8 @@ Taylor2<T> signed_power(const Trig<U>& c, const Taylor2<T>& eps) {
   return chain_rule(eps, p, slope, T(slope * c.log_abs));
 }
 
-/// The same along material directions: d(sgn(x)|x|^eps) = eps |x|^(eps-1) dx, which at x = 0 is infinite for
-/// eps < 1.
+/// Returns sgn(x) |x|^eps with derivatives along material directions: eps |x|^(eps-1) dx, which is infinite
+/// at x = 0 for eps < 1.
 template <int N>
 Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
   if (c.log_abs.v > kLogZero) return math::exp(Dual<N>(eps * c.log_abs)) * c.sign.v;
@@ -61,13 +63,13 @@ Dual<N> signed_power(const Trig<Dual<N>>& c, const Dual<N>& eps) {
   return r;
 }
 
-/// Four points at a time, none of them where |x| is 0.
+/// Returns the power and its material derivatives for a Pack of points (or any T); x = 0 is not allowed.
 template <int N, class T>
 Dual<N, T> signed_power(const Trig<Dual<N, T>>& c, const Dual<N, T>& eps) {
   return math::exp(Dual<N, T>(eps * c.log_abs)) * c.sign.v;
 }
 
-/// r^p for r >= 0 and p > 0, zero with zero derivatives at r = 0.
+/// Returns r^p for r >= 0 and p > 0; at r = 0 value and derivatives are 0.
 template <class T>
 T power_from_zero(const T& r, const T& p) {
   const T floor(1e-300);
@@ -76,7 +78,8 @@ T power_from_zero(const T& r, const T& p) {
                               T(0));
 }
 
-/// (x^p + y^p)^(1/p) for x, y >= 0 without overflow, whatever the exponent (physics 1.4).
+/// Returns (x^p + y^p)^(1/p) for x, y >= 0. The larger argument is factored out, so no exponent causes
+/// overflow.
 template <class T>
 T power_norm(const T& x, const T& y, const T& p) {
   const T big = math::max(x, y);

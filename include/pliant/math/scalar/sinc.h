@@ -1,4 +1,4 @@
-// sin(x)/x and atan(x)/x with all derivatives finite and exact to rounding at x = 0: a power series near 0,
+// sin(x)/x and atan(x)/x. All derivatives are finite and exact to rounding at x = 0: a power series near 0,
 // the quotient elsewhere.
 #pragma once
 
@@ -7,15 +7,15 @@
 
 namespace pliant {
 
-/// A function at a point, with its first two derivatives.
+/// The value of a function at a point and its first two derivatives.
 template <class T>
 struct Derivatives {
   T value, first, second;
 };
 
-/// sin(x) / x, with sine and cosine at hand.
+/// Returns sin(x) / x and its derivatives, from x and its sine and cosine.
 template <class T>
-Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& of_x) {
+Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& sin_cos_x) {
   // c_k = (-1)^k / (2k+1)!; value S(y) at y = x^2, first 2 x S', second 2 S' + 4 y S''
   constexpr double c[] = {1.,
                           -1. / 6,
@@ -37,32 +37,33 @@ Derivatives<T> sinc_derivatives(const T& x, const math::SinCos<T>& of_x) {
   }
   const T far = y - 1.0;
   const T inverse = T(1.0) / math::where_positive(far, x, T(1.0));
-  const T value = of_x.sin * inverse;
-  const T first = (of_x.cos - value) * inverse;
+  const T value = sin_cos_x.sin * inverse;
+  const T first = (sin_cos_x.cos - value) * inverse;
   return {math::where_positive(far, value, S), math::where_positive(far, first, T(x * S1 * 2.0)),
           math::where_positive(far, T(-value - first * inverse * 2.0), T(S1 * 2.0 + y * half_S2 * 8.0))};
 }
 
+/// Returns sin(x) / x from x and its sine and cosine.
 template <class T>
-T sinc(const T& x, const math::SinCos<T>& of_x) {
-  return sinc_derivatives(x, of_x).value;
+T sinc(const T& x, const math::SinCos<T>& sin_cos_x) {
+  return sinc_derivatives(x, sin_cos_x).value;
 }
 template <int N, class T>
-Dual<N, T> sinc(const Dual<N, T>& x, const math::SinCos<Dual<N, T>>& of_x) {
-  const Derivatives<T> f = sinc_derivatives<T>(x.v, {of_x.sin.v, of_x.cos.v});
+Dual<N, T> sinc(const Dual<N, T>& x, const math::SinCos<Dual<N, T>>& sin_cos_x) {
+  const Derivatives<T> f = sinc_derivatives<T>(x.v, {sin_cos_x.sin.v, sin_cos_x.cos.v});
   return chain_rule(x, f.value, f.first);
 }
 template <class T>
-Taylor2<T> sinc(const Taylor2<T>& x, const math::SinCos<Taylor2<T>>& of_x) {
-  const Derivatives<T> f = sinc_derivatives<T>(x.v, {of_x.sin.v, of_x.cos.v});
+Taylor2<T> sinc(const Taylor2<T>& x, const math::SinCos<Taylor2<T>>& sin_cos_x) {
+  const Derivatives<T> f = sinc_derivatives<T>(x.v, {sin_cos_x.sin.v, sin_cos_x.cos.v});
   return chain_rule(x, f.value, f.first, f.second);
 }
 
-/// atan(x) / x.
+/// Returns atan(x) / x.
 template <class T>
 T atan_over(const T& x) {
-  // Three halvings, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), bring the argument below 0.2; the series does
-  // the rest.
+  // Three halvings, atan x = 2 atan(x / (1 + sqrt(1 + x^2))), reduce the argument below 0.2; then the series
+  // converges.
   T y = x;
   T factor(1);
   for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,6 @@
-// Truncated second-order Taylor numbers along one direction: value v, first derivative d, second derivative
-// dd with respect to that direction's parameter. A formula evaluated on q + t qdot gives, at t = 0, its
-// value, its rate and the quadratic velocity term (Jdot qdot), exactly.
+// Truncated second-order Taylor numbers in one variable t: value v, first derivative d, second derivative dd.
+// A formula s evaluated at q + t qdot returns, at t = 0, the exact s, J qdot and Jdot qdot (the velocity
+// terms of Eq. (11)).
 #pragma once
 
 #include <type_traits>
@@ -10,6 +10,7 @@
 
 namespace pliant {
 
+/// A number with its first and second derivative in one variable, over the scalar T.
 template <class T = double>
 struct Taylor2 {
   T v, d, dd;
@@ -19,7 +20,7 @@ struct Taylor2 {
 
   Taylor2() = default;
   template <class C, IfConstant<C> = 0>
-  Taylor2(const C& value) : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): they mix in
+  Taylor2(const C& value) : v(value), d(0.0), dd(0.0) {}  // NOLINT(google-explicit-constructor): constants
   Taylor2(const T& value, const T& first, const T& second) : v(value), d(first), dd(second) {}
 
   Taylor2& operator+=(const Taylor2& o) { return *this = *this + o; }
@@ -73,7 +74,7 @@ struct Taylor2 {
     return Taylor2(c) / a;
   }
 
-  /// f(a) from value, slope and curvature of f at a.v.
+  /// Returns f(a) from the value and the first and second derivative (slope, curvature) of f at a.v.
   friend Taylor2 chain_rule(const Taylor2& a, const T& value, const T& slope, const T& curvature) {
     return {value, slope * a.d, curvature * a.d * a.d + slope * a.dd};
   }
@@ -109,6 +110,7 @@ struct Taylor2 {
 
 }  // namespace pliant
 
+#ifndef PLIANT_DOXYGEN  // Doxygen does not know Eigen
 template <class T>
 struct Eigen::NumTraits<pliant::Taylor2<T>> : Eigen::NumTraits<double> {
   using Real = pliant::Taylor2<T>;
@@ -116,3 +118,4 @@ struct Eigen::NumTraits<pliant::Taylor2<T>> : Eigen::NumTraits<double> {
   using Nested = pliant::Taylor2<T>;
   enum { RequireInitialization = 1 };
 };
+#endif

@@ -1,4 +1,4 @@
-// The energies of local deformation that scenes know, by name.
+// The laws of local deformation that scenes know, by name.
 #pragma once
 
 #include <limits>
@@ -7,36 +7,38 @@
 #include <string>
 #include <vector>
 
-#include <pliant/part/local/local_deformation.h>
+#include <pliant/part/local/local_settings.h>
 
 namespace pliant {
 
 struct LocalLawInfo {
+  /// A constant of a law, as a scene gives it.
   struct Number {
     const char* key;
     const char* unit;
     const char* meaning;
-    double min;  ///< excluded where more than 0 is needed, see above
-    bool above;  ///< min itself is not allowed
+    double min;
+    bool above;  ///< whether min itself is excluded
     std::optional<double> fallback = {};
     double max = std::numeric_limits<double>::infinity();  ///< allowed itself
   };
   const char* name;
   const char* meaning;
-  bool shell;  ///< of shells; else of solids
+  bool shell;  ///< whether the law is for shells; else it is for solids
   std::vector<Number> numbers;
-  /// values: of the numbers, in order. Throws std::invalid_argument where they make no energy.
-  std::unique_ptr<NodalEnergy> (*lay)(const LocalMesh& mesh, const double* values);
-  bool quadratic = false;  ///< in d: modes know it
+  /// Makes the energy of a mesh. values: of the numbers, in order. Throws std::invalid_argument for
+  /// impossible values.
+  std::unique_ptr<NodalEnergy> (*make_energy)(const LocalMesh& mesh, const double* values);
+  bool quadratic = false;  ///< whether the energy is quadratic in d, as modes need it
 };
 
 const std::vector<LocalLawInfo>& all_local_laws();
 
-/// A law that is there, by name.
+/// Returns the law of this name. Throws std::logic_error if there is none.
 const LocalLawInfo& local_law_info(const std::string& name);
 
-/// A law by name with the values of its numbers, in order. Throws std::invalid_argument, listing the laws for
-/// an unknown one.
+/// Returns a law by name with the values of its numbers, in order. Throws std::invalid_argument for an
+/// unknown name; the message lists the laws.
 LocalSettings::Law local_law(const std::string& name, std::vector<double> values);
 
 }  // namespace pliant

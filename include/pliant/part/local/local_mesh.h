@@ -1,5 +1,5 @@
-// A mesh of the material domain of a part, laid at the rest shape: of the surface of a shell, of the body of
-// a solid.
+// A mesh of the material domain of a part at its rest shape: of the surface of a shell, or of the body of a
+// solid.
 #pragma once
 
 #include <vector>
@@ -14,21 +14,21 @@ struct LocalSettings;
 
 struct LocalMesh {
   std::vector<Material<double>> nodes;
-  Nodes X;                     ///< where they are at rest, body frame, m
-  Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise from outside
-  Eigen::MatrixXi tetrahedra;  ///< 4, 10 or 15 nodes a column, see Solid; none of a shell
-  VecX<double> mass;           ///< of each node, kg
-  double density = 0;          ///< kg/m^3; of a shell kg/m^2
+  Nodes X;                     ///< positions of the nodes at rest, body frame, m
+  Eigen::Matrix3Xi triangles;  ///< of the surface, counter-clockwise seen from outside
+  Eigen::MatrixXi tetrahedra;  ///< 4, 10 or 15 nodes a column, see Solid; none for a shell
+  VecX<double> mass;           ///< lumped mass of each node, kg
+  double density = 0;          ///< kg/m^3 of a solid, kg/m^2 of a shell
   bool shell() const { return tetrahedra.cols() == 0; }
-  /// A third of the area of the triangles at each node, m^2; 0 inside.
+  /// Returns a third of the area of the triangles at each node, m^2; 0 for nodes inside.
   VecX<double> areas() const;
 };
 
-/// Its masses have the mass, the centre and the second moments of the part. Throws LocalFault where none that
-/// are positive do.
+/// Makes the mesh. Its nodal masses reproduce the mass, the centre and the second moments of the part. Throws
+/// LocalFault if no positive masses do.
 LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings);
 
-/// Where a material point is among nodes: d = sum weight_i d_i.
+/// A material point as a weighted sum of nodes: d = sum weight_i d_i.
 struct NodeWeights {
   std::vector<int> node;
   std::vector<double> weight;
@@ -37,7 +37,7 @@ struct NodeWeights {
   }
 };
 
-/// Of a material point among the nodes of a mesh; none inside a shell.
+/// Returns the weights of a material point among the nodes of a mesh; empty inside a shell.
 NodeWeights mesh_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m);
 
 }  // namespace pliant

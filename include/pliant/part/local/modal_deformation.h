@@ -1,14 +1,14 @@
-// Local deformation by modes, q_d = their amplitudes, which are oscillators: orthogonal to rigid motion and
-// to the fields J of the dynamic parameters at the rest shape, so that reference conditions hold by
-// themselves. With p_a = s_a + d_a of the spectral nodes (modal_basis.h), G_a = [e_a I, -[p_a]x, J_a],
+// Local deformation by modes. q_d are the amplitudes of the modes, which are oscillators. The modes are
+// orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so the
+// reference conditions hold for every q_d. With p_a = s_a + d_a of the spectral nodes (modal_basis.h) and G_a
+// = [e_a I, -[p_a]x, J_a],
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
-// Integrals of the reference shape alone, which is no sum of phi, are those of the part (part/inertia.h).
+// The reference shape s is not in the span of the phi; integrals of s alone are those of the part
+// (part/inertia.h).
 #pragma once
 
 #include <Eigen/LU>
-
-#include <pliant/local/solid/four_nodes.h>
 
 #include <pliant/part/local/modal_basis.h>
 #include <pliant/part/part.h>
@@ -16,24 +16,30 @@
 namespace pliant {
 
 struct ModalWorkspace final : LocalWorkspace {
-  // positions, of spectral nodes
-  Nodes D, D_dot;
-  MatX<double> shape;      ///< N x 3 each: reference shape s, J q_s_dot, Jdot q_s_dot, J of each parameter
-  MatX<double> at_points;  ///< the same at the points of the basis
-  // mass
-  Inertia<double> still;                       ///< of the part at d = 0
-  MatX<double> R;                              ///< C = R^T B
+  // Stage positions(), at the spectral nodes.
+  Nodes D, D_dot;          ///< d and its rate
+  MatX<double> shape;      ///< blocks N x 3: reference shape s, J q_s_dot, Jdot q_s_dot, J of each parameter
+  MatX<double> at_points;  ///< these blocks at the points of the basis
+  static constexpr Eigen::Index kS = 0, kS1 = 3, kS2 = 6, kJ = 9;  ///< first columns of the blocks
+  auto s() const { return shape.middleCols<3>(kS); }
+  auto s1() const { return shape.middleCols<3>(kS1); }
+  auto s2() const { return shape.middleCols<3>(kS2); }
+  auto J(Eigen::Index k) const { return shape.middleCols<3>(kJ + 3 * k); }
+  // Stage masses().
+  Inertia<double> undeformed;                  ///< of the part at d = 0
+  MatX<double> R;                              ///< C = R^T B, without the rows of c
   MatX<double> M_rr, C;                        ///< C: (6 + n_s) x n
-  VecMax<double> scale;                        ///< of S: the diagonal of M at d = 0 becomes 1
+  VecMax<double> scale;                        ///< scales the diagonal of M at d = 0 to 1
   Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale S scale
-  // forces
+  // Stage forces().
   Nodes F;           ///< on the spectral nodes, N
-  VecX<double> own;  ///< what inertia, gravity and drag do to (c, theta, q_s)
-  VecX<double> f_d;  ///< what elasticity, damping and drag do to the modes
-  // what pushes on v_r and on the shared points do
-  MatX<double> P, C_P;  ///< modes at the points; C P^T
+  VecX<double> f_r;  ///< of inertia, gravity and drag on (c, theta, q_s)
+  VecX<double> f_d;  ///< of elasticity, damping and drag on the modes
+  // Joints.
+  MatX<double> P, C_P;  ///< modes at the shared points; C P^T
 
   double condition() const override;
+  /// Returns S^-1 b.
   template <class Rhs>
   MatX<double> solve(const Rhs& b) const {
     const MatX<double> scaled = factor.solve(MatX<double>(scale.asDiagonal() * b));
@@ -73,29 +79,34 @@ class ModalDeformation final : public LocalDeformation {
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
-  /// What the modes move a node of mesh() by: 3 x n.
+  /// Returns the displacements of a node of mesh() by unit amplitudes of the modes: 3 x n.
   Eigen::Matrix3Xd modes_of_node(int node) const;
-  /// Pushes on v_r and on the modes become what they change the rates by. work: with its masses.
+  /// Replaces impulses on v_r and on the modes by the changes of the rates. masses() must have run on the
+  /// workspace.
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes, const LocalWorkspace& work) const;
 
  private:
-  MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
-  void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
-                    Eigen::Ref<VecX<double>> d_dot) const override;
+  MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
+                                   LocalWorkspace& work) const override;
+  void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                         const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
+  /// The workspace that workspace() made.
   static ModalWorkspace& of(LocalWorkspace& work) { return static_cast<ModalWorkspace&>(work); }
   static const ModalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const ModalWorkspace&>(work);
   }
+  /// Number of spectral nodes.
   Eigen::Index n_fields() const { return basis_.mass.size(); }
-  /// Modes at a point: 3 x n.
+  /// Returns the modes at a point: 3 x n.
   MatX<double> modes_at(const NodeWeights& at) const;
-  /// The shape of the spectral nodes.
+  /// Computes shape of the workspace: evaluates the reference shape at the points of the basis and projects
+  /// it.
   void project_shape(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, ModalWorkspace& w,
                      Counters& counters) const;
 
   ModalBasis basis_;
   Oscillators oscillators_;
-  std::vector<Material<Pack>> packs_;  ///< of the points of the basis, when the shape moves
+  std::vector<Material<Pack>> packs_;  // the points of the basis, if a parameter is dynamic
 };
 
 }  // namespace pliant

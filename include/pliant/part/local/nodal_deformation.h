@@ -1,12 +1,14 @@
-// Local deformation at the nodes of a mesh, q_d = d at the nodes, in the body frame of the part (design 1.3):
+// Local deformation at the nodes of a mesh: q_d = d at the nodes, in the body frame of the part. The
+// reference conditions are those of mean axes at the current shape (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
-// With all forces F on the nodes, those F_d of them that act on d alone, and what acts on (c, theta, q_s)
-// beside the nodes,
+// Let F be all forces on the nodes, F_d those of them that act on d alone, and f_r the generalised forces on
+// (c, theta, q_s) besides those of the nodes. Then
 //   K kappa = sum G^T F_d - f_r,            K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
 //   m y = F - W kappa
 //   K^T a_r = sum W^T y + 2 sum Wdot^T ddot + sum Wddot^T d
 //   d_ddot = y - G a_r
-// with G = [I, -[p]x, J], p = s + d, and W = m G at d = 0. No matrix of mesh size is formed.
+// with G = [I, -[p]x, J] and p = s + d. No matrix of mesh size is formed. nodal_dynamics-inl.h has the
+// stages.
 #pragma once
 
 #include <optional>
@@ -21,41 +23,44 @@
 namespace pliant {
 
 struct NodalWorkspace final : LocalWorkspace {
-  // positions
-  VecX<double> x;      ///< positions p = s + d of the nodes, then the energies' own coordinates
+  // Stage positions().
+  VecX<double> x;      ///< positions p = s + d of the nodes, then the coordinates that an energy adds
   Nodes s;             ///< reference shape
-  Nodes u;             ///< velocity J q_s_dot + d_dot; none where no parameter is dynamic, see rates_of_p()
-  MatX<double> J;      ///< of all nodes along x, y, z of the first parameter, then of the second
-  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot; s2 none of a linear part
+  Nodes u;             ///< velocity J q_s_dot + d_dot; empty if no parameter is dynamic, see rates_of_p()
+  MatX<double> J;      ///< 3N x n_s: columns of all nodes along x, then y, then z, for each parameter
+  Nodes s1, s2;        ///< J q_s_dot, Jdot q_s_dot; s2 is empty if s is linear in q_s
   Vec3<double> m_d;    ///< sum m d
   Mat3<double> m_d_s;  ///< sum m d s^T
-  // mass
-  VecMax<double> unmet;  ///< W^T d, which is to be zero
-  VecMax<double> scale;  ///< of K: the diagonal of H0 becomes 1
-  /// Of scale K scale; of rigid motion alone, the size is fixed.
+  // Stage masses().
+  VecMax<double> unmet;  ///< W^T d; zero if the reference conditions hold
+  VecMax<double> scale;  ///< scales the diagonal of H0 to 1
+  /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
-  // forces, N
-  VecX<double> x_dot;     ///< rates of x in the body frame, where they damp
-  VecX<double> f, f_d;    ///< of energies of positions; of those of d, which act on d alone
+  // Stage forces(), N.
+  VecX<double> x_dot;     ///< rates of x in the body frame, for damping
+  VecX<double> f, f_d;    ///< of energies of positions; of energies of d, which act on d alone
   VecMax<double> of_d;    ///< sum G^T F_d
-  VecMax<double> of_all;  ///< sum W^T y of all forces, y = F / m
+  VecMax<double> of_all;  ///< sum G0^T F of all forces F
+  // Stage accelerations().
   VecMax<double> kappa;
-  // what pushes on v_r and on the shared points do
+  // Joints: kappa and a_r by unit impulses on v_r and on the shared points.
   MatX<double> kappa_of, a_of;
+  // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
-  Nodes p_kept, u_kept;  ///< positions and velocities that the nodes keep while their frame is found
+  Nodes p_kept, u_kept;  ///< positions and velocities that project_frames() keeps while it finds the frame
 
-  /// J q_s_dot + d_dot of n nodes.
+  /// Returns J q_s_dot + d_dot of n nodes.
   const double* rates_of_p(Eigen::Index n) const { return u.rows() == n ? u.data() : d_dot.data(); }
   double condition() const override;
-  /// K^-1 b and K^-T b, with as many columns as b.
+  /// Returns K^-1 b.
   template <class B>
   auto solve(const B& b) const {
     Solution<B> y = scale.asDiagonal() * b;
     std::visit([&](const auto& lu) { y = lu.solve(y).eval(); }, factor);
     return Solution<B>(scale.asDiagonal() * y);
   }
+  /// Returns K^-T b.
   template <class B>
   auto solve_transposed(const B& b) const {
     Solution<B> y = scale.asDiagonal() * b;
@@ -70,18 +75,18 @@ struct NodalWorkspace final : LocalWorkspace {
 
 class NodalDeformation final : public LocalDeformation {
  public:
-  /// Throws std::invalid_argument when the mesh or an energy cannot be laid.
+  /// Throws std::invalid_argument if the mesh or an energy cannot be made.
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
-  /// Diagonal of the mass matrix of the local coordinates: three a node, and those that energies have of
-  /// their own.
+  /// Diagonal of the mass matrix of the local coordinates: three numbers a node, then those of coordinates
+  /// that an energy adds.
   const VecX<double>& inertia() const { return inertia_; }
   /// 1 / inertia.
   const VecX<double>& mobility() const { return mobility_; }
   const std::vector<Material<Pack>>& packs() const { return packs_; }
   const std::vector<std::unique_ptr<NodalEnergy>>& energies() const { return energies_; }
-  /// Whether all of them are of displacement.
+  /// Whether all energies are quadratic in d, so that their stiffness is constant.
   bool stiffness_is_constant() const;
 
   std::string coordinate_name(Eigen::Index k) const override;
@@ -108,49 +113,55 @@ class NodalDeformation final : public LocalDeformation {
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
-  // Of a workspace that workspace() made.
-
+  /// The workspace that workspace() made.
   static NodalWorkspace& of(LocalWorkspace& work) { return static_cast<NodalWorkspace&>(work); }
   static const NodalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const NodalWorkspace&>(work);
   }
-  /// What reference conditions of rigid motion miss.
+  /// The violation of the reference conditions of rigid motion.
   struct Unmet {
     Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
     Mat3<double> d_s;               ///< sum m d s^T
   };
+  /// Returns the violation by displacements and their rates.
   Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
               const LocalWorkspace& work) const;
-  /// sum W^T a over nodes.
+  /// Returns sum W^T a over nodes.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
-  /// to = from + sign G v_r of all nodes, which stand in both as in local coordinates; both may be one.
+  /// Computes to = from + sign G v_r of all nodes. Both have the layout of local coordinates; they may be the
+  /// same array.
   void add_frame_velocities(const VecMax<double>& v_r, double sign, const LocalWorkspace& work,
                             const double* from, double* to) const;
-  /// Places and velocities of all nodes as a frame sees them whose origin is shifted and which is turned,
-  /// both as the frame before saw it: p <- turn^T (p - shift), u <- turn^T u.
+  /// Transforms positions and velocities of all nodes to a frame that is shifted and turned relative to the
+  /// current one: p <- turn^T (p - shift), u <- turn^T u.
   void move_frame(const Vec3<double>& shift, const Mat3<double>& turn, Nodes& p, Nodes& u) const;
 
  private:
-  MatX<double> own_compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const override;
-  void own_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
-                    Eigen::Ref<VecX<double>> d_dot) const override;
-  /// f and f_d of the energies, and their damping.
+  MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
+                                   LocalWorkspace& work) const override;
+  void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
+                         const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
+  /// Computes positions and rates if s is linear in q_s.
+  void linear_positions(const VecX<double>& q_s, const VecMax<double>& q_s_dot, NodalWorkspace& w) const;
+  /// Computes f and f_d of the energies with their damping.
   void add_elasticity(NodalWorkspace& w, ThreadPool* pool) const;
+  /// Adds beta times the viscous forces of the energies to f and f_d.
+  void add_viscous_forces(NodalWorkspace& w, ThreadPool* pool) const;
 
-  /// Of a linear part: s = s_0 + J q_s at the nodes, and its inertia at d = 0.
+  /// The constants if s is linear in q_s: s = s_0 + J q_s at the nodes, and the inertia at d = 0.
   struct Linear {
     Nodes s_0;
     MatX<double> J;
     LinearInertia inertia;
   };
-  Linear lay_linear(const Part& part) const;
+  Linear make_linear(const Part& part) const;
 
   std::vector<Material<Pack>> packs_;
   std::optional<Linear> linear_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
-  bool of_positions_ = false;  // whether one of them is
-  std::string laws_;           // their names
+  bool of_positions_ = false;  // whether an energy is of positions
+  std::string laws_;           // names of the laws
 };
 
 }  // namespace pliant

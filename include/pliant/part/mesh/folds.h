@@ -1,23 +1,23 @@
-// Folds: a deformation that is too strong for the body turns some of it inside out, where the determinant of
-// the chain's gradient is negative. The determinants of the deformations are extreme on the surface, where
-// they are sampled.
+// Folds: a deformation that is too strong for the body turns some of the body inside out. The determinant of
+// the gradient of the chain is negative there. The determinants of the deformations are extreme on the
+// surface, so the surface is sampled.
 #pragma once
 
 #include <pliant/part/part.h>
 
 namespace pliant {
 
-/// The least determinant of the chain's gradient over a sample of the surface: 1 where the chain keeps
-/// volume, 0 at the tip of a full taper, negative where it folds.
-double least_volume_ratio(const Part& part, const ParameterValues<double>& values);
+/// Returns the smallest determinant of the gradient of the chain over a sample of the surface. It is 1 where
+/// the chain keeps volume, 0 at the tip of a full taper, and negative where the chain folds the body over.
+double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
-/// Whether some of the surface is turned inside out.
+/// Returns whether some of the surface is turned inside out.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
 /// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the
 /// message.
-void refuse_folds(const Part& part, const ParameterValues<double>& values, const char* which);
-/// What it throws.
+void throw_if_folded(const Part& part, const ParameterValues<double>& values, const char* which);
+/// Throws the error of throw_if_folded().
 [[noreturn]] void throw_folded(const Part& part, const char* which);
 
 }  // namespace pliant

@@ -1,4 +1,5 @@
-// The mesh of a shell on its parameter rectangle (u, v), over which the loaded membrane was published.
+// The mesh of a shell on its parameter rectangle (u, v). Terzopoulos & Metaxas 1991 define the loaded
+// membrane over this rectangle.
 #pragma once
 
 #include <pliant/local/shell/loaded_membrane.h>
@@ -6,9 +7,9 @@
 
 namespace pliant {
 
-/// u and v (rad) at the corners of the triangles of a shell. Angles that close go on beyond pi where a
-/// triangle crosses the seam; a triangle with a corner at a pole becomes two, so that all cover the rectangle
-/// once. Throws std::invalid_argument where they do not, because nodes are closer together than angles tell.
+/// Returns u and v (rad) at the corners of the triangles of a shell. Angles of a triangle that crosses the
+/// seam continue beyond pi. A triangle with a corner at a pole becomes two, so that the triangles cover the
+/// rectangle once. Throws std::invalid_argument if a triangle has no area on the rectangle.
 ParameterMesh parameter_mesh(const LocalMesh& mesh);
 
 }  // namespace pliant

@@ -1,11 +1,15 @@
-// The inside of a part as a mesh of tetrahedra (design 1.1), laid once, at the rest shape. Its boundary is
-// the Surface of the same resolution: nodes 0 .. n_surface - 1 are the vertices of that, in the same order.
-// Balls: the lattice of a cube, each cell cut into six tetrahedra round its diagonal away from the centre
-// (Freudenthal 1942, Kuhn 1960), mirrored in every octant; the shell r of it is the surface of resolution r
-// at w = r / resolution. Tori: rings of 4n points at w = n / resolution, n = resolution, resolution - 2, ...,
-// carried round the core ring, which is a line of nodes. A quadratic element has a node on each edge too: 0 1
-// 2 3, then 01 12 20 03 13 23. Those of the boundary are material points of the surface; those inside are
-// half way between the ends of the edge in the shape.
+// The body of a part as a mesh of tetrahedra, made once at the rest shape. Its boundary is the Surface of the
+// same resolution: nodes 0 .. n_surface - 1 are the vertices of the surface, in their order.
+//   Balls: the lattice of a cube. Each cell is cut into six tetrahedra around its diagonal away from the
+//   centre
+//     (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice is the surface of
+//     resolution r at w = r / resolution.
+//   Tori: rings of 4n points at w = n / resolution, n = resolution, resolution - 2, ..., swept around the
+//   core ring, which
+//     is a line of nodes.
+// A quadratic element also has a node on each edge; the order is 0 1 2 3, then 01 12 20 03 13 23. Nodes on
+// edges of the boundary are material points of the surface. Nodes on edges inside are in the middle of the
+// edge in the shape. An enriched element also has a node on each face and one in the middle.
 #pragma once
 
 #include <vector>
@@ -19,17 +23,17 @@ class Solid {
   enum class Order { linear, quadratic, enriched };
 
   /// resolution: edges along an eighth of a great circle, from 1 to 64. A ball has (2 resolution + 1)^3
-  /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and where an
+  /// corner nodes and 48 resolution^3 elements. Throws std::invalid_argument outside the range, and if an
   /// element is turned inside out or flat at the rest shape.
   Solid(const Part& part, int resolution, Order order = Order::linear);
 
   const std::vector<Material<double>>& material() const { return material_; }
-  /// Nodes of each element: 4, 10 or 15 rows; positively oriented at the rest shape.
+  /// Nodes of each element: 4, 10 or 15 rows. Elements are positively oriented at the rest shape.
   const Eigen::MatrixXi& elements() const { return elements_; }
-  /// Nodes of each triangle of the boundary: 3 rows; 6 with the edges 01 12 20; 7 with the one on the face.
-  /// The triangles are those of the Surface.
+  /// Nodes of each triangle of the boundary: 3 rows; 6 rows with nodes on edges 01 12 20; 7 rows with the
+  /// node on the face. The triangles are those of the Surface.
   const Eigen::MatrixXi& boundary() const { return boundary_; }
-  /// Corner nodes on the surface.
+  /// Number of corner nodes on the surface.
   int n_surface() const { return n_surface_; }
   int n_nodes() const { return static_cast<int>(material_.size()); }
 

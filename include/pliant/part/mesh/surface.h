@@ -1,6 +1,5 @@
-// The surface of a part as a triangle mesh (design 1.1): laid from directions, without poles or seams. Balls
-// are covered by a cube whose upper and lower faces are bent to concentric rings, so that rims, edges and
-// coordinate planes fall on mesh lines; tori by a grid of the two angles.
+// The surface of a part as a triangle mesh. The vertices come from directions, so that the mesh has no poles
+// or seams. Balls use the pattern of ball_pattern.h; tori use a grid of the two angles.
 #pragma once
 
 #include <vector>
@@ -9,24 +8,24 @@
 
 namespace pliant {
 
-/// Which material points and triangles cover a part; laid once, at the rest shape.
+/// The material points and triangles that cover a part, chosen once at the rest shape.
 class Surface {
  public:
-  /// resolution: edges along an eighth of a great circle, at least 1. A ball has 24 resolution^2 + 2 vertices
-  /// and 48 resolution^2 triangles; a torus 32 resolution^2 vertices. Throws std::invalid_argument outside
-  /// [1, 512].
+  /// resolution: edges along an eighth of a great circle. A ball has 24 resolution^2 + 2 vertices and 48
+  /// resolution^2 triangles; a torus has 32 resolution^2 vertices. Throws std::invalid_argument outside [1,
+  /// 512].
   Surface(const Part& part, int resolution);
 
   const std::vector<Material<double>>& material() const { return material_; }
-  /// Where ShapeFace::mesh_label() took each of them from.
+  /// The direction or pair of angles of each material point, the argument of ShapeFace::mesh_label().
   const std::vector<Vec3<double>>& places() const { return places_; }
   const Eigen::Matrix3Xi& triangles() const { return triangles_; }
-  /// Edges along an eighth of a circle that give about this many triangles.
+  /// Returns the resolution that gives about this number of triangles.
   static int resolution_for(const Part& part, int triangles);
 
-  /// The mesh in the body frame, at these values, with its normals.
+  /// Returns the mesh at these values in the body frame, with normals.
   TriangleMesh body_mesh(const Part& part, const ParameterValues<double>& values) const;
-  /// The mesh in the world, with the frame at c and R.
+  /// Returns the mesh at these values in the world, for a frame at c (m) with orientation R.
   TriangleMesh world_mesh(const Part& part, const ParameterValues<double>& values, const Vec3<double>& c,
                           const Eigen::Quaterniond& R) const;
 
@@ -36,20 +35,22 @@ class Surface {
   Eigen::Matrix3Xi triangles_;
 };
 
-/// The nodes on the surface of a part that deforms locally, in their order.
+/// The nodes on the surface of a mesh, in the order of the mesh.
 struct SurfaceNodes {
   std::vector<int> node;
-  Eigen::Matrix3Xi triangles;  ///< of these nodes, counter-clockwise from outside
+  Eigen::Matrix3Xi triangles;  ///< numbers within `node`, counter-clockwise seen from outside
 
-  /// The rows of these nodes among those of all, one a column.
+  /// Returns the rows of these nodes, one a column. all: one row for each node of the mesh.
   Eigen::Matrix3Xd of(const Eigen::Ref<const Nodes>& all) const;
 };
+/// Returns the surface nodes of a mesh.
 SurfaceNodes surface_nodes(const LocalMesh& mesh);
 
-/// A mesh whose normals are those of the triangles around a vertex.
+/// Returns a mesh with vertices x (m). The normal of a vertex is the mean of those of the triangles around
+/// it.
 TriangleMesh node_mesh(const Eigen::Matrix3Xi& triangles, Eigen::Matrix3Xd x);
 
-/// Volume enclosed by a closed mesh, m^3.
+/// Returns the volume enclosed by a closed mesh, m^3.
 double enclosed_volume(const TriangleMesh& mesh);
 
 }  // namespace pliant

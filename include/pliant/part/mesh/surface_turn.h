@@ -1,20 +1,21 @@
-// How far global deformations turn a part locally. The elasticity of displacements d in the part's frame is
-// that of small turns: a quarter of a turn makes normal displacements tangential (design 1.3).
+// The local rotation of a part by its global deformations. Elasticity that is linear in d assumes that this
+// rotation is small: d is in the frame of the part, and a rotation by 90 degrees makes normal displacements
+// tangential.
 #pragma once
 
 #include <pliant/part/local/local_deformation.h>
 
 namespace pliant {
 
-/// Beyond this turn, rad, elasticity that is linear in d means something else than at rest.
+/// The largest local rotation, rad, for which elasticity that is linear in d is accurate.
 inline constexpr double kMostLinearTurn = 0.3;
 
-/// Whether some of its elasticity is linear in d, and not alike to all directions, while parameters change
-/// the shape under it.
+/// Returns whether some elasticity of the part is linear in d and depends on the direction of d, while
+/// dynamic parameters change the shape.
 bool linear_on_moving_shape(const Part& part);
 
-/// The largest angle, rad, by which the shape of these parameters, d aside, turns a triangle of the surface
-/// of the part's mesh in its frame against rest.
+/// Returns the largest angle, rad, by which the reference shape at q_s rotates a triangle of the surface of
+/// the mesh relative to rest, in the frame of the part and without d.
 double largest_surface_turn(const Part& part, const VecMax<double>& q_s);
 
 }  // namespace pliant

@@ -1,17 +1,17 @@
-// A closed triangle mesh of a part's surface, as pictures and mesh files take it.
+// A closed triangle mesh of the surface of a part, for pictures and mesh files.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace pliant {
 
-/// Triangles are counter-clockwise seen from outside. Several corners of one vertex may carry different
-/// normals: that is how an edge of a box stays sharp while the mesh has no duplicate vertices.
+/// Triangles are counter-clockwise seen from outside. Corners of one vertex may have different normals, so
+/// that the edges of a box stay sharp without duplicate vertices.
 struct TriangleMesh {
-  Eigen::Matrix3Xd x;          ///< vertices, metres
+  Eigen::Matrix3Xd x;          ///< vertices, m
   Eigen::Matrix3Xd normals;    ///< unit normals
   Eigen::Matrix3Xi triangles;  ///< columns of x, one triple a triangle
-  Eigen::Matrix3Xi corners;    ///< columns of normals, one triple a triangle, beside triangles
+  Eigen::Matrix3Xi corners;    ///< columns of normals, one triple a triangle
 };
 
 }  // namespace pliant

@@ -1,10 +1,11 @@
-// Mass points of a part: a quadrature of its material domain, integral mu (.) du ~ sum m_k (.)(u_k), exact to
-// rounding for what the dynamic parameters can do (design 1.3). No mesh. The cheapest of four rules is chosen
-// when the part is prepared:
-//   affine    4 points carrying mass, centroid and second moments
-//   sections  3 such points in each plane section of a solid, times a rule along z
-//   rings     3 such points in each of some material rings (u, w) = const
-//   full      all of u, v and w
+// Mass points of a part: a quadrature of its material domain, integral mu (.) du ~ sum m_k (.)(u_k), for the
+// sums of Eq. (11). It is exact to rounding for all motions of the dynamic parameters within their ranges,
+// and needs no mesh. Part::prepare() uses the cheapest of four rules:
+//   affine    4 points that have the mass, the centroid and the second moments of the part
+//   sections  3 points in each plane section of a solid, times a rule along z
+//   rings     3 points in each of some material rings (u, w) = const
+//   full      points along u, v and w
+// include/pliant/part/quadrature/README.md explains when each rule applies.
 #pragma once
 
 #include <string>
@@ -18,21 +19,21 @@ namespace pliant {
 class Part;
 
 struct MassPoints {
-  std::vector<Material<Pack>> at;  ///< four points each; the last may hold points of no mass
+  std::vector<Material<Pack>> at;  ///< in packs of four; the last pack may have points without mass
   std::vector<Pack> mass;          ///< kg
   int n_points = 0;
   std::string rule;  ///< "affine", "sections", "rings", "full"
-  int level = 0;     ///< refinement that sufficed
-  /// Relative change of the integrals that doubling still makes; 0 where refinement settled, as it should.
+  int level = 0;     ///< level of refinement at which the search stopped
+  /// Relative change of the integrals by doubling the points once more; 0 if the search converged.
   double unsettled = 0;
 };
 
-/// Lays the mass points of a part: of its solid (density in kg/m^3) or of its shell (density in kg/m^2), at
-/// rest. Along each direction nodes are doubled until no entry of the mass matrix and of the inertial forces
-/// changes by more than 2e-14 of its scale, at states spread over the ranges of the dynamic parameters; then
-/// thinned to those that the same integrals need. doublings: that many more, before thinning. Throws
-/// std::invalid_argument when the rest shape or the initial one folds over, or more than 2 million points
-/// were needed.
+/// Places the mass points of a part at rest: of a solid (density in kg/m^3) or of a shell (density in
+/// kg/m^2). Along each direction, the nodes are doubled until no entry of the mass matrix and of the inertial
+/// forces changes by more than 2e-14 of its scale, at states spread over the ranges of the dynamic
+/// parameters. Then the nodes are thinned to those that the integrals need. doublings: number of further
+/// doublings before thinning. Throws std::invalid_argument if the rest or the initial shape folds over, or if
+/// more than 2 million points are needed.
 MassPoints place_mass_points(const Part& part, int doublings = 0);
 
 }  // namespace pliant

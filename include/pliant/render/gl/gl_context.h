@@ -1,6 +1,6 @@
-// An OpenGL 3.3 core context without a window. Two libraries can give one, both opened at run time and only
-// when a context is asked for: OSMesa (Mesa before 25.1) and EGL (without a surface, or on Mesa's software
-// device).
+// An OpenGL 3.3 core context without a window. Two libraries can provide one: OSMesa (Mesa before 25.1) and
+// EGL (without a surface, or on Mesa's software device). They are opened at run time, when a context is
+// requested.
 #pragma once
 
 #include <memory>
@@ -17,14 +17,14 @@ enum class GlBackend {
 
 class GlContext {
  public:
-  /// Throws std::runtime_error that says what was tried, why each failed and which packages help.
+  /// Throws std::runtime_error that lists the backends tried, the reason of each failure and the packages to
+  /// install.
   explicit GlContext(GlBackend backend = GlBackend::automatic);
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// While it lives, GL calls of this thread go to the context. One context may serve several threads in
-  /// turn.
+  /// Makes the context current on this thread for its lifetime. Several threads may use one context in turn.
   class Current {
    public:
     explicit Current(GlContext& context);
@@ -36,7 +36,7 @@ class GlContext {
     GlContext& context_;
   };
 
-  /// Address of a GL entry point, nullptr when there is none of that name.
+  /// Returns the address of a GL entry point; nullptr if there is none with that name.
   void* function(const char* name) const;
   /// "OSMesa", "EGL surfaceless" or "EGL software device".
   const std::string& backend() const { return backend_; }
@@ -50,16 +50,16 @@ class GlContext {
   std::string backend_, renderer_, version_;
 };
 
-/// One way to a context and what became of it.
+/// One backend and the result of opening it.
 struct GlProbe {
   std::string name;  ///< as GlContext::backend()
   bool opened = false;
-  std::string reason;    ///< why it did not open, else empty
+  std::string reason;    ///< reason of the failure; empty if it opened
   std::string renderer;  ///< GL_RENDERER
   std::string version;   ///< GL_VERSION
 };
 
-/// Tries every way in the order of GlBackend::automatic. Opens the libraries; never throws for a missing one.
+/// Tries every backend in the order of GlBackend::automatic. Opens the libraries; a missing one is no error.
 std::vector<GlProbe> probe_gl_backends();
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// A JSON value as it stands in a file: each value and each key knows its place, objects keep the order of the
-// file.
+// A JSON value of a file. Each value and each key stores its place in the file; objects keep the order of
+// their keys.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +11,24 @@
 
 namespace pliant {
 
-/// Where a value begins: which text of the document (0 the file, else a --set option), and at which byte of
-/// it.
+/// The place of a value: the text that contains it (0: the file; above 0: a --set option) and the byte
+/// offset of its first character.
 struct JsonPlace {
   std::uint32_t source = 0;
   std::uint32_t offset = 0;
 };
 
-/// An immutable value. Asking for another type than it has throws std::bad_variant_access.
+/// An immutable JSON value. An accessor of a different kind throws std::bad_variant_access.
 class JsonValue {
  public:
   enum class Kind { kNull, kBoolean, kNumber, kString, kArray, kObject };
   struct Number {
     double value;
-    bool integer;  ///< written without point and exponent
+    bool integer;  ///< whether it is written without decimal point and exponent
   };
   struct Member;
   using Array = std::vector<JsonValue>;
-  using Object = std::vector<Member>;  ///< in file order; keys that are comments may repeat
+  using Object = std::vector<Member>;  ///< in the order of the file; the comment key "//" may repeat
   using Content = std::variant<std::monostate, bool, Number, std::string, Array, Object>;
 
   JsonValue() = default;
@@ -49,7 +49,7 @@ class JsonValue {
   const Array& array() const { return std::get<Array>(content_); }
   const Object& members() const { return std::get<Object>(content_); }
 
-  /// The value of a key of an object; null when it has no such key.
+  /// Returns the value of a key of an object, or null if the object has no such key.
   const JsonValue* find(std::string_view key) const;
 
   JsonPlace place() const { return place_; }

@@ -1,4 +1,4 @@
-// Reading a whole text file, with the faults of the file system named.
+// Reading a whole text file, with messages that explain faults of the file system.
 #pragma once
 
 #include <cstddef>
@@ -7,23 +7,24 @@
 
 namespace pliant {
 
-/// A file that cannot be read. what() is "path: reason", with the system's own words and the nearest name in
-/// its folder.
+/// Thrown for a file that cannot be read. what() is "path: reason": the message of the operating system and,
+/// for a missing file, the nearest name in the folder.
 class FileError : public std::runtime_error {
  public:
   enum class Reason { kMissing, kNotReadable, kTooLarge };
 
   FileError(Reason reason, const std::string& message) : std::runtime_error(message), reason_(reason) {}
   Reason reason() const { return reason_; }
-  /// Exit code of the program for this fault: 3 for a missing input, 8 above the size limit, else 7.
+  /// Exit code of the program for this fault: 3 for a missing input, 8 for a file above the size limit,
+  /// else 7.
   int exit_code() const { return reason_ == Reason::kMissing ? 3 : reason_ == Reason::kTooLarge ? 8 : 7; }
 
  private:
   Reason reason_;
 };
 
-/// The bytes of a file; "-" is standard input. A file larger than `most` bytes is refused, a regular one
-/// before anything is read. Throws FileError.
-std::string read_text_file(const std::string& path, std::size_t most);
+/// Returns the bytes of a file; "-" is standard input. A file larger than `max_bytes` is refused; for a
+/// regular file this is checked before reading. Throws FileError.
+std::string read_text_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace pliant

@@ -1,6 +1,7 @@
-// Reading validated values by key: what the file says, else the default that the record declares; a value in
-// which a fault was found counts as absent. Nothing is checked again; asking for a key that the record does
-// not declare, or that has neither value nor default, is an error of the program and throws std::logic_error.
+// Access to the validated values of an object by key. The value is that of the file, or else the default that
+// the record declares; a faulty value is treated as absent. The reader repeats no checks. A key that the
+// record does not declare, or that has neither value nor default, is a programming error and throws
+// std::logic_error.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +18,8 @@
 
 namespace pliant {
 
-/// An object of the scene beside the record that it was validated against. All must outlive it.
+/// An object of the scene with the record that it was validated against. Object, record and faulty values
+/// must outlive the reader.
 class Reader {
  public:
   Reader(const JsonValue& object, const schema::Record& record, const FaultyValues* faulty = nullptr)
@@ -25,19 +27,20 @@ class Reader {
 
   const JsonValue& json() const { return *object_; }
   const schema::Record& record() const { return *record_; }
-  /// The name of the record: for an object with a tag, the value of the tag.
+  /// Returns the name of the record; for a tagged record this is the value of the tag ("hinge", "taper").
   const std::string& name() const { return record_->name; }
 
-  /// The scene itself has the key, with a sound value.
+  /// Returns whether the object itself has the key with a value free of faults.
   bool given(std::string_view key) const;
-  /// The scene has the key, with a fault in its value.
+  /// Returns whether the object has the key with a faulty value.
   bool faulty(std::string_view key) const;
-  /// There is a fault in a value inside this object.
+  /// Returns whether a value inside this object is faulty or contains a faulty value.
   bool is_faulty(const JsonValue& value) const;
-  /// Every key that the record requires is given.
+  /// Returns whether all required keys of the record are given.
   bool complete() const;
-  /// The value of the key or its default; null when it has neither.
+  /// Returns the value of the key or its default, or null if it has neither.
   const JsonValue* find(const std::string& key) const;
+  /// Returns the value of the key or its default. Throws std::logic_error if it has neither.
   const JsonValue& at(const std::string& key) const;
 
   double number(const std::string& key) const;
@@ -49,14 +52,14 @@ class Reader {
   TimeFunction time_function(const std::string& key) const;
   TimeVector time_vector(const std::string& key) const;
 
-  // Objects are entered even when there are faults in them: their own keys know which.
+  // The following members also return faulty objects, so that the sound values inside them can be read.
 
-  /// The object under a key, with the record that its type names (the chosen one where there are several). An
-  /// absent key whose type is one record gives that record's defaults.
+  /// Returns the object under a key with its record; among several records, the one that the object was
+  /// validated against. For an absent key whose type is a single record, the reader returns the defaults.
   Reader object(const std::string& key) const;
-  /// The objects of an array under a key; empty for an absent key.
+  /// Returns the objects of the array under a key; empty for an absent key.
   std::vector<Reader> objects(const std::string& key) const;
-  /// The objects of a map under a key, with their names; empty for an absent key.
+  /// Returns the objects of the map under a key with their names; empty for an absent key.
   std::vector<std::pair<std::string, Reader>> entries(const std::string& key) const;
 
  private:
@@ -67,12 +70,13 @@ class Reader {
   const FaultyValues* faulty_;
 };
 
-/// The record of a type that an object was validated against; null for a type without records.
+/// Returns the record of a type that an object was validated against, or null for a type without records.
 const schema::Record* chosen_record(const schema::Type& type, const JsonValue& object);
 
 Vec3<double> read_vector3(const JsonValue& value);
 
-/// The name that an object has, or one of its kind and its number (from 0) among those of its list.
+/// Returns the name given in the object, or else a name made of its kind and its index in its list (from 0),
+/// for example "hinge1" for index 0.
 std::string name_of(const Reader& r, const char* kind, std::size_t number);
 
 }  // namespace pliant

@@ -1,14 +1,14 @@
-// The records of a scene file: what its keys are, mean and may be.
+// The records of a scene file: its keys with their types, units, ranges, defaults and descriptions.
 #pragma once
 
 #include <pliant/scene/schema/schema.h>
 
 namespace pliant {
 
-/// The root record. Checking, reading and the JSON Schema of scenes follow from it.
+/// Returns the root record. Validation, reading and the JSON Schema of scenes are derived from it.
 const schema::Record& scene_record();
 
-/// What the value of a parameter of a part may be.
+/// Returns the type of the value of a global parameter of a part.
 const schema::Type& parameter_type();
 
 }  // namespace pliant

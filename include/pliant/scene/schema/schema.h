@@ -1,5 +1,5 @@
-// What a scene may say, as data: records of keys with types, ranges, units, defaults and meanings. Checking a
-// scene, reading it and its JSON Schema all follow from the same records.
+// A small language for the schema of a scene: records of keys with types, ranges, units, defaults and
+// descriptions. Validation, reading and the JSON Schema are all derived from these records.
 //
 //   Record part{"part", "A deformable solid.",
 //               {required("name", name(), "Name of the part, unique in the scene."),
@@ -19,7 +19,7 @@
 
 namespace pliant::schema {
 
-/// Numbers that are allowed.
+/// An interval of allowed numbers.
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ struct Range {
 
   bool contains(double x) const;
 };
-Range any();
+Range unbounded();
 Range at_least(double min);
 Range above(double min);
 Range at_most(double max);
@@ -38,20 +38,21 @@ Range between(double min, double max);
 struct Record;
 using RecordPtr = std::shared_ptr<const Record>;
 
-/// A word that may be chosen, and what it means.
+/// An allowed word of a choice and its meaning.
 struct Choice {
   std::string word;
   std::string meaning;
 };
 
-/// For ReportAt: the fault is at the beginning of the value.
+/// Argument `byte` of ReportAt for a fault of the whole value.
 inline constexpr std::size_t kWholeValue = static_cast<std::size_t>(-1);
-/// Reports a fault at the value that is checked or one inside it, or at a byte of a string's text.
+/// Reports a fault at the checked value or at a value inside it; for a string, optionally at a byte of its
+/// text.
 using ReportAt = std::function<void(const JsonValue& where, const std::string& message, std::size_t byte)>;
-/// A rule beyond types and ranges; called only for a value whose type, ranges and keys are right.
+/// A rule beyond types and ranges; called only for a value whose type, ranges and keys have no fault.
 using Check = std::function<void(const JsonValue& value, const ReportAt& report)>;
 
-/// What a value may be. Made by the functions below.
+/// The type of a value, made by the functions below.
 struct Type {
   enum class Kind {
     kNumber,
@@ -69,51 +70,50 @@ struct Type {
 
   Kind kind;
   Range range{};                  ///< kNumber, kInteger
-  std::string unit{};             ///< kNumber; "1" for a plain number
+  std::string unit{};             ///< kNumber; "1" for a dimensionless number
   std::vector<Choice> choices{};  ///< kChoice
   std::size_t min_count = 0;      ///< kArray, kMap, kText (characters)
   std::size_t max_count = std::numeric_limits<std::size_t>::max();
   std::vector<Type> inner{};  ///< kArray, kMap: the element; kOneOf: the alternatives
-  std::vector<RecordPtr>
-      records{};             ///< kRecord: one; kTagged: one for each value of the tag, which is its name
-  std::string pattern{};     ///< kText: a regular expression that says in the JSON Schema what `check` says
-  std::string tag{};         ///< kTagged: the key that says which record it is
-  std::string expected{};    ///< words for messages; made from the rest when empty
-  std::string definition{};  ///< name under "definitions" of the JSON Schema; in place when empty
+  /// kRecord: one record; kTagged: one record per value of the tag, named by that value.
+  std::vector<RecordPtr> records{};
+  std::string pattern{};     ///< kText: regular expression for the JSON Schema; `check` must enforce it
+  std::string tag{};         ///< kTagged: the key whose value selects the record
+  std::string expected{};    ///< text after "expected" in messages; derived from the type when empty
+  std::string definition{};  ///< name under "definitions" of the JSON Schema; when empty, the type is inlined
   Check check{};
 
-  /// The same with other words for "expected ...".
+  /// Returns a copy with another text after "expected" in messages.
   Type expecting(std::string words) const;
-  /// The same, written once in the JSON Schema under a name.
+  /// Returns a copy that the JSON Schema stores once, under this name.
   Type defined_as(std::string name) const;
-  /// The same with a pattern for the JSON Schema; a further rule must check it.
+  /// Returns a copy with a pattern for the JSON Schema; a rule added by checked() must enforce it.
   Type matching(std::string pattern) const;
-  /// The same with a further rule.
+  /// Returns a copy with an additional rule.
   Type checked(Check rule) const;
-  /// What a message expects here: "a number in [0, 1] (m)".
+  /// Returns the text after "expected" in messages: "a number in [0, 1] (m)".
   std::string words() const;
 };
 
 Type number(Range range, std::string unit);
 Type integer(Range range);
 Type boolean();
-/// Any text with at least this many bytes.
+/// A text with at least this many bytes.
 Type text(std::size_t min_count = 0);
-/// The name of a thing: not empty, at most 100 bytes, without "/" and control characters.
+/// A name: 1 to 100 bytes, without "/" and control characters.
 Type name();
 Type choice(std::vector<Choice> choices);
 Type array(Type element, std::size_t min_count = 0,
            std::size_t max_count = std::numeric_limits<std::size_t>::max());
 /// [x, y, z].
-Type vector3(const std::string& unit, Range range = any());
-/// An object whose keys are free names.
+Type vector3(const std::string& unit, Range range = unbounded());
+/// An object whose keys are arbitrary names.
 Type map(Type element);
 Type record(Record fields);
-/// An object whose key `tag` names the record, as {"type": "taper", ...}; the records do not list the tag
-/// itself.
+/// An object whose key `tag` selects the record, as {"type": "taper", ...}. The records do not list the tag.
 Type tagged(std::string tag, std::vector<Record> records);
-/// One of several types. The JSON type of a value chooses among them, for objects also the keys it has; only
-/// the chosen one's faults are shown.
+/// One of several types. The JSON type of a value selects the alternative; for objects, the keys present
+/// decide too. Only faults of the selected alternative are reported.
 Type one_of(std::vector<Type> alternatives);
 
 /// A key of a record.
@@ -122,41 +122,45 @@ struct Field {
   Type type;
   std::string description;
   bool required = false;
-  /// The value of an absent key; null when absence has a meaning of its own, which the description tells.
+  /// The value of an absent key. Null if an absent key has a meaning of its own, which the description
+  /// states.
   std::shared_ptr<const JsonValue> default_value{};
-  std::string default_text{};  ///< the same as written
-  std::string example{};       ///< JSON for the message about a missing key
+  std::string default_text{};  ///< the default value as JSON text
+  std::string example{};       ///< JSON text for the message about a missing key
 };
 
-/// Throws std::logic_error when `example` or `default_text` is not JSON.
+/// Declare a required or an optional key. They throw std::logic_error if `example` or `default_text` is not
+/// JSON.
 Field required(std::string key, Type type, std::string description, std::string example = "");
 Field optional(std::string key, Type type, std::string description, std::string default_text = "");
 
-/// Keys of which a value may have only one, or must have one.
+/// Keys that exclude each other: an object may have at most one of them, or must have exactly one.
 struct KeyGroup {
   std::vector<std::string> keys;
   bool at_least_one = false;
 };
 
 struct Record {
-  std::string name;  ///< name under "definitions"; for a tagged record also the value of the tag
+  std::string
+      name;  ///< name under "definitions" of the JSON Schema; for a tagged record, the value of the tag
   std::string description;
   std::vector<Field> fields;
   std::vector<KeyGroup> exclusive{};
 
-  /// Null when the record has no such key.
+  /// Returns the field with this key, or null if the record has no such key.
   const Field* find(const std::string& key) const;
 };
 
-/// The alternative of a kOneOf type that the keys of an object speak for: the one that knows most of them,
-/// the first of equals; null when none knows any and there are several.
+/// Returns the alternative of a kOneOf type that fits the keys of an object best: the one that declares most
+/// of them, where a required key outweighs all optional ones; the first one if several are equal. Null if
+/// there are several alternatives and none declares a key of the object.
 const Type* chosen_alternative(const Type& one_of, const JsonValue& object);
 
-/// Keys that any object may have and nothing reads: comments "//" and extensions "x-...".
+/// Returns whether a key is ignored in every object: comments "//" and extensions "x-...".
 bool is_ignored_key(const std::string& key);
 
-/// The JSON Schema (draft-07) of a scene whose root is `root`: every key with description, unit, default and
-/// range.
+/// Returns the JSON Schema (draft-07) of a scene with this root record: each key with its description, unit,
+/// default and range.
 std::string schema_json(const Record& root);
 
 }  // namespace pliant::schema

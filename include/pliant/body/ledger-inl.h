@@ -1,0 +1,87 @@
+// Energies and momenta of a state, for the energy ledger.
+#pragma once
+
+#include <algorithm>
+
+#include <pliant/body/dynamics.h>
+#include <pliant/body/stages/part_stages.h>
+#include <pliant/math/header_only.h>
+
+namespace pliant {
+
+PLIANT_INLINE void Dynamics::add_energy(double t, const PartModel& m, const PartWorkspace<double>& w,
+                                        Ledger& ledger) const {
+  const Vec3<double> g = model_->body().gravity_at(t);
+  if (m.local != nullptr) {
+    const LocalMotion motion = m.local->motion(w.v_r, *w.local);
+    ledger.kinetic += motion.kinetic;
+    ledger.local += motion.elastic;
+    ledger.gravity -= g.dot(m.part->total_mass() * w.c + w.R * motion.moment);
+  } else {
+    ledger.kinetic += 0.5 * w.v_r.dot(w.inertia.M * w.v_r);
+    ledger.gravity -= g.dot(w.inertia.mass * w.c + w.R * w.inertia.moment);
+  }
+  const VecMax<double> stretch = w.q_s - m.rest_at(t);
+  ledger.elastic += 0.5 * stretch.dot(m.part->K_s() * stretch);
+  if (m.part->continuum() != nullptr) ledger.elastic += m.part->continuum()->energy(*m.part, w.q_s);
+}
+
+PLIANT_INLINE void Dynamics::add_energy(double t, const SpringModel& s, const Workspace<double>& work,
+                                        Ledger& ledger) const {
+  auto position = [&](const PortRef& ref, const Point& point) -> Vec3<double> {
+    return ref.part >= 0
+               ? work.parts[static_cast<std::size_t>(ref.part)].port_x[static_cast<std::size_t>(ref.port)]
+               : point.world.value(t);
+  };
+  const double stretch =
+      (position(s.b, s.spring->b) - position(s.a, s.spring->a)).norm() - s.spring->rest_length;
+  ledger.springs += 0.5 * s.spring->stiffness * stretch * stretch;
+}
+
+PLIANT_INLINE double Dynamics::energy(double t, const VecX<double>& q, const VecX<double>& v,
+                                      const std::vector<int>& parts, Workspace<double>& work) const {
+  evaluate_masses(q, v, parts, work);
+  Ledger ledger;
+  for (const int i : parts)
+    add_energy(t, model_->parts()[static_cast<std::size_t>(i)], work.parts[static_cast<std::size_t>(i)],
+               ledger);
+  auto is_listed = [&](const PortRef& ref) {
+    return std::find(parts.begin(), parts.end(), ref.part) != parts.end();
+  };
+  for (const SpringModel& spring : model_->springs()) {
+    if (!is_listed(spring.a) && !is_listed(spring.b)) continue;
+    for (const PortRef& ref : {spring.a, spring.b})
+      if (ref.part >= 0 && !is_listed(ref))
+        detail::evaluate_positions<double>(model_->parts()[static_cast<std::size_t>(ref.part)], t, q, v,
+                                           work.parts[static_cast<std::size_t>(ref.part)]);
+    add_energy(t, spring, work, ledger);
+  }
+  return ledger.energy();
+}
+
+PLIANT_INLINE Ledger Dynamics::ledger(double t, const State& state, Workspace<double>& work) const {
+  accelerations(t, state.q, state.v, state, work);
+  Ledger ledger;
+  ledger.work = state.work;
+  for (std::size_t i = 0; i < work.parts.size(); ++i) {
+    const PartModel& m = model_->parts()[i];
+    if (m.q0 < 0) continue;
+    const PartWorkspace<double>& w = work.parts[i];
+    add_energy(t, m, w, ledger);
+    VecMax<double> momentum;  // linear and angular momentum about c, body frame
+    if (m.local != nullptr) {
+      const LocalMotion motion = m.local->motion(w.v_r, *w.local);
+      momentum.resize(6);
+      momentum << motion.momentum, motion.angular_momentum;
+    } else {
+      momentum = w.inertia.M * w.v_r;
+    }
+    const Vec3<double> P = w.R * momentum.head<3>();
+    ledger.momentum += P;
+    ledger.angular_momentum += w.c.cross(P) + w.R * momentum.segment<3>(3);
+  }
+  for (const SpringModel& spring : model_->springs()) add_energy(t, spring, work, ledger);
+  return ledger;
+}
+
+}  // namespace pliant

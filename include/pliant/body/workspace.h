@@ -1,0 +1,88 @@
+// The workspace of an evaluation: all quantities that are recomputed from (t, q, v), in the order of the
+// stages that compute them. A workspace belongs to one model; constants of the model stay in it between
+// evaluations. S is double, or Dual<1> for directional derivatives. include/pliant/body/README.md lists the
+// sizes.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <pliant/body/constraint/constraints.h>
+#include <pliant/body/constraint/rigid_island.h>
+#include <pliant/body/model.h>
+
+namespace pliant {
+
+/// The quantities of one part.
+template <class S>
+struct PartWorkspace {
+  // Stage 1, positions.
+  Vec3<S> c;                                ///< position of the frame, m, world
+  Mat3<S> R;                                ///< orientation of the frame, body to world
+  VecX<S> q_s, q_s_dot;                     ///< dynamic global parameters and their rates, n_s each
+  VecX<S> v_r;                              ///< (R^T c_dot, omega, q_s_dot), 6 + n_s
+  std::unique_ptr<LocalWorkspace> local;    ///< only of a part that deforms locally
+  std::vector<PointJet<S>> ports;           ///< p, J and rates of each attachment point, body frame
+  std::vector<Vec3<S>> port_x, port_x_dot;  ///< position (m) and velocity (m/s) of each, world
+  // Stage 2, mass.
+  /// M, (6 + n_s) x (6 + n_s), and g_q of Eq. (11). For a part that deforms locally, M is n_x x n_x, the mass
+  /// matrix of its velocities in a group.
+  Inertia<S> inertia;
+  // Stage 3, forces.
+  VecX<S> f;                        ///< sum of all generalised forces on v_r, body frame, 6 + n_s
+  Vec<S, kWorks> power;             ///< rates of the works that the part does alone, W
+  std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
+  // Stage 5, accelerations. Stage 4 is in Workspace::joints.
+  SymmetricFactor<S> factor;         ///< L D L^T of M
+  const PartModel* rigid = nullptr;  ///< set for a rigid part, whose constant M^-1 replaces `factor`
+  VecX<S> a_r;                       ///< (R^T c_ddot, omega_dot, q_s_ddot), then d_ddot at its joints, n_x
+  /// M is increased by this factor times K_s, for contact pushes on stiff parameters; s^2.
+  double stiffening = 0;
+  std::vector<int> pressed;  ///< numbers of the parameters that a limit pushes
+  Counters counters;         ///< how often the kernels of the part ran
+
+  /// x = M^-1 x.
+  template <class Vector>
+  void solve_mass(Vector&& x) const {
+    if constexpr (std::is_same_v<S, double>) {
+      if (local) {
+        x = (local->A * x).eval();
+        return;
+      }
+      if (rigid != nullptr) {
+        x = (rigid->rigid_inverse * Eigen::Matrix<double, 6, 1>(x.template head<6>())).eval();
+        return;
+      }
+    }
+    factor.solve(x);
+  }
+  /// Whether velocity k of v_r has no inertia now; its acceleration is zero.
+  bool held(int k) const {
+    if (local) return local->held.test(static_cast<std::size_t>(k));
+    return rigid != nullptr ? rigid->rigid_factor.held(k) : factor.held(k);
+  }
+};
+
+/// M over (c, theta, q_s) of a part.
+inline const MatX<double>& mass_matrix(const PartWorkspace<double>& w) {
+  return w.local ? w.local->H0 : w.inertia.M;
+}
+inline const MatX<Dual<1>>& mass_matrix(const PartWorkspace<Dual<1>>& w) {
+  return w.inertia.M;
+}
+
+/// The quantities of all parts and joints.
+template <class S>
+struct Workspace {
+  std::vector<PartWorkspace<S>> parts;
+  std::vector<int> before_joints;         ///< numbers of the parts that are evaluated before any joint
+  std::vector<std::uint8_t> held;         ///< of each part: 1 if a velocity of it has no inertia
+  ConstraintWorkspace<S> joints;          ///< stage 4
+  GroupVectors<S, kMaxVelocities> alone;  ///< vectors of the part whose limits are being projected
+  std::vector<RigidWorkspace> rigid;      ///< of each rigid island
+  VecX<S> v_dot;                          ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
+  Vec<S, kWorks> power;                   ///< stages 3 to 5: rates of the works of the ledger, W
+};
+
+}  // namespace pliant

@@ -1,0 +1,43 @@
+// Linear and exact changes of hinge angles and triangle strains.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include <pliant/local/shell/hinges.h>
+#include <pliant/math/header_only.h>
+
+namespace pliant {
+
+PLIANT_INLINE LinearHinges::LinearHinges(const ElementBatches<4>& hinges, const ElementBatches<3>& triangles,
+                                         const VecX<double>& X) {
+  for (int b = 0; b < hinges.n_batches(); ++b) gradients_.push_back(hinge_gradient(hinges.corners(X, b)));
+  for (int b = 0; b < triangles.n_batches(); ++b) edges_.push_back(edges_of(triangles.corners(X, b)));
+}
+
+PLIANT_INLINE Pack LinearHinges::angle(int batch, const HingeCorners<Pack>& d) const {
+  return dot(gradients_[static_cast<std::size_t>(batch)], d);
+}
+
+PLIANT_INLINE FoldingHinges::FoldingHinges(const ElementBatches<4>& hinges,
+                                           const ElementBatches<3>& triangles, const VecX<double>& X) {
+  for (int b = 0; b < hinges.n_batches(); ++b) rest_.push_back(hinge_sin_cos(hinges.corners(X, b)));
+  for (int b = 0; b < triangles.n_batches(); ++b)
+    rest_strain_.push_back(half_squares(edges_of(triangles.corners(X, b))));
+}
+
+PLIANT_INLINE std::array<Pack, 3> FoldingHinges::strain(int batch, const std::array<Vec3<Pack>, 3>& x) const {
+  std::array<Pack, 3> q = half_squares(edges_of(x));
+  for (std::size_t k = 0; k < 3; ++k) q[k] -= rest_strain_[static_cast<std::size_t>(batch)][k];
+  return q;
+}
+
+PLIANT_INLINE Pack FoldingHinges::angle(int batch, const HingeCorners<Pack>& x) const {
+  const math::SinCos<Pack>& rest = rest_[static_cast<std::size_t>(batch)];
+  const math::SinCos<Pack> now = hinge_sin_cos(x);
+  // atan2 of the difference: the angle jumps only where a hinge is half a turn away from rest.
+  const Pack s = now.sin * rest.cos - now.cos * rest.sin, c = now.cos * rest.cos + now.sin * rest.sin;
+  return {std::atan2(s[0], c[0]), std::atan2(s[1], c[1]), std::atan2(s[2], c[2]), std::atan2(s[3], c[3])};
+}
+
+}  // namespace pliant

@@ -1,0 +1,68 @@
+// Bodies of implicit_modes.h.
+#pragma once
+
+#include <pliant/math/header_only.h>
+#include <pliant/method/implicit/implicit_modes.h>
+
+namespace pliant {
+
+PLIANT_INLINE ImplicitModes::ImplicitModes(const PartModel& part)
+    : ImplicitPart(part), oscillators_(part.local->oscillators()) {
+  const Eigen::Index n = part.local->n_d();
+  P_.resize(3 * static_cast<Eigen::Index>(part.shared.size()), n);
+  VecX<double> buffer;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const VecX<double> mode = VecX<double>::Unit(n, j);
+    P_.col(j) = at_points(part.shared, part.local->at_nodes(mode.data(), buffer));
+  }
+}
+
+PLIANT_INLINE int ImplicitModes::prepare(const PartWorkspace<double>& w, double c, double) {
+  c_ = c;
+  sigma_ = 1 + c * oscillators_->damping.array() + c * c * oscillators_->omega2.array();
+  const Part& part = *part_->part;
+  const Eigen::Index n_s = part_->n_s;
+  MatX<double> S_r = w.local->H0;
+  D_s_ = part.alpha() * S_r.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
+  S_r.bottomRightCorner(n_s, n_s) += c * D_s_ + c * c * part.K_s();
+  for (int k = 0; k < n_r(); ++k)
+    if (w.held(k)) S_r(k, k) += 1;
+  S_r_inverse_ = S_r.inverse();
+  return 0;
+}
+
+PLIANT_INLINE void ImplicitModes::filter(const VecX<double>& q_dot, const Mat3<double>& R,
+                                         VecX<double>& v_dot) {
+  const Eigen::Index n_s = part_->n_s, n = part_->n_d();
+  const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n);
+  auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n);
+  const VecX<double> x =
+      -c_ * (oscillators_->omega2.cwiseProduct(r_q + c_ * k_v) + oscillators_->damping.cwiseProduct(k_v))
+                .cwiseQuotient(sigma_);
+  k_v += x;
+  change_.tail(P_.rows()) = P_ * x;
+  if (n_s == 0) return;
+  const VecX<double> of_v = v_dot.segment(part_->v0 + 6, n_s), of_q = q_dot.segment(part_->q0 + 7, n_s);
+  change_.head(n_r()) =
+      S_r_inverse_.rightCols(n_s) * (-c_ * D_s_ * of_v - part_->part->K_s() * (c_ * c_ * of_v + c_ * of_q));
+  v_dot.segment<3>(part_->v0) += R * change_.head<3>();
+  v_dot.segment(part_->v0 + 3, n_r() - 3) += change_.segment(3, n_r() - 3);
+}
+
+PLIANT_INLINE MatX<double> ImplicitModes::compliance() const {
+  MatX<double> A = MatX<double>::Zero(change_.size(), change_.size());
+  A.topLeftCorner(n_r(), n_r()) = S_r_inverse_;
+  A.bottomRightCorner(P_.rows(), P_.rows()) = P_ * sigma_.cwiseInverse().asDiagonal() * P_.transpose();
+  return A;
+}
+
+PLIANT_INLINE void ImplicitModes::push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const {
+  d_ddot += (P_.transpose() * g.tail(P_.rows())).cwiseQuotient(sigma_);
+}
+
+PLIANT_INLINE void ImplicitModes::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const {
+  on_frame = S_r_inverse_ * on_frame;
+  on_d = on_d.cwiseQuotient(sigma_).eval();
+}
+
+}  // namespace pliant

@@ -1,0 +1,309 @@
+// Bodies of implicit_nodes.h.
+#pragma once
+
+#include <pliant/math/header_only.h>
+#include <pliant/method/implicit/implicit_nodes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include <pliant/body/step_failure.h>
+
+namespace pliant {
+
+namespace implicit_nodes {
+
+/// A pivot of S below kMinPivot times the mass is a sign of negative stiffness, as in a buckling sheet. S
+/// then gets more mass: at first kFirstExtraMass times M, at most kMaxExtraMass, each time by a factor
+/// kExtraMassGrowth.
+inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
+/// Perturbation of the rest shape, in sizes of the part, which leaves no entry of K zero by chance.
+inline constexpr double kGeneric = 1e-7;
+
+using Of = NodalEnergy::Of;
+using Entries = std::vector<Eigen::Triplet<double>>;
+
+/// Calls add(row, column, value) for the entries of the lower triangle of K by energies of one kind. entries:
+/// storage.
+template <class Add>
+void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
+                    Add&& add) {
+  entries.clear();
+  for (const auto& energy : local.energies())
+    if (energy->of() == of) energy->add_stiffness(x, entries);
+  for (const Eigen::Triplet<double>& entry : entries)
+    if (entry.row() >= entry.col()) add(entry.row(), entry.col(), entry.value());
+}
+
+/// Returns (K_p + w w^T) dx at positions x.
+inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<double>& x,
+                                    const VecX<double>& dx) {
+  VecX<double> f = VecX<double>::Zero(x.size());
+  NodalEnergy::Buffer buffer;
+  for (const auto& energy : local.energies())
+    if (energy->of() == Of::position) energy->add_derivative(x, dx, f, buffer, nullptr);
+  return -f;
+}
+
+/// Returns the vectors w that add_stiffness omits.
+inline std::vector<VecX<double>> rank_one(const NodalDeformation& local, const VecX<double>& x) {
+  std::vector<VecX<double>> all;
+  for (const auto& energy : local.energies()) {
+    VecX<double> w = energy->rank_one(x);
+    if (w.size() > 0) all.push_back(std::move(w));
+  }
+  return all;
+}
+
+/// Returns the diagonal entry of a column of a lower triangle.
+inline double& diagonal(SparseMatrix& A, Eigen::Index i) {
+  return A.valuePtr()[A.outerIndexPtr()[i]];
+}
+
+}  // namespace implicit_nodes
+
+PLIANT_INLINE ImplicitNodes::ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor)
+    : ImplicitPart(part), factor_(std::move(factor)) {
+  follows_ = !local().stiffness_is_constant();
+  VecX<double> q_s(part.n_s);
+  for (int k = 0; k < part.n_s; ++k) q_s[k] = part.part->parameters().moving(k).rest_value();
+  none_.setZero(local().n_d());
+  rest_.place(none_.data(), none_.data(), none_.size());
+  Counters unused;
+  local().positions(*part.part, q_s, VecX<double>::Zero(6 + part.n_s), rest_, unused);
+}
+
+PLIANT_INLINE void ImplicitNodes::make_pattern() {
+  const Eigen::Index n_d = local().n_d();
+  VecX<double> near = rest_.x;
+  for (Eigen::Index i = 0; i < n_d; ++i)
+    near[i] += implicit_nodes::kGeneric * part_->part->size() * std::sin(static_cast<double>(i));
+  implicit_nodes::Entries lower;
+  for (int i = 0; i < n_d; ++i) lower.emplace_back(i, i, 0.0);
+  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::displacement, rest_.d, entries_,
+                                 [&](int i, int j, double value) { lower.emplace_back(i, j, value); });
+  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, near, entries_,
+                                 [&](int i, int j, double) { lower.emplace_back(i, j, 0.0); });
+  K_.resize(n_d, n_d);
+  K_.setFromTriplets(lower.begin(), lower.end());
+  K_.makeCompressed();
+}
+
+/// Adds `factor` times the masses to the stiffness in S and factors S, with more mass if S is not definite.
+PLIANT_INLINE int ImplicitNodes::factor_definite(double factor, double t) {
+  const VecX<double>& M = local().inertia();
+  const VecX<double> stiffness = S_.diagonal();
+  double more = 0;
+  for (int tries = 1; more <= implicit_nodes::kMaxExtraMass;
+       ++tries, more = std::max(implicit_nodes::kFirstExtraMass, implicit_nodes::kExtraMassGrowth * more)) {
+    for (Eigen::Index i = 0; i < M.size(); ++i)
+      implicit_nodes::diagonal(S_, i) = stiffness[i] + (factor + more) * M[i];
+    if (!factor_->factor(S_)) continue;
+    bool sound = true;
+    for (Eigen::Index i = 0; i < M.size() && sound; ++i)
+      sound = factor_->pivots()[static_cast<std::size_t>(i)] >= implicit_nodes::kMinPivot * M[i];
+    if (sound) return tries;
+  }
+  throw NumericalFailure(
+      "the stiffness of the nodes of part '" + part_->part->name() + "' cannot be factored: it is not finite",
+      t);
+}
+
+PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
+  const NodalWorkspace& now = NodalDeformation::of(*w.local);
+  const bool fresh = follows_ || c != c_;
+  int factorisations = 0;
+  if (fresh || frame_in_border()) {
+    c_ = 0;  // in case the factorisation fails
+    const std::string of_part = "the stiffness of the nodes of part '" + part_->part->name() + "'";
+    try {
+      if (fresh) factorisations = factor(c, now.x, t);
+      make_border(now, c);
+    } catch (const std::bad_alloc&) {
+      throw OutOfMemory("out of memory for the factor of " + of_part + ", of " +
+                        std::to_string(local().n_d()) + " unknowns");
+    } catch (const StepFailure&) {
+      throw;
+    } catch (const std::runtime_error& failure) {
+      throw NumericalFailure(of_part + " cannot be factored: " + failure.what(), t);
+    }
+    c_ = c;
+  }
+  if (fresh || frame_in_border()) make_core(now);
+  if (!frame_in_border() && fresh)
+    H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
+  return factorisations;
+}
+
+PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double t) {
+  if (K_.size() == 0) make_pattern();
+  S_ = K_;
+  if (follows_)
+    implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, x, entries_,
+                                   [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
+  if (!S_.isCompressed()) S_.makeCompressed();
+  if (S_.nonZeros() != K_.nonZeros() || analysed_ != K_.nonZeros()) {
+    factor_->analyse(S_);
+    analysed_ = S_.nonZeros();
+  }
+  S_.coeffs() *= c * (local().beta() + c);
+  const int factorisations = factor_definite(1 + c * local().alpha(), t);
+  const std::vector<NodeWeights>& points = part_->shared;
+  if (points.empty()) return factorisations;
+  const Eigen::Index n = local().n_nodes();
+  Z_.setZero(local().n_d(), 3 * static_cast<Eigen::Index>(points.size()));
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t i = 0; i < points[k].node.size(); ++i)
+      for (int r = 0; r < 3; ++r)
+        Z_(points[k].node[i] + r * n, 3 * static_cast<Eigen::Index>(k) + r) += points[k].weight[i];
+  factor_->solve(Z_);
+  return factorisations;
+}
+
+PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& at, double c) {
+  const Eigen::Index n = local().n_nodes(), n_d = local().n_d(), n_s = part_->n_s;
+  const VecX<double>& m = local().mesh().mass;
+  const std::vector<VecX<double>> gas = implicit_nodes::rank_one(local(), at.x);
+  const auto n_gas = static_cast<Eigen::Index>(gas.size());
+  B_.setZero(n_d, n_r() + (frame_in_border() ? n_r() : 0) + n_gas);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    B_.col(i).segment(i * n, n) = m;
+    // e_i x s: along j it is -s_k, along k s_j.
+    B_.col(3 + i).segment(j * n, n) = -m.cwiseProduct(at.s.col(k));
+    B_.col(3 + i).segment(k * n, n) = m.cwiseProduct(at.s.col(j));
+  }
+  K_elastic_.setZero(n_s, n_s);
+  for (Eigen::Index k = 0; k < n_s; ++k) {
+    for (int r = 0; r < 3; ++r)
+      B_.col(6 + k).segment(r * n, n) = m.cwiseProduct(at.J.col(k).segment(r * n, n));
+    if (!follows_) continue;
+    VecX<double> J = VecX<double>::Zero(n_d);
+    J.head(3 * n) = at.J.col(k);
+    const VecX<double> P = implicit_nodes::stiffness_along(local(), at.x, J);
+    K_elastic_.col(k) = at.J.transpose() * P.head(3 * n);
+    B_.col(n_r() + 6 + k) = c * c * P;
+  }
+  for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
+  T_ = B_;
+  factor_->solve(T_.leftCols(n_r()));
+  if (follows_ && n_s > 0) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns between are zero
+  if (n_gas > 0) factor_->solve(T_.rightCols(n_gas));
+  core_fixed_ = -B_.transpose() * T_;
+  core_fixed_.diagonal().tail(n_gas).array() -= 1;
+  if (part_->shared.empty()) return;
+  B_Z_ = B_.transpose() * Z_;
+  T_at_ = at_joints(T_);
+}
+
+PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& now) {
+  MatX<double> core = core_fixed_;
+  if (frame_in_border()) {
+    const Part& part = *part_->part;
+    const Eigen::Index n_s = part_->n_s;
+    K_s_ = part.K_s() + K_elastic_;
+    D_s_ = part.alpha() * now.H0.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
+    auto S_r = core.block(n_r(), n_r(), n_r(), n_r());
+    S_r += now.H0;
+    S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
+    for (int k = 0; k < n_s; ++k)
+      if (now.held.test(static_cast<std::size_t>(6 + k))) {  // W has no row for it either
+        core(6 + k, 6 + k) -= 1;
+        S_r(6 + k, 6 + k) += 1;
+      }
+  }
+  core_.compute(core);
+}
+
+PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& of_nodes) const {
+  const auto n_p = 3 * static_cast<Eigen::Index>(part_->shared.size());
+  MatX<double> values(n_p, of_nodes.cols());
+  for (Eigen::Index k = 0; k < of_nodes.cols(); ++k)
+    values.col(k) =
+        at_points(part_->shared, Eigen::Map<const Nodes>(of_nodes.col(k).data(), local().n_nodes(), 3));
+  return values;
+}
+
+PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<double>& R,
+                                         VecX<double>& v_dot) {
+  const Eigen::Index n_s = part_->n_s, n_d = local().n_d();
+  const VecX<double>& M = local().inertia();
+  const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n_d);
+  auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n_d);
+  // With e = r_v + s r_q, s = c / (c^2 + c beta), and y = x_d + e the first row becomes
+  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r: a product with K is not needed.
+  const double s = 1 / (local().beta() + c_);
+  e_ = k_v + s * r_q;
+  y_ = M.cwiseProduct(e_);
+  if (local().alpha() > 0) y_ += s * c_ * local().alpha() * M.cwiseProduct(r_q);
+  right_.setZero(B_.cols());
+  if (frame_in_border()) {
+    const VecX<double> of_v = v_dot.segment(part_->v0 + 6, n_s), of_q = q_dot.segment(part_->q0 + 7, n_s);
+    if (follows_) y_ -= B_.middleCols(n_r() + 6, n_s) * (of_v + of_q / c_);
+    right_.segment(n_r() + 6, n_s) = -c_ * D_s_ * of_v - K_s_ * (c_ * c_ * of_v + c_ * of_q);
+  }
+  factor_->solve(y_);
+  right_.head(n_r()) += B_.leftCols(n_r()).transpose() * e_;
+  right_ -= B_.transpose() * y_;
+  const VecX<double> z = core_.solve(right_);
+  y_ -= T_ * z;
+  change_.setZero();
+  if (frame_in_border()) {
+    change_.head(n_r()) = z.segment(n_r(), n_r());
+    v_dot.segment<3>(part_->v0) += R * change_.head<3>();
+    v_dot.segment(part_->v0 + 3, n_r() - 3) += change_.segment(3, n_r() - 3);
+  }
+  e_ = y_ - e_;
+  k_v += e_;
+  if (!part_->shared.empty())
+    change_.tail(change_.size() - n_r()) =
+        at_points(part_->shared, Eigen::Map<const Nodes>(e_.data(), local().n_nodes(), 3));
+}
+
+PLIANT_INLINE MatX<double> ImplicitNodes::compliance() const {
+  const auto n_p = static_cast<Eigen::Index>(change_.size()) - n_r();
+  MatX<double> right = MatX<double>::Zero(B_.cols(), n_r() + n_p), A(n_r() + n_p, n_r() + n_p);
+  if (frame_in_border()) right.block(n_r(), 0, n_r(), n_r()).setIdentity();
+  if (n_p > 0) right.rightCols(n_p) -= B_Z_;
+  const MatX<double> z = core_.solve(right);
+  if (frame_in_border()) {
+    A.topRows(n_r()) = z.middleRows(n_r(), n_r());
+  } else {
+    A.topRows(n_r()).setZero();
+    A.topLeftCorner(n_r(), n_r()) = H0_inverse_;
+  }
+  if (n_p > 0) {
+    A.bottomRows(n_p) = -T_at_ * z;
+    A.bottomRightCorner(n_p, n_p) += at_joints(Z_);
+  }
+  return 0.5 * (A + A.transpose());
+}
+
+PLIANT_INLINE void ImplicitNodes::push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_ddot) const {
+  const Eigen::Index n_p = g.size() - n_r();
+  VecX<double> right = VecX<double>::Zero(B_.cols());
+  if (frame_in_border()) right.segment(n_r(), n_r()) = g.head(n_r());
+  if (n_p > 0) right -= B_Z_ * g.tail(n_p);
+  d_ddot -= T_ * core_.solve(right);
+  if (n_p > 0) d_ddot += Z_ * g.tail(n_p);
+}
+
+PLIANT_INLINE void ImplicitNodes::respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const {
+  factor_->solve(on_d);
+  VecX<double> right = -B_.transpose() * on_d;
+  if (frame_in_border()) right.segment(n_r(), n_r()) += on_frame;
+  const VecX<double> z = core_.solve(right);
+  on_d -= T_ * z;
+  if (frame_in_border())
+    on_frame = z.segment(n_r(), n_r());
+  else
+    on_frame = H0_inverse_ * on_frame;
+}
+
+}  // namespace pliant

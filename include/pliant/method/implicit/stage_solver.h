@@ -1,0 +1,66 @@
+// The solver of implicit stages,
+//   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
+// by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot,
+// is formed by differences, once in a step, and only if the iteration without it would cost more. It is
+// formed again if stiff parts turn so far that it no longer helps. Clusters of parts that joints, springs or
+// mutual torques connect have one matrix each, in the frames of the parts, because stiff directions turn with
+// the parts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include <pliant/method/integrator.h>
+
+namespace pliant {
+
+class StageSolver {
+ public:
+  explicit StageSolver(const Model& model);
+
+  /// Begins a step at the state of the context. The context and the scale must outlive the stages of the
+  /// step. c: gamma h of all stages, s. scale: measures the residual of the equations.
+  void begin(StepContext& step, double c, const ErrorScale& scale);
+  /// Solves the stage at time t (s) for q and v, from the guess that they hold. On return the workspace of
+  /// the step holds the last evaluation. Throws NumericalFailure, naming the worst unknown, if the iteration
+  /// diverges.
+  void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
+  /// Filters an error estimate by the inverse matrix: components that the step damps away vanish.
+  void damp(VecX<double>& of_q, VecX<double>& of_v) const;
+
+ private:
+  /// Parts whose states affect the accelerations of each other.
+  struct Cluster {
+    std::vector<int> parts;
+    std::vector<Eigen::Index> velocities;
+    MatX<double> A_q, A_v;
+    Eigen::PartialPivLU<MatX<double>> factor;
+  };
+  /// Iterates at most as often as pays; returns whether the iteration converged.
+  bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
+  /// Evaluates the matrices A_q and A_v at (t, q, v) by differences and factors the clusters.
+  void linearise(double t, const VecX<double>& q, const VecX<double>& v);
+  /// Sets one column of A_q or A_v of each cluster to the difference of the accelerations in the workspace.
+  void set_column(Eigen::Index column, const VecX<double>& by, MatX<double> Cluster::*A);
+  /// Returns the changes of the coordinates whose accelerations give the column of each cluster.
+  VecX<double> differences(Eigen::Index column) const;
+  void allocate_matrices(double t);
+  /// Replaces the residuals (rho_q, rho_v) by the Newton change of (q, v).
+  void correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const;
+
+  const Model& model_;
+  std::vector<Cluster> clusters_;
+  VecX<double> difference_;  ///< size of the differences, for each velocity, m or rad or 1
+  int max_free_iterations_;  ///< most iterations of a stage without the matrix
+  // Of the step.
+  StepContext* step_ = nullptr;
+  const ErrorScale* scale_ = nullptr;
+  double c_ = 0;
+  bool linear_ = false;  ///< whether the matrices are valid
+  mutable VecX<double> tangent_, right_;
+  VecX<double> rho_q_, rho_v_, q_guess_, v_guess_, v_dot_;
+};
+
+}  // namespace pliant

@@ -1,0 +1,14 @@
+// The axial vector of a matrix.
+#pragma once
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// Returns the axial vector of ab = sum a b^T, which is sum a x b.
+template <class T>
+Vec3<T> axial(const Mat3<T>& ab) {
+  return {ab(1, 2) - ab(2, 1), ab(2, 0) - ab(0, 2), ab(0, 1) - ab(1, 0)};
+}
+
+}  // namespace pliant

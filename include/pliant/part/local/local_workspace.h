@@ -1,0 +1,61 @@
+// The workspace of a local deformation: the quantities that an evaluation recomputes, in the order of its
+// stages. Each choice of the basis S adds fields in a derived type.
+#pragma once
+
+#include <bitset>
+#include <new>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// The response of a part to impulses on (v_r, the points at joints), in place of M^-1. A method that
+/// integrates the elasticity of the part implicitly supplies it for a step.
+class LocalResponse {
+ public:
+  virtual ~LocalResponse() = default;
+  /// Returns the compliance, see LocalDeformation::compliance().
+  virtual MatX<double> compliance() const = 0;
+  /// Adds the change of the local rates by impulses g on (v_r, the points) to d_dot.
+  virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
+  /// Replaces impulses on v_r and on all local coordinates by the changes of the rates.
+  virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
+};
+
+struct LocalWorkspace {
+  virtual ~LocalWorkspace() = default;
+
+  // Input: local coordinates and their rates, inside (q, v) of the evaluation.
+  Eigen::Map<const VecX<double>> d{nullptr, 0}, d_dot{nullptr, 0};
+
+  // Stage masses().
+  MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
+  Vec3<double> moment;  ///< sum m p, kg m
+  /// Bits of (c, theta, q_s) that move nothing at the current shape: they have no inertia and get no
+  /// acceleration.
+  std::bitset<kMaxVelocities> held;
+
+  // Stage forces().
+  double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W
+  VecX<double> force;            ///< on the local coordinates
+
+  // Stage accelerations().
+  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+
+  // Joints.
+  MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its pseudo-inverse
+  const LocalResponse* response = nullptr;  ///< if not nullptr, it gives A
+
+  /// Sets d and d_dot to n local coordinates and their rates. The arrays must outlive the use of the
+  /// workspace.
+  void place(const double* q_d, const double* q_d_dot, Eigen::Index n) {
+    new (&d) Eigen::Map<const VecX<double>>(q_d, n);
+    new (&d_dot) Eigen::Map<const VecX<double>>(q_d_dot, n);
+  }
+  /// Returns the condition number of the matrix that separates (c, theta, q_s) from d; 1 is best.
+  virtual double condition() const { return 1; }
+  /// Stores A and its pseudo-inverse. Rows of A depend on each other if points are close together.
+  void take_compliance(MatX<double> compliance);
+};
+
+}  // namespace pliant

@@ -1,0 +1,84 @@
+// Bodies of Part: the steps that compute the constants of a part.
+#pragma once
+
+#include <vector>
+
+#include <pliant/math/header_only.h>
+#include <pliant/part/mesh/folds.h>
+#include <pliant/part/part.h>
+#include <pliant/part/sum_inertia.h>
+
+namespace pliant {
+
+PLIANT_INLINE void Part::prepare() {
+  if (prepared()) return;
+  update_parameters();
+  check();
+  constants_ = PartConstants();
+  constants_.K_s = dynamic_stiffness();
+  compute_size();
+  if (given_inertia()) {
+    use_given_inertia();
+  } else {
+    const double volume = compute_inertia();
+    compute_elasticity(volume);
+  }
+  set_unchanged();
+}
+
+PLIANT_INLINE void Part::compute_size() {
+  std::vector<Material<double>> surface;
+  for (int i = 0; i < 16; ++i)
+    for (int j = -4; j <= 4; ++j) surface.push_back(material_at(j * kPi / 8, i * kPi / 8));
+  constants_.size = s(surface, parameters().rest()).rowwise().lpNorm<Eigen::Infinity>().maxCoeff();
+}
+
+PLIANT_INLINE void Part::use_given_inertia() {
+  throw_if_folded(*this, parameters().rest(), "rest");
+  constants_.rest_inertia = *given_inertia();
+}
+
+PLIANT_INLINE double Part::compute_inertia() {
+  MassPoints& points = constants_.mass_points;
+  points = place_mass_points(*this);
+  const int n = parameters().n_dynamic();
+  VecMax<double> q_s(n);
+  for (int k = 0; k < n; ++k) q_s[k] = parameters().moving(k).rest_value();
+  auto inertia_at_rest = [&] {
+    Inertia<double> inertia;
+    Counters unused;
+    sum_inertia(*this, points, q_s, VecMax<double>::Zero(n), Vec3<double>::Zero(), inertia, unused);
+    return inertia;
+  };
+  constants_.rest_inertia = inertia_at_rest();
+  const double volume = total_mass() / density();
+  if (given_mass()) {
+    const double factor = *given_mass() / total_mass();
+    for (Pack& m : points.mass) m *= Pack(factor);
+    constants_.rest_inertia = inertia_at_rest();
+  }
+  if (linear()) constants_.linear_inertia = make_linear_inertia(*this, points);
+  return volume;
+}
+
+PLIANT_INLINE void Part::compute_elasticity(double volume) {
+  if (local_settings()) constants_.local = make_local_deformation(*this, *local_settings());
+  if (continuum_settings() && parameters().n_dynamic() > 0)
+    constants_.continuum = std::make_unique<ContinuumEnergy>(*this, *continuum_settings(), volume);
+}
+
+PLIANT_INLINE double Part::inertia_floor(int k) const {
+  constexpr double relative_rounding = 1e-24;
+  const bool length = parameters().moving(k).spec->quantity == Quantity::length;
+  return relative_rounding * total_mass() * (length ? 1.0 : size() * size());
+}
+
+PLIANT_INLINE MatX<double> Part::elastic_stiffness(const VecMax<double>& q_s) const {
+  return continuum() != nullptr ? MatX<double>(K_s() + continuum()->stiffness(*this, q_s)) : K_s();
+}
+
+PLIANT_INLINE MatX<double> Part::strain_stiffness(const VecMax<double>& q_s) const {
+  return continuum() != nullptr ? MatX<double>(K_s() + continuum()->strain_stiffness(*this, q_s)) : K_s();
+}
+
+}  // namespace pliant

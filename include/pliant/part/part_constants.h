@@ -1,0 +1,26 @@
+// The constants of a part: the quantities that Part::prepare() computes once from the description and that no
+// step changes.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <pliant/part/continuum.h>
+#include <pliant/part/inertia.h>
+#include <pliant/part/linear_inertia.h>
+#include <pliant/part/local/local_deformation.h>
+#include <pliant/part/quadrature/mass_points.h>
+
+namespace pliant {
+
+struct PartConstants {
+  MatX<double> K_s;              ///< stiffness over the dynamic parameters
+  double size = 0;               ///< largest half extent of the body at rest, m
+  MassPoints mass_points;        ///< the points of the sums of Eq. (11); none if the inertia is given
+  Inertia<double> rest_inertia;  ///< at rest; the inertia of a rigid part at all times
+  std::optional<LinearInertia> linear_inertia;  ///< replaces the sums over mass points if s is linear in q_s
+  std::unique_ptr<LocalDeformation> local;      ///< nullptr if the part does not deform locally
+  std::unique_ptr<ContinuumEnergy> continuum;   ///< nullptr if there is no elastic material that q_s strains
+};
+
+}  // namespace pliant

@@ -1,0 +1,171 @@
+// The description of a part: everything that the user sets. It is the first base class of Part (part.h),
+// which inherits the setters. Part::prepare() computes the constants of the part from this description.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <pliant/part/continuum.h>
+#include <pliant/part/inertia.h>
+#include <pliant/part/local/local_deformation.h>
+#include <pliant/part/parameters.h>
+#include <pliant/part/prescribed_motion.h>
+
+namespace pliant {
+
+class Part;
+
+class PartDescription {
+ public:
+  /// Names of parameters with a value each: {{"a1", 0.5}, {"taper.tx", 0.2}}.
+  using Named = std::vector<std::pair<std::string, double>>;
+
+  PartDescription(const PartDescription&) = delete;
+  PartDescription& operator=(const PartDescription&) = delete;
+
+  // The setters. Each returns the part, so that calls chain. Each throws std::invalid_argument, which names
+  // the part, the parameter, the value and the allowed values, and std::logic_error while a Model uses the
+  // part.
+
+  /// Sets the position of the frame (m, world) and its orientation (body to world; normalised here).
+  Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
+  /// Sets the initial velocity of the frame (m/s, world) and its angular velocity (rad/s, body frame).
+  Part& velocity(const Vec3<double>& c_dot, const Vec3<double>& omega);
+  /// Sets rest values. A frozen parameter keeps its rest value.
+  Part& rest(const Named& values);
+  /// Sets a rest value that is a function of time.
+  Part& rest(const std::string& parameter, TimeFunction of_time);
+  /// Sets values at time 0, and makes the parameters dynamic.
+  Part& initial(const Named& values);
+  /// Sets rates at time 0, per second, and makes the parameters dynamic.
+  Part& initial_rate(const Named& values);
+  /// Sets entries of the diagonal of K_s, and makes the parameters dynamic. The energy is 1/2 K (q - rest)^2.
+  Part& stiffness(const Named& values);
+  /// Sets a symmetric block of K_s over the named parameters, and makes them dynamic.
+  Part& stiffness(const std::vector<std::string>& parameters, const MatX<double>& K);
+  /// Sets one-sided limits of a dynamic parameter. prepare() checks them against the range that its rest
+  /// value allows.
+  Part& limits(const std::string& parameter, Range range);
+  /// Makes the part elastic: adds the strain energy of the whole map from rest to now to the energy of K_s. A
+  /// part that deforms locally gets its elasticity from the laws of its local deformation instead.
+  Part& elasticity(ContinuumSettings settings);
+  /// Makes parameters degrees of freedom.
+  Part& make_dynamic(const std::vector<std::string>& parameters);
+  /// Makes parameters constants.
+  Part& freeze(const std::vector<std::string>& parameters);
+  /// Sets the damping D = alpha M_ss + beta K_s of the global parameters (1/s, s), where beta also multiplies
+  /// the rate of strain of elastic material, and the drag nu M on all motion (1/s).
+  Part& damping(double alpha, double beta, double nu = 0);
+  /// Puts the mass on the surface. The density is then per area (kg/m^2).
+  Part& make_shell();
+  /// Sets the total mass (kg), which replaces the density.
+  Part& mass(double total);
+  /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
+  /// of mass (m, body frame) of a rigid part. They replace the density.
+  Part& inertia(double mass, const Mat3<double>& about_origin,
+                const Vec3<double>& centre = Vec3<double>::Zero());
+  /// Makes the part deform locally: a shell at the nodes of a mesh of its surface, a solid at the nodes of a
+  /// mesh of its body, or either by modes.
+  Part& deform_locally(LocalSettings settings);
+  /// Fixes the part: it does not move and has no coordinates.
+  Part& fix();
+  /// Prescribes the motion of the part, which also sets its position. The part has no coordinates.
+  Part& prescribe(PrescribedMotion motion);
+
+  const std::string& name() const { return name_; }
+  const Parameters& parameters() const { return parameters_; }
+  const ShapeFace& shape() const { return *shape_; }
+  /// Whether the part has no coordinates because it is fixed or its motion is prescribed.
+  bool fixed() const { return fixed_; }
+  /// The prescribed motion; nullptr if there is none.
+  const PrescribedMotion* motion() const { return motion_ ? &*motion_ : nullptr; }
+  bool shell() const { return shell_; }
+  /// kg/m^3 of a solid, kg/m^2 of a shell.
+  double density() const { return density_; }
+  double alpha() const { return alpha_; }
+  double beta() const { return beta_; }
+  double drag() const { return drag_; }
+  /// The frame at time 0: position (m, world), orientation (body to world), velocity (m/s, world) and angular
+  /// velocity (rad/s, body frame).
+  const Vec3<double>& c0() const { return c0_; }
+  const Eigen::Quaterniond& R0() const { return R0_; }
+  const Vec3<double>& c0_dot() const { return c0_dot_; }
+  const Vec3<double>& omega0() const { return omega0_; }
+  /// Number of dynamic global parameters q_s.
+  int n_s() const { return fixed_ ? 0 : parameters_.n_dynamic(); }
+  /// Whether nothing deforms: no parameter is dynamic, and there is no local deformation.
+  bool rigid() const { return parameters_.n_dynamic() == 0 && !local_settings_; }
+  /// Whether s is linear in q_s, so that J never changes: all dynamic parameters are lengths in which the
+  /// shape is linear, and no link of the chain acts.
+  bool linear() const;
+  /// Throws std::invalid_argument if the part cannot have the elastic material that was set. prepare() checks
+  /// this too.
+  void check_elasticity() const;
+
+  /// A Model keeps a copy of this token while it uses the part. The part cannot be changed as long as copies
+  /// exist.
+  using Use = std::shared_ptr<const int>;
+  const Use& use() const { return use_; }
+
+ protected:
+  PartDescription(std::string name, double density, std::unique_ptr<ShapeFace> shape,
+                  const std::vector<LinkInfo>& links);
+  ~PartDescription() = default;
+
+  /// Throws std::invalid_argument if the description contradicts itself. To be called before prepare()
+  /// computes.
+  void check() const;
+  /// The part of which this is a base.
+  const Part& part() const;
+  Part& part();
+  [[noreturn]] void refuse(const std::string& what) const;
+
+  // Settings that only prepare() needs.
+  const std::optional<double>& given_mass() const { return total_mass_; }
+  const std::optional<Inertia<double>>& given_inertia() const { return given_inertia_; }
+  const std::optional<LocalSettings>& local_settings() const { return local_settings_; }
+  const std::optional<ContinuumSettings>& continuum_settings() const { return continuum_settings_; }
+  /// K_s over the dynamic parameters.
+  MatX<double> dynamic_stiffness() const;
+
+  /// Whether a setter ran since the constants were computed.
+  bool changed() const { return changed_; }
+  void set_unchanged() { changed_ = false; }
+  /// Brings the lists of dynamic and frozen parameters up to date.
+  void update_parameters() { parameters_.update(); }
+
+ private:
+  /// Runs before every change. Throws std::logic_error while a Model uses the part.
+  void change();
+  /// Checks limits, rest value and initial value of a dynamic parameter, and that a frozen one is constant.
+  void check_parameter(const Parameter& p) const;
+  /// Throws if the limits exceed the range that the rest value of the parameter allows.
+  void check_limits(const Parameter& p) const;
+  /// Throws if the strain energy of the material is not defined while parameter number i changes.
+  void check_elastic_parameter(int i) const;
+  /// Number of a parameter. Throws if there is no parameter of this name.
+  int require(const std::string& parameter) const;
+
+  Use use_ = std::make_shared<const int>(0);
+  std::string name_;
+  std::unique_ptr<ShapeFace> shape_;
+  Parameters parameters_;
+  double density_;
+  std::optional<double> total_mass_;
+  std::optional<Inertia<double>> given_inertia_;
+  std::optional<PrescribedMotion> motion_;
+  std::optional<LocalSettings> local_settings_;
+  std::optional<ContinuumSettings> continuum_settings_;
+  MatX<double> stiffness_;  // K_s over all parameters, frozen ones included
+  double alpha_ = 0, beta_ = 0, drag_ = 0;
+  bool fixed_ = false, shell_ = false, changed_ = true;
+  Vec3<double> c0_ = Vec3<double>::Zero(), c0_dot_ = Vec3<double>::Zero(), omega0_ = Vec3<double>::Zero();
+  Eigen::Quaterniond R0_ = Eigen::Quaterniond::Identity();
+};
+
+}  // namespace pliant

@@ -1,0 +1,98 @@
+// The evaluation of a part at given values of its parameters: the reference shape s, its derivatives J =
+// ds/dq_s and Jdot qs_dot (Eqs. (1)-(10)), normals, the inverse map, and the mass matrix M and the inertial
+// forces g_q of Eq. (11). It is the second base class of Part (part.h). Bodies: part_evaluation-inl.h
+// (geometry), inertia-inl.h (M and g_q).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <pliant/deform/jet.h>
+#include <pliant/part/counters.h>
+#include <pliant/part/part_constants.h>
+#include <pliant/part/part_description.h>
+
+namespace pliant {
+
+class PartEvaluation : public PartDescription {
+ public:
+  virtual ~PartEvaluation() = default;
+
+  // Dynamics. q_s and q_s_dot are the dynamic parameters and their rates, omega (rad/s) is in the body frame.
+  // The overloads for Dual<1> also compute the derivative along the direction of the dual parts.
+
+  /// Computes the mass matrix and the inertial forces, Eq. (11), by the mass points of the part.
+  void evaluate_inertia(const VecMax<double>& q_s, const VecMax<double>& q_s_dot, const Vec3<double>& omega,
+                        Inertia<double>& out, Counters& counters) const;
+  void evaluate_inertia(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot,
+                        const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
+  /// Computes g_q alone, of a rigid part. The other fields of out stay as evaluate_inertia() left them.
+  static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
+  /// Computes position, J and rates of material points in the body frame.
+  void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
+              const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
+  void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
+              const VecMax<Dual<1>>& q_s_dot, std::vector<PointJet<Dual<1>>>& out, Counters& counters) const;
+
+  // Geometry, in the body frame. values: all parameters, frozen ones included.
+
+  /// Returns the reference shape s of material points, m: 3 x n.
+  Eigen::Matrix3Xd s(const std::vector<Material<double>>& at, const ParameterValues<double>& values) const;
+  /// Returns the derivative of s along the direction of the dual parts of the values: 3 x n.
+  Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
+                           const ParameterValues<Dual<1>>& values) const;
+  /// Returns the derivative of the chain of deformations at undeformed points e (3 x n), one 3 x 3 matrix
+  /// each.
+  std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
+                                           const ParameterValues<double>& values) const;
+  /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where those of the trigonometric
+  /// map are (exponents below 1).
+  Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
+  /// Returns the inside-outside function at a point p: w - 1 of its material point, found by the inverse
+  /// deformations. It is zero on the surface and negative inside.
+  double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  /// Returns its gradient, 1/m; at the tip of a full taper the limit along z.
+  Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
+  /// Returns the unit outward normal at a material point of the surface. Where the deformation maps a whole
+  /// section to one point (the tip of a full taper), it is the limit along z.
+  Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
+  std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
+                                    const ParameterValues<double>& values) const;
+  /// Returns whether some of the surface is turned inside out at these values of the dynamic parameters.
+  bool folded(const VecMax<double>& q_s) const;
+  /// Returns the material point at a point p of the part.
+  Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
+
+  // The kernels, for batches of material points. Primitive implements them.
+
+  /// Computes position, J and rates of material points, up to the level of the batch.
+  virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
+                    JetBatch<Pack>& batch) const = 0;
+  /// Computes them with their derivatives along the dual parts of the values and of the material points.
+  virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
+                    JetBatch<Dual<1, Pack>>& batch) const = 0;
+  /// Computes them with their derivatives along the dual parts of the values.
+  void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
+            JetBatch<Dual<1, Pack>>& batch) const;
+
+ protected:
+  using PartDescription::PartDescription;
+
+  /// Applies the chain of deformations alone: propagates seeded jets through all links at constant
+  /// parameters.
+  virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
+  /// Applies the inverse of the chain to a point.
+  virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
+
+  PartConstants constants_;
+
+ private:
+  template <class P>
+  void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
+                           Inertia<P>& out, Counters& counters) const;
+  /// Returns the undeformed point that the chain maps to p.
+  Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
+};
+
+}  // namespace pliant

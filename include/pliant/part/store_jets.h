@@ -1,0 +1,25 @@
+// Jets of many material points as structures of arrays: all x, then all y, then all z.
+#pragma once
+
+#include <vector>
+
+#include <pliant/part/packs.h>
+#include <pliant/part/part.h>
+
+namespace pliant {
+
+/// The arrays that receive the jets of n points: 3n numbers each, and 3n numbers for each dynamic parameter
+/// in J.
+struct JetArrays {
+  Eigen::Index n;
+  double* s;
+  double *s1, *s2;  ///< not written if q_s_dot is zero
+  double* J;
+};
+
+/// Computes the shape s, J and, if q_s_dot is not zero, the rates J q_s_dot and Jdot q_s_dot of points.
+/// packs: the points in packs of four, from packs_of().
+void store_jets(const Part& part, const VecX<double>& q_s, const VecMax<double>& q_s_dot,
+                const std::vector<Material<Pack>>& packs, const JetArrays& to, Counters& counters);
+
+}  // namespace pliant

@@ -1,0 +1,128 @@
+// Reference conditions W^T d = 0 after a step (include/pliant/part/local/README.md). A change delta of (c,
+// theta, q_s) that leaves every node in place changes d by -G delta, and W^T d by -K^T delta:
+//   K^T delta = W^T d,   and for the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
+#pragma once
+
+#include <sstream>
+
+#include <Eigen/Geometry>
+
+#include <pliant/body/advance.h>
+#include <pliant/body/step_failure.h>
+#include <pliant/math/finite.h>
+#include <pliant/math/header_only.h>
+#include <pliant/part/local/nodal_deformation.h>
+#include <pliant/project/project.h>
+
+namespace pliant {
+
+namespace projection {
+
+/// Changes of the frame below this share of the size of the part are rounding.
+inline constexpr double kFrameRounding = 1e-15;
+inline constexpr int kMaxFrameIterations = 8;
+/// K is regular if it differs from H by less than this share of the smallest diagonal entry.
+inline constexpr double kSmallChange = 0.3;
+/// Largest condition number of K, with H0 scaled to a unit diagonal.
+inline constexpr double kMaxCondition = 1e8;
+
+/// Returns whether the conditions of a part without dynamic parameters are met to rounding, now and after
+/// another step with these rates. They are after a step of most methods: W is constant then, and the
+/// conditions are linear.
+inline bool conditions_hold(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
+  if (m.n_s > 0 || !(state.h > 0) || !work.local || work.local->H0.rows() == 0 ||
+      !(work.local->condition() <= kMaxCondition))
+    return false;
+  const NodalDeformation& local = *m.local->nodal();
+  const auto at_nodes = [&](const VecX<double>& of, int first) {
+    return Eigen::Map<const Nodes>(of.data() + first, local.n_nodes(), 3);
+  };
+  const NodalDeformation::Unmet unmet =
+      local.unmet(at_nodes(state.q, m.q0 + 7), at_nodes(state.v, m.v0 + 6), *work.local);
+  const Vec<double, 6> inertia = work.local->H0.diagonal();
+  const double size = m.part->size();
+  const auto small = [&](const Vec<double, 6>& share) {
+    return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
+           (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
+  };
+  // K differs from H by at most sqrt(2) times this, and by the unmet conditions, which are small.
+  const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
+  return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
+}
+
+inline void project_frame(StepContext& step, std::size_t i) {
+  const Dynamics& dynamics = step.dynamics;
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  const PartModel& m = dynamics.model().parts()[i];
+  if (m.local == nullptr) return;
+  auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
+  if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) return;
+  work.parts.resize(dynamics.model().parts().size());
+  if (m.local->nodal() != nullptr && conditions_hold(m, state, work.parts[i])) return;
+  if (!all_finite(state.q) || !all_finite(state.v)) return;
+  const int part = static_cast<int>(i);
+  dynamics.evaluate_frame(state.q, state.v, part, work);
+  PartWorkspace<double>& w = work.parts[i];
+  const double condition = w.local->condition();
+  if (!(condition <= kMaxCondition)) {
+    std::ostringstream message;
+    message << "the motion of the nodes of part '" << m.part->name()
+            << "' no longer determines its frame and global parameters (condition number " << condition
+            << "); "
+            << (m.n_s > 0 ? "freeze some of the parameters"
+                          : "they have come too near to a line, or are as far from the shape as it is large");
+    throw NumericalFailure(message.str(), step.t);
+  }
+  if (m.local->nodal() == nullptr) return;
+  const NodalDeformation& local = *m.local->nodal();
+  NodalWorkspace& now = NodalDeformation::of(*w.local);
+  const Eigen::Index n = local.n_nodes();
+  const double size = m.part->size();
+  Nodes &p = now.p_kept, &u = now.u_kept;
+  u.resize(n, 3);
+  local.add_frame_velocities(w.v_r, 1, now, now.d_dot.data(), u.data());
+  for (int iteration = 0;; ++iteration) {
+    const VecMax<double> delta = now.solve_transposed(now.unmet);
+    if (!(delta.head<3>().norm() > kFrameRounding * size || delta.tail(3 + m.n_s).norm() > kFrameRounding))
+      break;
+    if (iteration == kMaxFrameIterations) {
+      std::ostringstream message;
+      message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
+              << m.part->name() << "' are so far from the shape of its parameters that its frame does not "
+              << "follow them";
+      throw NumericalFailure(message.str(), step.t);
+    }
+    if (iteration == 0) p = nodes(now.x, n);
+    advance_part(m, state.q, world_velocity(w, delta), 1);
+    const Vec3<double> turning = delta.segment<3>(3);
+    const double angle = turning.norm();
+    const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
+    local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
+    // The reference shape at the new parameters.
+    if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
+    Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
+    dynamics.evaluate_frame(state.q, state.v, part, work);
+  }
+  const VecMax<double> v_r = now.solve_transposed(local.frame_share(u, now));
+  share_of(m, state.v) = world_velocity(w, v_r);
+  local.add_frame_velocities(v_r, -1, now, u.data(), state.v.data() + m.v0 + 6 + m.n_s);
+}
+
+}  // namespace projection
+
+PLIANT_INLINE void end_motion(StepContext& step) {
+  stop_inertialess(step.model(), step.work, step.state.v);
+  normalise_rotations(step.model(), step.state.q);
+  project_frames(step);
+}
+
+PLIANT_INLINE void project_frames(StepContext& step) {
+  for (std::size_t i = 0; i < step.model().parts().size(); ++i) projection::project_frame(step, i);
+}
+
+PLIANT_INLINE void project_frames(StepContext& step, const std::vector<int>& parts) {
+  for (const int part : parts) projection::project_frame(step, static_cast<std::size_t>(part));
+}
+
+}  // namespace pliant

@@ -1,0 +1,307 @@
+// Projection after a step: limits stop parameters, strings go taut, joints close and are projected.
+#pragma once
+
+#include <pliant/math/header_only.h>
+#include <pliant/project/projection.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include <pliant/math/finite.h>
+
+namespace pliant {
+
+namespace projection {
+
+/// Stores the coordinates and velocities of a group.
+template <int Max>
+class Snapshot {
+ public:
+  Snapshot(const Group<double, Max>& group, State& state, GroupVectors<double, Max>& vectors)
+      : group_(group), kept_(vectors) {
+    int n_q = 0, n_v = 0;
+    for (int i = 0; i < group.parts(); ++i) {
+      n_q += group.model(i).n_q();
+      n_v += group.model(i).n_v();
+    }
+    kept_.q.resize(n_q);
+    kept_.v.resize(n_v);
+    exchange(state, [](auto&& kept, auto&& now) { kept = now; });
+  }
+  /// Exchanges the stored values with those of the state.
+  void swap(State& state) {
+    exchange(state, [](auto&& kept, auto&& now) { kept.swap(now); });
+  }
+
+ private:
+  template <class F>
+  void exchange(State& state, F&& act) {
+    int q = 0, v = 0;
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      act(kept_.q.segment(q, m.n_q()), state.q.segment(m.q0, m.n_q()));
+      act(kept_.v.segment(v, m.n_v()), state.v.segment(m.v0, m.n_v()));
+      q += m.n_q();
+      v += m.n_v();
+    }
+  }
+  const Group<double, Max>& group_;
+  GroupVectors<double, Max>& kept_;
+};
+
+/// Adds a rigid motion to the velocities of a part that deforms locally, which keeps its P and L.
+inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
+                               const PartWorkspace<double>& to, State& state) {
+  const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
+  const Vec3<double> P = from.R * before.momentum;
+  Vec<double, 6> missing;
+  missing << to.R.transpose() * P - now.momentum,
+      to.R.transpose() * (from.R * before.angular_momentum + (from.c - to.c).cross(P)) - now.angular_momentum;
+  const Vec<double, 6> rigid = m.local->rigid_inertia(*to.local).ldlt().solve(missing);
+  state.v.segment<3>(m.v0) += to.R * rigid.head<3>();
+  state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
+}
+
+/// Sets the velocities of parts whose coordinates were set back. The generalised momenta M v stay, and with
+/// them P and L. For a part that deforms locally, whose nodes keep their velocities, P and L alone stay.
+/// before: evaluated at the coordinates before; now: at the new ones.
+template <int Max>
+void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
+                  const Workspace<double>& now, State& state) {
+  for (int i = 0; i < group.parts(); ++i) {
+    const PartModel& m = group.model(i);
+    const PartWorkspace<double>&from = before.parts[at(group.part(i))], &to = now.parts[at(group.part(i))];
+    if (m.local != nullptr) {
+      keep_rigid_momenta(m, from, to, state);
+      continue;
+    }
+    VecMax<double> momentum = from.inertia.M * from.v_r;
+    const Vec3<double> P = from.R * momentum.head<3>();
+    const Vec3<double> L = from.R * momentum.segment<3>(3) + (from.c - to.c).cross(P);
+    momentum.head<3>() = to.R.transpose() * P;
+    momentum.segment<3>(3) = to.R.transpose() * L;
+    if (to.stiffening > 0) momentum.tail(m.n_s) += to.stiffening * (m.part->K_s() * from.v_r.tail(m.n_s));
+    to.solve_mass(momentum);
+    share_of(m, state.v) = world_velocity(to, momentum);
+  }
+}
+
+inline std::vector<int> parts_of(const Group<double, kMaxVelocities>& group) {
+  return {group.part(0)};
+}
+inline const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& group) {
+  return group.island()->parts;
+}
+
+/// Projects a group onto its joints and limits. closed: whether joints have just closed. step.work: evaluated
+/// for the group. scratch: storage. impulses: if given, the impulses that close joints are added to it, N s.
+template <int Max>
+void project_group(StepContext& step, const Group<double, Max>& group, bool closed,
+                   Workspace<double>& scratch, VecX<double>* impulses = nullptr) {
+  const Dynamics& dynamics = step.dynamics;
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  GroupVectors<double, Max>& kept = kept_vectors(group, work);
+  Snapshot<Max> before(group, state, kept);
+  Projection<Max> projection(step, group, kept);
+  if (impulses != nullptr) projection.add_impulses_to(*impulses);
+  const bool pushed = projection.coordinates();
+  // The impulses that close a joint do work. The work of a correction of the error of a step is an error too,
+  // and appears in the balance.
+  double joints = 0, rows = 0;
+  if (!pushed && !closed) {
+    step.counters.limit_impulses += projection.velocities(joints, rows);
+    state.work[static_cast<int>(Work::limits)] += rows;
+    return;
+  }
+  const auto& parts = parts_of(group);
+  before.swap(state);
+  const double energy = dynamics.energy(step.t, state.q, state.v, parts, scratch);
+  before.swap(state);
+  if (group.island() != nullptr)
+    dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
+  else
+    dynamics.evaluate_masses(state.q, state.v, parts, work);
+  // The velocities of scratch are those of the state; they have not changed.
+  if (pushed) keep_momenta(group, scratch, work, state);
+  projection.forget();
+  step.counters.limit_impulses += projection.velocities(joints, rows);
+  state.work[static_cast<int>(pushed ? Work::limits : Work::projection)] +=
+      dynamics.energy(step.t, state.q, state.v, parts, scratch) - energy;
+}
+
+/// Returns whether a parameter has passed a limit, or moves while it is at one.
+inline bool passes(const PartModel& m, State& state) {
+  for (int k = 0; k < m.n_s; ++k)
+    if ((limit_mode(state, m, k) != 0 && state.v[m.v0 + 6 + k] != 0) ||
+        !m.limits[at(k)].contains(state.q[m.q0 + 7 + k]))
+      return true;
+  return false;
+}
+
+/// Closes open joints with a small gap and a small rate of the gap (any_rate: with any rate). A method of
+/// first order leaves a gap of h |bias| alpha / beta^2 on a turning joint, which counts as small. Returns
+/// whether any joint closed.
+inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
+                         const Workspace<double>& work, State& state) {
+  const Model& model = dynamics.model();
+  const double rate = model.body().stabilization.rate;
+  const Gains gains = work.joints.gains;
+  const bool first_order = dynamics.joint_policy().first_order;
+  bool any = false;
+  for (const int j : island.joints) {
+    if (state.joints[at(j)] != JointMode::closing) continue;
+    const JointModel& joint = model.joints()[at(j)];
+    auto size = [&](const VecX<double>& rows) { return rows.segment(joint.row, joint.rows).norm(); };
+    const double left = first_order && gains.beta > 0
+                            ? 2 * state.h * size(work.joints.bias) * gains.alpha / (gains.beta * gains.beta)
+                            : 0;
+    const double turning = std::sqrt(size(work.joints.bias) / joint.length);
+    const bool near =
+        size(work.joints.C) <= std::min(kClosedGap * joint.length + left, kWidest * joint.length);
+    const bool slow =
+        any_rate || size(work.joints.C_dot) <= kClosedRate * joint.length * rate + turning * left;
+    if (!near || !slow) continue;
+    state.joints[at(j)] = JointMode::closed;
+    any = true;
+  }
+  return any;
+}
+
+/// Throws for a joint that should have closed by now and cannot: its rows depend on rows of other joints that
+/// contradict them. step.work: the last evaluation of the step that ends at step.t.
+inline void fail_if_stuck(StepContext& step, const Island& island) {
+  const Model& model = step.model();
+  Workspace<double>& work = step.work;
+  const double beta = work.joints.gains.beta;
+  auto judge = [&](int j) {
+    const JointMode mode = work.joints.modes[at(j)];
+    if (mode != JointMode::closing && (mode != JointMode::closed || step.joint_policy().projected)) return;
+    const JointModel& joint = model.joints()[at(j)];
+    const double gap = work.joints.C.segment(joint.row, joint.rows).norm();
+    if (!(gap > kStuckGap * joint.length) ||
+        !(beta * (step.t - std::max(0.0, joint.joint->on())) > kPatience))
+      return;
+    const double asked = wanted(model, work.joints, j).norm();
+    auto disagrees = [&](int k) {
+      return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * asked;
+    };
+    auto held = std::find_if(island.joints.begin(), island.joints.end(), disagrees);
+    if (held == island.joints.end()) {
+      if (!joint.joint->one_sided() || !disagrees(j)) return;
+      held = std::find_if(island.strings.begin(), island.strings.end(),
+                          [&](int k) { return k != j && disagrees(k); });
+      if (held == island.strings.end()) held = std::find(island.strings.begin(), island.strings.end(), j);
+    }
+    const bool closed = std::any_of(island.joints.begin(), island.joints.end(),
+                                    [&](int k) { return work.joints.modes[at(k)] == JointMode::closed; });
+    const Group<double, Eigen::Dynamic> group(model, work, island, closed);
+    throw Projection<Eigen::Dynamic>(step, group, work.joints.vectors[group.number()])
+        .contradiction(j, gap, *held);
+  };
+  std::for_each(island.joints.begin(), island.joints.end(), judge);
+  std::for_each(island.strings.begin(), island.strings.end(), judge);
+}
+
+/// Ends the closing of strings that are short enough now.
+inline void close_strings(const Model& model, const Island& island, const Workspace<double>& work,
+                          State& state) {
+  for (const int j : island.strings) {
+    const JointModel& string = model.joints()[at(j)];
+    if (state.joints[at(j)] == JointMode::closing && work.joints.C[string.row] > -kClosedGap * string.length)
+      state.joints[at(j)] = work.joints.C[string.row] > 0 ? JointMode::slack : JointMode::closed;
+  }
+}
+
+/// Sets strings taut or slack.
+inline void note_strings(const Model& model, const Island& island, const Workspace<double>& work,
+                         State& state) {
+  const double rate = model.body().stabilization.rate;
+  for (const int j : island.strings) {
+    JointMode& mode = state.joints[at(j)];
+    if (mode != JointMode::closed && mode != JointMode::slack) continue;
+    const JointModel& string = model.joints()[at(j)];
+    const bool taut = work.joints.C[string.row] <= kTaut * string.length &&
+                      work.joints.C_dot[string.row] <= kTaut * string.length * rate;
+    mode = taut ? JointMode::closed : JointMode::slack;
+  }
+}
+
+/// Projects an island whose last evaluation was that of a rigid island. Returns false if it needs more than
+/// that.
+inline bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
+                                   State& state) {
+  RigidWorkspace* rigid = rigid_workspace(island, work);
+  if (rigid == nullptr) return false;
+  return model.rigid_islands()[at(island.rigid)].close(
+      island, rounding(model), work.joints.W_c[number_of(model, island)].blocks(), *rigid, state.q, state.v);
+}
+
+/// Closes the joints and strings of an island that may close, and projects the island.
+inline void project_island(StepContext& step, const Island& island, Workspace<double>& scratch) {
+  const Model& model = step.model();
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  auto evaluate = [&] {
+    step.dynamics.evaluate_joints(step.t, state.q, state.v, state.joints, island, work);
+  };
+  auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
+  fail_if_stuck(step, island);
+  bool closed = false;
+  if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||
+      std::any_of(island.strings.begin(), island.strings.end(), closing)) {
+    evaluate();
+    closed = step.joint_policy().projected && close_joints(step.dynamics, island, false, work, state);
+    close_strings(model, island, work, state);
+    if (closed) step.dynamics.factor_joints(step.t, state.q, state.v, state.joints, island, work);
+  }
+  const Group<double, Eigen::Dynamic> group(model, work, island, true);
+  project_group(step, group, closed, scratch);
+  if (island.strings.empty()) return;
+  evaluate();
+  note_strings(model, island, work, state);
+}
+
+}  // namespace projection
+
+PLIANT_INLINE void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
+                                 VecX<double>& impulses) {
+  const Dynamics& dynamics = step.dynamics;
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  dynamics.factor_joints(step.t, state.q, state.v, state.joints, island, work);
+  if (step.joint_policy().projected) projection::close_joints(dynamics, island, true, work, state);
+  projection::close_strings(step.model(), island, work, state);
+  dynamics.factor_joints(step.t, state.q, state.v, state.joints, island, work);
+  const Group<double, Eigen::Dynamic> group(step.model(), work, island, true);
+  projection::project_group(step, group, true, scratch, &impulses);
+  dynamics.evaluate_joints(step.t, state.q, state.v, state.joints, island, work);
+  projection::note_strings(step.model(), island, work, state);
+}
+
+PLIANT_INLINE void project_joints(StepContext& step) {
+  const State& state = step.state;
+  if (step.model().joints().empty() || !state.q.allFinite() || !state.v.allFinite()) return;
+  Workspace<double> scratch;
+  for (const Island& island : step.model().islands()) {
+    if (sleeps(state, island.parts.front())) continue;
+    if (projection::closed_by_rigid_island(step.model(), island, step.work, step.state)) continue;
+    projection::project_island(step, island, scratch);
+  }
+}
+
+PLIANT_INLINE void project_limits(StepContext& step) {
+  State& state = step.state;
+  if (!all_finite(state.q) || !all_finite(state.v)) return;
+  Workspace<double> scratch;
+  projection::for_each_alone(step.model(), step.work, [&](const Group<double, kMaxVelocities>& group) {
+    if (!projection::passes(group.model(0), state)) return;
+    step.dynamics.evaluate_masses(state.q, state.v, projection::parts_of(group), step.work);
+    projection::project_group(step, group, false, scratch);
+  });
+}
+
+}  // namespace pliant

@@ -1,0 +1,485 @@
+// The projection of a group of parts onto its joints and limits: shared by the projection after a step and by
+// the impulses before it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include <pliant/body/advance.h>
+#include <pliant/body/constraint/one_sided_rows.h>
+#include <pliant/body/step_failure.h>
+#include <pliant/math/index.h>
+#include <pliant/project/project.h>
+
+namespace pliant::projection {
+
+/// Residual of a projection, in lengths of the joint, and rounding of coordinates of size 1.
+inline constexpr double kLeft = 1e-13, kRounding = 4e-15;
+/// An iteration that reduces the error by less than kSlow needs a new factor. With a new factor, one that
+/// reduces it by less than kStalled has reached the rounding of the rows.
+inline constexpr double kSlow = 0.1, kStalled = 0.5;
+inline constexpr int kMaxIterations = 30;
+/// A closed joint whose gap stays above this many residuals cannot close.
+inline constexpr double kOpen = 1e3;
+/// Most joints that a message names.
+inline constexpr int kMaxNamed = 8;
+/// A row depends on another row if the share of the other is at least this.
+inline constexpr double kDepends = 1e-6;
+/// Widest gap, in lengths of the joint's smaller part, that a projection closes.
+inline constexpr double kWidest = 0.1;
+/// A joint that stays open beyond kStuckGap lengths for a time of kPatience / beta never closes.
+inline constexpr double kStuckGap = 1e-5, kPatience = 10;
+/// A projection with other independent rows than at the start of the step may undo at most this share of its
+/// motion.
+inline constexpr double kFar = 0.25;
+/// A string is taut within this distance of its length, in lengths of its smaller part.
+inline constexpr double kTaut = 1e-9;
+
+/// Returns the wider of two gaps, or NaN if the first is NaN.
+inline double wider(double gap, double widest) {
+  return gap <= widest ? widest : gap;
+}
+
+/// Returns the rounding of the gap of a joint, m.
+inline double rounding(const JointModel& joint, const Workspace<double>& work) {
+  double size = 0;
+  for (const JointSide& side : joint.sides)
+    size = std::max(size, work.parts[at(side.part)].c.template lpNorm<Eigen::Infinity>());
+  return kLeft * joint.length + kRounding * size;
+}
+
+/// Returns the rounding of the gaps of rigid islands.
+inline RigidIsland::Rounding rounding(const Model& model) {
+  return {kLeft, kRounding, model.body().stabilization.rate};
+}
+inline std::size_t number_of(const Model& model, const Island& island) {
+  return static_cast<std::size_t>(&island - model.islands().data());
+}
+/// Returns the rigid workspace of an island, or nullptr if its last evaluation did not use one.
+inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& work) {
+  if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return nullptr;
+  return &work.rigid[at(island.rigid)];
+}
+
+inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
+  return state.at_limit[at(m.limit0 + k)];
+}
+
+/// Returns the storage of an island, or of the part without joints.
+template <int Max>
+GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work) {
+  if constexpr (Max == Eigen::Dynamic)
+    return work.joints.vectors[group.number()];
+  else
+    return work.alone;
+}
+
+/// Gathers the velocities x of a group from v.
+template <int Max>
+void gather_velocities(const Group<double, Max>& group, const VecX<double>& v, VecMax<double, Max>& x) {
+  x.resize(group.size());
+  for (int i = 0; i < group.parts(); ++i)
+    gather_velocity(group.model(i), group.workspace(i), v, group.share(x, i));
+}
+
+/// Returns the change of the kinetic energy of a group from velocities x to y.
+template <int Max>
+double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>& x,
+                      const VecMax<double, Max>& y) {
+  double sum = 0;
+  for (int i = 0; i < group.parts(); ++i) {
+    const MatX<double>& M = group.workspace(i).inertia.M;
+    const auto before = group.share(x, i), after = group.share(y, i);
+    for (Eigen::Index k = 0; k < M.cols(); ++k)
+      sum += 0.5 * (before[k] + after[k]) * M.col(k).dot(after - before);
+    const double stiffening = group.workspace(i).stiffening;
+    if (stiffening == 0) continue;
+    const int n_s = group.model(i).n_s;
+    sum -= 0.5 * stiffening *
+           (before + after).tail(n_s).dot(group.model(i).part->K_s() * (after - before).tail(n_s));
+  }
+  return sum;
+}
+
+/// Call act(group) for every part without joints that has parameters, and for every island.
+template <class F>
+void for_each_alone(const Model& model, Workspace<double>& work, F&& act) {
+  for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
+    const PartModel& m = model.parts()[at(i)];
+    if (m.q0 >= 0 && m.island < 0 && m.n_s > 0) act(Group<double, kMaxVelocities>(model, work, i));
+  }
+}
+template <class F>
+void for_each_island(const Model& model, Workspace<double>& work, F&& act) {
+  for (const Island& island : model.islands()) act(Group<double, Eigen::Dynamic>(model, work, island, true));
+}
+
+/// Projects coordinates and velocities of a group onto its joints and limits.
+template <int Max>
+class Projection {
+ public:
+  using Vector = VecMax<double, Max>;
+
+  /// vectors: storage; its contents are ignored.
+  Projection(StepContext& step, const Group<double, Max>& group, GroupVectors<double, Max>& vectors)
+      : step_(step),
+        model_(step.model()),
+        group_(group),
+        island_(group.island()),
+        state_(step.state),
+        work_(step.work),
+        kept_(vectors) {}
+
+  /// Projects the coordinates onto C = 0 and the limits. The storage holds the coordinates before. Returns
+  /// whether a limit, or a string that was slack, pushed.
+  bool coordinates() {
+    // Dependent rows stay dependent, unless the step passes a singular configuration. A joint that could only
+    // close by undoing the step is a contradiction.
+    std::optional<UnsatisfiableModel> failure;
+    for (const RankRule rank : {RankRule::keep, RankRule::decide, RankRule::rounding}) {
+      rank_ = rank;
+      const bool pushed = approach();
+      if (island_ == nullptr || !step_.joint_policy().projected) return pushed;
+      std::optional<UnsatisfiableModel> open = open_joint();
+      if (!open && (rank == RankRule::keep || !moved_far())) return pushed;
+      if (open && rank != RankRule::rounding) failure = std::move(open);
+      for_each_coordinates([](auto&& kept, auto&& now) { now = kept; });
+      evaluated_ = false;
+    }
+    if (entry_ <= kWidest) throw *failure;
+    std::ostringstream message;
+    message << "a step of " << state_.h << " s is too long for the motion: it opens "
+            << model_.joints()[at(widest_)].joint->type() << " '"
+            << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
+    if (model_.joints()[at(widest_)].driven) message << ", unless its anchor, which is moved in time, jumps";
+    throw NumericalFailure(message.str(), step_.t);
+  }
+
+  /// Forgets the last evaluation: the state has changed.
+  void forget() { evaluated_ = false; }
+  /// Adds the impulses of velocities(), on the rows of all joints, to `impulses` from now on.
+  void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
+
+  /// Projects the velocities onto C_dot = 0; rates at a limit or of a taut string may only lead back. Returns
+  /// the number of impulses on one-sided rows. joints, one_sided: the work of the impulses is added, J.
+  int velocities(double& joints, double& one_sided) {
+    rank_ = RankRule::decide;
+    int impulses = 0;
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      for (int k = 0; k < m.n_s; ++k) {
+        const Range range = m.limits[at(k)];
+        double& q = state_.q[m.q0 + 7 + k];
+        const int mode = q <= range.min ? -1 : (q >= range.max ? 1 : 0);
+        limit_mode(state_, m, k) = static_cast<std::int8_t>(mode);
+        if (mode == 0) continue;
+        q = mode < 0 ? range.min : range.max;
+        evaluated_ = false;
+      }
+    }
+    for (int i = 0; i < kMaxIterations; ++i) {
+      Vector &before = kept_.before, &joined = kept_.joined, &x = kept_.x;
+      gather_velocities(group_, state_.v, before);
+      x = before;
+      const bool open = correct_joints(Rows::velocities, i, x);
+      joined = x;
+      OneSidedRows<Max> rows(group_);
+      rows.meet_all(x, [&](const OneSidedRow& row) { return slowest(row, before); });
+      if (!open && rows.empty()) break;
+      joints += kinetic_change(group_, before, joined);
+      one_sided += kinetic_change(group_, joined, x);
+      for (int p = 0; p < group_.parts(); ++p)
+        scatter_velocity(group_.model(p), group_.workspace(p), group_.share(x, p), state_.v);
+      evaluated_ = false;
+      if (!rows.empty())
+        rows.for_each_pushed([&](const OneSidedRow& row, double push) {
+          impulses += stays(row) ? 0 : 1;
+          if (impulses_ != nullptr) add_impulses_of(row, push);
+        });
+      if (island_ == nullptr) break;
+    }
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      for (int k = 0; k < m.n_s; ++k)
+        if (limit_mode(state_, m, k) * state_.v[m.v0 + 6 + k] < 0)
+          limit_mode(state_, m, k) = 0;  // it leaves the limit
+    }
+    return impulses;
+  }
+
+  /// Returns the failure of a joint that is open by a gap (m) and cannot close, naming the joints that hold
+  /// it open. held: the joint with the dependent rows, this one or one that contradicts it.
+  UnsatisfiableModel contradiction(int open, double gap, int held) const {
+    const JointModel& joint = model_.joints()[at(open)];
+    std::ostringstream message;
+    message << "joints contradict each other at t = " << step_.t << " s: " << joint.joint->type() << " '"
+            << joint.joint->name() << "' stays open by " << gap << " m";
+    int named = 0;
+    auto name = [&](int j) {
+      message << (++named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
+              << model_.joints()[at(j)].joint->name() << "'";
+    };
+    if (held != open && model_.joints()[at(held)].joint->one_sided()) name(held);
+    for (const int j : island_->joints) {
+      if (j == open || (j != held && !depends(model_.joints()[at(held)], model_.joints()[at(j)]))) continue;
+      if (named == kMaxNamed) {
+        message << " and others";
+        break;
+      }
+      name(j);
+    }
+    return UnsatisfiableModel(message.str(), step_.t);
+  }
+
+ private:
+  enum class Rows { coordinates, velocities };
+
+  /// Iterates until the joints are closed to rounding.
+  bool approach() {
+    fresh_ = false;
+    tightened_.clear();
+    bool pushed = false;
+    for (int i = 0; i < kMaxIterations; ++i) {
+      Vector& x = kept_.x;
+      x.setZero(group_.size());
+      const bool open = correct_joints(Rows::coordinates, i, x);
+      OneSidedRows<Max> rows(group_);
+      rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
+      if (!open && rows.empty()) return pushed;
+      for (int p = 0; p < group_.parts(); ++p)
+        advance_with(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
+      evaluated_ = false;
+      if (!rows.empty())
+        rows.for_each_pushed([&](const OneSidedRow& row, double) {
+          pushed = pushed || !stays(row);
+          if (row.part < 0) {
+            tighten(row.k);
+            return;
+          }
+          const PartModel& m = group_.model(row.part);
+          double& q = state_.q[m.q0 + 7 + row.k];
+          const Range range = m.limits[at(row.k)];
+          q = std::abs(q - range.min) < std::abs(q - range.max) ? range.min : range.max;
+        });
+      if (island_ == nullptr) return pushed;
+    }
+    return pushed;
+  }
+
+  /// Calls act(stored coordinates, coordinates of the state) for each part.
+  template <class F>
+  void for_each_coordinates(F&& act) const {
+    int first = 0;
+    for (int i = 0; i < group_.parts(); ++i) {
+      const PartModel& m = group_.model(i);
+      act(kept_.q.segment(first, m.n_q()), state_.q.segment(m.q0, m.n_q()));
+      first += m.n_q();
+    }
+  }
+  /// Returns whether the projection moved the parts by a large share of their motion in the step.
+  bool moved_far() const {
+    double way = 0, motion = 0;
+    int i = 0;
+    for_each_coordinates([&](const auto& kept, const auto& now) {
+      const PartModel& m = group_.model(i++);
+      const double size = m.part->size();
+      const auto v = share_of(m, std::as_const(state_.v));
+      way += (kept.template head<3>() - now.template head<3>()).squaredNorm() +
+             4 * size * size * (kept.template segment<4>(3) - now.template segment<4>(3)).squaredNorm();
+      motion += v.template head<3>().squaredNorm() + size * size * v.template segment<3>(3).squaredNorm();
+    });
+    return way > kFar * kFar * state_.h * state_.h * motion;
+  }
+
+  /// Returns the rounding of a row of a joint.
+  double left(const JointModel& joint, Rows what) const {
+    if (what == Rows::coordinates) return rounding(joint, work_);
+    double size = 0;
+    for (const JointSide& side : joint.sides)
+      size = std::max(size, work_.parts[at(side.part)].v_r.template lpNorm<Eigen::Infinity>());
+    return kLeft * model_.body().stabilization.rate * joint.length + kRounding * size;
+  }
+
+  /// Adds the impulse of a one-sided row and the reactions of the joints to the impulses.
+  void add_impulses_of(const OneSidedRow& row, double push) {
+    if (row.part < 0) (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
+    Vector x = group_.push(row);
+    VecX<double> rows;
+    group_.joint_rows(x, rows);
+    add_impulses(group_.correct(rows, x), push);
+  }
+  /// Adds factor * lambda, of the joints of the island, to the impulses.
+  void add_impulses(const VecX<double>& lambda, double factor) {
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      impulses_->segment(joint.row, joint.rows) += factor * lambda.segment(joint.island_row, joint.rows);
+    }
+  }
+
+  /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
+  /// they are zero to rounding.
+  bool correct_joints(Rows what, int iteration, Vector& x) {
+    if (island_ == nullptr) return false;
+    evaluate(what, iteration, x);
+    if (!step_.joint_policy().projected) return false;
+    const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
+    double now = 0;
+    VecX<double>& error = kept_.rows;
+    error.setZero(island_->rows);
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      if (state_.joints[at(j)] != JointMode::closed) continue;
+      auto row = error.segment(joint.island_row, joint.rows);
+      row = rows.segment(joint.row, joint.rows);
+      if (moved_on_) row += kept_.gained.segment(joint.island_row, joint.rows);
+      if (iteration == 0 && rank_ == RankRule::keep && !(row.norm() <= entry_ * joint.length)) {
+        entry_ = row.norm() / joint.length;
+        widest_ = j;
+      }
+      now = wider(row.norm() / left(joint, what), now);
+    }
+    if (!(now > 1)) return false;
+    const bool slow = iteration > 0 && now > kSlow * before_;
+    if (slow && fresh_ && now > kStalled * before_) return false;
+    fresh_ = slow || (iteration == 0 && what == Rows::coordinates && rank_ != RankRule::keep);
+    if (fresh_) {
+      step_.dynamics.factor_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_, rank_);
+      kept_.start = x;
+    }
+    before_ = now;
+    const VecX<double>& lambda = group_.correct(error, x);
+    if (impulses_ != nullptr && what == Rows::velocities) add_impulses(lambda, 1);
+    return true;
+  }
+
+  /// Evaluates the joints at the state. The change of C_dot by new velocities follows from C_q alone.
+  void evaluate(Rows what, int iteration, const Vector& x) {
+    moved_on_ = what == Rows::velocities && iteration > 0 && island_->strings.empty();
+    if (moved_on_) {
+      kept_.gain = x - kept_.start;
+      group_.joint_rows(kept_.gain, kept_.gained);
+      return;
+    }
+    if (!evaluated_)
+      step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
+    evaluated_ = true;
+    if (what == Rows::velocities) kept_.start = x;
+  }
+
+  /// Returns the failure of a closed joint whose gap is wider than rounding, naming the joints that hold it
+  /// open.
+  std::optional<UnsatisfiableModel> open_joint() const {
+    int open = -1;
+    double widest = 0;
+    for (const int j : island_->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      const double gap = work_.joints.C.segment(joint.row, joint.rows).norm();
+      if (state_.joints[at(j)] != JointMode::closed || !(gap > kOpen * left(joint, Rows::coordinates)) ||
+          gap <= widest)
+        continue;
+      open = j;
+      widest = gap;
+    }
+    if (open < 0) return std::nullopt;
+    return contradiction(open, widest, open);
+  }
+
+  /// Returns whether the rows of a joint depend on the rows of another joint.
+  bool depends(const JointModel& joint, const JointModel& other) const {
+    for (int r = 0; r < joint.rows; ++r) {
+      Vector x = Vector::Zero(group_.size());
+      for (const JointSide& side : joint.sides) {
+        const int n = static_cast<int>(group_.share(x, side.place).size());
+        VecX<double> force = work_.joints.Cq.segment(side.offset + r * n, n);
+        group_.workspace(side.place).solve_mass(force);
+        group_.share(x, side.place) += force;
+      }
+      Vector unused = x;
+      VecX<double> rows;
+      group_.joint_rows(x, rows);
+      const VecX<double>& share = group_.correct(rows, unused);
+      const auto of_other = share.segment(other.island_row, other.rows);
+      if (of_other.norm() > kDepends * share.norm()) return true;
+    }
+    return false;
+  }
+
+  /// Returns whether the last evaluation pushed on this row or its opposite: then it stays active.
+  bool stays(const OneSidedRow& row) const {
+    if (island_ == nullptr) return false;
+    if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
+    const auto& pushed = work_.joints.pushed[number_of(model_, *island_)];
+    return std::any_of(pushed.begin(), pushed.end(),
+                       [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
+  }
+
+  /// Marks a string that this projection has pushed: it ends exactly at its length.
+  void tighten(int k) {
+    if (!tightened(k)) tightened_.push_back(k);
+  }
+  bool tightened(int k) const {
+    return std::find(tightened_.begin(), tightened_.end(), k) != tightened_.end();
+  }
+
+  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+  /// Returns the smallest change of a row that the limits allow.
+  double distance(const OneSidedRow& row) const {
+    if (row.part < 0) {
+      const int j = island_->strings[at(row.k)];
+      const JointMode mode = state_.joints[at(j)];
+      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
+      const JointModel& string = model_.joints()[at(j)];
+      const double C = work_.joints.C[string.row], rounding = left(string, Rows::coordinates);
+      const bool tight = stays(row) || tightened(row.k);
+      if (std::abs(C) <= rounding) return tight ? 0 : (row.sign > 0 ? -rounding : kNever);
+      return row.sign > 0 || tight ? -row.sign * C : kNever;
+    }
+    const PartModel& m = group_.model(row.part);
+    const double q = state_.q[m.q0 + 7 + row.k];
+    const Range range = m.limits[at(row.k)];
+    if (stays(row) && limit_mode(state_, m, row.k) != 0)
+      return row.sign * ((limit_mode(state_, m, row.k) < 0 ? range.min : range.max) - q);
+    return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
+  }
+
+  /// Returns the smallest velocity of a row that the limits allow.
+  double slowest(const OneSidedRow& row, const Vector& v) const {
+    if (row.part < 0) {
+      const int j = island_->strings[at(row.k)];
+      const JointModel& string = model_.joints()[at(j)];
+      const JointMode mode = state_.joints[at(j)];
+      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
+      if (work_.joints.C[string.row] > kTaut * string.length && !stays(row)) return kNever;
+      if (row.sign < 0 && !stays(row)) return kNever;
+      const double C_dot = work_.joints.C_dot[string.row];
+      if (std::abs(C_dot) <= left(string, Rows::velocities)) return kNever;
+      return group_.value(row, v) - row.sign * C_dot;
+    }
+    const int mode = limit_mode(state_, group_.model(row.part), row.k);
+    return mode != 0 && (mode * row.sign < 0 || stays(row)) ? 0 : kNever;
+  }
+
+  StepContext& step_;
+  const Model& model_;
+  const Group<double, Max>& group_;
+  const Island* island_;
+  State& state_;
+  Workspace<double>& work_;
+  GroupVectors<double, Max>& kept_;
+  VecX<double>* impulses_ = nullptr;
+  double before_ = 0;
+  RankRule rank_ = RankRule::keep;
+  double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint
+  int widest_ = -1;   ///< the joint with that gap
+  bool evaluated_ = false;      ///< whether the joints were evaluated at the current state
+  bool moved_on_ = false;       ///< whether they were evaluated at earlier velocities
+  bool fresh_ = false;          ///< whether the factor is that of this iteration
+  std::vector<int> tightened_;  ///< see tighten()
+};
+
+}  // namespace pliant::projection

@@ -1,0 +1,136 @@
+// Bodies of choose_integrator.h.
+#pragma once
+
+#include <pliant/math/header_only.h>
+#include <pliant/simulate/choose_integrator.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <pliant/body/step_failure.h>
+#include <pliant/local/solid/inverted_element.h>
+#include <pliant/simulate/step_length.h>
+
+namespace pliant {
+
+namespace integrator_choice {
+
+/// Steps of a trial. The first third does not count: steps grow then, and starting transients decay. Steps of
+/// methods that keep factors grow for longer.
+inline constexpr int kSteps = 48, kStepsWithFactors = 96, kStarting = 3;
+/// Longest trial, s.
+inline constexpr double kLongestTrial = 1e3;
+/// Cost of a factorisation of the matrix of n velocities: this times n^2 evaluations. An evaluation takes
+/// about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
+inline constexpr double kFactorisation = 0.005;
+/// Cost of a sparse factorisation of the stiffness of nodes: this times the cube root of their coordinates,
+/// in evaluations. Measured: 110 evaluations for 654 coordinates of a shell (bench/work_precision, ringing),
+/// some 200 for 14 739 of a solid (bench/implicit_bench).
+inline constexpr double kSparseFactorisation = 13;
+/// Cost of the solves of a step, in factorisations: 0.13 for that shell, 0.1 for that solid.
+inline constexpr double kSolves = 0.1;
+/// To this tolerance and coarser ones most of the cost in contact are its own steps, of second order for
+/// every method.
+inline constexpr double kCoarse = 1e-6;
+/// Most velocities for dense implicit stages.
+inline constexpr int kMostStiff = 300;
+
+/// Returns the seconds of motion per evaluation of the accelerations, or equal cost; 0 if the method fails.
+inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
+                   double factorisation) {
+  State state = start;
+  Workspace<double> work;
+  StepCounters counters, before;
+  const int order = method.error_order();
+  const StepError none{std::numeric_limits<double>::infinity(), order, 0};
+  method.measure(&scale);
+  auto attempt = [&] {
+    try {
+      StepContext step(dynamics, state, work, counters);
+      method.step(step);
+    } catch (const StepFailure&) {
+      return none;
+    } catch (const InvertedElement&) {
+      return none;
+    }
+    const StepError error{method.take_error(), order, state.h};
+    return state.q.allFinite() && state.v.allFinite() ? error : none;
+  };
+  StepContext start_of_trial(dynamics, state, work, counters);
+  state.h = first_step(start_of_trial, scale, order);
+  const StepGrowth growth = growth_of(method, dynamics.model());
+  const int most = growth.rarely ? kStepsWithFactors : kSteps;
+  const double far = start.time() + kLongestTrial;
+  double begun = start.time();
+  int begun_at = 0, steps = 0;
+  for (; steps < most && state.time() < far; ++steps) {
+    if (steps == most / kStarting) {
+      begun = state.time();
+      begun_at = steps;
+      before = counters;
+    }
+    if (!take_controlled_step(state, far, 0, growth, counters, attempt)) return 0;
+  }
+  const auto evaluations = static_cast<double>(counters.evaluations - before.evaluations),
+             factored = static_cast<double>(counters.factorisations - before.factorisations);
+  return (state.time() - begun) / (evaluations + factorisation * (factored + kSolves * (steps - begun_at)));
+}
+
+/// Returns whether the model has elasticity, damping or springs.
+inline bool anything_stiff(const Model& model) {
+  if (!model.springs().empty()) return true;
+  return std::any_of(model.parts().begin(), model.parts().end(), [](const PartModel& m) {
+    const Part& part = *m.part;
+    return m.q0 >= 0 && (m.local != nullptr || m.drag > 0 || part.continuum() != nullptr ||
+                         (m.n_s > 0 && (!part.K_s().isZero(0) || part.alpha() > 0 || part.beta() > 0)));
+  });
+}
+
+}  // namespace integrator_choice
+
+PLIANT_INLINE IntegratorChoice choose_integrator(const Dynamics& dynamics, const ErrorScale& scale,
+                                                 const State& start) {
+  const Model& model = dynamics.model();
+  if (!integrator_choice::anything_stiff(model)) {
+    if (model.body().contact.active && scale.tolerance() >= integrator_choice::kCoarse)
+      return {
+          "dormand_prince",
+          "nothing is elastic or damped, and to a tolerance this coarse the steps of bodies that touch need "
+          "no higher order"};
+    return {"dop853", "nothing is elastic or damped"};
+  }
+  bool modes = false;
+  int nodes = 0;  // number of nodal coordinates
+  for (const PartModel& m : model.parts()) {
+    if (m.local == nullptr) continue;
+    if (m.local->oscillators() == nullptr)
+      nodes += m.n_d();
+    else
+      modes = true;
+  }
+  const double sparse = integrator_choice::kSparseFactorisation * std::cbrt(nodes);
+  std::vector<std::pair<const char*, double>> candidates{{"dop853", 0}};
+  if (nodes > 0 || modes) candidates.emplace_back("linearly_implicit", sparse);
+  if (nodes == 0 && model.n_v() <= integrator_choice::kMostStiff)
+    candidates.emplace_back("esdirk", integrator_choice::kFactorisation * model.n_v() * model.n_v());
+  IntegratorChoice best;
+  double fastest = -1;
+  std::ostringstream told;
+  told.precision(2);
+  for (const auto& [name, factorisation] : candidates) {
+    const std::unique_ptr<Integrator> method = make_integrator(name);
+    const double speed = integrator_choice::pace(*method, dynamics, scale, start, factorisation);
+    told << (best.integrator.empty() ? "" : ", ") << name << " advances " << speed
+         << " s for each evaluation of the accelerations";
+    if (speed > fastest) best.integrator = name;
+    fastest = std::max(fastest, speed);
+  }
+  best.why = told.str();
+  return best;
+}
+
+}  // namespace pliant

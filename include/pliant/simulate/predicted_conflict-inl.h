@@ -1,0 +1,40 @@
+// Bodies of predicted_conflict.h.
+#pragma once
+
+#include <pliant/simulate/predicted_conflict.h>
+
+#include <algorithm>
+
+#include <pliant/body/step_failure.h>
+#include <pliant/math/header_only.h>
+#include <pliant/project/project.h>
+
+namespace pliant {
+
+namespace predicted_conflict {
+/// Longest prediction beyond two steps, in times of the stabilization, and the factor from one prediction to
+/// the next.
+inline constexpr double kLongest = 0.01, kFurther = 10;
+}  // namespace predicted_conflict
+
+PLIANT_INLINE void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h) {
+  if (dynamics.model().joints().empty()) return;
+  const double rate = dynamics.model().body().stabilization.rate,
+               longest = rate > 0 ? predicted_conflict::kLongest / rate : h;
+  for (double ahead = h; ahead <= std::max(longest, predicted_conflict::kFurther * h);
+       ahead *= predicted_conflict::kFurther)
+    try {
+      Workspace<double> work;
+      StepCounters counters;
+      State then = state;
+      dynamics.accelerations(state.time(), state.q, state.v, state, work);
+      StepContext step(dynamics, then, work, counters, state.time() + ahead, ahead);
+      project_joints(step);
+    } catch (const UnsatisfiableModel& failure) {
+      throw UnsatisfiableModel(failure.what(), state.time());
+    } catch (const StepFailure&) {
+      return;
+    }
+}
+
+}  // namespace pliant

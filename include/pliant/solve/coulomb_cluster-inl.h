@@ -1,0 +1,339 @@
+// Sweeps with extrapolation, and the order in which the methods are tried.
+#pragma once
+
+#include <pliant/solve/coulomb_cluster.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include <pliant/math/header_only.h>
+
+namespace pliant {
+
+namespace detail {
+
+/// Tolerance of the sweeps: relative to the largest initial contact velocity, and in units of the rounding of
+/// the velocities themselves.
+inline constexpr double kSweepExact = 1e-13, kSweepUlps = 8;
+/// Relative tolerance for clusters with points, which are many and weakly coupled.
+inline constexpr double kSweepExactOfPoints = 1e-6;
+/// Rounds of the search: number of sweeps, and number of earlier sweeps for the extrapolation.
+inline constexpr std::array<std::pair<int, int>, 4> kSweepRounds{{{12, 4}, {120, 8}, {400, 0}, {200, 8}}};
+inline constexpr std::array<std::pair<int, int>, 3> kSweepRoundsOfPoints{{{12, 4}, {120, 0}, {120, 8}}};
+/// Growth of the residual, relative to the best one, that restarts the extrapolation.
+inline constexpr double kSweepWorse = 4;
+/// Relative regularisation of the extrapolation, for linearly dependent sweeps.
+inline constexpr double kSweepRegularisation = 1e-14;
+/// kAcceptableResidual for large clusters and for points; the compliance of the second search, as a fraction
+/// of W.
+inline constexpr double kAcceptableOfManyContacts = 1e-2, kContactCompliance = 1e-4;
+/// The result of the search with compliant contacts, whose impulses are bounded, is preferred if its residual
+/// is less than this multiple of the other residual.
+inline constexpr double kCompliantPreference = 2;
+/// A search stalls if a round leaves more than this fraction of the residual before it. Nearly equal contacts
+/// can leave a residual that only unreasonably large impulses would remove.
+inline constexpr double kSweepStalled = 0.1;
+/// A warm start is used if its residual is less than this fraction of the largest initial contact velocity.
+inline constexpr double kNearWarmStart = 0.1;
+
+/// Maximum number of pairs of sweeps in the extrapolation, and the matrix of their products.
+inline constexpr int kMaxSweepHistory = 8;
+using SweepGram =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxSweepHistory, kMaxSweepHistory>;
+
+/// Moves `now` to the point at which the linear model of the residual r is smallest. G: products of the
+/// columns of dr; filled: number of columns. Changes nothing if the linear system is singular.
+inline void extrapolate_sweeps(const SweepGram& G, int filled, CoulombScratch::Sweeps& sweeps) {
+  auto& [now, next, last, r, last_r, weight, dr, dp] = sweeps;
+  const Eigen::Index n = r.size();
+  SweepGram A = G.topLeftCorner(filled, filled);
+  A.diagonal() *= 1 + kSweepRegularisation;
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxSweepHistory, 1> gamma(filled);
+  for (int j = 0; j < filled; ++j) gamma[j] = dr.col(j).head(n).dot(r);
+  gamma = A.ldlt().solve(gamma).eval();
+  if (gamma.allFinite())
+    for (int j = 0; j < filled; ++j) now -= gamma[j] * dp.col(j).head(n);
+}
+
+}  // namespace detail
+
+PLIANT_INLINE CoulombCluster::CoulombCluster(CoulombSystem& system, int number, double enough,
+                                             CoulombScratch& scratch)
+    : system_(system),
+      number_(number),
+      contacts_(system.order_.data() + system.clusters_[at(number)]),
+      size_(system.clusters_[at(number) + 1] - system.clusters_[at(number)]),
+      enough_(enough),
+      scratch_(scratch) {
+  for (int i = 0; i < size_; ++i)
+    for (int s = point(i).first_side; s < point(i).last_side; ++s)
+      has_points_ = has_points_ || system_.mover_size(system_.used_sides_[at(s)].mover) == 3;
+}
+
+/// Computes scale_, exact_ and acceptable_ for the present velocities, which are those without impulses.
+PLIANT_INLINE void CoulombCluster::set_scale() {
+  double terms = 0;
+  scale_ = 0;
+  for (int i = 0; i < size_; ++i) {
+    scale_ = std::max(scale_, velocity(i).lpNorm<Eigen::Infinity>());
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> J(system_.numbers_.data() + side.numbers, 3, side.size);
+      terms = std::max(terms, J.lpNorm<Eigen::Infinity>() *
+                                  system_.x_.segment(side.first, side.size).lpNorm<Eigen::Infinity>());
+    }
+  }
+  exact_ = std::max({(has_points_ ? detail::kSweepExactOfPoints : detail::kSweepExact) * scale_,
+                     detail::kSweepUlps * std::numeric_limits<double>::epsilon() * terms, enough_});
+  acceptable_ =
+      std::max(exact_, (has_points_ || size_ > detail::kManyContacts ? detail::kAcceptableOfManyContacts
+                                                                     : detail::kAcceptableResidual) *
+                           scale_);
+}
+
+/// Sets the compliance of all contacts, as a fraction of the diagonal of W.
+PLIANT_INLINE void CoulombCluster::soften(double softness) {
+  softness_ = softness;
+  for (int i = 0; i < size_; ++i) {
+    Mat3<double> W = point(i).W;
+    W.diagonal() *= 1 + softness;
+    point(i).law = CoulombLaw(W, point(i).rows == 1 ? 0 : point(i).mu);
+  }
+}
+
+/// Returns the velocity u of contact i, including its compliance.
+PLIANT_INLINE Vec3<double> CoulombCluster::velocity(int i) const {
+  Vec3<double> u = system_.velocity_at(contacts_[i], system_.used_sides_, system_.x_);
+  if (softness_ > 0) u += softness_ * point(i).W.diagonal().cwiseProduct(p(i));
+  return u;
+}
+
+/// Returns the impulse that satisfies the law of contact i alone. u: the velocity with its present impulse.
+PLIANT_INLINE Vec3<double> CoulombCluster::law_impulse(int i, const Vec3<double>& u) const {
+  const Mat3<double>& W = point(i).W;
+  if (point(i).rows == 1) return {std::max(0.0, p(i)[0] - u[0] / ((1 + softness_) * W(0, 0))), 0, 0};
+  Vec3<double> b = u - W * p(i);
+  if (softness_ > 0) b -= softness_ * W.diagonal().cwiseProduct(p(i));
+  return point(i).law.impulse(b);
+}
+
+/// Changes the impulse of contact i and the velocities of the movers.
+PLIANT_INLINE void CoulombCluster::add_impulse(int i, const Vec3<double>& dp) {
+  p(i) += dp;
+  for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+    const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
+    const double* Y = system_.numbers_.data() + term.numbers;
+    if (term.size == 3)
+      system_.x_.segment<3>(term.first).noalias() += Eigen::Map<const Mat3<double>>(Y) * dp;
+    else if (term.size == 6)
+      system_.x_.segment<6>(term.first).noalias() += Eigen::Map<const Eigen::Matrix<double, 6, 3>>(Y) * dp;
+    else
+      system_.x_.segment(term.first, term.size).noalias() +=
+          Eigen::Map<const MatX<double>>(Y, term.size, 3) * dp;
+  }
+}
+
+/// Returns exact_, or the rounding level of the present impulses if that is larger. It is large where a light
+/// part supports a heavy one.
+PLIANT_INLINE double CoulombCluster::exact_level() const {
+  double largest = 0;
+  for (int i = 0; i < size_; ++i)
+    largest = std::max(largest, point(i).W.diagonal().maxCoeff() * p(i).lpNorm<Eigen::Infinity>());
+  return std::max(
+      exact_, std::min(acceptable_, detail::kSweepUlps * std::numeric_limits<double>::epsilon() * largest));
+}
+
+/// Solves the law of each contact once, in ascending or descending order. Returns the largest change of a
+/// velocity.
+PLIANT_INLINE double CoulombCluster::sweep(bool forward) {
+  double change = 0;
+  for (int k = 0; k < size_; ++k) {
+    const int i = forward ? k : size_ - 1 - k;
+    if (is_fixed(i)) continue;
+    const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
+    add_impulse(i, dp);
+    change = std::max(change, (point(i).W * dp).lpNorm<Eigen::Infinity>());
+  }
+  return change;
+}
+
+/// Returns the largest violation of the law, as a velocity.
+PLIANT_INLINE double CoulombCluster::residual() const {
+  double worst = 0;
+  for (int i = 0; i < size_; ++i) {
+    if (is_fixed(i)) {  // no impulse can change it
+      worst = std::max(worst, -velocity(i)[0]);
+      continue;
+    }
+    const Vec3<double> dp = law_impulse(i, velocity(i)) - p(i);
+    worst = std::max(worst, (point(i).W * dp).lpNorm<Eigen::Infinity>());
+  }
+  return worst;
+}
+
+/// Copies the present impulses, 3 for each contact.
+PLIANT_INLINE void CoulombCluster::copy_impulses(VecX<double>& impulses) const {
+  impulses.resize(3 * size_);
+  for (int i = 0; i < size_; ++i) impulses.segment<3>(3 * i) = p(i);
+}
+
+/// Sets all impulses to zero, and the velocities to those without impulses.
+PLIANT_INLINE void CoulombCluster::clear_impulses() {
+  for (int i = 0; i < size_; ++i)
+    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+      const CoulombSystem::Term& term = system_.used_pushes_[at(r)];
+      system_.x_.segment(term.first, term.size) = system_.x0_.segment(term.first, term.size);
+    }
+  for (int i = 0; i < size_; ++i) p(i).setZero();
+}
+
+/// Sets the impulses, and recomputes the velocities from them.
+PLIANT_INLINE void CoulombCluster::set_impulses(const VecX<double>& impulses) {
+  clear_impulses();
+  for (int i = 0; i < size_; ++i) add_impulse(i, impulses.segment<3>(3 * i));
+}
+
+/// Runs pairs of sweeps (forward, backward) as a fixed-point iteration p = g(p) with Anderson acceleration
+/// (1965): the next p minimises |p - g(p)| over the last `history` pairs as if g were linear. g is linear
+/// once no contact changes between sticking, sliding and separation. Sets the best impulses found; returns
+/// whether they are exact.
+PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int history, int& sweeps) {
+  const Eigen::Index n = 3 * size_;
+  auto& [now, next, last, r, last_r, weight, dr, dp] = scratch_.sweeps;
+  VecX<double>& best = scratch_.best;
+  weight.resize(n);  // scale of each impulse to a velocity
+  for (int i = 0; i < size_; ++i)
+    weight.segment<3>(3 * i).setConstant(std::max(point(i).W(0, 0), std::numeric_limits<double>::min()));
+  if (dr.rows() < n || dr.cols() < history) {
+    dr.resize(std::max(n, dr.rows()), std::max<Eigen::Index>(history, dr.cols()));
+    dp.resizeLike(dr);
+  }
+  detail::SweepGram G = detail::SweepGram::Zero(history, history);
+  copy_impulses(now);
+  double best_error = std::numeric_limits<double>::infinity();
+  int filled = 0, slot = 0;
+  bool has_pair_before = false;  // whether last and last_r contain the pair before
+  for (int i = 0; i < max_sweeps; i += 2) {
+    sweep(true);
+    const double change = sweep(false);
+    sweeps += 2;
+    copy_impulses(next);
+    r = weight.cwiseProduct(next - now);
+    const double error = std::max(change, r.lpNorm<Eigen::Infinity>());
+    if (error < best_error) {
+      best = next;
+      best_error = error;
+    }
+    if (error <= exact_level()) return true;
+    if (history == 0) {
+      now.swap(next);
+      continue;
+    }
+    if (!(error <= detail::kSweepWorse * best_error)) {
+      filled = slot = 0;
+      has_pair_before = false;
+      now = best;
+      set_impulses(now);
+      continue;
+    }
+    if (has_pair_before) {
+      dr.col(slot).head(n) = r - last_r;
+      dp.col(slot).head(n) = next - last;
+      filled = std::min(filled + 1, history);
+      for (int j = 0; j < filled; ++j) G(slot, j) = G(j, slot) = dr.col(slot).head(n).dot(dr.col(j).head(n));
+      slot = (slot + 1) % history;
+    }
+    has_pair_before = true;
+    last_r = r;
+    last = next;
+    now = next;
+    if (filled > 0) detail::extrapolate_sweeps(G, filled, scratch_.sweeps);
+    set_impulses(now);
+  }
+  set_impulses(best);
+  return false;
+}
+
+/// Returns whether the cluster uses warm starts: not for one contact, which is solved directly, and not for
+/// points, which are many and weakly coupled.
+PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
+  return size_ > 1 && !has_points_;
+}
+
+/// Tries Newton's method from a warm start. Returns whether it found the solution; otherwise clears all
+/// impulses.
+PLIANT_INLINE bool CoulombCluster::try_warm_start(const VecX<double>& initial) {
+  set_impulses(initial);
+  if (initial.allFinite() && residual() <= detail::kNearWarmStart * scale_ && newton(true)) return true;
+  clear_impulses();
+  return false;
+}
+
+/// Runs the rounds of sweeps and Newton's method. Returns whether it found the solution.
+PLIANT_INLINE bool CoulombCluster::search(int& sweeps) {
+  // Newton's method is fast near a solution; plain sweeps are slow but robust; extrapolated sweeps are in
+  // between.
+  const bool many = size_ > detail::kManyContacts;
+  const auto* first = has_points_ ? detail::kSweepRoundsOfPoints.begin() : detail::kSweepRounds.begin();
+  const auto* last = has_points_ ? detail::kSweepRoundsOfPoints.end() : detail::kSweepRounds.end();
+  double before = std::numeric_limits<double>::infinity();
+  VecX<double> previous;  // the impulses of the round before
+  for (const auto* round = first; round != last; ++round) {
+    const auto& [max_sweeps, history] = *round;
+    if (many && history == 0) continue;  // too slow, like Newton's method for many points
+    if (accelerated_sweeps(max_sweeps, history, sweeps) || (has_points_ && residual() <= exact_)) return true;
+    if (!(many && has_points_) && newton(false)) return true;
+    const double error = residual();
+    if (error <= detail::kAcceptableResidual * scale_ && error > detail::kSweepStalled * before) {
+      if (error > before) set_impulses(previous);
+      return false;
+    }
+    copy_impulses(previous);
+    before = error;
+  }
+  return false;
+}
+
+/// If the problem has no solution (joints and contacts contradict each other) or the search fails, the search
+/// is repeated with compliant contacts, for which a solution exists. The better one of the two results is
+/// used.
+PLIANT_INLINE void CoulombCluster::solve(CoulombResult& result) {
+  soften(0);
+  if (size_ == 1) {
+    clear_impulses();
+    set_scale();
+    sweep(true);
+    ++result.sweeps;
+    result.residual = std::max(result.residual, residual());
+    return;
+  }
+  VecX<double> initial, found;
+  copy_impulses(initial);
+  const bool warm_start = may_warm_start() && !initial.isZero(0);
+  clear_impulses();
+  set_scale();
+  const bool solved = (warm_start && try_warm_start(initial)) || search(result.sweeps);
+  double error = residual();
+  if (!solved && error > acceptable_) {
+    ++result.fallbacks;
+    copy_impulses(found);
+    clear_impulses();
+    soften(detail::kContactCompliance);
+    search(result.sweeps);
+    soften(0);
+    const double compliant = residual();
+    if (compliant < detail::kCompliantPreference * error)
+      error = compliant;
+    else
+      set_impulses(found);
+  }
+  result.residual = std::max(result.residual, error);
+  for (int i = 0; i < size_; ++i) point(i).warm_start = may_warm_start();
+}
+
+}  // namespace pliant

@@ -1,0 +1,103 @@
+// The search for the impulses of one cluster of contacts: sweeps that solve one contact at a time, with
+// extrapolation, and Newton's method for all contacts together.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include <pliant/solve/coulomb_system.h>
+#include <pliant/solve/mover_system.h>
+
+namespace pliant {
+
+namespace detail {
+
+/// A cluster with more contacts than this is large.
+inline constexpr int kManyContacts = 100;
+/// Relative residual of a cluster (in units of the largest initial contact velocity) that is acceptable for a
+/// search that stalls. Above it, the search is repeated with compliant contacts.
+inline constexpr double kAcceptableResidual = 1e-6;
+
+}  // namespace detail
+
+/// The law of a contact, linearised about its impulse: F + T du + D dp = 0.
+struct LinearContactLaw {
+  int contact = 0;
+  Vec3<double> u = Vec3<double>::Zero(), F = u, dp = u;  ///< u: the velocity at which the law is linearised
+  Mat3<double> T = Mat3<double>::Zero(), D = T;
+};
+
+/// The linear systems of Newton's method, and the position of the pushes and sides of the contacts in them.
+struct MoverCoupling {
+  std::vector<MoverSystem> clusters;       ///< the system of each cluster
+  std::vector<int> numbers;                ///< number of each mover in its system; -1 if no contact pushes it
+  std::vector<int> push_rows, side_rows;   ///< first row of each push and side; -1 for a mover without number
+  std::vector<std::size_t> first_block;    ///< first block of each contact
+  std::vector<MoverSystem::Block> blocks;  ///< the block of each pair of a side and a push of a contact
+};
+
+/// Workspace of the search, reused for all clusters.
+struct CoulombScratch {
+  struct Sweeps {
+    VecX<double> now, next, last, r, last_r, weight;
+    MatX<double> dr, dp;
+  } sweeps;
+  struct Linear {
+    std::vector<LinearContactLaw> open;              ///< contacts with a normal impulse
+    std::vector<std::pair<int, Vec3<double>>> drop;  ///< other contacts, with the change that makes p zero
+  } linear;
+  MoverCoupling coupling;
+  VecX<double> best;    ///< the best impulses found so far
+  Eigen::Matrix3Xd TS;  ///< T times a side
+};
+
+/// One cluster of a contact problem.
+class CoulombCluster {
+ public:
+  /// number: the cluster. The velocities of the system must be those with its impulses. enough: see
+  /// CoulombSystem::solve.
+  CoulombCluster(CoulombSystem& system, int number, double enough, CoulombScratch& scratch);
+  /// Finds the impulses and stores them in the system; adds the residual and the cost to result.
+  void solve(CoulombResult& result);
+
+ private:
+  using Point = CoulombSystem::Point;
+  Point& point(int i) { return system_.contacts_[at(contacts_[i])]; }
+  const Point& point(int i) const { return system_.contacts_[at(contacts_[i])]; }
+  Vec3<double>& p(int i) { return system_.p_[at(contacts_[i])]; }
+  const Vec3<double>& p(int i) const { return system_.p_[at(contacts_[i])]; }
+  bool is_fixed(int i) const { return point(i).first_push == point(i).last_push; }
+  void set_scale();
+  void soften(double softness);
+  Vec3<double> velocity(int i) const;
+  Vec3<double> law_impulse(int i, const Vec3<double>& u) const;
+  void add_impulse(int i, const Vec3<double>& dp);
+  double exact_level() const;
+  double sweep(bool forward);
+  double residual() const;
+  void copy_impulses(VecX<double>& impulses) const;
+  void clear_impulses();
+  void set_impulses(const VecX<double>& impulses);
+  bool accelerated_sweeps(int max_sweeps, int history, int& sweeps);
+  void linearise(double proximal);
+  MoverSystem* couple_movers();
+  void solve_linear(MoverSystem& movers);
+  bool newton(bool near);
+  bool try_warm_start(const VecX<double>& initial);
+  bool may_warm_start() const;
+  bool search(int& sweeps);
+
+  CoulombSystem& system_;
+  int number_;
+  const int* contacts_;
+  int size_;
+  double enough_;
+  CoulombScratch& scratch_;
+  bool has_points_ = false;  // whether the cluster contains points
+  double scale_ = 0;         // the largest contact velocity without impulses
+  double exact_ = 0;         // residuals up to this velocity are rounding
+  double acceptable_ = 0;    // residuals up to this velocity are acceptable
+  double softness_ = 0;      // compliance of all contacts, as a fraction of the diagonal of W
+};
+
+}  // namespace pliant

@@ -1,0 +1,257 @@
+// Newton's method for Coulomb's law at all contacts of a cluster, in the form of Alart and Curnier (1991):
+//   p_n = (p_n - r u_n)+,   p_t = the point of the disc of radius mu (p_n - r u_n)+ nearest to p_t - r u_t.
+// Linearised at each contact with a normal impulse,
+//   F + T du + D dp = 0.
+// With the sides S, du = S dx, and the pushes Y, dx = sum Y dp over all contacts, the velocities of the
+// movers change by
+//   (1 + sum Y D^-1 T S) dx = -sum Y D^-1 F.
+// The unknowns are velocities and not impulses: each mover is coupled to few others, often by more rows than
+// it has velocities.
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include <pliant/math/header_only.h>
+#include <pliant/solve/coulomb_cluster.h>
+
+namespace pliant {
+
+namespace detail {
+/// Maximum number of steps; the second value is for warm starts, which converge in fewer steps or not at all.
+inline constexpr int kMaxContactNewton = 30, kMaxContactNewtonNear = 10;
+/// Maximum size of the factor, in multiples of the diagonal blocks of the movers. Above it (many bodies
+/// packed closely on all sides), sweeps need less time and memory.
+inline constexpr double kMaxContactFill = 10;
+/// The residual is reduced to this fraction of the exact level, because one more step does that. The second
+/// value is for warm starts, so that residuals do not accumulate from time step to time step.
+inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
+/// Weight of the proximal term, which keeps linearly dependent impulses near their present values. It
+/// decreases by the factor in each step, from the first value (kProximalNear for warm starts) to the least,
+/// below which rounding outweighs the gain.
+inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8,
+                        kProximalNear = 1e-5;
+inline constexpr double kProximalFactorOfPoints = 0.7, kMinProximalOfPoints = 1e-5;
+/// After this number of steps without progress, a residual above kFutileFarOff times the best one resets the
+/// impulses to the best ones, and the proximal weight grows by kProximalGrowth.
+inline constexpr int kMaxFutileNewton = 4;
+inline constexpr double kFutileFarOff = 1e3, kProximalGrowth = 10;
+/// Maximum number of velocities of one mover in the system. Above it, sweeps need less time.
+inline constexpr int kMaxMoverVelocities = 1000;
+
+/// Adds Y T S to a block: a push of N velocities and a side of N velocities.
+template <int N>
+void add_contact_product(const double* Y, const Eigen::Matrix3Xd& TS, const MoverSystem::Block& block,
+                         MoverSystem& movers) {
+  movers.add(block, Eigen::Map<const Eigen::Matrix<double, N, 3>>(Y).lazyProduct(
+                        Eigen::Map<const Eigen::Matrix<double, 3, N>>(TS.data())));
+}
+
+}  // namespace detail
+
+/// Linearises the laws of all contacts about the present impulses. The impulse of a separating contact is set
+/// to zero, and so is the friction of a contact without normal impulse.
+PLIANT_INLINE void CoulombCluster::linearise(double proximal) {
+  auto& [open, drop] = scratch_.linear;
+  open.clear();
+  drop.clear();
+  for (int i = 0; i < size_; ++i) {
+    const Vec3<double> u = velocity(i);
+    const double r = 1 / point(i).W.diagonal().maxCoeff(), ahead = p(i)[0] - r * u[0],
+                 radius = point(i).mu * ahead;
+    if (is_fixed(i) || !(ahead > 0)) {
+      drop.push_back({i, -p(i)});
+      continue;
+    }
+    LinearContactLaw law;
+    law.contact = i;
+    law.u = u;
+    law.T = r * Mat3<double>::Identity();
+    law.D = proximal * Mat3<double>::Identity();
+    law.F = r * u;
+    const Eigen::Vector2d pull = p(i).tail<2>() - r * u.tail<2>();
+    if (point(i).rows == 1 || radius == 0) {  // a normal impulse without friction
+      drop.push_back({i, {0, -p(i)[1], -p(i)[2]}});
+      law.T.bottomRows<2>().setZero();
+      law.F.tail<2>().setZero();
+    } else if (pull.norm() > radius) {
+      const Eigen::Vector2d e = pull.normalized();
+      const Eigen::Matrix2d tangential =
+          radius / pull.norm() * (Eigen::Matrix2d::Identity() - e * e.transpose());
+      law.T.block<2, 1>(1, 0) = r * point(i).mu * e;
+      law.T.block<2, 2>(1, 1) = r * tangential;
+      law.D.block<2, 1>(1, 0) = -point(i).mu * e;
+      law.D.block<2, 2>(1, 1) += Eigen::Matrix2d::Identity() - tangential;
+      law.F.tail<2>() = p(i).tail<2>() - radius * e;
+    }
+    if (softness_ > 0) law.D += softness_ * law.T * point(i).W.diagonal().asDiagonal();
+    open.push_back(law);
+  }
+}
+
+/// Computes the changes dp of the impulses of the linearised contacts: assembles and solves the system for
+/// dx.
+PLIANT_INLINE void CoulombCluster::solve_linear(MoverSystem& movers) {
+  const MoverCoupling& coupling = scratch_.coupling;
+  Eigen::Matrix3Xd& TS = scratch_.TS;
+  const double* numbers = system_.numbers_.data();
+  using Y = Eigen::Map<const MatX<double>>;
+  movers.clear();
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
+    const Mat3<double> inverse = law.D.inverse();
+    law.F = (inverse * law.F).eval();
+    law.T = (inverse * law.T).eval();
+    for (int r = contact_at.first_push; r < contact_at.last_push; ++r) {
+      const CoulombSystem::Term& push = system_.used_pushes_[at(r)];
+      movers.add(coupling.push_rows[at(r)], Y(numbers + push.numbers, push.size, 3).lazyProduct(-law.F));
+    }
+    const MoverSystem::Block* block =
+        coupling.blocks.data() + coupling.first_block[at(contacts_[law.contact])];
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      if (coupling.side_rows[at(s)] < 0) continue;
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
+      TS = law.T.lazyProduct(S);
+      for (int r = contact_at.first_push; r < contact_at.last_push; ++r, ++block) {
+        const CoulombSystem::Term& push = system_.used_pushes_[at(r)];
+        if (side.size == 3 && push.size == 3)
+          detail::add_contact_product<3>(numbers + push.numbers, TS, *block, movers);
+        else if (side.size == 6 && push.size == 6)
+          detail::add_contact_product<6>(numbers + push.numbers, TS, *block, movers);
+        else
+          movers.add(*block, Y(numbers + push.numbers, push.size, 3).lazyProduct(TS));
+      }
+    }
+  }
+  movers.solve();
+  for (LinearContactLaw& law : scratch_.linear.open) {
+    const Point& contact_at = point(law.contact);
+    Vec3<double> du = Vec3<double>::Zero();
+    for (int s = contact_at.first_side; s < contact_at.last_side; ++s) {
+      const int row = coupling.side_rows[at(s)];
+      if (row < 0) continue;
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
+      const Eigen::Map<const Eigen::Matrix3Xd> S(numbers + side.numbers, 3, side.size);
+      du += S.lazyProduct(movers.change(row, side.size));
+    }
+    law.dp = -law.F - law.T * du;
+  }
+}
+
+/// Returns the linear system of the cluster, or nullptr if it would be too large. Its pattern is computed
+/// once: a contact couples each mover that it pushes with each mover at its sides.
+PLIANT_INLINE MoverSystem* CoulombCluster::couple_movers() {
+  MoverCoupling& coupling = scratch_.coupling;
+  if (coupling.clusters.empty()) {
+    coupling.clusters.resize(system_.clusters_.size() - 1);
+    coupling.numbers.resize(at(system_.movers()), -1);
+    coupling.push_rows.resize(system_.used_pushes_.size(), -1);
+    coupling.side_rows.resize(system_.used_sides_.size(), -1);
+    coupling.first_block.resize(system_.contacts_.size(), 0);
+  }
+  MoverSystem& movers = coupling.clusters[at(number_)];
+  if (!movers.empty()) return movers.is_ordered() ? &movers : nullptr;
+  bool too_large = false;
+  for (int i = 0; i < size_; ++i)
+    for (int r = point(i).first_push; r < point(i).last_push; ++r) {
+      const int mover = system_.used_pushes_[at(r)].mover;
+      int& number = coupling.numbers[at(mover)];
+      if (number >= 0) continue;
+      const int used = system_.used_movers_[at(mover) + 1] - system_.used_movers_[at(mover)];
+      number = movers.add_mover(used);
+      too_large = too_large || used > detail::kMaxMoverVelocities;
+    }
+  if (too_large) return nullptr;
+  auto number_at = [&](const CoulombSystem::Term& term) { return coupling.numbers[at(term.mover)]; };
+  auto for_each_pair = [&](int i, auto&& act) {
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
+      const int column = number_at(side);
+      if (column < 0) continue;
+      for (int r = point(i).first_push; r < point(i).last_push; ++r)
+        act(number_at(system_.used_pushes_[at(r)]), column, side);
+    }
+  };
+  for (int i = 0; i < size_; ++i)
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term&) { movers.couple(row, column); });
+  if (!movers.order(size_ > detail::kManyContacts ? detail::kMaxContactFill
+                                                  : std::numeric_limits<double>::infinity()))
+    return nullptr;
+  auto in_mover = [&](const CoulombSystem::Term& term) {
+    return term.first - system_.used_movers_[at(term.mover)];
+  };
+  for (int i = 0; i < size_; ++i) {
+    coupling.first_block[at(contacts_[i])] = coupling.blocks.size();
+    for_each_pair(i, [&](int row, int column, const CoulombSystem::Term& side) {
+      MoverSystem::Block block = movers.block(row, column);
+      block.first += at(in_mover(side) * block.stride);
+      coupling.blocks.push_back(block);
+    });
+    for (int r = point(i).first_push; r < point(i).last_push; ++r)
+      coupling.push_rows[at(r)] = movers.row(number_at(system_.used_pushes_[at(r)]));
+    for (int s = point(i).first_side; s < point(i).last_side; ++s) {
+      const CoulombSystem::Term& side = system_.used_sides_[at(s)];
+      if (const int number = number_at(side); number >= 0)
+        coupling.side_rows[at(s)] = movers.row(number) + in_mover(side);
+    }
+  }
+  return &movers;
+}
+
+/// Runs Newton's method. Sets the best impulses found; returns whether they are exact. near: for a warm
+/// start.
+PLIANT_INLINE bool CoulombCluster::newton(bool near) {
+  const double beyond = near ? detail::kContactNewtonExactNear : detail::kContactNewtonExact;
+  double exact = exact_level();
+  double best_error = residual();
+  if (best_error <= beyond * exact) return true;
+  MoverSystem* movers = couple_movers();
+  if (movers == nullptr) return false;
+  auto& [open, drop] = scratch_.linear;
+  VecX<double>& best = scratch_.best;
+  copy_impulses(best);
+  double proximal = near ? detail::kProximalNear : detail::kFirstProximal,
+         min_proximal = has_points_ ? detail::kMinProximalOfPoints : detail::kMinProximal;
+  const double factor = has_points_ ? detail::kProximalFactorOfPoints : detail::kProximalFactor;
+  int futile = 0;
+  for (int step = 0; step < (near ? detail::kMaxContactNewtonNear : detail::kMaxContactNewton) &&
+                     best_error > beyond * exact;
+       ++step) {
+    linearise(proximal);
+    for (const auto& [i, dp] : drop) add_impulse(i, dp);
+    for (LinearContactLaw& law : open) law.F += law.T * (velocity(law.contact) - law.u);
+    solve_linear(*movers);
+    const bool finite =
+        std::all_of(open.begin(), open.end(), [](const LinearContactLaw& law) { return law.dp.allFinite(); });
+    double error = std::numeric_limits<double>::infinity();
+    if (finite) {
+      for (const LinearContactLaw& law : open) add_impulse(law.contact, law.dp);
+      error = residual();
+    }
+    if (error < best_error) {
+      copy_impulses(best);
+      best_error = error;
+      exact = exact_level();
+      futile = 0;
+    } else if (best_error <= exact) {
+      break;
+    } else if (++futile; futile >= detail::kMaxFutileNewton &&
+                         best_error <= detail::kAcceptableResidual * scale_ && proximal <= min_proximal) {
+      break;
+    } else if (!finite ||
+               (futile >= detail::kMaxFutileNewton && error > detail::kFutileFarOff * best_error)) {
+      futile = 0;
+      set_impulses(best);
+      proximal = min_proximal = std::min(detail::kFirstProximal, detail::kProximalGrowth * proximal);
+      continue;
+    }
+    proximal = std::max(factor * proximal, min_proximal);
+  }
+  set_impulses(best);
+  return residual() <= exact;
+}
+
+}  // namespace pliant

@@ -1,0 +1,160 @@
+// Pattern and elimination of the linear system of Newton's method.
+#pragma once
+
+#include <pliant/solve/mover_system.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <Eigen/LU>
+
+#include <pliant/math/header_only.h>
+
+namespace pliant {
+
+namespace detail {
+
+/// Inserts i into a sorted list unless the list contains it.
+inline void insert_sorted(std::vector<int>& sorted, int i) {
+  const auto place = std::lower_bound(sorted.begin(), sorted.end(), i);
+  if (place == sorted.end() || *place != i) sorted.insert(place, i);
+}
+
+}  // namespace detail
+
+PLIANT_INLINE int MoverSystem::add_mover(int size) {
+  movers_.emplace_back().size = size;
+  return static_cast<int>(movers_.size()) - 1;
+}
+
+PLIANT_INLINE void MoverSystem::couple(int i, int j) {
+  if (i == j) return;
+  detail::insert_sorted(movers_[at(i)].neighbours, j);
+  detail::insert_sorted(movers_[at(j)].neighbours, i);
+}
+
+PLIANT_INLINE bool MoverSystem::order(double max_fill) {
+  std::set<std::pair<std::size_t, int>>
+      remaining;  // remaining movers, sorted by the number of their neighbours
+  for (int i = 0; i < static_cast<int>(movers_.size()); ++i)
+    remaining.insert({movers_[at(i)].neighbours.size(), i});
+  std::vector<int> merged;
+  int row = 0;
+  std::size_t numbers = 0, targets = 0;
+  double max_numbers = 0;
+  for (const Mover& mover : movers_) max_numbers += max_fill * mover.size * mover.size;
+  while (!remaining.empty()) {
+    if (static_cast<double>(numbers) > max_numbers) return false;
+    const int k = remaining.begin()->second;
+    remaining.erase(remaining.begin());
+    Mover& eliminated = movers_[at(k)];
+    eliminated.position = static_cast<int>(sequence_.size());
+    eliminated.row = row;
+    row += eliminated.size;
+    eliminated.numbers = numbers;
+    numbers += at(eliminated.size * eliminated.size);
+    for (const int i : eliminated.neighbours) {
+      const int size = movers_[at(i)].size;
+      eliminated.uniform = eliminated.uniform && size == eliminated.size;
+      numbers += at(2 * eliminated.size * size);
+      std::vector<int>& neighbours = movers_[at(i)].neighbours;
+      remaining.erase({neighbours.size(), i});
+      merged.clear();
+      std::set_union(neighbours.begin(), neighbours.end(), eliminated.neighbours.begin(),
+                     eliminated.neighbours.end(), std::back_inserter(merged));
+      merged.erase(std::remove_if(merged.begin(), merged.end(), [&](int j) { return j == i || j == k; }),
+                   merged.end());
+      neighbours.swap(merged);
+      remaining.insert({neighbours.size(), i});
+    }
+    eliminated.targets = targets;
+    targets += eliminated.neighbours.size() * eliminated.neighbours.size();
+    sequence_.push_back(k);
+  }
+  targets_.reserve(targets);
+  for (const int k : sequence_)
+    for (const int j : movers_[at(k)].neighbours)
+      for (const int i : movers_[at(k)].neighbours) targets_.push_back(block(i, j).first);
+  numbers_.resize(static_cast<Eigen::Index>(numbers));
+  b_.resize(row);
+  return true;
+}
+
+PLIANT_INLINE MoverSystem::Block MoverSystem::block(int i, int j) const {
+  const Mover &one = movers_[at(i)], &other = movers_[at(j)];
+  if (i == j) return {one.numbers, one.size};
+  const bool above = one.position < other.position;
+  const Mover& first = above ? one : other;
+  std::size_t numbers = first.numbers + at(first.size * first.size);
+  auto k = first.neighbours.begin();
+  for (; *k != (above ? j : i); ++k) numbers += at(2 * first.size * movers_[at(*k)].size);
+  return {numbers + (above ? 0 : at(first.size * movers_[at(*k)].size)), one.size};
+}
+
+PLIANT_INLINE void MoverSystem::clear() {
+  numbers_.setZero();
+  b_.setZero();
+  for (const Mover& mover : movers_)
+    Eigen::Map<MatX<double>>(numbers_.data() + mover.numbers, mover.size, mover.size).setIdentity();
+}
+
+/// Eliminates mover k: x_k = b_k - sum of A_kj x_j over its remaining neighbours.
+template <int N>
+void MoverSystem::eliminate(const Mover& k) {
+  using Numbers = Eigen::Matrix<double, N, N>;
+  using Part = Eigen::Map<Numbers>;
+  double* numbers = numbers_.data();
+  const Numbers inverse = Part(numbers + k.numbers, k.size, k.size).inverse();
+  const Eigen::Matrix<double, N, 1> b = inverse * b_.segment<N>(k.row, k.size);
+  b_.segment<N>(k.row, k.size) = b;
+  const std::size_t* target = targets_.data() + k.targets;
+  double *const beside = numbers + k.numbers + at(k.size * k.size), *above = beside;
+  for (const int j : k.neighbours) {
+    const int columns = movers_[at(j)].size;
+    Part U(above, k.size, columns);
+    U = (inverse * U).eval();
+    double* left = beside;
+    for (const int i : k.neighbours) {
+      const int rows = movers_[at(i)].size;
+      left += k.size * rows;
+      Part(numbers + *target, rows, columns).noalias() -= Part(left, rows, k.size).lazyProduct(U);
+      left += k.size * rows;
+      ++target;
+    }
+    above += 2 * k.size * columns;
+  }
+  double* left = beside;
+  for (const int i : k.neighbours) {
+    const Mover& one = movers_[at(i)];
+    left += k.size * one.size;
+    b_.segment<N>(one.row, one.size) -= Part(left, one.size, k.size).lazyProduct(b);
+    left += k.size * one.size;
+  }
+}
+
+PLIANT_INLINE void MoverSystem::solve() {
+  for (const int number : sequence_) {
+    const Mover& k = movers_[at(number)];
+    if (k.uniform && k.size == 3)
+      eliminate<3>(k);
+    else if (k.uniform && k.size == 6)
+      eliminate<6>(k);
+    else
+      eliminate<Eigen::Dynamic>(k);
+  }
+  for (auto number = sequence_.rbegin(); number != sequence_.rend(); ++number) {
+    const Mover& k = movers_[at(*number)];
+    auto x = b_.segment(k.row, k.size);
+    const double* above = numbers_.data() + k.numbers + at(k.size * k.size);
+    for (const int j : k.neighbours) {
+      const Mover& other = movers_[at(j)];
+      x -= Eigen::Map<const MatX<double>>(above, k.size, other.size)
+               .lazyProduct(b_.segment(other.row, other.size));
+      above += 2 * k.size * other.size;
+    }
+  }
+}
+
+}  // namespace pliant

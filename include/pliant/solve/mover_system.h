@@ -1,0 +1,79 @@
+// The linear system (1 + A) x = b for the velocities of movers that contacts couple. There can be many
+// movers, each coupled to few others. They are eliminated one after the other; the mover with the fewest
+// neighbours is the next.
+#pragma once
+
+#include <vector>
+
+#include <pliant/math/types.h>
+
+namespace pliant {
+
+/// The system of one cluster.
+class MoverSystem {
+ public:
+  // The pattern: call these functions first, in this order.
+
+  /// Adds a mover with `size` velocities and returns its number.
+  int add_mover(int size);
+  /// Adds a block of A for the movers i and j.
+  void couple(int i, int j);
+  /// Computes the order of elimination and the storage. Returns false, and the system cannot be solved, if
+  /// the storage would exceed `most` times the diagonal blocks of the movers.
+  bool order(double max_fill);
+
+  bool empty() const { return movers_.empty(); }
+  bool is_ordered() const { return b_.size() > 0; }
+
+  // The values: assemble and solve, any number of times.
+
+  /// Returns the first row of a mover in x and b.
+  int row(int mover) const { return movers_[at(mover)].row; }
+  /// The storage of a block of A, by columns.
+  struct Block {
+    std::size_t first;
+    int stride;  ///< from column to column
+  };
+  /// Returns the storage of the block of two coupled movers.
+  Block block(int i, int j) const;
+
+  /// Sets A = 0 and b = 0.
+  void clear();
+  /// Adds to b, from a row on.
+  template <class Vector>
+  void add(int row, const Eigen::MatrixBase<Vector>& b) {
+    b_.segment<Vector::RowsAtCompileTime>(row, b.rows()) += b;
+  }
+  /// Adds to a block of A, or to some of its columns.
+  template <class Matrix>
+  void add(const Block& block, const Eigen::MatrixBase<Matrix>& A) {
+    using Numbers = Eigen::Matrix<double, Matrix::RowsAtCompileTime, Matrix::ColsAtCompileTime>;
+    Eigen::Map<Numbers, 0, Eigen::OuterStride<>>(numbers_.data() + block.first, A.rows(), A.cols(),
+                                                 Eigen::OuterStride<>(block.stride)) += A;
+  }
+  /// Solves the system. The solution is not finite if the system is singular.
+  void solve();
+  /// Returns `size` values of x, from a row on.
+  auto change(int row, int size) const { return b_.segment(row, size); }
+
+ private:
+  struct Mover {
+    int size = 3, row = 0, position = 0;  ///< position: its position in the order of elimination
+    bool uniform = true;                  ///< whether its remaining neighbours have its size
+    std::vector<int> neighbours;  ///< neighbours that remain when it is eliminated, in ascending order
+    std::size_t numbers = 0;      ///< start of its diagonal block, then of the blocks above and left of it
+    std::size_t targets = 0;      ///< start of the list of blocks that its elimination changes
+  };
+  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+  /// N: the size of the mover and of all its neighbours, or Eigen::Dynamic.
+  template <int N>
+  void eliminate(const Mover& k);
+
+  std::vector<Mover> movers_;
+  std::vector<int> sequence_;         // movers in the order of elimination
+  std::vector<std::size_t> targets_;  // blocks of pairs of neighbours, column by column
+  VecX<double> numbers_;              // the entries of A, in the order of elimination
+  VecX<double> b_;
+};
+
+}  // namespace pliant
