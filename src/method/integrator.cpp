@@ -1,3 +1,4 @@
+// The projection that ends a step with its error, and the list of all methods.
 #include <pliant/method/integrator.h>
 
 #include <algorithm>
@@ -22,12 +23,13 @@ std::unique_ptr<Integrator> make() {
   return std::make_unique<Method>();
 }
 
-/// A gap that closes decays at the rate of the stabilization (1/s) down to kClosedGap, which is then taken
-/// away at once: what that is wrong by, in place and in velocity, when all that is known is that it was
-/// within the last h s.
+/// Returns the error of a step of h s that ends at t (s) and in which a joint closes, in sizes of a part or
+/// sizes per second. The gap decays at the rate of the stabilization (1/s) until it is kClosedGap; the
+/// projection then removes it at once. The error is the change of the gap, or of its rate, over the time in
+/// which the closing is not known, which is the step.
 double closing_error(double rate, double h, double t) {
-  const double known = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // no better, s
-  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - known)) * std::max(1.0, rate);
+  const double rounding = 1e3 * std::numeric_limits<double>::epsilon() * std::abs(t);  // of the time, s
+  return kClosedGap * std::min(1.0, rate * std::max(0.0, h - rounding)) * std::max(1.0, rate);
 }
 }  // namespace
 
@@ -56,7 +58,7 @@ const std::vector<IntegratorInfo>& all_integrators() {
       {"linearly_implicit", 2,
        "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit it",
        &make<LinearlyImplicit>},
-      {"implicit_midpoint", 2, "keeps what is quadratic in the motion: for very many steps without friction",
+      {"implicit_midpoint", 2, "conserves quadratic invariants: for very many steps without friction",
        &make<ImplicitMidpoint>},
       {"esdirk", 4, "ESDIRK 4(3): for motion with stiff springs or parameters, to a tolerance or in steps",
        &make<Esdirk>},

@@ -12,7 +12,7 @@
 
 #include "motion.h"
 
-namespace supports_test {
+namespace contact_cache_test {
 
 using namespace pliant;
 
@@ -360,4 +360,4 @@ TEST_CASE("a run resumed from a state with its contact cache gives identical bit
   CHECK(hash(shortened) != hash(one.state()));
 }
 
-}  // namespace supports_test
+}  // namespace contact_cache_test

@@ -29,8 +29,8 @@ class ContactProblem {
   /// Computes the impulses of the contacts, with the rebound of each, and of limits and strings. limit_time:
   /// the time `since` of all limits and strings, see Contact::since.
   ContactSolution solve(double limit_time);
-  /// Sets the start value of the impulse of a contact, N s, on side a, world. Near the solution it saves all
-  /// sweeps, as in a pile at rest; far from it the search takes as long as without.
+  /// Sets the start value of the impulse of a contact, N s, on side a, world. A value near the solution
+  /// saves all sweeps, as in a pile at rest; a value far from it saves none.
   void warm_start_at(int contact, const Vec3<double>& impulse);
   /// Returns whether the impulse of a contact can be a start value. Valid after solve().
   bool may_warm_start(int contact) const { return system_.may_warm_start(contact); }

@@ -30,8 +30,8 @@ inline constexpr int kMaxSeparationRounds = 16;
 inline constexpr int kMaxChainLinks = 4;
 /// Overlaps below this share of the gap of resting contacts remain.
 inline constexpr double kAllowedOverlap = 1e-4;
-/// Overlaps of this many units of rounding of the positions remain too.
-inline constexpr double kUlps = 16;
+/// Overlaps of this many units in the last place of the positions remain too.
+inline constexpr double kRoundingUlps = 16;
 /// Meshes may overlap by this multiple of the gap of resting contacts.
 inline constexpr double kMeshOverlap = 800;
 /// A contact is one of the last step if their points are nearer than this share of the size of the smaller
@@ -252,8 +252,8 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   ContactProblem problem(dynamics_.model(), state, step.work, contacts);
   const ContactSolution solution = solve(step, motion, contacts, warm, problem);
   // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
-  // follows a prescribed path, or if the impulse acts at one instant. Then the change of energy is
-  // work_before.
+  // follows a prescribed path, or if the impulse acts at one instant. Then the work is the change of the
+  // energy of the touched parts, less the other works of this resolution.
   const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state;
   const bool by_energy =
       driven || instant || state.at_limit != before.at_limit || state.joints != before.joints;
@@ -337,7 +337,7 @@ PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) 
     if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
   const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
   return std::max(contact_resolution::kAllowedOverlap * resting_.tight_gap(contact),
-                  contact_resolution::kUlps * rounding);
+                  contact_resolution::kRoundingUlps * rounding);
 }
 
 /// Keeps the contacts that the separation of deep contacts affects. These are the contacts of bodies that

@@ -37,8 +37,8 @@ class ContactResolution {
   ContactResolution(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                     RestingContacts& resting, ContactRecord& record);
 
-  /// Begins a step: forgets the impulses of the last step, and decides whether the searches of this step
-  /// start from the contact cache of the state.
+  /// Begins a step: clears the impulses of the last step, and decides whether the contact solutions of this
+  /// step start from the contact cache of the state.
   void begin_step(const State& state);
   /// Stores the impulses of this step of h seconds in the contact cache of a state.
   void end_step(double h, State& state) const;

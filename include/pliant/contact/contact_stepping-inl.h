@@ -99,14 +99,14 @@ struct ContactStepping::Progress {
   Integrator& method;
   StepContext& step;
   double begin, end, now;  ///< s
-  double near;             ///< times closer than this are equal, s
+  double time_tolerance;   ///< times closer than this are equal, s
   double longest;          ///< longest next motion, s: in a longer one, parts moved farther than predicted
   double min_impact_speed, max_resting_speed;  ///< see FreeMotion, m/s
   bool soft_nearby;  ///< whether parts that deform locally came near another body without prediction
   int impacts;       ///< number of impacts located so far
   StageClock clock;
 
-  bool finished() const { return !(now < end - near); }
+  bool finished() const { return !(now < end - time_tolerance); }
   /// Displacement by gravity in the motion, in units of gravity * h^2.
   double gravity_reach() const { return method.local_is_implicit() ? 1 : method.reach(); }
 };
@@ -156,7 +156,7 @@ PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step
 PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& method, StepContext& step) {
   State& state = step.state;
   const double h = state.h, begin = state.time(), end = begin + h;
-  const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
+  const double time_tolerance = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
   const double gravity_speed = dynamics_.model().body().gravity_at(end).norm() * h,
                residual_speed = contact_stepping::residual_speed(state.contact_residual, gravity_speed),
                min_impact_speed = contact_stepping::kMinImpactSpeed * gravity_speed,
@@ -164,7 +164,8 @@ PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& metho
   state.contact_residual = 0;
   resolution_.begin_step(state);
   resting_.widen_gap(residual_speed * h);
-  return {method, step, begin, end, begin, near, h, min_impact_speed, max_resting_speed, false, 0, {}};
+  return {method, step, begin, end, begin, time_tolerance, h, min_impact_speed, max_resting_speed,
+          false,  0,    {}};
 }
 
 /// Advances by one motion, which is as long as the contacts allow: a motion that was too long is repeated
@@ -197,7 +198,7 @@ PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progres
   if (!(motion.predicted.h > remaining / contact_stepping::kMaxMotions)) fail_too_fast(progress);
   FreeMotion& free = motion.free;
   free.begin = now;
-  free.h = motion.predicted.h >= remaining - progress.near ? remaining : motion.predicted.h;
+  free.h = motion.predicted.h >= remaining - progress.time_tolerance ? remaining : motion.predicted.h;
   free.reach = progress.method.reach();
   free.min_impact_speed = progress.min_impact_speed;
   free.max_resting_speed = progress.max_resting_speed;
@@ -232,12 +233,12 @@ PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
   if (!meshes_.empty())
     meshes_.approach(free.before, &state, free.begin, free.h, progress.gravity_reach(), motion.travelled);
   progress.soft_nearby = motion.travelled.soft && !motion.predicted.soft;
-  if (progress.soft_nearby || motion.travelled.h < free.h - progress.near)
+  if (progress.soft_nearby || motion.travelled.h < free.h - progress.time_tolerance)
     return repeat(std::min(motion.travelled.h, free.h));
   progress.longest = std::max(progress.longest, 2 * free.h);
   if (motion.is_free()) return true;
   const double longest = resting_.longest(free, motion.resting, state);
-  if (longest < free.h - progress.near) return repeat(longest);
+  if (longest < free.h - progress.time_tolerance) return repeat(longest);
   motion.contacts = resting_.contacts_after(free, motion.resting, state);
   return !wake_touched(motion.contacts, free, state);
 }
@@ -258,7 +259,7 @@ PLIANT_INLINE ContactFinder::Neighbourhood ContactStepping::look_ahead(const Sta
 /// whether it did.
 PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& contacts,
                                                  const FreeMotion& motion, State& state) {
-  if (!sleeping_.any()) return false;
+  if (!sleeping_.any_asleep()) return false;
   std::vector<Contact> mesh_contacts;
   meshes_.find(state, motion.end(), mesh_contacts);
   if (!sleeping_.touches_sleeping(contacts, state) && !sleeping_.touches_sleeping(mesh_contacts, state))

@@ -1,7 +1,7 @@
 // Steps of bodies that touch, around any method of integration. A step without contact is the step of the
 // method. An impact is located in time, and its impulses act there. At resting contacts, impulses stand for
-// forces that are constant over the step, so that resting and sticking bodies do not move by a bit. If many
-// impacts happen in one step, they are resolved at its end (README.md of this folder).
+// forces that are constant over the step, so that resting and sticking bodies keep their coordinates to the
+// last bit. If many impacts happen in one step, they are resolved at its end (README.md of this folder).
 #pragma once
 
 #include <vector>
@@ -30,12 +30,12 @@ class ContactStepping {
   double step(Integrator& method, StepContext& step, bool to_event = false);
   /// Repeats a step with resting contacts as two half steps, and extrapolates from both (Richardson):
   /// impulses that stand for forces over a step have an error of O(h^2), which the difference estimates; the
-  /// error of the extrapolation is O(h^3). If the step ended at an impact, the halves find their own end and
-  /// are not extrapolated. begun: the state at the start, with the length of the step; length: the length
-  /// that was done, s; impacts: their number before the step. step.state: the end of the step, then that of
-  /// the halves.
+  /// error of the extrapolation is O(h^3). If the step ended at an impact, the halves locate the impact
+  /// themselves and are not extrapolated. initial: the state at the start, with the length of the step;
+  /// length: the length of the step that is repeated, s; impacts: their number before the step. step.state:
+  /// the end of the step, then that of the halves.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
-                             const State& begun, double length, long impacts);
+                             const State& initial, double length, long impacts);
 
   /// Wall-clock time of all steps by stage, s.
   struct StageTimes {
@@ -92,7 +92,7 @@ class ContactStepping {
     VecX<double> gravity_velocities;  ///< velocities that gravity gives parts which lost their contacts
     bool finite = false;
   };
-  Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& begun);
+  Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial);
   bool agree(const Whole& whole, const Halves& halves, bool has_impact, const State& state) const;
   double difference(const Whole& whole, const Halves& halves, bool agreed, const ErrorScale& scale,
                     double start, const State& state) const;

@@ -104,13 +104,13 @@ class ImpactGap {
   double size() const { return size_; }
   /// Returns the smallest gap at a state and a time, m.
   double at_state(const State& state, double t) const {
-    double least = std::numeric_limits<double>::infinity();
+    double smallest = std::numeric_limits<double>::infinity();
     for (const Contact& contact : impacts_)
-      least = std::min(least, finder_.least_gap(state, t, contact, 4 * largest_));
-    return least;
+      smallest = std::min(smallest, finder_.least_gap(state, t, contact, 4 * largest_));
+    return smallest;
   }
   /// Moves the state of the step to a time tau into the motion, s, by a step of the method.
-  void go_to(double tau) {
+  void move_to(double tau) {
     if (tau == reached_) return;
     step_.state = motion_.before;
     set_step(step_.state, motion_.begin, tau);
@@ -120,7 +120,7 @@ class ImpactGap {
   }
   /// Returns the smallest gap at a time tau into the motion, m; the state is there afterwards.
   double at_time(double tau) {
-    go_to(tau);
+    move_to(tau);
     return at_state(step_.state, motion_.begin + tau);
   }
 
@@ -170,7 +170,7 @@ inline double refine_impact(ImpactGap& gap, Bracket bracket, double h, TimeAndRa
     tau -= f / rate;
     if (i >= kMaxSecants || !(tau > bracket.low && tau < bracket.high)) tau = bracket.guess();
   }
-  gap.go_to(bracket.high);
+  gap.move_to(bracket.high);
   return bracket.high;
 }
 
@@ -185,7 +185,7 @@ PLIANT_INLINE std::optional<double> locate_impact(StepContext& step, const Conta
   impact_timing::ImpactGap gap(step, finder, method, motion, impacts);
   const impact_timing::Bracket bracket = impact_timing::bracket_impact(gap, gap.at_state(before, t), h);
   if (!(bracket.f_low > 0)) {
-    gap.go_to(h);
+    gap.move_to(h);
     return std::nullopt;
   }
   const auto approximate = impact_timing::locate_on_path(bracket, h, [&, there = before](double tau) mutable {

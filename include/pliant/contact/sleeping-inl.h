@@ -157,7 +157,7 @@ PLIANT_INLINE void Sleeping::begin_motion(double t, double h, State& state) {
 }
 
 PLIANT_INLINE void Sleeping::restore(State& state) const {
-  if (!any()) return;
+  if (!any_asleep()) return;
   for (const int i : moving_) {
     if (!sleeps(state, i)) continue;
     const PartModel& m = model_.parts()[at(i)];
@@ -169,8 +169,9 @@ PLIANT_INLINE void Sleeping::restore(State& state) const {
 PLIANT_INLINE bool Sleeping::touches_sleeping(const std::vector<Contact>& contacts,
                                               const State& state) const {
   auto asleep = [&](const ContactSide& side) { return side.part >= 0 && sleeps(state, side.part); };
-  return any() && std::any_of(contacts.begin(), contacts.end(),
-                              [&](const Contact& contact) { return asleep(contact.a) || asleep(contact.b); });
+  return any_asleep() && std::any_of(contacts.begin(), contacts.end(), [&](const Contact& contact) {
+           return asleep(contact.a) || asleep(contact.b);
+         });
 }
 
 PLIANT_INLINE void Sleeping::wake_touched(const std::vector<Contact>& contacts, State& state) const {
@@ -180,7 +181,7 @@ PLIANT_INLINE void Sleeping::wake_touched(const std::vector<Contact>& contacts, 
 }
 
 PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
-  if (!any()) return;
+  if (!any_asleep()) return;
   for (const int i : moving_) {
     const PartModel& m = model_.parts()[at(i)];
     if (sleeps(state, i) && (state.q.segment(m.q0, m.n_q()) != q_.segment(m.q0, m.n_q()) ||

@@ -1,5 +1,5 @@
 // Sleep of bodies at rest (body/contact_settings.h): which bodies fall asleep after a step, and which wake
-// before one. The coordinates of a sleeping part do not change by a bit, and its velocities are zero.
+// before one. A sleeping part keeps its coordinates to the last bit, and its velocities are zero.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ class Sleeping {
   /// All arguments must outlive this object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have got a velocity, or whose
+  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or whose
   /// drive changes in the motion, with all parts that sleep with them. Stores the coordinates of the others.
   void begin_motion(double t, double h, State& state);
   /// Ends the motion: restores the coordinates of sleeping parts.
@@ -35,7 +35,7 @@ class Sleeping {
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
   /// Returns whether any part sleeps in this motion.
-  bool any() const { return q_.size() > 0; }
+  bool any_asleep() const { return q_.size() > 0; }
 
  private:
   /// A cause that may move a sleeping part without contact.

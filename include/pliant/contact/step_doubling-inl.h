@@ -75,12 +75,12 @@ inline bool has_prescribed_motion(const Model& model, const std::vector<Contact>
 
 /// Returns whether parts were at rest in a step: it changed them by less than kAtRestTolerance.
 inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts,
-                         const State& begun, const State& state) {
+                         const State& initial, const State& state) {
   VecX<double> dq = VecX<double>::Zero(state.q.size()), dv = VecX<double>::Zero(state.v.size());
   for (const int i : parts) {
     const PartModel& m = model.parts()[at(i)];
-    dq.segment(m.q0, m.n_q()) = state.q.segment(m.q0, m.n_q()) - begun.q.segment(m.q0, m.n_q());
-    dv.segment(m.v0, m.n_v()) = state.v.segment(m.v0, m.n_v()) - begun.v.segment(m.v0, m.n_v());
+    dq.segment(m.q0, m.n_q()) = state.q.segment(m.q0, m.n_q()) - initial.q.segment(m.q0, m.n_q());
+    dv.segment(m.v0, m.n_v()) = state.v.segment(m.v0, m.n_v()) - initial.v.segment(m.v0, m.n_v());
   }
   return scale.norm(dq, dv, state.v) <= kAtRestTolerance;
 }
@@ -93,7 +93,7 @@ PLIANT_INLINE bool ContactStepping::may_double() const {
 }
 
 PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step,
-                                                          const ErrorScale& scale, const State& begun,
+                                                          const ErrorScale& scale, const State& initial,
                                                           double length, long impacts) {
   constexpr int order = 1;
   const Model& model = dynamics_.model();
@@ -101,35 +101,35 @@ PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, St
   std::vector<Contact> touching = resting_at_start_;
   touching.insert(touching.end(), record_.contacts.begin(), record_.contacts.end());
   if (!step_doubling::has_prescribed_motion(model, touching) &&
-      step_doubling::were_at_rest(model, scale, parts_touched(model, touching), begun, state))
+      step_doubling::were_at_rest(model, scale, parts_touched(model, touching), initial, state))
     return {0, order, length};
   const Whole whole{state, length, resting_at_start_, record_.contacts.size(),
                     step.counters.impacts > impacts};
   step.counters.impacts = impacts;
   undo_step();
   begin_step();
-  state = begun;
-  const Halves halves = step_halves(method, step, whole, begun);
+  state = initial;
+  const Halves halves = step_halves(method, step, whole, initial);
   const double method_error = method.take_error();
   if (!halves.finite || !(method_error <= 1))
     return {std::numeric_limits<double>::infinity(), order, halves.length};
   const bool has_impact = step.counters.impacts > impacts;
   const bool agreed = agree(whole, halves, has_impact, state);
-  const double contact_error = difference(whole, halves, agreed, scale, begun.time(), state);
+  const double contact_error = difference(whole, halves, agreed, scale, initial.time(), state);
   const double error = std::max(contact_error, method_error);
   if (agreed && !whole.has_impact && error <= 1) {
-    StepContext at_end(dynamics_, state, step.work, step.counters, begun.time() + halves.length,
+    StepContext at_end(dynamics_, state, step.work, step.counters, initial.time() + halves.length,
                        halves.length);
     extrapolate(at_end, whole.state, halves.first_contacts);
   }
   return {error, order, halves.length};
 }
 
-/// Repeats the step from `begun` as two halves, with the state of the step.
+/// Repeats the step from `initial` as two halves; step.state is the state at their end.
 PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& method, StepContext& step,
-                                                                   const Whole& whole, const State& begun) {
+                                                                   const Whole& whole, const State& initial) {
   State& state = step.state;
-  const double start = begun.time(), half = 0.5 * whole.length;
+  const double start = initial.time(), half = 0.5 * whole.length;
   auto advance_by = [&](double into, double h) {
     set_step(state, start + into, h);
     StepContext part(dynamics_, state, step.work, step.counters);
@@ -146,13 +146,13 @@ PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& m
   auto finite = [&] { return state.q.allFinite() && state.v.allFinite(); };
   halves.finite = finite();
   if (halves.finite) {
-    const double end = whole.has_impact && halves.first == half ? begun.h : whole.length;
+    const double end = whole.has_impact && halves.first == half ? initial.h : whole.length;
     halves.length = halves.first + advance_by(halves.first, end - halves.first);
     halves.finite = finite();
   }
-  state.start = begun.start;
-  state.step = begun.step;
-  state.h = begun.h;
+  state.start = initial.start;
+  state.step = initial.step;
+  state.h = initial.h;
   return halves;
 }
 

@@ -51,11 +51,11 @@ struct PartOfMover {
 };
 
 /// Applies a solution to a part whose local coordinates all move. m, w: of this part.
-inline void displace_locally(const ContactProblem& problem, const PartOfMover& of, const PartModel& m,
+inline void displace_locally(const ContactProblem& problem, const PartOfMover& share, const PartModel& m,
                              const PartWorkspace<double>& w, State& state) {
   const Eigen::Index n_r = 6 + m.n_s;
-  const VecX<double> x = problem.after(of.mover), shift = problem.shift(of.mover);
-  const int first = of.first, local = problem.movers().first_local(of.mover, of.part);
+  const VecX<double> x = problem.after(share.mover), shift = problem.shift(share.mover);
+  const int first = share.first, local = problem.movers().first_local(share.mover, share.part);
   share_of(m, state.v) = world_velocity(w, x.segment(first, n_r));
   state.v.segment(m.v0 + n_r, m.n_d()) = x.segment(local, m.n_d());
   advance_part(m, state.q, world_velocity(w, shift.segment(first, n_r)), 1);

@@ -10,9 +10,9 @@ namespace pliant {
 struct ContinuousExtension {
   int stages;       ///< additional stages, after the rates at the end of the step
   const double* a;  ///< row by row, one row for each additional stage: weights of all k before it
-  const double* c;
-  int terms;        ///< d_0, d_1, ...
-  const double* d;  ///< row by row: weights of all k
+  const double* c;  ///< one node for each additional stage
+  int terms;        ///< number of the terms d_0, d_1, ...
+  const double* d;  ///< row by row, one row for each term: weights of all k
 };
 
 struct ButcherTableau {
@@ -24,7 +24,7 @@ struct ButcherTableau {
   const double *error, *second_error;
   int error_order;    ///< the estimate is O(h^(error_order + 1))
   bool rates_at_end;  ///< whether the estimate uses the rates at the end of the step
-  const ContinuousExtension* between = nullptr;
+  const ContinuousExtension* extension = nullptr;  ///< dense output; nullptr: cubic Hermite interpolation
 };
 
 }  // namespace pliant

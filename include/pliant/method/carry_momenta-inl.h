@@ -1,10 +1,12 @@
+// Function body of carry_momenta.h. In the body frame the angular momentum L of each part about its centre of
+// mass obeys L_dot = torque - omega x L; after the step it is the rotation by -h omega of L + h torque.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/carry_momenta.h>
 
 #include <Eigen/Cholesky>
 
+#include <pliant/math/header_only.h>
 #include <pliant/math/rotation.h>
 
 namespace pliant {
@@ -28,8 +30,8 @@ PLIANT_INLINE void carry_momenta(const Model& model, const Workspace<double>& wo
       return L + M.block(3, 6, 3, m.n_s).lazyProduct(rates) - r.cross(P);
     };
     const Vec3<double> L = angular_momentum(state.v);
-    const Vec3<double> turned = L + h * omega_before.cross(angular_momentum(v_before));
-    const Vec3<double> impulse = quaternion(-h * omega) * turned - L;
+    const Vec3<double> without_gyroscopic = L + h * omega_before.cross(angular_momentum(v_before));
+    const Vec3<double> impulse = quaternion(-h * omega) * without_gyroscopic - L;
     const Vec3<double> change = w.rigid != nullptr
                                     ? Vec3<double>(w.rigid->rigid_inverse.block<3, 3>(3, 3) * impulse)
                                     : Vec3<double>(I.ldlt().solve(impulse));

@@ -1,8 +1,8 @@
-// The norm of the error of a step, in units of the tolerance. Each block of the coordinates of a part has its
-// own scale: position in sizes of the part, rotation in radians, parameters that are lengths in sizes of the
-// part, other parameters as they are, local displacement (root mean square over the nodes) in sizes of the
-// part. Rates have the same scales per second. If the part moves fast, they are measured per the time in
-// which its fastest rate moves it by one unit.
+// The norm of the error of a step, in units of the tolerance (README.md of this folder, Error of a step).
+// Each block of the coordinates of a part has its own scale: the position and parameters that are lengths in
+// sizes of the part, the rotation in radians, other parameters in their own unit, and the root mean square of
+// the local displacement in sizes of the part. Rates have these scales per second. If the part moves fast,
+// its rates are measured per the time in which the fastest one changes its coordinate by one unit.
 #pragma once
 
 #include <string>
@@ -20,19 +20,19 @@ class ErrorScale {
   ErrorScale(const Model& model, double tolerance);
   double tolerance() const { return tolerance_; }
 
-  /// Returns the largest error of a block, in tolerances. of_q, of_v: errors of the coordinates (of
-  /// quaternions their components) and of the velocities. v: the velocities.
-  double norm(const VecX<double>& of_q, const VecX<double>& of_v, const VecX<double>& v) const;
-  /// Returns the largest error of the coordinates alone.
-  double norm(const VecX<double>& of_q) const;
+  /// Returns the largest error of a block, in tolerances. q_error, v_error:
+  /// errors of the coordinates (of quaternions their components) and of the velocities. v: the velocities.
+  double norm(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
+  /// Returns the largest error of the coordinates alone, in tolerances.
+  double norm(const VecX<double>& q_error) const;
   /// Names the block with the largest error, for example "the velocity of part 'ball'".
-  std::string worst(const VecX<double>& of_q, const VecX<double>& of_v, const VecX<double>& v) const;
+  std::string worst(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
 
  private:
-  template <class Take>
-  void of_coordinates(const VecX<double>& of_q, Take&& take) const;
-  template <class Take>
-  void of_velocities(const VecX<double>& of_v, const VecX<double>& v, Take&& take) const;
+  template <class Visit>
+  void visit_coordinates(const VecX<double>& q_error, Visit&& visit) const;
+  template <class Visit>
+  void visit_velocities(const VecX<double>& v_error, const VecX<double>& v, Visit&& visit) const;
 
   const Model* model_;
   double tolerance_;

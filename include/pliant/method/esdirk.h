@@ -1,7 +1,7 @@
 // The ESDIRK method of order 4 by Kennedy and Carpenter (Appl. Numer. Math. 44, 2003: the implicit part of
-// ARK4(3)6L[2]SA), on (q, v, work), with projection of closed joints: singly diagonally implicit, explicit
-// first stage, L-stable, stiffly accurate. An embedded method of order 3 estimates the error. All stages
-// share one matrix, which is formed only if the motion is stiff.
+// ARK4(3)6L[2]SA), on (q, v, work): singly diagonally implicit, explicit first stage, L-stable, stiffly
+// accurate. Closed joints are projected after the step. An embedded method of order 3 estimates the error.
+// All stages share one matrix, which is formed only if the motion is stiff.
 #pragma once
 
 #include <memory>
@@ -26,8 +26,8 @@ class Esdirk final : public Integrator {
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> fine_scale_;  ///< residual of the stages if there is no tolerance
-  MatX<double> q_rates_, v_rates_;          ///< one column for each stage
+  std::unique_ptr<ErrorScale> stage_scale_;  ///< for the iteration if there is no tolerance
+  MatX<double> q_rates_, v_rates_;           ///< one column for each stage
   VecX<double> q_, v_, r_q_, r_v_, q_dot_;
 };
 

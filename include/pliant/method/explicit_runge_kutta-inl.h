@@ -1,7 +1,7 @@
-// Bodies of explicit_runge_kutta.h.
+// Function bodies of explicit_runge_kutta.h: the step, its error estimate and its dense output for any
+// Butcher tableau.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/explicit_runge_kutta.h>
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 #include <pliant/body/advance.h>
 #include <pliant/body/step_failure.h>
 #include <pliant/local/solid/inverted_element.h>
+#include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
-#include <pliant/project/project.h>
-
 #include <pliant/method/linear_growth.h>
+#include <pliant/project/project.h>
 
 namespace pliant {
 
@@ -25,10 +25,10 @@ namespace explicit_runge_kutta {
 /// Computes to = from + h sum weights_i column_i in one pass over memory, four columns at a time.
 inline void combine(const VecX<double>& from, const MatX<double>& columns, const double* weights, int count,
                     double h, VecX<double>& to) {
-  constexpr Eigen::Index in_cache = 256;
-  constexpr int kMostStages = 16, kAtOnce = 4;
-  std::array<double, kMostStages> weight;
-  std::array<const double*, kMostStages> column;
+  constexpr Eigen::Index kBlock = 256;  // rows of a block that stays in the cache
+  constexpr int kMaxStages = 16, kAtOnce = 4;
+  std::array<double, kMaxStages> weight;
+  std::array<const double*, kMaxStages> column;
   int used = 0;
   for (int k = 0; k < count; ++k) {
     if (weights[k] == 0) continue;
@@ -37,8 +37,8 @@ inline void combine(const VecX<double>& from, const MatX<double>& columns, const
   }
   const Eigen::Index n = from.size();
   to.resize(n);
-  for (Eigen::Index i = 0; i < n; i += in_cache) {
-    const Eigen::Index end = std::min(i + in_cache, n);
+  for (Eigen::Index i = 0; i < n; i += kBlock) {
+    const Eigen::Index end = std::min(i + kBlock, n);
     double* __restrict sum = to.data();
     std::copy(from.data() + i, from.data() + end, sum + i);
     int k = 0;
@@ -72,16 +72,15 @@ PLIANT_INLINE void ExplicitRungeKutta::evaluate_stage(StepContext& step, double 
   ++step.counters.evaluations;
   stop_inertialess(step.model(), work, v_);
   step.dynamics.coordinate_rates(q_, v_, q_dot_);
-  free_.take(stage, q_, v_, work.v_dot);
+  free_.store_loads(stage, q_, v_, work.v_dot);
   q_rates_.col(stage) = q_dot_;
   v_rates_.col(stage) = work.v_dot;
   powers_.col(stage) = work.power;
 }
 
-/// Returns whether the rates at the end of the last step are valid at this state and time. Baumgarte's gains,
-/// and with them the rates, may depend on the length of the step.
-PLIANT_INLINE bool ExplicitRungeKutta::ended_at(const Dynamics& dynamics, double t,
-                                                const State& state) const {
+/// The rates depend on the gains of Baumgarte's terms, which may depend on the length of the step.
+PLIANT_INLINE bool ExplicitRungeKutta::end_rates_valid(const Dynamics& dynamics, double t,
+                                                       const State& state) const {
   auto gains = [&](double step) {
     return dynamics.model().body().stabilization.gains(step, dynamics.joint_policy().step_consistent);
   };
@@ -93,18 +92,18 @@ PLIANT_INLINE bool ExplicitRungeKutta::ended_at(const Dynamics& dynamics, double
 PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;
-  const ButcherTableau& of = *of_;
+  const ButcherTableau& tableau = *tableau_;
   const double h = state.h, t = state.time();
-  const int n = of.stages;
+  const int n = tableau.stages;
   if (q_rates_.rows() != state.q.size()) {
     last_.q.resize(0);
-    const int more = of.between == nullptr ? 0 : of.between->stages;
-    q_rates_.resize(state.q.size(), n + 1 + more);
-    v_rates_.resize(state.v.size(), n + 1 + more);
-    powers_.resize(kWorks, n + 1 + more);
+    const int additional = tableau.extension == nullptr ? 0 : tableau.extension->stages;
+    q_rates_.resize(state.q.size(), n + 1 + additional);
+    v_rates_.resize(state.v.size(), n + 1 + additional);
+    powers_.resize(kWorks, n + 1 + additional);
   }
-  free_.prepare(dynamics.model(), of, h);
-  if (ended_at(dynamics, t, state)) {
+  free_.prepare(dynamics.model(), tableau, h);
+  if (end_rates_valid(dynamics, t, state)) {
     q_rates_.col(0) = q_rates_.col(n);
     v_rates_.col(0) = v_rates_.col(n);
     powers_.col(0) = powers_.col(n);
@@ -114,18 +113,18 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
     v_ = state.v;
     evaluate_stage(step, t, 0, RankRule::decide);
   }
-  const double* a = of.a;
+  const double* a = tableau.a;
   for (int stage = 1; stage < n; a += stage, ++stage) {
     explicit_runge_kutta::combine(state.q, q_rates_, a, stage, h, q_);
     explicit_runge_kutta::combine(state.v, v_rates_, a, stage, h, v_);
-    free_.move(stage, state.q, state.v, q_, v_);
-    evaluate_stage(step, t + of.c[stage] * h, stage, RankRule::keep);
+    free_.advance(stage, state.q, state.v, q_, v_);
+    evaluate_stage(step, t + tableau.c[stage] * h, stage, RankRule::keep);
   }
   for (int k = 0; k < n; ++k)
-    if (of.b[k] != 0) state.work += (h * of.b[k]) * powers_.col(k);
-  explicit_runge_kutta::combine(state.q, q_rates_, of.b, n, h, q_);
-  explicit_runge_kutta::combine(state.v, v_rates_, of.b, n, h, v_);
-  free_.move(n, state.q, state.v, q_, v_);
+    if (tableau.b[k] != 0) state.work += (h * tableau.b[k]) * powers_.col(k);
+  explicit_runge_kutta::combine(state.q, q_rates_, tableau.b, n, h, q_);
+  explicit_runge_kutta::combine(state.v, v_rates_, tableau.b, n, h, v_);
+  free_.advance(n, state.q, state.v, q_, v_);
   if (scale() != nullptr) v_start_ = state.v;
   state.q.swap(q_);
   state.v.swap(v_);
@@ -133,77 +132,80 @@ PLIANT_INLINE void ExplicitRungeKutta::step(StepContext& step) {
   end_motion(step);
   project(step);
   if (scale() == nullptr || !state.q.allFinite() || !state.v.allFinite()) return;
-  if (of.rates_at_end) {
+  if (tableau.rates_at_end) {
     q_ = state.q;
     v_ = state.v;
     evaluate_stage(step, t + h, n, RankRule::decide);
     last_ = state;
     last_t_ = t + h;
   }
-  note_error(error_of(h, v_start_));
+  note_error(estimate_error(h, v_start_));
 }
 
 PLIANT_INLINE StepPath ExplicitRungeKutta::path(const Dynamics& dynamics, const State& low, double h,
                                                 const State& high, StepCounters& counters) {
-  if (of_->between == nullptr || free_.any()) return Integrator::path(dynamics, low, h, high, counters);
+  if (tableau_->extension == nullptr || free_.has_oscillators())
+    return Integrator::path(dynamics, low, h, high, counters);
   try {
-    return extended(dynamics, low, h, high, counters);
-  } catch (const StepFailure&) {  // the interpolated coordinates left the range of the model
+    return dense_output(dynamics, low, h, high, counters);
+  } catch (const StepFailure&) {  // an additional stage leaves the range of the model
   } catch (const InvertedElement&) {
   }
   return Integrator::path(dynamics, low, h, high, counters);
 }
 
-PLIANT_INLINE StepPath ExplicitRungeKutta::extended(const Dynamics& dynamics, const State& low, double h,
-                                                    const State& high, StepCounters& counters) {
-  const ContinuousExtension& between = *of_->between;
+PLIANT_INLINE StepPath ExplicitRungeKutta::dense_output(const Dynamics& dynamics, const State& low, double h,
+                                                        const State& high, StepCounters& counters) {
+  const ContinuousExtension& extension = *tableau_->extension;
   const double t = low.time();
-  State modes = high;  // the stages read the discrete modes alone
-  StepContext after(dynamics, modes, between_work_, counters);
-  const int n = of_->stages, all = n + 1 + between.stages;
-  if (!ended_at(dynamics, t + h, high)) {
+  State modes = high;  // the stages read only the discrete modes
+  StepContext context(dynamics, modes, extension_work_, counters);
+  const int n = tableau_->stages, all = n + 1 + extension.stages;
+  if (!end_rates_valid(dynamics, t + h, high)) {
     last_.q.resize(0);
     q_ = high.q;
     v_ = high.v;
-    evaluate_stage(after, t + h, n, RankRule::decide);
+    evaluate_stage(context, t + h, n, RankRule::decide);
   }
-  const double* a = between.a;
+  const double* a = extension.a;
   for (int k = n + 1; k < all; a += k, ++k) {
     explicit_runge_kutta::combine(low.q, q_rates_, a, k, h, q_);
     explicit_runge_kutta::combine(low.v, v_rates_, a, k, h, v_);
-    evaluate_stage(after, t + between.c[k - n - 1] * h, k, RankRule::decide);
+    evaluate_stage(context, t + extension.c[k - n - 1] * h, k, RankRule::decide);
   }
-  StepPolynomial q{low.q, hermite_terms(low.q, q_rates_.col(0), h, high.q, q_rates_.col(n), between.terms)};
-  q.terms.rightCols(between.terms).noalias() =
-      h * q_rates_ * Eigen::Map<const MatX<double>>(between.d, all, between.terms);
+  StepPolynomial q{low.q, hermite_terms(low.q, q_rates_.col(0), h, high.q, q_rates_.col(n), extension.terms)};
+  q.terms.rightCols(extension.terms).noalias() =
+      h * q_rates_ * Eigen::Map<const MatX<double>>(extension.d, all, extension.terms);
   return {dynamics.model(), std::move(q)};
 }
 
-PLIANT_INLINE double ExplicitRungeKutta::error_of(double h, const VecX<double>& v) {
-  const int count = of_->stages + (of_->rates_at_end ? 1 : 0);
-  auto size = [&](const double* weights) {
+/// With two estimates the error is e_1^2 / sqrt(e_1^2 + 0.01 e_2^2), as in DOP853 (Hairer, Norsett & Wanner,
+/// Solving Ordinary Differential Equations I, section II.10).
+PLIANT_INLINE double ExplicitRungeKutta::estimate_error(double h, const VecX<double>& v) {
+  const int count = tableau_->stages + (tableau_->rates_at_end ? 1 : 0);
+  auto weighted_norm = [&](const double* weights) {
     explicit_runge_kutta::sum(q_rates_, weights, count, h, q_error_);
     explicit_runge_kutta::sum(v_rates_, weights, count, h, v_error_);
-    free_.weigh(weights, count, q_error_, v_error_);
+    free_.estimate_error(weights, count, q_error_, v_error_);
     return scale()->norm(q_error_, v_error_, v);
   };
-  const double first = size(of_->error);
-  if (of_->second_error == nullptr || first == 0) return first;
-  const double second = size(of_->second_error);
+  const double first = weighted_norm(tableau_->error);
+  if (tableau_->second_error == nullptr || first == 0) return first;
+  const double second = weighted_norm(tableau_->second_error);
   return first * first / std::sqrt(first * first + 0.01 * second * second);
 }
 
 PLIANT_INLINE double ExplicitRungeKutta::growth(const MatX<double>& K, const MatX<double>& D,
                                                 double h) const {
-  std::vector<std::complex<double>> rate(static_cast<std::size_t>(of_->stages));
+  std::vector<std::complex<double>> rate(static_cast<std::size_t>(tableau_->stages));
   return linear_growth(K, D, h, [&](const std::complex<double>& z) {
-    const double* a = of_->a;
+    const double* a = tableau_->a;
     std::complex<double> end = 1;
-    for (int stage = 0; stage < of_->stages; a += stage, ++stage) {
+    for (int stage = 0; stage < tableau_->stages; a += stage, ++stage) {
       std::complex<double> y = 1;
       for (int j = 0; j < stage; ++j) y += a[j] * rate[static_cast<std::size_t>(j)];
       rate[static_cast<std::size_t>(stage)] = z * y;
-      end += of_->b[stage] * rate[static_cast<std::size_t>(stage)];
+      end += tableau_->b[stage] * rate[static_cast<std::size_t>(stage)];
     }
     return end;
   });

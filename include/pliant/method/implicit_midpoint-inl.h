@@ -1,23 +1,22 @@
-// Bodies of implicit_midpoint.h.
+// Function bodies of implicit_midpoint.h: one implicit stage at the middle of the step.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit_midpoint.h>
 
 #include <algorithm>
 #include <complex>
 
 #include <pliant/body/advance.h>
-#include <pliant/project/project.h>
-
+#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/stage_solver.h>
 #include <pliant/method/implicit/stiff_pushes.h>
 #include <pliant/method/linear_growth.h>
+#include <pliant/project/project.h>
 
 namespace pliant {
 
 namespace implicit_midpoint {
-/// Residual of the equations of a step, in sizes of the part and radians: rounding.
+/// Tolerance of the iteration, in sizes of the part and radians: a small multiple of rounding.
 inline constexpr double kStageTolerance = 1e-13;
 }  // namespace implicit_midpoint
 
@@ -32,7 +31,7 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   const double h = state.h, t = state.time();
   if (!solver_) {
     solver_ = std::make_unique<StageSolver>(model);
-    fine_scale_ = std::make_unique<ErrorScale>(model, implicit_midpoint::kStageTolerance);
+    stage_scale_ = std::make_unique<ErrorScale>(model, implicit_midpoint::kStageTolerance);
   }
   dynamics.accelerations(t, state.q, state.v, state, work);
   ++step.counters.evaluations;
@@ -41,7 +40,7 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   dynamics.coordinate_rates(state.q, v_, q_dot_);
   q_ = state.q + 0.5 * h * q_dot_;
   v_ += 0.5 * h * work.v_dot;
-  solver_->begin(step, 0.5 * h, *fine_scale_);
+  solver_->begin(step, 0.5 * h, *stage_scale_);
   solver_->solve(t + 0.5 * h, state.q, state.v, q_, v_);
   state.q = 2 * q_ - state.q;
   state.v = 2 * v_ - state.v;

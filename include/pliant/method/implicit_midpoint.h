@@ -24,7 +24,7 @@ class ImplicitMidpoint final : public Integrator {
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> fine_scale_;
+  std::unique_ptr<ErrorScale> stage_scale_;  ///< for the iteration
   VecX<double> q_, v_, q_dot_;
 };
 

@@ -1,4 +1,5 @@
-// The interface of all methods of integration; each method has a file of its own.
+// The interface of all methods of integration; each method has a file of its own. README.md of this folder
+// lists the methods and explains how to add one.
 #pragma once
 
 #include <memory>
@@ -21,15 +22,16 @@ class Integrator {
   /// step. The caller counts the step.
   virtual void step(StepContext& step) = 0;
   /// Returns the largest growth in a step, |eigenvalue| of the step map, for x'' + D x' + K x = 0 with unit
-  /// masses. The step is stable while it is at most 1.
+  /// masses. The step is stable while it is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
   /// Returns the displacement by a force that is constant over a step, divided by h times the change of
   /// velocity.
   virtual double reach() const { return 0.5; }
-  /// Says whether parts that deform locally may touch something in the next steps.
+  /// Sets whether parts that deform locally may touch something in the next steps.
   virtual void expect_touch(bool) {}
   /// Replaces M^-1 by the response of parts to impulses over the last step, for parts where both differ
-  /// (LocalResponse), or restores M^-1, which an evaluation needs. work: of the end of the step.
+  /// (LocalResponse), or restores M^-1, which an evaluation needs. work: the evaluation at the end of the
+  /// step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
@@ -41,20 +43,22 @@ class Integrator {
     return {dynamics, low, h, high};
   }
 
-  /// Returns p if the estimated error of a step is O(h^(p + 1)); 0: the method has no error estimate.
+  /// Returns p if the estimated error of a step is O(h^(p + 1)), or 0 if the method has no error estimate.
   virtual int error_order() const { return 0; }
-  /// Measures the errors of the next steps by this scale; nullptr: does not measure them.
+  /// Measures the errors of the next steps by this scale, which must outlive them; nullptr: no measurement.
   void measure(const ErrorScale* scale) { scale_ = scale; }
-  /// Returns the largest error of the steps since the last call, in tolerances.
+  /// Returns the largest error of the steps since the last call, in tolerances, and resets it to 0.
   double take_error() { return std::exchange(error_, 0); }
 
  protected:
   const ErrorScale* scale() const { return scale_; }
+  /// Includes an error, in tolerances, in the next result of take_error().
   void note_error(double error) {
     if (!(error <= error_)) error_ = error;
   }
-  /// Projects limits, strings and joints at the end of a step; every method calls it. The displacement by the
-  /// projection counts as an error of the step; for closing joints the time of closing does.
+  /// Projects limits, strings and joints at the end of a step, for all methods that do not apply impulses
+  /// before the coordinates move. The error of the step includes the displacement by the projection or, if a
+  /// joint closes in the step, the effect of the unknown time of closing.
   void project(StepContext& step);
 
  private:
@@ -81,10 +85,11 @@ class StepResponses {
   Workspace<double>& work_;
 };
 
+/// One entry of the list of methods.
 struct IntegratorInfo {
   const char* name;
   int order;
-  const char* description;
+  const char* description;  ///< for users: `pliant list` and the schema of scenes
   std::unique_ptr<Integrator> (*make)();
 };
 
@@ -92,7 +97,7 @@ struct IntegratorInfo {
 const std::vector<IntegratorInfo>& all_integrators();
 /// Returns the names of the methods with an error estimate.
 std::vector<std::string> controlled_integrators();
-/// Makes the method of this name. Throws std::invalid_argument, with all names, if there is none.
+/// Returns a new method of this name. Throws std::invalid_argument, with all names, if there is none.
 std::unique_ptr<Integrator> make_integrator(const std::string& name);
 
 }  // namespace pliant

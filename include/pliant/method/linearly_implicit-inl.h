@@ -1,7 +1,7 @@
-// Bodies of linearly_implicit.h.
+// Function bodies of linearly_implicit.h: a step of ROS2, and a step of linearly implicit Euler that replaces
+// it where stiff parts meet contacts, strings or limits.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/linearly_implicit.h>
 
 #include <algorithm>
@@ -9,17 +9,17 @@
 
 #include <pliant/body/advance.h>
 #include <pliant/math/eigenvalues.h>
-#include <pliant/project/project.h>
-
+#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/implicit_modes.h>
 #include <pliant/method/implicit/implicit_nodes.h>
 #include <pliant/method/implicit/project_rates.h>
+#include <pliant/project/project.h>
 
 namespace pliant {
 
 namespace linearly_implicit {
 
-const double kGamma = 1 - std::sqrt(0.5);
+inline const double kGamma = 1 - std::sqrt(0.5);
 
 /// Returns whether a string or a limit can stop a part that deforms locally.
 inline bool can_be_stopped(const Model& model) {
@@ -39,78 +39,80 @@ PLIANT_INLINE LinearlyImplicit::~LinearlyImplicit() = default;
 
 PLIANT_INLINE void LinearlyImplicit::prepare_implicit_parts(StepContext& step, double c) {
   const Model& model = step.model();
-  Soft& soft = this->soft();
-  if (soft.empty()) {
-    soft.resize(model.parts().size());
-    for (std::size_t i = 0; i < soft.size(); ++i) {
+  ImplicitParts& parts = implicit_parts();
+  if (parts.empty()) {
+    parts.resize(model.parts().size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
       const PartModel& m = model.parts()[i];
       if (m.local == nullptr) continue;
       if (m.local->oscillators() != nullptr)
-        soft[i] = std::make_unique<ImplicitModes>(m);
+        parts[i] = std::make_unique<ImplicitModes>(m);
       else
-        soft[i] = std::make_unique<ImplicitNodes>(m, model.body().joint_solver.make_factor());
+        parts[i] = std::make_unique<ImplicitNodes>(m, model.body().joint_solver.make_factor());
     }
   }
-  for (std::size_t i = 0; i < soft.size(); ++i)
-    if (soft[i] != nullptr) step.counters.factorisations += soft[i]->prepare(step.work.parts[i], c, step.t);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i] != nullptr) step.counters.factorisations += parts[i]->prepare(step.work.parts[i], c, step.t);
 }
 
 PLIANT_INLINE void LinearlyImplicit::filter(const Model& model, const Workspace<double>& work,
                                             const VecX<double>& q_dot, VecX<double>& v_dot) {
-  Soft& soft = this->soft();
-  bool any = false;
-  for (std::size_t i = 0; i < soft.size(); ++i) {
-    if (soft[i] == nullptr) continue;
-    soft[i]->filter(q_dot, work.parts[i].R, v_dot);
-    any = true;
+  ImplicitParts& parts = implicit_parts();
+  bool has_implicit_part = false;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i] == nullptr) continue;
+    parts[i]->filter(q_dot, work.parts[i].R, v_dot);
+    has_implicit_part = true;
   }
-  if (any) project_rates(model, soft, work, filtered_, v_dot);
+  if (has_implicit_part) project_rates(model, parts, work, filtered_, v_dot);
 }
 
 PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
                                                    Workspace<double>& work) const {
-  const Soft& soft = this->soft();
-  for (std::size_t i = 0; i < soft.size(); ++i)
-    if (soft[i] != nullptr && work.parts[i].local)
-      work.parts[i].local->response = on ? soft[i].get() : nullptr;
+  const ImplicitParts& parts = implicit_parts();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i] != nullptr && work.parts[i].local)
+      work.parts[i].local->response = on ? parts[i].get() : nullptr;
   if (!on) return;
-  for (std::size_t i = 0; i < soft.size(); ++i) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
     const PartModel& m = model.parts()[i];
-    if (soft[i] == nullptr || (m.island < 0 && m.n_s == 0)) continue;
+    if (parts[i] == nullptr || (m.island < 0 && m.n_s == 0)) continue;
     PartWorkspace<double>& w = work.parts[i];
     m.local->compliance(m.shared, *w.local);
     w.inertia.M = w.local->A_inverse;
   }
   for (const Island& island : model.islands())
-    if (has_implicit(island, soft)) factor_joints<double>(model, island, work.parts, work.joints);
+    if (has_implicit(island, parts)) factor_joints<double>(model, island, work.parts, work.joints);
 }
 
-/// Records whether a taut string pulls on no stiff part. The elasticity at one moment does not decide that
-/// for the step.
+/// Records whether a closed string pulls on no implicit part at this evaluation. Such a string may still pull
+/// later in the step, and the elasticity at one moment cannot decide this.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
     const Island& island = model.islands()[i];
-    if (!has_implicit(island, of_second_)) continue;
+    if (!has_implicit(island, second_order_parts_)) continue;
     const std::vector<OneSidedRow>& pushed = work.joints.pushed[i];
     for (std::size_t k = 0; k < island.strings.size(); ++k)
-      loose_ = loose_ || (state.joints[static_cast<std::size_t>(island.strings[k])] == JointMode::closed &&
+      string_is_slack_ = string_is_slack_ ||
+                         (state.joints[static_cast<std::size_t>(island.strings[k])] == JointMode::closed &&
                           std::none_of(pushed.begin(), pushed.end(), [&](const OneSidedRow& row) {
                             return row.part < 0 && row.k == static_cast<int>(k);
                           }));
   }
 }
 
-/// Returns whether the modes of strings or limits of implicit parts changed in the step.
+/// Returns whether the step must be repeated: the mode of a string or limit of an implicit part changed in
+/// it, or a string was slack.
 PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State& now) const {
-  if (loose_) return true;
+  if (string_is_slack_) return true;
   for (const Island& island : model.islands())
-    if (has_implicit(island, of_second_))
+    if (has_implicit(island, second_order_parts_))
       for (const int j : island.strings)
         if (now.joints[static_cast<std::size_t>(j)] != before_.joints[static_cast<std::size_t>(j)])
           return true;
   for (std::size_t i = 0; i < model.parts().size(); ++i)
-    for (std::size_t k = 0; of_second_[i] != nullptr && k < model.parts()[i].limits.size(); ++k) {
+    for (std::size_t k = 0; second_order_parts_[i] != nullptr && k < model.parts()[i].limits.size(); ++k) {
       const std::size_t at = static_cast<std::size_t>(model.parts()[i].limit0) + k;
       if (now.at_limit[at] != before_.at_limit[at]) return true;
     }
@@ -118,19 +120,19 @@ PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State
 }
 
 PLIANT_INLINE void LinearlyImplicit::step(StepContext& step) {
-  if (touching_) return first_order(step);
+  if (touching_) return advance_first_order(step);
   const bool may_stop = linearly_implicit::can_be_stopped(step.model());
   if (may_stop) before_ = step.state;
   const double start = step.t;
-  loose_ = false;
-  second_order(step);
+  string_is_slack_ = false;
+  advance_second_order(step);
   if (!may_stop || !was_stopped(step.model(), step.state)) return;
   step.state = before_;
   step.t = start;
-  first_order(step);
+  advance_first_order(step);
 }
 
-PLIANT_INLINE void LinearlyImplicit::first_order(StepContext& step) {
+PLIANT_INLINE void LinearlyImplicit::advance_first_order(StepContext& step) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;
   Workspace<double>& work = step.work;
@@ -157,7 +159,7 @@ PLIANT_INLINE void LinearlyImplicit::first_order(StepContext& step) {
   end_step(step);
 }
 
-PLIANT_INLINE void LinearlyImplicit::second_order(StepContext& step) {
+PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;
   Workspace<double>& work = step.work;
@@ -197,9 +199,9 @@ PLIANT_INLINE void LinearlyImplicit::second_order(StepContext& step) {
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
     // Rates of implicit parts are weighted by the displacement in the step: oscillations faster than the step
     // are damped, not followed, and they shake the frames of their parts.
-    for (std::size_t i = 0; i < of_second_.size(); ++i) {
+    for (std::size_t i = 0; i < second_order_parts_.size(); ++i) {
       const PartModel& m = model.parts()[i];
-      if (of_second_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
+      if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
     }
     note_error(scale()->norm(q_dot_, v_, state.v));
   }
@@ -219,7 +221,7 @@ PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
 }
 
 PLIANT_INLINE double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  // u = (x, v); for the explicit part of the motion A contains x_dot = v alone.
+  // u = (x, v). Of the explicit part of the motion, A contains only x_dot = v.
   const Eigen::Index n = K.rows();
   const MatX<double> I = MatX<double>::Identity(2 * n, 2 * n);
   MatX<double> F = MatX<double>::Zero(2 * n, 2 * n), filter = I;

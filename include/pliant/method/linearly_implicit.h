@@ -8,8 +8,9 @@
 //
 // An impact on a stiff part needs the velocities of its actual motion, which the stiff velocities of ROS2 are
 // not. If parts that deform locally may touch, or if a string or a limit stops one of them, the step is one
-// of linearly implicit Euler: gamma = 1 and u+ = u + h k1, of first order. Then x+ = x + h v+, impulses
-// change v+ by (I - h A)^-1 M^-1 and x+ by h times that, and their work is that of an inelastic impact.
+// of linearly implicit Euler: gamma = 1 and u+ = u + h k1, of first order. In such a step x+ = x + h v+.
+// Impulses change v+ by (I - h A)^-1 M^-1 and x+ by h times this change; their work is that of an inelastic
+// impact.
 #pragma once
 
 #include <memory>
@@ -39,25 +40,32 @@ class LinearlyImplicit final : public Integrator {
 
  private:
   /// One entry for each part; nullptr for an explicit part.
-  using Soft = std::vector<std::unique_ptr<ImplicitPart>>;
+  using ImplicitParts = std::vector<std::unique_ptr<ImplicitPart>>;
   /// Returns the implicit parts of the current step.
-  Soft& soft() { return first_order_ ? of_first_ : of_second_; }
-  const Soft& soft() const { return first_order_ ? of_first_ : of_second_; }
+  ImplicitParts& implicit_parts() { return first_order_ ? first_order_parts_ : second_order_parts_; }
+  const ImplicitParts& implicit_parts() const {
+    return first_order_ ? first_order_parts_ : second_order_parts_;
+  }
   /// Prepares the implicit parts for a stage with this c = gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
+  /// Replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot) and projects it onto the rows of joints.
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
-  void second_order(StepContext& step);
-  void first_order(StepContext& step);
+  /// Advances one step of ROS2, from the evaluation to the projection.
+  void advance_second_order(StepContext& step);
+  /// Advances one step of linearly implicit Euler.
+  void advance_first_order(StepContext& step);
   void end_step(StepContext& step);
   void record_slack_strings(const Model& model, const State& state, const Workspace<double>& work);
   bool was_stopped(const Model& model, const State& now) const;
 
-  bool touching_ = false, first_order_ = false, loose_ = false;
+  bool touching_ = false;         ///< whether parts that deform locally may touch something
+  bool first_order_ = false;      ///< whether the current or last step is one of linearly implicit Euler
+  bool string_is_slack_ = false;  ///< whether a closed string pulled on no implicit part in this step
   // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
-  Soft of_second_, of_first_;   ///< for steps of second and of first order
-  State before_;                ///< to repeat the step from
-  Workspace<double> filtered_;  ///< parts with the metric of the filter
+  ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order
+  State before_;                                          ///< state from which the step can be repeated
+  Workspace<double> filtered_;                            ///< parts with the metric of the filter
   VecX<double> q_, v_, q_dot_, q_rate1_, v_rate1_, q_rate2_, v_rate2_;
 };
 

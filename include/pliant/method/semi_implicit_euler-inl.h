@@ -1,25 +1,25 @@
-// Bodies of semi_implicit_euler.h.
+// Function bodies of semi_implicit_euler.h: velocities, impulses before the coordinates move, coordinates,
+// projection.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/semi_implicit_euler.h>
 
 #include <pliant/body/advance.h>
 #include <pliant/math/eigenvalues.h>
-#include <pliant/project/project.h>
-
+#include <pliant/math/header_only.h>
 #include <pliant/method/carry_momenta.h>
+#include <pliant/project/project.h>
 
 namespace pliant {
 
 namespace semi_implicit_euler {
 
-inline constexpr double kEulerNode[] = {0}, kEulerWeight[] = {1};
-inline constexpr ButcherTableau kEulerTableau{
-    "semi_implicit_euler", 1, 1, nullptr, kEulerWeight, kEulerNode, nullptr, nullptr, 0, false};
+inline constexpr double kC[] = {0}, kB[] = {1};
+inline constexpr ButcherTableau kTableau{
+    "semi_implicit_euler", 1, 1, nullptr, kB, kC, nullptr, nullptr, 0, false};
 
 /// Stores v in `before` and adds h v_dot to v, in one pass over memory.
-inline void kick(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
+inline void advance_velocities(double h, const VecX<double>& v_dot, VecX<double>& v, VecX<double>& before) {
   before.resize(v.size());
   for (Eigen::Index i = 0; i < v.size(); ++i) {
     before[i] = v[i];
@@ -36,9 +36,9 @@ PLIANT_INLINE void SemiImplicitEuler::step(StepContext& step) {
   const double h = state.h;
   dynamics.rates(state.time(), state.q, state.v, state, work);
   ++step.counters.evaluations;
-  free_.prepare(dynamics.model(), semi_implicit_euler::kEulerTableau, h);
-  free_.take(0, state.q, state.v, work.v_dot);
-  semi_implicit_euler::kick(h, work.v_dot, state.v, v_before_);
+  free_.prepare(dynamics.model(), semi_implicit_euler::kTableau, h);
+  free_.store_loads(0, state.q, state.v, work.v_dot);
+  semi_implicit_euler::advance_velocities(h, work.v_dot, state.v, v_before_);
   carry_momenta(dynamics.model(), work, v_before_, h, state);
   state.work += h * work.power;
   stop_inertialess(dynamics.model(), work, state.v);
@@ -50,7 +50,7 @@ PLIANT_INLINE void SemiImplicitEuler::step(StepContext& step) {
     else
       advance_whole_part(m, state.q, state.v, h);
   }
-  free_.move(1, state.q, state.v, state.q, state.v);
+  free_.advance(1, state.q, state.v, state.q, state.v);
   step.t = state.time() + h;
   project_frames(step);
   clamp_to_limits(dynamics.model(), state);

@@ -1,7 +1,8 @@
-// Semi-implicit Euler, the method of the paper (section 4), of first order:
-//   v <- v + h vdot(q, v),   q <- q (+) h v
-// Free oscillators are integrated exactly. Angular momenta rotate with their parts (carry_momenta.h); with
-// the first-order gyroscopic term tumbling parts would gain energy without bound.
+// Semi-implicit Euler, the method of the paper (section 4, after Eq. (14)), of first order:
+//   v <- v + h v_dot(t, q, v),   q <- q (+) h v
+// Rotations turn by the exponential map. Free oscillators are integrated exactly. Angular momenta rotate with
+// their parts (carry_momenta.h): with the gyroscopic term of first order tumbling parts would gain energy
+// without bound.
 #pragma once
 
 #include <pliant/method/free_stages.h>

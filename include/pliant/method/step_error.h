@@ -3,11 +3,11 @@
 
 namespace pliant {
 
-/// The error of a step in tolerances (not finite if the step failed), and the order of the estimate.
+/// The error of a step and the order of its estimate.
 struct StepError {
-  double error;
-  int order;
-  double length;  ///< length of the step, s; it may have ended early, at an impact
+  double error;   ///< in tolerances; not finite if the step failed
+  int order;      ///< p if the estimate is O(h^(p + 1))
+  double length;  ///< length of the step, s; an impact may have ended the step early
 };
 
 }  // namespace pliant

@@ -1,12 +1,12 @@
-// Bodies of step_path.h.
+// Function bodies of step_path.h: Horner evaluation of the polynomial and cubic Hermite interpolation.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/step_path.h>
 
 #include <utility>
 
 #include <pliant/body/advance.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
@@ -20,8 +20,8 @@ PLIANT_INLINE void StepPolynomial::at(double x, VecX<double>& u) const {
 PLIANT_INLINE MatX<double> hermite_terms(const VecX<double>& low,
                                          const Eigen::Ref<const VecX<double>>& low_rate, double h,
                                          const VecX<double>& high,
-                                         const Eigen::Ref<const VecX<double>>& high_rate, int more) {
-  MatX<double> terms(low.size(), 3 + more);
+                                         const Eigen::Ref<const VecX<double>>& high_rate, int extra_columns) {
+  MatX<double> terms(low.size(), 3 + extra_columns);
   terms.col(0) = high - low;
   terms.col(1) = h * low_rate - terms.col(0);
   terms.col(2) = terms.col(0) - h * high_rate - terms.col(1);

@@ -1,4 +1,5 @@
-// Coordinates within a step, as polynomials in the fraction x of the step.
+// Coordinates within a step, as polynomials in the fraction x of the step (Hairer, Norsett & Wanner, Solving
+// Ordinary Differential Equations I, section II.6).
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -11,13 +12,14 @@ struct StepPolynomial {
   VecX<double> start;  ///< u_0
   MatX<double> terms;  ///< t_1, t_2, ..., one column each
 
+  /// Computes u at the fraction x of the step.
   void at(double x, VecX<double>& u) const;
 };
 
 class StepPath {
  public:
-  /// Cubic Hermite interpolation, O(h^4), without an evaluation. low, high: the states at the ends; h: the
-  /// time between them, s. The model must outlive the path.
+  /// Cubic Hermite interpolation, O(h^4), without an evaluation of accelerations. low, high: the states at
+  /// the ends; h: the time between them, s. The model must outlive the path.
   StepPath(const Dynamics& dynamics, const State& low, double h, const State& high);
   /// The dense output of a method (Integrator::path).
   StepPath(const Model& model, StepPolynomial q);
@@ -30,10 +32,10 @@ class StepPath {
   StepPolynomial q_;
 };
 
-/// Returns the terms of cubic Hermite interpolation and `more` further columns that are not set. low_rate,
-/// high_rate: rates of u at the ends.
+/// Returns the terms of cubic Hermite interpolation in columns 0 to 2, and `extra_columns` columns that
+/// are not set. low, high: u at the ends of a step of h s; low_rate, high_rate: the rates of u there.
 MatX<double> hermite_terms(const VecX<double>& low, const Eigen::Ref<const VecX<double>>& low_rate, double h,
                            const VecX<double>& high, const Eigen::Ref<const VecX<double>>& high_rate,
-                           int more = 0);
+                           int extra_columns = 0);
 
 }  // namespace pliant

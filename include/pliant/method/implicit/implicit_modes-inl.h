@@ -1,8 +1,9 @@
-// Bodies of implicit_modes.h.
+// Function bodies of implicit_modes.h: a diagonal solve for the modes and a small one for v_r.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/implicit_modes.h>
+
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
@@ -42,9 +43,9 @@ PLIANT_INLINE void ImplicitModes::filter(const VecX<double>& q_dot, const Mat3<d
   k_v += x;
   change_.tail(P_.rows()) = P_ * x;
   if (n_s == 0) return;
-  const VecX<double> of_v = v_dot.segment(part_->v0 + 6, n_s), of_q = q_dot.segment(part_->q0 + 7, n_s);
-  change_.head(n_r()) =
-      S_r_inverse_.rightCols(n_s) * (-c_ * D_s_ * of_v - part_->part->K_s() * (c_ * c_ * of_v + c_ * of_q));
+  const VecX<double> r_v_s = v_dot.segment(part_->v0 + 6, n_s), r_q_s = q_dot.segment(part_->q0 + 7, n_s);
+  change_.head(n_r()) = S_r_inverse_.rightCols(n_s) *
+                        (-c_ * D_s_ * r_v_s - part_->part->K_s() * (c_ * c_ * r_v_s + c_ * r_q_s));
   v_dot.segment<3>(part_->v0) += R * change_.head<3>();
   v_dot.segment(part_->v0 + 3, n_r() - 3) += change_.segment(3, n_r() - 3);
 }

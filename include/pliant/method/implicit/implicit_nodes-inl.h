@@ -1,7 +1,7 @@
-// Bodies of implicit_nodes.h.
+// Function bodies of implicit_nodes.h: the sparse factor of S, the border and its Schur complement, the
+// filter and the responses to impulses.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/implicit_nodes.h>
 
 #include <algorithm>
@@ -14,23 +14,24 @@
 #include <Eigen/Cholesky>
 
 #include <pliant/body/step_failure.h>
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 
 namespace implicit_nodes {
 
-/// A pivot of S below kMinPivot times the mass is a sign of negative stiffness, as in a buckling sheet. S
-/// then gets more mass: at first kFirstExtraMass times M, at most kMaxExtraMass, each time by a factor
-/// kExtraMassGrowth.
+/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet. S then
+/// gets additional mass: first kFirstExtraMass times M, then kExtraMassGrowth times more in each attempt, at
+/// most kMaxExtraMass times M.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
-/// Perturbation of the rest shape, in sizes of the part, which leaves no entry of K zero by chance.
-inline constexpr double kGeneric = 1e-7;
+/// Perturbation of the rest shape, in sizes of the part, so that no entry of K is zero by chance.
+inline constexpr double kPerturbation = 1e-7;
 
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
 /// Calls add(row, column, value) for the entries of the lower triangle of K by energies of one kind. entries:
-/// storage.
+/// scratch storage; its contents are ignored.
 template <class Add>
 void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
                     Add&& add) {
@@ -51,8 +52,8 @@ inline VecX<double> stiffness_along(const NodalDeformation& local, const VecX<do
   return -f;
 }
 
-/// Returns the vectors w that add_stiffness omits.
-inline std::vector<VecX<double>> rank_one(const NodalDeformation& local, const VecX<double>& x) {
+/// Returns the vectors w of the dense terms that add_stiffness omits, one for each internal pressure.
+inline std::vector<VecX<double>> dense_terms(const NodalDeformation& local, const VecX<double>& x) {
   std::vector<VecX<double>> all;
   for (const auto& energy : local.energies()) {
     VecX<double> w = energy->rank_one(x);
@@ -70,45 +71,45 @@ inline double& diagonal(SparseMatrix& A, Eigen::Index i) {
 
 PLIANT_INLINE ImplicitNodes::ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor)
     : ImplicitPart(part), factor_(std::move(factor)) {
-  follows_ = !local().stiffness_is_constant();
+  stiffness_changes_ = !local().stiffness_is_constant();
   VecX<double> q_s(part.n_s);
   for (int k = 0; k < part.n_s; ++k) q_s[k] = part.part->parameters().moving(k).rest_value();
-  none_.setZero(local().n_d());
-  rest_.place(none_.data(), none_.data(), none_.size());
+  zeros_.setZero(local().n_d());
+  rest_.place(zeros_.data(), zeros_.data(), zeros_.size());
   Counters unused;
   local().positions(*part.part, q_s, VecX<double>::Zero(6 + part.n_s), rest_, unused);
 }
 
 PLIANT_INLINE void ImplicitNodes::make_pattern() {
   const Eigen::Index n_d = local().n_d();
-  VecX<double> near = rest_.x;
+  VecX<double> perturbed = rest_.x;
   for (Eigen::Index i = 0; i < n_d; ++i)
-    near[i] += implicit_nodes::kGeneric * part_->part->size() * std::sin(static_cast<double>(i));
+    perturbed[i] += implicit_nodes::kPerturbation * part_->part->size() * std::sin(static_cast<double>(i));
   implicit_nodes::Entries lower;
   for (int i = 0; i < n_d; ++i) lower.emplace_back(i, i, 0.0);
   implicit_nodes::for_each_entry(local(), implicit_nodes::Of::displacement, rest_.d, entries_,
                                  [&](int i, int j, double value) { lower.emplace_back(i, j, value); });
-  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, near, entries_,
+  implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, perturbed, entries_,
                                  [&](int i, int j, double) { lower.emplace_back(i, j, 0.0); });
   K_.resize(n_d, n_d);
   K_.setFromTriplets(lower.begin(), lower.end());
   K_.makeCompressed();
 }
 
-/// Adds `factor` times the masses to the stiffness in S and factors S, with more mass if S is not definite.
 PLIANT_INLINE int ImplicitNodes::factor_definite(double factor, double t) {
   const VecX<double>& M = local().inertia();
   const VecX<double> stiffness = S_.diagonal();
-  double more = 0;
-  for (int tries = 1; more <= implicit_nodes::kMaxExtraMass;
-       ++tries, more = std::max(implicit_nodes::kFirstExtraMass, implicit_nodes::kExtraMassGrowth * more)) {
+  double extra_mass = 0;
+  for (int attempt = 1; extra_mass <= implicit_nodes::kMaxExtraMass;
+       ++attempt, extra_mass = std::max(implicit_nodes::kFirstExtraMass,
+                                        implicit_nodes::kExtraMassGrowth * extra_mass)) {
     for (Eigen::Index i = 0; i < M.size(); ++i)
-      implicit_nodes::diagonal(S_, i) = stiffness[i] + (factor + more) * M[i];
+      implicit_nodes::diagonal(S_, i) = stiffness[i] + (factor + extra_mass) * M[i];
     if (!factor_->factor(S_)) continue;
-    bool sound = true;
-    for (Eigen::Index i = 0; i < M.size() && sound; ++i)
-      sound = factor_->pivots()[static_cast<std::size_t>(i)] >= implicit_nodes::kMinPivot * M[i];
-    if (sound) return tries;
+    bool definite = true;
+    for (Eigen::Index i = 0; i < M.size() && definite; ++i)
+      definite = factor_->pivots()[static_cast<std::size_t>(i)] >= implicit_nodes::kMinPivot * M[i];
+    if (definite) return attempt;
   }
   throw NumericalFailure(
       "the stiffness of the nodes of part '" + part_->part->name() + "' cannot be factored: it is not finite",
@@ -116,27 +117,27 @@ PLIANT_INLINE int ImplicitNodes::factor_definite(double factor, double t) {
 }
 
 PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double c, double t) {
-  const NodalWorkspace& now = NodalDeformation::of(*w.local);
-  const bool fresh = follows_ || c != c_;
+  const NodalWorkspace& nodal = NodalDeformation::of(*w.local);
+  const bool refactor = stiffness_changes_ || c != c_;
   int factorisations = 0;
-  if (fresh || frame_in_border()) {
+  if (refactor || frame_in_border()) {
     c_ = 0;  // in case the factorisation fails
-    const std::string of_part = "the stiffness of the nodes of part '" + part_->part->name() + "'";
+    const std::string name = "the stiffness of the nodes of part '" + part_->part->name() + "'";
     try {
-      if (fresh) factorisations = factor(c, now.x, t);
-      make_border(now, c);
+      if (refactor) factorisations = factor(c, nodal.x, t);
+      make_border(nodal, c);
     } catch (const std::bad_alloc&) {
-      throw OutOfMemory("out of memory for the factor of " + of_part + ", of " +
-                        std::to_string(local().n_d()) + " unknowns");
+      throw OutOfMemory("out of memory for the factor of " + name + ", of " + std::to_string(local().n_d()) +
+                        " unknowns");
     } catch (const StepFailure&) {
       throw;
     } catch (const std::runtime_error& failure) {
-      throw NumericalFailure(of_part + " cannot be factored: " + failure.what(), t);
+      throw NumericalFailure(name + " cannot be factored: " + failure.what(), t);
     }
     c_ = c;
   }
-  if (fresh || frame_in_border()) make_core(now);
-  if (!frame_in_border() && fresh)
+  if (refactor || frame_in_border()) make_core(nodal);
+  if (!frame_in_border() && refactor)
     H0_inverse_ = w.local->H0.llt().solve(MatX<double>::Identity(n_r(), n_r()));
   return factorisations;
 }
@@ -144,7 +145,7 @@ PLIANT_INLINE int ImplicitNodes::prepare(const PartWorkspace<double>& w, double 
 PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double t) {
   if (K_.size() == 0) make_pattern();
   S_ = K_;
-  if (follows_)
+  if (stiffness_changes_)
     implicit_nodes::for_each_entry(local(), implicit_nodes::Of::position, x, entries_,
                                    [&](int i, int j, double value) { S_.coeffRef(i, j) += value; });
   if (!S_.isCompressed()) S_.makeCompressed();
@@ -166,54 +167,56 @@ PLIANT_INLINE int ImplicitNodes::factor(double c, const VecX<double>& x, double 
   return factorisations;
 }
 
-PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& at, double c) {
+PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c) {
   const Eigen::Index n = local().n_nodes(), n_d = local().n_d(), n_s = part_->n_s;
   const VecX<double>& m = local().mesh().mass;
-  const std::vector<VecX<double>> gas = implicit_nodes::rank_one(local(), at.x);
-  const auto n_gas = static_cast<Eigen::Index>(gas.size());
-  B_.setZero(n_d, n_r() + (frame_in_border() ? n_r() : 0) + n_gas);
+  const std::vector<VecX<double>> dense = implicit_nodes::dense_terms(local(), w.x);
+  const auto n_dense = static_cast<Eigen::Index>(dense.size());
+  B_.setZero(n_d, n_r() + (frame_in_border() ? n_r() : 0) + n_dense);
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     B_.col(i).segment(i * n, n) = m;
     // e_i x s: along j it is -s_k, along k s_j.
-    B_.col(3 + i).segment(j * n, n) = -m.cwiseProduct(at.s.col(k));
-    B_.col(3 + i).segment(k * n, n) = m.cwiseProduct(at.s.col(j));
+    B_.col(3 + i).segment(j * n, n) = -m.cwiseProduct(w.s.col(k));
+    B_.col(3 + i).segment(k * n, n) = m.cwiseProduct(w.s.col(j));
   }
   K_elastic_.setZero(n_s, n_s);
   for (Eigen::Index k = 0; k < n_s; ++k) {
     for (int r = 0; r < 3; ++r)
-      B_.col(6 + k).segment(r * n, n) = m.cwiseProduct(at.J.col(k).segment(r * n, n));
-    if (!follows_) continue;
+      B_.col(6 + k).segment(r * n, n) = m.cwiseProduct(w.J.col(k).segment(r * n, n));
+    if (!stiffness_changes_) continue;
     VecX<double> J = VecX<double>::Zero(n_d);
-    J.head(3 * n) = at.J.col(k);
-    const VecX<double> P = implicit_nodes::stiffness_along(local(), at.x, J);
-    K_elastic_.col(k) = at.J.transpose() * P.head(3 * n);
+    J.head(3 * n) = w.J.col(k);
+    const VecX<double> P = implicit_nodes::stiffness_along(local(), w.x, J);
+    K_elastic_.col(k) = w.J.transpose() * P.head(3 * n);
     B_.col(n_r() + 6 + k) = c * c * P;
   }
-  for (Eigen::Index k = 0; k < n_gas; ++k) B_.rightCols(n_gas).col(k) = c * gas[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < n_dense; ++k)
+    B_.rightCols(n_dense).col(k) = c * dense[static_cast<std::size_t>(k)];
   T_ = B_;
   factor_->solve(T_.leftCols(n_r()));
-  if (follows_ && n_s > 0) factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns between are zero
-  if (n_gas > 0) factor_->solve(T_.rightCols(n_gas));
+  if (stiffness_changes_ && n_s > 0)
+    factor_->solve(T_.middleCols(n_r() + 6, n_s));  // the columns between are zero
+  if (n_dense > 0) factor_->solve(T_.rightCols(n_dense));
   core_fixed_ = -B_.transpose() * T_;
-  core_fixed_.diagonal().tail(n_gas).array() -= 1;
+  core_fixed_.diagonal().tail(n_dense).array() -= 1;
   if (part_->shared.empty()) return;
   B_Z_ = B_.transpose() * Z_;
-  T_at_ = at_joints(T_);
+  N_T_ = at_joints(T_);
 }
 
-PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& now) {
+PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
   MatX<double> core = core_fixed_;
   if (frame_in_border()) {
     const Part& part = *part_->part;
     const Eigen::Index n_s = part_->n_s;
     K_s_ = part.K_s() + K_elastic_;
-    D_s_ = part.alpha() * now.H0.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
+    D_s_ = part.alpha() * w.H0.bottomRightCorner(n_s, n_s) + part.beta() * part.K_s();
     auto S_r = core.block(n_r(), n_r(), n_r(), n_r());
-    S_r += now.H0;
+    S_r += w.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
     for (int k = 0; k < n_s; ++k)
-      if (now.held.test(static_cast<std::size_t>(6 + k))) {  // W has no row for it either
+      if (w.held.test(static_cast<std::size_t>(6 + k))) {  // W has no row for this parameter either
         core(6 + k, 6 + k) -= 1;
         S_r(6 + k, 6 + k) += 1;
       }
@@ -221,12 +224,12 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& now) {
   core_.compute(core);
 }
 
-PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& of_nodes) const {
+PLIANT_INLINE MatX<double> ImplicitNodes::at_joints(const MatX<double>& nodal) const {
   const auto n_p = 3 * static_cast<Eigen::Index>(part_->shared.size());
-  MatX<double> values(n_p, of_nodes.cols());
-  for (Eigen::Index k = 0; k < of_nodes.cols(); ++k)
+  MatX<double> values(n_p, nodal.cols());
+  for (Eigen::Index k = 0; k < nodal.cols(); ++k)
     values.col(k) =
-        at_points(part_->shared, Eigen::Map<const Nodes>(of_nodes.col(k).data(), local().n_nodes(), 3));
+        at_points(part_->shared, Eigen::Map<const Nodes>(nodal.col(k).data(), local().n_nodes(), 3));
   return values;
 }
 
@@ -237,16 +240,16 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n_d);
   auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n_d);
   // With e = r_v + s r_q, s = c / (c^2 + c beta), and y = x_d + e the first row becomes
-  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r: a product with K is not needed.
+  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r, without a product with K.
   const double s = 1 / (local().beta() + c_);
   e_ = k_v + s * r_q;
   y_ = M.cwiseProduct(e_);
   if (local().alpha() > 0) y_ += s * c_ * local().alpha() * M.cwiseProduct(r_q);
   right_.setZero(B_.cols());
   if (frame_in_border()) {
-    const VecX<double> of_v = v_dot.segment(part_->v0 + 6, n_s), of_q = q_dot.segment(part_->q0 + 7, n_s);
-    if (follows_) y_ -= B_.middleCols(n_r() + 6, n_s) * (of_v + of_q / c_);
-    right_.segment(n_r() + 6, n_s) = -c_ * D_s_ * of_v - K_s_ * (c_ * c_ * of_v + c_ * of_q);
+    const VecX<double> r_v_s = v_dot.segment(part_->v0 + 6, n_s), r_q_s = q_dot.segment(part_->q0 + 7, n_s);
+    if (stiffness_changes_) y_ -= B_.middleCols(n_r() + 6, n_s) * (r_v_s + r_q_s / c_);
+    right_.segment(n_r() + 6, n_s) = -c_ * D_s_ * r_v_s - K_s_ * (c_ * c_ * r_v_s + c_ * r_q_s);
   }
   factor_->solve(y_);
   right_.head(n_r()) += B_.leftCols(n_r()).transpose() * e_;
@@ -279,7 +282,7 @@ PLIANT_INLINE MatX<double> ImplicitNodes::compliance() const {
     A.topLeftCorner(n_r(), n_r()) = H0_inverse_;
   }
   if (n_p > 0) {
-    A.bottomRows(n_p) = -T_at_ * z;
+    A.bottomRows(n_p) = -N_T_ * z;
     A.bottomRightCorner(n_p, n_p) += at_joints(Z_);
   }
   return 0.5 * (A + A.transpose());

@@ -3,28 +3,36 @@
 // two kinds.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
 class ImplicitPart : public LocalResponse {
  public:
-  /// Prepares A at an evaluation of the part at time t, s. Returns the number of factorisations. Throws
-  /// NumericalFailure, OutOfMemory.
+  /// Prepares A for this c (s), at an evaluation w of the part at time t (s). Returns the number of
+  /// factorisations. Throws NumericalFailure or OutOfMemory if the stiffness cannot be factored.
   virtual int prepare(const PartWorkspace<double>& w, double c, double t) = 0;
-  /// Replaces v_dot of the part by k_v, for the rates r = (q_dot, v_dot) of all parts. R: orientation of its
-  /// frame.
+  /// Replaces v_dot of the part by k_v, for the rates r = (q_dot, v_dot) of all parts. R: orientation of the
+  /// frame of the part.
   virtual void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) = 0;
-  /// Returns x of the last filter() for v_r and for d_dot at the joints (body/constraint/group.h).
+  /// Returns the change x = k_v - r_v of the last filter(), of v_r and of d_dot at the points of joints
+  /// (body/constraint/group.h).
   const VecX<double>& change() const { return change_; }
 
  protected:
   explicit ImplicitPart(const PartModel& part) : part_(&part), change_(VecX<double>::Zero(part.n_x())) {}
 
+  /// Number of entries of v_r.
   Eigen::Index n_r() const { return 6 + part_->n_s; }
 
   const PartModel* part_;
   VecX<double> change_;
 };
+
+/// One entry for each part of a model; nullptr for an explicit part.
+using ImplicitParts = std::vector<std::unique_ptr<ImplicitPart>>;
 
 }  // namespace pliant

@@ -1,28 +1,30 @@
-// Bodies of project_rates.h.
+// Function bodies of project_rates.h: the projection of the changes of rates, island by island and part by
+// part.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/project_rates.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
 
 #include <Eigen/QR>
 
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/group.h>
-
+#include <pliant/math/header_only.h>
 #include <pliant/project/projection.h>
 
 namespace pliant {
 
 namespace rate_projection {
 
-using AllSoft = std::vector<std::unique_ptr<ImplicitPart>>;
-
-/// Copies the metric of a part: the compliance of the filter, or the mass.
-inline void copy_metric(const ImplicitPart* soft, const PartWorkspace<double>& w,
+/// Copies the metric of a part: the compliance of the filter, or the mass if the part is explicit (nullptr).
+inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double>& w,
                         PartWorkspace<double>& filtered) {
-  if (soft != nullptr) {
+  if (implicit != nullptr) {
     if (!filtered.local) filtered.local = std::make_unique<LocalWorkspace>();
-    filtered.local->take_compliance(soft->compliance());
+    filtered.local->take_compliance(implicit->compliance());
     filtered.inertia.M = filtered.local->A_inverse;
     return;
   }
@@ -31,7 +33,8 @@ inline void copy_metric(const ImplicitPart* soft, const PartWorkspace<double>& w
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Projects x: joints and pushed rows have zero rate afterwards.
+/// Projects x, so that the rows of joints and the pushed rows have zero rate. If the factor of the joints is
+/// not accurate, three passes refine x.
 template <int Max>
 void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
              VecMax<double, Max>& x) {
@@ -56,14 +59,14 @@ void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pu
   x += responses * W.completeOrthogonalDecomposition().solve(b);
 }
 
-/// Projects the rates of a group.
+/// Projects the changes of the rates of a group and adds the difference to v_dot.
 template <int Max>
 void project_group_rates(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
-                         const AllSoft& soft, const Workspace<double>& work, VecX<double>& v_dot) {
+                         const ImplicitParts& parts, const Workspace<double>& work, VecX<double>& v_dot) {
   VecMax<double, Max> before, x;
   group.gather(before, [&](int i) -> VecX<double> {
-    const ImplicitPart* of_part = soft[at(group.part(i))].get();
-    return of_part != nullptr ? of_part->change() : VecX<double>::Zero(group.model(i).n_x());
+    const ImplicitPart* implicit = parts[at(group.part(i))].get();
+    return implicit != nullptr ? implicit->change() : VecX<double>::Zero(group.model(i).n_x());
   });
   x = before;
   project(group, pushed, x);
@@ -73,8 +76,8 @@ void project_group_rates(const Group<double, Max>& group, const std::vector<OneS
     const PartWorkspace<double>& w = work.parts[at(group.part(i))];
     const PartModel& m = group.model(i);
     share_of(m, v_dot) += world_velocity(w, change.head(6 + m.n_s));
-    if (const ImplicitPart* of_part = soft[at(group.part(i))].get())
-      of_part->push(group.workspace(i).inertia.M * change, v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
+    if (const ImplicitPart* implicit = parts[at(group.part(i))].get())
+      implicit->push(group.workspace(i).inertia.M * change, v_dot.segment(m.v0 + 6 + m.n_s, m.n_d()));
     for (const OneSidedRow& row : pushed)
       if (row.part == i) v_dot[m.v0 + 6 + row.k] = 0;  // exactly zero
   }
@@ -82,27 +85,28 @@ void project_group_rates(const Group<double, Max>& group, const std::vector<OneS
 
 }  // namespace rate_projection
 
-PLIANT_INLINE bool has_implicit(const Island& island, const rate_projection::AllSoft& soft) {
-  return std::any_of(island.parts.begin(), island.parts.end(), [&](int i) { return soft[at(i)] != nullptr; });
+PLIANT_INLINE bool has_implicit(const Island& island, const ImplicitParts& parts) {
+  return std::any_of(island.parts.begin(), island.parts.end(),
+                     [&](int i) { return parts[at(i)] != nullptr; });
 }
 
-PLIANT_INLINE void project_rates(const Model& model, const rate_projection::AllSoft& soft,
+PLIANT_INLINE void project_rates(const Model& model, const ImplicitParts& parts,
                                  const Workspace<double>& work, Workspace<double>& filtered,
                                  VecX<double>& v_dot) {
   filtered.parts.resize(model.parts().size());
   for (std::size_t i = 0; i < model.parts().size(); ++i) {
     const std::vector<int>& pressed = work.parts[i].pressed;
-    if (soft[i] == nullptr || model.parts()[i].island >= 0 || pressed.empty()) continue;
-    rate_projection::copy_metric(soft[i].get(), work.parts[i], filtered.parts[i]);
+    if (parts[i] == nullptr || model.parts()[i].island >= 0 || pressed.empty()) continue;
+    rate_projection::copy_metric(parts[i].get(), work.parts[i], filtered.parts[i]);
     std::vector<OneSidedRow> rows;
     for (const int k : pressed) rows.push_back({0, k, 1, 0});
     rate_projection::project_group_rates(Group<double, kMaxVelocities>(model, filtered, static_cast<int>(i)),
-                                         rows, soft, work, v_dot);
+                                         rows, parts, work, v_dot);
   }
   const ConstraintWorkspace<double>& joints = work.joints;
   for (std::size_t k = 0; k < model.islands().size(); ++k) {
     const Island& island = model.islands()[k];
-    if (!has_implicit(island, soft)) continue;
+    if (!has_implicit(island, parts)) continue;
     filtered.joints.modes = joints.modes;
     filtered.joints.rank = joints.rank;
     filtered.joints.Cq = joints.Cq;
@@ -111,10 +115,10 @@ PLIANT_INLINE void project_rates(const Model& model, const rate_projection::AllS
     filtered.joints.W_closed.resize(model.islands().size());
     filtered.joints.vectors.resize(model.islands().size());
     for (const int i : island.parts)
-      rate_projection::copy_metric(soft[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
+      rate_projection::copy_metric(parts[at(i)].get(), work.parts[at(i)], filtered.parts[at(i)]);
     factor_joints<double>(model, island, filtered.parts, filtered.joints);
     rate_projection::project_group_rates(Group<double, Eigen::Dynamic>(model, filtered, island, false),
-                                         joints.pushed[k], soft, work, v_dot);
+                                         joints.pushed[k], parts, work, v_dot);
   }
 }
 

@@ -1,7 +1,7 @@
-// Bodies of stage_solver.h.
+// Function bodies of stage_solver.h: clusters, the Newton iteration of a stage, and the matrices by
+// differences.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/stage_solver.h>
 
 #include <algorithm>
@@ -14,91 +14,93 @@
 
 #include <pliant/body/advance.h>
 #include <pliant/body/step_failure.h>
+#include <pliant/math/header_only.h>
 #include <pliant/math/index.h>
 
 namespace pliant {
 
 namespace stage_solver {
 
-/// An iteration is slow if the change shrinks by less than this factor.
-inline constexpr double kSlow = 0.9;
-inline constexpr int kMaxStageIterations = 20;
-/// A stage may take this many iterations without the matrix for each velocity, because the matrix costs two
+/// The iteration is slow if each change is more than this fraction of the last one.
+inline constexpr double kSlowContraction = 0.9;
+/// Largest number of iterations of a stage with the matrix.
+inline constexpr int kMaxIterations = 20;
+/// A stage may use this many iterations for each velocity without the matrix, because the matrix costs two
 /// evaluations for each velocity.
-inline constexpr double kShareOfMatrix = 0.5;
-/// Most matrices that are formed for one stage.
+inline constexpr double kFreeIterations = 0.5;
+/// Largest number of matrices that are computed for one stage.
 inline constexpr int kMaxMatrices = 4;
 /// Changes that do not shrink and are below this, in sizes of the part and radians, are rounding.
-inline constexpr double kStageRounding = 1e-12;
+inline constexpr double kRounding = 1e-12;
 /// Size of the differences, relative to the scale of the coordinate.
 inline constexpr double kDifference = 1e-7;
-/// Most velocities of a cluster, whose matrix is dense.
+/// Largest number of velocities of a cluster, whose matrix is dense.
 inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
 /// The iteration has converged if the change is below this, in tolerances.
 inline constexpr double kConverged = 0.02;
 
-/// Converts changes of quaternions to rotations (rad, body frame); other coordinates stay as they are.
+/// Converts changes of quaternions to rotations (rad, body frame); other coordinates do not change.
 inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<double>& change,
                        VecX<double>& tangent) {
   tangent.resize(model.n_v());
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
     tangent.segment<3>(m.v0) = change.segment<3>(m.q0);
-    const auto theta = q.segment<4>(m.q0 + 3), by = change.segment<4>(m.q0 + 3);
-    const Vec3<double> of = theta.tail<3>(), d = by.tail<3>();
-    tangent.segment<3>(m.v0 + 3) = 2 / theta.squaredNorm() * (theta[0] * d - by[0] * of - of.cross(d));
+    const auto theta = q.segment<4>(m.q0 + 3), theta_change = change.segment<4>(m.q0 + 3);
+    const Vec3<double> axis = theta.tail<3>(), d = theta_change.tail<3>();
+    tangent.segment<3>(m.v0 + 3) =
+        2 / theta.squaredNorm() * (theta[0] * d - theta_change[0] * axis - axis.cross(d));
     tangent.segment(m.v0 + 6, m.n_s + m.n_d()) = change.segment(m.q0 + 7, m.n_s + m.n_d());
   }
 }
 
 /// Rotates the linear velocity in x of each part from its frame into the world, or back. Stiff directions,
 /// and with them the matrix, turn with the parts.
-enum class Turn { into_world, into_body };
-inline void turn(const Model& model, const VecX<double>& q, Turn way, VecX<double>& x) {
+enum class Frame { world, body };
+inline void rotate_velocities(const Model& model, const VecX<double>& q, Frame into, VecX<double>& x) {
   for (const PartModel& m : model.parts()) {
     if (m.q0 < 0) continue;
     const auto theta = q.segment<4>(m.q0 + 3);
     const Mat3<double> R =
         Eigen::Quaterniond(theta[0], theta[1], theta[2], theta[3]).normalized().toRotationMatrix();
-    auto straight = x.segment<3>(m.v0);
-    straight =
-        (way == Turn::into_world ? Vec3<double>(R * straight) : Vec3<double>(R.transpose() * straight));
+    auto velocity = x.segment<3>(m.v0);
+    velocity = (into == Frame::world ? Vec3<double>(R * velocity) : Vec3<double>(R.transpose() * velocity));
   }
 }
 
-/// Returns the representative of the set of a part.
-inline int leader(std::vector<int>& of, int i) {
-  while (of[at(i)] != i) i = of[at(i)] = of[at(of[at(i)])];
+/// Returns the representative of the set of a part (union-find with path halving).
+inline int find_root(std::vector<int>& parent, int i) {
+  while (parent[at(i)] != i) i = parent[at(i)] = parent[at(parent[at(i)])];
   return i;
 }
 
 }  // namespace stage_solver
 
 PLIANT_INLINE StageSolver::StageSolver(const Model& model)
-    : model_(model), difference_(model.n_v()), max_free_iterations_(stage_solver::kMaxStageIterations) {
+    : model_(model), difference_(model.n_v()), max_free_iterations_(stage_solver::kMaxIterations) {
   const int n = static_cast<int>(model.parts().size());
   std::vector<int> set(at(n));
   std::iota(set.begin(), set.end(), 0);
-  auto tie = [&](int a, int b) {
+  auto unite = [&](int a, int b) {
     if (a < 0 || b < 0 || model.parts()[at(a)].q0 < 0 || model.parts()[at(b)].q0 < 0) return;
-    set[at(stage_solver::leader(set, std::max(a, b)))] = stage_solver::leader(set, std::min(a, b));
+    set[at(stage_solver::find_root(set, std::max(a, b)))] = stage_solver::find_root(set, std::min(a, b));
   };
-  for (const SpringModel& spring : model.springs()) tie(spring.a.part, spring.b.part);
-  for (const TorqueModel& torque : model.torques()) tie(torque.part, torque.against);
+  for (const SpringModel& spring : model.springs()) unite(spring.a.part, spring.b.part);
+  for (const TorqueModel& torque : model.torques()) unite(torque.part, torque.against);
   for (const Island& island : model.islands())
-    for (const int part : island.parts) tie(island.parts.front(), part);
-  std::vector<int> cluster(at(n), -1);
+    for (const int part : island.parts) unite(island.parts.front(), part);
+  std::vector<int> cluster_of_root(at(n), -1);
   for (int i = 0; i < n; ++i) {
     const PartModel& m = model.parts()[at(i)];
     if (m.q0 < 0) continue;
-    int& number = cluster[at(stage_solver::leader(set, i))];
+    int& number = cluster_of_root[at(stage_solver::find_root(set, i))];
     if (number < 0) {
       number = static_cast<int>(clusters_.size());
       clusters_.emplace_back();
     }
-    Cluster& of = clusters_[at(number)];
-    of.parts.push_back(i);
-    for (int k = 0; k < m.n_v(); ++k) of.velocities.push_back(m.v0 + k);
+    Cluster& cluster = clusters_[at(number)];
+    cluster.parts.push_back(i);
+    for (int k = 0; k < m.n_v(); ++k) cluster.velocities.push_back(m.v0 + k);
     const double size = m.part->size();
     difference_.segment(m.v0, m.n_v()).setConstant(stage_solver::kDifference * size);
     difference_.segment<3>(m.v0 + 3).setConstant(stage_solver::kDifference);
@@ -106,17 +108,17 @@ PLIANT_INLINE StageSolver::StageSolver(const Model& model)
       if (m.part->parameters().moving(k).spec->quantity != Quantity::length)
         difference_[m.v0 + 6 + k] = stage_solver::kDifference;
   }
-  for (const Cluster& of : clusters_)
-    max_free_iterations_ =
-        std::max(max_free_iterations_,
-                 static_cast<int>(stage_solver::kShareOfMatrix * static_cast<double>(of.velocities.size())));
+  for (const Cluster& cluster : clusters_)
+    max_free_iterations_ = std::max(
+        max_free_iterations_,
+        static_cast<int>(stage_solver::kFreeIterations * static_cast<double>(cluster.velocities.size())));
 }
 
 PLIANT_INLINE void StageSolver::begin(StepContext& step, double c, const ErrorScale& scale) {
   step_ = &step;
   scale_ = &scale;
   c_ = c;
-  linear_ = false;
+  has_matrix_ = false;
 }
 
 PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const VecX<double>& r_v,
@@ -124,9 +126,8 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
   q_guess_ = q;
   v_guess_ = v;
   if (iterate(t, r_q, r_v, q, v)) return;
-  // If the matrix at the start of the step does not help, the matrix at the guess is tried, then the matrices
-  // at the iterates.
-  for (int i = linear_ ? 1 : 0; i <= stage_solver::kMaxMatrices; ++i) {
+  // The matrices are tried in this order: at the start of the step, at the guess, at the last iterates.
+  for (int i = has_matrix_ ? 1 : 0; i <= stage_solver::kMaxMatrices; ++i) {
     if (i <= 1) {
       q = q_guess_;
       v = v_guess_;
@@ -140,16 +141,17 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
   }
   std::ostringstream message;
   message << "the equations of an implicit step of " << step_->state.h
-          << " s from t = " << step_->state.time() << " s did not converge, worst in "
+          << " s from t = " << step_->state.time()
+          << " s did not converge: the largest change in the last iteration is that of "
           << scale_->worst(rho_q_, rho_v_, v) << "; use a smaller step";
   throw NumericalFailure(message.str(), step_->state.time());
 }
 
 PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v,
                                         VecX<double>& q, VecX<double>& v) {
-  const int most = linear_ ? stage_solver::kMaxStageIterations : max_free_iterations_;
+  const int max_iterations = has_matrix_ ? stage_solver::kMaxIterations : max_free_iterations_;
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most; ++i) {
+  for (int i = 0; i < max_iterations; ++i) {
     const Workspace<double>& work = step_->work;
     step_->dynamics.accelerations(t, q, v, step_->state, step_->work, RankRule::keep);
     ++step_->counters.evaluations;
@@ -162,16 +164,18 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
     v += rho_v_;
     const double change = scale_->norm(rho_q_, rho_v_, v);
     if (!std::isfinite(change)) return false;
-    const double left = change / before;  // of a change, by one more iteration
+    const double contraction = change / before;
     const bool small = change <= stage_solver::kConverged &&
-                       left / (1 - std::min(left, 0.99)) * change <= stage_solver::kConverged;
+                       contraction / (1 - std::min(contraction, 0.99)) * change <= stage_solver::kConverged;
     if (change == 0 || (i > 0 && small)) return true;
-    if (left > stage_solver::kSlow && change * scale_->tolerance() <= stage_solver::kStageRounding)
+    if (contraction > stage_solver::kSlowContraction &&
+        change * scale_->tolerance() <= stage_solver::kRounding)
       return true;
     // The first change with the matrix is as large as the error of the guess.
-    const bool hopeless = linear_ ? i > 1 && left > stage_solver::kSlow
-                                  : i > 0 && change * std::pow(left, most - 1 - i) > stage_solver::kConverged;
-    if (hopeless) return false;
+    const bool too_slow = has_matrix_ ? i > 1 && contraction > stage_solver::kSlowContraction
+                                      : i > 0 && change * std::pow(contraction, max_iterations - 1 - i) >
+                                                     stage_solver::kConverged;
+    if (too_slow) return false;
     before = change;
   }
   return false;
@@ -179,71 +183,73 @@ PLIANT_INLINE bool StageSolver::iterate(double t, const VecX<double>& r_q, const
 
 PLIANT_INLINE void StageSolver::correct(const VecX<double>& q, VecX<double>& rho_q,
                                         VecX<double>& rho_v) const {
-  if (linear_) {
+  if (has_matrix_) {
     stage_solver::to_tangent(model_, q, rho_q, tangent_);
-    stage_solver::turn(model_, q, stage_solver::Turn::into_body, tangent_);
-    stage_solver::turn(model_, q, stage_solver::Turn::into_body, rho_v);
-    for (const Cluster& of : clusters_) {
-      const auto n = static_cast<Eigen::Index>(of.velocities.size());
+    stage_solver::rotate_velocities(model_, q, stage_solver::Frame::body, tangent_);
+    stage_solver::rotate_velocities(model_, q, stage_solver::Frame::body, rho_v);
+    for (const Cluster& cluster : clusters_) {
+      const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
       right_.resize(n);
-      for (Eigen::Index i = 0; i < n; ++i) right_[i] = tangent_[of.velocities[static_cast<std::size_t>(i)]];
-      right_ = (c_ * of.A_q * right_).eval();
-      for (Eigen::Index i = 0; i < n; ++i) right_[i] += rho_v[of.velocities[static_cast<std::size_t>(i)]];
-      right_ = of.factor.solve(right_).eval();
-      for (Eigen::Index i = 0; i < n; ++i) rho_v[of.velocities[static_cast<std::size_t>(i)]] = right_[i];
+      for (Eigen::Index i = 0; i < n; ++i)
+        right_[i] = tangent_[cluster.velocities[static_cast<std::size_t>(i)]];
+      right_ = (c_ * cluster.A_q * right_).eval();
+      for (Eigen::Index i = 0; i < n; ++i)
+        right_[i] += rho_v[cluster.velocities[static_cast<std::size_t>(i)]];
+      right_ = cluster.factor.solve(right_).eval();
+      for (Eigen::Index i = 0; i < n; ++i) rho_v[cluster.velocities[static_cast<std::size_t>(i)]] = right_[i];
     }
-    stage_solver::turn(model_, q, stage_solver::Turn::into_world, rho_v);
+    stage_solver::rotate_velocities(model_, q, stage_solver::Frame::world, rho_v);
   }
   step_->dynamics.coordinate_rates(q, rho_v, tangent_);
   rho_q += c_ * tangent_;
 }
 
-PLIANT_INLINE void StageSolver::damp(VecX<double>& of_q, VecX<double>& of_v) const {
-  if (linear_) correct(step_->state.q, of_q, of_v);
+PLIANT_INLINE void StageSolver::damp(VecX<double>& q_error, VecX<double>& v_error) const {
+  if (has_matrix_) correct(step_->state.q, q_error, v_error);
 }
 
 PLIANT_INLINE void StageSolver::allocate_matrices(double t) {
-  for (Cluster& of : clusters_) {
-    const auto n = static_cast<Eigen::Index>(of.velocities.size());
+  for (Cluster& cluster : clusters_) {
+    const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
     if (n > stage_solver::kMaxClusterVelocities) {
       std::ostringstream message;
-      message << n << " velocities of parts that act on each other are stiff, from part '"
-              << model_.parts()[at(of.parts.front())].part->name() << "' on; expected at most "
-              << stage_solver::kMaxClusterVelocities
-              << " for this method, or linearly_implicit, or smaller steps";
+      message << "the parts that act on each other, from part '"
+              << model_.parts()[at(cluster.parts.front())].part->name() << "' on, have stiff motion and " << n
+              << " velocities; expected at most " << stage_solver::kMaxClusterVelocities
+              << " for this method: use linearly_implicit or smaller steps";
       throw NumericalFailure(message.str(), t);
     }
-    of.A_q.setZero(n, n);
-    of.A_v.setZero(n, n);
+    cluster.A_q.setZero(n, n);
+    cluster.A_v.setZero(n, n);
   }
 }
 
 PLIANT_INLINE VecX<double> StageSolver::differences(Eigen::Index column) const {
-  VecX<double> by = VecX<double>::Zero(model_.n_v());
-  for (const Cluster& of : clusters_)
-    if (column < static_cast<Eigen::Index>(of.velocities.size())) {
-      const Eigen::Index k = of.velocities[static_cast<std::size_t>(column)];
-      by[k] = difference_[k];
+  VecX<double> difference = VecX<double>::Zero(model_.n_v());
+  for (const Cluster& cluster : clusters_)
+    if (column < static_cast<Eigen::Index>(cluster.velocities.size())) {
+      const Eigen::Index k = cluster.velocities[static_cast<std::size_t>(column)];
+      difference[k] = difference_[k];
     }
-  // A parameter that is at a limit does not move.
+  // A parameter at a limit does not change.
   const State& state = step_->state;
   for (const PartModel& m : model_.parts())
     for (int k = 0; m.q0 >= 0 && k < m.n_s; ++k)
-      if (state.at_limit[at(m.limit0 + k)] != 0) by[m.v0 + 6 + k] = 0;
-  return by;
+      if (state.at_limit[at(m.limit0 + k)] != 0) difference[m.v0 + 6 + k] = 0;
+  return difference;
 }
 
-PLIANT_INLINE void StageSolver::set_column(Eigen::Index column, const VecX<double>& by,
+PLIANT_INLINE void StageSolver::set_column(Eigen::Index column, const VecX<double>& difference,
                                            MatX<double> Cluster::*A) {
   const VecX<double>& v_dot = step_->work.v_dot;
-  for (Cluster& of : clusters_) {
-    const auto n = static_cast<Eigen::Index>(of.velocities.size());
+  for (Cluster& cluster : clusters_) {
+    const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
     if (column >= n) continue;
-    const double difference = by[of.velocities[static_cast<std::size_t>(column)]];
-    if (difference == 0) continue;
+    const double step = difference[cluster.velocities[static_cast<std::size_t>(column)]];
+    if (step == 0) continue;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Index k = of.velocities[static_cast<std::size_t>(i)];
-      (of.*A)(i, column) = (v_dot[k] - v_dot_[k]) / difference;
+      const Eigen::Index k = cluster.velocities[static_cast<std::size_t>(i)];
+      (cluster.*A)(i, column) = (v_dot[k] - v_dot_[k]) / step;
     }
   }
 }
@@ -256,19 +262,19 @@ PLIANT_INLINE void StageSolver::linearise(double t, const VecX<double>& q0, cons
   };
   evaluate(q0, v0);
   v_dot_ = v_dot;
-  stage_solver::turn(model_, q0, stage_solver::Turn::into_body, v_dot_);
+  stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::body, v_dot_);
   Eigen::Index columns = 0;
-  for (const Cluster& of : clusters_) columns = std::max(columns, of.A_q.cols());
+  for (const Cluster& cluster : clusters_) columns = std::max(columns, cluster.A_q.cols());
   VecX<double> q = q0, v = v0;
   for (Eigen::Index column = 0; column < columns; ++column) {
-    const VecX<double> by = differences(column);
-    VecX<double> change = by;
-    stage_solver::turn(model_, q0, stage_solver::Turn::into_world, change);
+    const VecX<double> difference = differences(column);
+    VecX<double> change = difference;
+    stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::world, change);
     auto evaluate_column = [&](MatX<double> Cluster::*A) {
       evaluate(q, v);
       ++step_->counters.evaluations;
-      stage_solver::turn(model_, q0, stage_solver::Turn::into_body, v_dot);
-      set_column(column, by, A);
+      stage_solver::rotate_velocities(model_, q0, stage_solver::Frame::body, v_dot);
+      set_column(column, difference, A);
     };
     q = q0;
     advance_coordinates(model_, q, change, 1);
@@ -278,12 +284,12 @@ PLIANT_INLINE void StageSolver::linearise(double t, const VecX<double>& q0, cons
     v = v0 + change;
     evaluate_column(&Cluster::A_v);
   }
-  for (Cluster& of : clusters_) {
-    const Eigen::Index n = of.A_q.rows();
-    of.factor.compute(MatX<double>::Identity(n, n) - c_ * of.A_v - c_ * c_ * of.A_q);
+  for (Cluster& cluster : clusters_) {
+    const Eigen::Index n = cluster.A_q.rows();
+    cluster.factor.compute(MatX<double>::Identity(n, n) - c_ * cluster.A_v - c_ * c_ * cluster.A_q);
     ++step_->counters.factorisations;
   }
-  linear_ = true;
+  has_matrix_ = true;
 }
 
 }  // namespace pliant

@@ -1,10 +1,10 @@
 // The solver of implicit stages,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
-// by simplified Newton iteration. The matrix I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot,
-// is formed by differences, once in a step, and only if the iteration without it would cost more. It is
-// formed again if stiff parts turn so far that it no longer helps. Clusters of parts that joints, springs or
-// mutual torques connect have one matrix each, in the frames of the parts, because stiff directions turn with
-// the parts.
+// by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.8).
+// The matrix I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot, is computed by differences, once
+// in a step, and only if the iteration without it would cost more. It is computed again if stiff parts turn
+// so far that it no longer helps. Clusters of parts that joints, springs or mutual torques connect have one
+// matrix each, in the frames of the parts, because stiff directions turn with the parts.
 #pragma once
 
 #include <string>
@@ -20,15 +20,16 @@ class StageSolver {
  public:
   explicit StageSolver(const Model& model);
 
-  /// Begins a step at the state of the context. The context and the scale must outlive the stages of the
-  /// step. c: gamma h of all stages, s. scale: measures the residual of the equations.
+  /// Prepares the stages of a step from the state of the context. The context and the scale must outlive the
+  /// stages. c: gamma h of all stages, s. scale: measures the changes of the iteration.
   void begin(StepContext& step, double c, const ErrorScale& scale);
-  /// Solves the stage at time t (s) for q and v, from the guess that they hold. On return the workspace of
-  /// the step holds the last evaluation. Throws NumericalFailure, naming the worst unknown, if the iteration
-  /// diverges.
+  /// Solves the stage at time t (s) for q and v; their values before the call are the first guess. On return
+  /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
+  /// changes most, if the iteration does not converge.
   void solve(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
-  /// Filters an error estimate by the inverse matrix: components that the step damps away vanish.
-  void damp(VecX<double>& of_q, VecX<double>& of_v) const;
+  /// Filters an error estimate by the inverse matrix: components that the step damps away vanish. Without a
+  /// matrix the estimate does not change.
+  void damp(VecX<double>& q_error, VecX<double>& v_error) const;
 
  private:
   /// Parts whose states affect the accelerations of each other.
@@ -38,14 +39,17 @@ class StageSolver {
     MatX<double> A_q, A_v;
     Eigen::PartialPivLU<MatX<double>> factor;
   };
-  /// Iterates at most as often as pays; returns whether the iteration converged.
+  /// Iterates while further iterations can be cheaper than a new matrix. Returns whether the iteration
+  /// converged.
   bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
   /// Evaluates the matrices A_q and A_v at (t, q, v) by differences and factors the clusters.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
-  /// Sets one column of A_q or A_v of each cluster to the difference of the accelerations in the workspace.
-  void set_column(Eigen::Index column, const VecX<double>& by, MatX<double> Cluster::*A);
-  /// Returns the changes of the coordinates whose accelerations give the column of each cluster.
+  /// Sets one column of A_q or A_v of each cluster to the difference quotient of the accelerations in the
+  /// workspace. difference: differences(column).
+  void set_column(Eigen::Index column, const VecX<double>& difference, MatX<double> Cluster::*A);
+  /// Returns the changes of the coordinates for this column of the matrix of each cluster.
   VecX<double> differences(Eigen::Index column) const;
+  /// Allocates the matrices. Throws NumericalFailure, with the time t (s), if a cluster is too large.
   void allocate_matrices(double t);
   /// Replaces the residuals (rho_q, rho_v) by the Newton change of (q, v).
   void correct(const VecX<double>& q, VecX<double>& rho_q, VecX<double>& rho_v) const;
@@ -53,12 +57,12 @@ class StageSolver {
   const Model& model_;
   std::vector<Cluster> clusters_;
   VecX<double> difference_;  ///< size of the differences, for each velocity, m or rad or 1
-  int max_free_iterations_;  ///< most iterations of a stage without the matrix
-  // Of the step.
+  int max_free_iterations_;  ///< largest number of iterations of a stage without the matrix
+  // The current step.
   StepContext* step_ = nullptr;
   const ErrorScale* scale_ = nullptr;
   double c_ = 0;
-  bool linear_ = false;  ///< whether the matrices are valid
+  bool has_matrix_ = false;  ///< whether the matrices are valid for this step
   mutable VecX<double> tangent_, right_;
   VecX<double> rho_q_, rho_v_, q_guess_, v_guess_, v_dot_;
 };

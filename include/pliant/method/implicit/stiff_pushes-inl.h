@@ -1,10 +1,11 @@
-// Bodies of stiff_pushes.h.
+// Function bodies of stiff_pushes.h: set and reset of the stiffening factor of each part.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/method/implicit/stiff_pushes.h>
 
 #include <algorithm>
+
+#include <pliant/math/header_only.h>
 
 namespace pliant {
 

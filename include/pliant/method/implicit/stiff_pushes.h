@@ -1,23 +1,25 @@
 // The metric of the projection after an implicit step. In the mass metric a projection would move stiff
 // parameters as easily as others, and their stiffness would turn this error of the step into unbounded
-// forces. In the metric M + c D + c^2 K for the q_s of parts without local deformation (c of the stages),
-// they respond as in a step. The difference to C_q^T lambda acts on q_s alone: P and L do not change.
+// forces. For parts without local deformation the metric is therefore M + (c beta + c^2) K_s over q_s, with c
+// of the stages: stiff parameters respond as in a step. The added term acts on q_s alone, so that the linear
+// and the angular momentum do not change.
 #pragma once
 
 #include <pliant/body/dynamics.h>
 
 namespace pliant {
 
-/// While the object lives, impulses on parts act in that metric.
+/// While the object lives, impulses on parts act in this metric.
 class StiffPushes {
  public:
-  /// work: of the last stage, at the state and at time t, s.
+  /// work: the evaluation of the last stage. state: at time t (s). c: of the stages, s.
   StiffPushes(const Dynamics& dynamics, double t, double c, const State& state, Workspace<double>& work);
   ~StiffPushes() { end(); }
   StiffPushes(const StiffPushes&) = delete;
   StiffPushes& operator=(const StiffPushes&) = delete;
 
  private:
+  /// Restores the mass metric.
   void end();
 
   Workspace<double>& work_;
