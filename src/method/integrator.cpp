@@ -56,7 +56,7 @@ const std::vector<IntegratorInfo>& all_integrators() {
        &make<SemiImplicitEuler>},
       {"rk4", 4, "classical Runge-Kutta: four evaluations a step; accurate for smooth motion", &make<Rk4>},
       {"linearly_implicit", 2,
-       "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit the step",
+       "ROS2: two evaluations a step; the elasticity of parts that deform locally does not limit it",
        &make<LinearlyImplicit>},
       {"implicit_midpoint", 2, "conserves quadratic invariants: for very many steps without friction",
        &make<ImplicitMidpoint>},
