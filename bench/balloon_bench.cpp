@@ -1,11 +1,12 @@
-// Cost of soft contact by the number of triangles: a balloon dropped on a plane, and nine balloons on strings
-// that collide.
+// The cost of soft contact by the number of triangles of each balloon: a balloon that falls onto a plane, and
+// nine balloons on strings that collide.
 //
-//   balloon_bench [FOLDER] [MOST]   writes balloon_bench.csv to FOLDER, a table to standard output; at most
-//   MOST triangles for each balloon (5120)
+//   balloon_bench [FOLDER] [MAX]   writes balloon_bench.csv to FOLDER and a table to standard output; MAX:
+//   the largest number of triangles of a balloon (5120)
 //
-// The balloon has R = 0.1 m and 1 mm of rubber with E = 1e7 Pa; it drops by half its radius for half a
-// second. The nine are alike, or have 0.5 mm, 1e5 Pa and a pressure of 30 Pa, and swing for a second.
+// The balloon has a radius of 0.1 m and consists of 1 mm of rubber with E = 1e7 Pa. It falls from a height of
+// half its radius; the run ends after 0.5 s. The nine balloons are of this kind, or of 0.5 mm with E = 1e5 Pa
+// and a pressure of 30 Pa; their runs end after 1 s.
 // Real-time factor: simulated time over processor time, one thread.
 #include <algorithm>
 #include <cmath>
@@ -27,8 +28,8 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,
-                 kLongest = 1e-3;  // of the largest stable step; s
+constexpr double kRadius = 0.1, kDensity = 1000, kShare = 0.7,  // of the largest stable step
+    kMaxStep = 1e-3;                                            // s
 
 struct System {
   const char* name;
@@ -37,9 +38,9 @@ struct System {
 };
 
 Part& balloon(MultiBody& body, const System& system, const std::string& name, int resolution,
-              const Vec3<double>& at) {
+              const Vec3<double>& centre) {
   auto& part = body.add<Primitive<Ellipsoid>>(name, kDensity * system.thickness);
-  part.make_shell().rest({{"a1", kRadius}, {"a2", kRadius}, {"a3", kRadius}}).place(at);
+  part.make_shell().rest({{"a1", kRadius}, {"a2", kRadius}, {"a3", kRadius}}).place(centre);
   LocalSettings settings;
   settings.resolution = resolution;
   settings.alpha = 1;
@@ -55,15 +56,15 @@ void drop(MultiBody& body, const System& system, int resolution) {
   balloon(body, system, "balloon", resolution, {0, 0, 1.5 * kRadius});
   body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1});
 }
-/// Three by three balloons; the outer ones are pulled away from the middle one.
-void hang(MultiBody& body, const System& system, int resolution) {
+/// Adds three by three balloons on strings; the outer ones start pulled away from the middle one.
+void suspend(MultiBody& body, const System& system, int resolution) {
   constexpr double length = 1;
   body.contact.active = true;
   for (int i = 0; i < 9; ++i) {
     const double x = 0.22 * (i % 3 - 1), y = 0.22 * (i / 3 - 1);
     const double angle = std::hypot(x, y) > 0 ? 0.5 : 0;
-    const Vec3<double> out = angle > 0 ? Vec3<double>(x, y, 0).normalized() : Vec3<double>(1, 0, 0);
-    const Vec3<double> hook(x, y, 0), down = std::sin(angle) * out - Vec3<double>(0, 0, std::cos(angle));
+    const Vec3<double> outward = angle > 0 ? Vec3<double>(x, y, 0).normalized() : Vec3<double>(1, 0, 0);
+    const Vec3<double> hook(x, y, 0), down = std::sin(angle) * outward - Vec3<double>(0, 0, std::cos(angle));
     const std::string name = "balloon" + std::to_string(i + 1);
     Part& part = balloon(body, system, name, resolution, hook + (length + kRadius) * down);
     part.place(hook + (length + kRadius) * down,
@@ -73,20 +74,20 @@ void hang(MultiBody& body, const System& system, int resolution) {
   }
 }
 
-/// Returns the largest overlap, m.
+/// Returns the largest overlap of two bodies, or of a body and a plane, m.
 double deepest(const Simulation& simulation, const MeshFinder& finder) {
   std::vector<Contact> found;
   finder.find(simulation.state(), simulation.time(), found);
-  double deep = 0;
-  for (const Contact& contact : found) deep = std::max(deep, -contact.gap);
-  return deep;
+  double max_overlap = 0;
+  for (const Contact& contact : found) max_overlap = std::max(max_overlap, -contact.gap);
+  return max_overlap;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
   const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
-  const int most = argc > 2 ? std::atoi(argv[2]) : 5120;
+  const int max_triangles = argc > 2 ? std::atoi(argv[2]) : 5120;
   char calibration[128];
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
                 bench::multiply_add_peak(), bench::triad_bandwidth());
@@ -104,41 +105,42 @@ int main(int argc, char** argv) try {
   for (const System& system : systems) {
     const bool nine = system.duration == 1;
     for (const int resolution : {3, 5, 10}) {
-      MultiBody body, apart;
-      for (MultiBody* each : {&body, &apart}) (nine ? hang : drop)(*each, system, resolution);
-      apart.contact.active = false;
-      Simulation simulation(body, system.method), loose(apart, system.method);
+      MultiBody body, without_contact;
+      for (MultiBody* each : {&body, &without_contact}) (nine ? suspend : drop)(*each, system, resolution);
+      without_contact.contact.active = false;
+      Simulation simulation(body, system.method), contact_free(without_contact, system.method);
       const int triangles =
           static_cast<int>(surface_nodes(simulation.model().parts()[0].local->mesh()).triangles.cols());
-      if (triangles > most || (nine && resolution > 3)) continue;
+      if (triangles > max_triangles || (nine && resolution > 3)) continue;
       const MeshFinder finder(simulation.model(), simulation.contact()->finder().obstacles());
-      const double h = std::min(kLongest, kShare * largest_stable_step(simulation));
+      const double h = std::min(kMaxStep, kShare * largest_stable_step(simulation));
       const auto steps = static_cast<int>(std::ceil(system.duration / h));
-      double seconds = 0, deep = 0, stretched = 0;
+      double seconds = 0, max_overlap = 0, max_stretch = 0;
       for (int i = 0; i < steps; ++i) {
         const auto start = bench::ProcessorClock::now();
         simulation.step(h);
         seconds += std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
         if (i % 10 != 0) continue;
-        deep = std::max(deep, deepest(simulation, finder));
+        max_overlap = std::max(max_overlap, deepest(simulation, finder));
         for (int j = 0; j < static_cast<int>(simulation.model().joints().size()); ++j)
-          stretched = std::max(stretched, simulation.model().gap(simulation.state(), j));
+          max_stretch = std::max(max_stretch, simulation.model().gap(simulation.state(), j));
       }
-      const double free = bench::seconds_per_call<bench::ProcessorClock>([&] { loose.step(h); }, 0.02, 3);
+      const double free_step =
+          bench::seconds_per_call<bench::ProcessorClock>([&] { contact_free.step(h); }, 0.02, 3);
       const double factor = simulation.time() / seconds, step = seconds / steps;
       const Ledger ledger = simulation.ledger();
       std::printf("%-22s %9d %9.2e %6d | %8.4f %8.4f %8.3f | %9.1e %9.1e %9.1e\n", system.name, triangles, h,
-                  steps, 1e3 * free, 1e3 * step, factor, deep, stretched,
+                  steps, 1e3 * free_step, 1e3 * step, factor, max_overlap, max_stretch,
                   simulation.step_counters().contact_residual);
       std::fflush(stdout);
       file.row("%s,%s,%d,%.4g,%.4g,%.5f,%.5f,%.4f,%.3e,%.3e,%.3e,%.3e\n", system.name, system.method,
-               triangles, h, simulation.time(), 1e3 * free, 1e3 * step, factor, deep, stretched,
+               triangles, h, simulation.time(), 1e3 * free_step, 1e3 * step, factor, max_overlap, max_stretch,
                simulation.step_counters().contact_residual,
                std::abs(ledger.balance) / std::abs(ledger.work.sum()));
     }
   }
   return 0;
-} catch (const std::exception& fault) {
-  std::fprintf(stderr, "%s\n", fault.what());
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }

@@ -1,14 +1,20 @@
-// Cost of contact: time per body and step for ellipsoids dropped on a plane, from the first impacts until
-// they are at rest, and for standing towers and pyramids of ten boxes; the exponent of its growth with their
-// number, and the share of each stage.
+// The cost of contact: time per body and step of ellipsoids that fall onto a plane, from the first impacts
+// until they are at rest, and of standing towers and pyramids of ten boxes. Also the exponent with which the
+// cost grows with the number of bodies, and the share of each stage.
 //
-//   contact_bench [FOLDER] [MOST]   writes contact_bench.csv and contact_exponents.csv to FOLDER, a table to
-//   standard output; at most MOST bodies (10000)
+//   contact_bench [FOLDER] [MAX]
 //
-// Begun: a single step at the end whose impulses warm-start from the contact cache, as in ten steps of
-// eleven; anew: one that starts cold. Asleep: a step in which all bodies sleep. Stages of a step at the end:
-// motion (step of the method), near (search for near bodies), find (contacts), solve (impulses). They are
-// timed one by one, in loops of their own, with warm caches.
+// Writes contact_bench.csv and contact_exponents.csv to FOLDER and a table to standard output. MAX: the
+// largest number of bodies (10000).
+//
+// The table contains the mean time of a step in the whole run (step) and in its last tenth (at rest; columns
+// still_... in the files). It also contains the times of single steps at the end: warm (column begun_us),
+// whose impulses are warm-started from the contact cache, as in ten steps of eleven; cold (column anew_us),
+// without the cache; asleep, when all bodies sleep, which a scene can enable.
+//
+// Stages of a step at the end: motion (the step of the integration method alone), near (candidate pairs),
+// find (contacts), solve (impulses). They are timed one by one in separate loops, so that their caches are
+// warm.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -29,29 +35,29 @@ namespace {
 
 constexpr double kStep = 2e-3, kDuration = 1;
 
-enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: of three parameters each
+enum class Bodies { rigid, soft, towers, pyramids };  ///< soft: three parameters per body
 
 struct System {
   const char* name;
   Bodies bodies;
-  int layers;  ///< on top of each other; 1: side by side
-  int most;    ///< bodies
+  int layers;      ///< layers on top of each other; 1: side by side
+  int max_bodies;  ///< largest number of bodies
 };
 
 /// Times in microseconds per body and step.
 struct Cost {
   std::string system;
   int bodies, contacts;
-  double begun, anew;
-  double step, still_step;  ///< over the whole fall and its impacts; of the end
-  double asleep;            ///< of a step in which all sleep
+  double warm, cold;
+  double step, resting_step;  ///< over the whole run with its impacts; of the end of the run
+  double asleep;              ///< of a step in which all bodies sleep
   double motion, near, find, solve;
-  double deepest;  ///< penetration over all of it, in sizes of a body
+  double deepest;  ///< largest penetration in the run, in sizes of a body
   double residual;
   long fallbacks;
 };
 
-/// Returns a number in [0, 1) from a count: the fractional part of a multiple of the golden ratio.
+/// Returns the fractional part of (i + 1) * ratio: a quasi-random number in [0, 1).
 double spread(int i, double ratio) {
   return std::fmod((i + 1) * ratio, 1.0);
 }
@@ -67,7 +73,7 @@ void build_towers(MultiBody& body, const System& system, int n) {
   }
 }
 
-/// A pyramid with rows of 4, 3, 2 and 1 boxes.
+/// Pyramids with rows of 4, 3, 2 and 1 boxes.
 void build_pyramids(MultiBody& body, int n) {
   constexpr double half = 0.05;
   for (int first = 0; first < n; first += 10)
@@ -105,24 +111,24 @@ void build(MultiBody& body, const System& system, int n) {
 }
 
 Cost measure(const System& system, int n) {
-  MultiBody body, apart, sleepy;
-  for (MultiBody* b : {&body, &apart, &sleepy}) build(*b, system, n);
-  apart.contact.active = false;
+  MultiBody body, without_contact, sleepy;
+  for (MultiBody* each : {&body, &without_contact, &sleepy}) build(*each, system, n);
+  without_contact.contact.active = false;
   sleepy.contact.sleep = Sleep{1e-3};
-  Simulation simulation(body, "rk4"), loose(apart, "rk4"), sleeping(sleepy, "rk4");
+  Simulation simulation(body, "rk4"), contact_free(without_contact, "rk4"), sleeping(sleepy, "rk4");
   Cost cost{};
   cost.system = system.name;
   cost.bodies = n;
-  const int steps = static_cast<int>(std::lround(kDuration / kStep)), still = steps / 10;
+  const int steps = static_cast<int>(std::lround(kDuration / kStep)), resting = steps / 10;
   const ContactFinder& finder = simulation.contact()->finder();
   auto per_body = [&](double seconds, int count) { return seconds * 1e6 / n / count; };
   double seconds = 0;
   for (int i = 0; i < steps; ++i) {
     const auto start = bench::ProcessorClock::now();
     simulation.step(kStep);
-    const double taken = std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
-    seconds += taken;
-    if (i >= steps - still) cost.still_step += per_body(taken, still);
+    const double duration = std::chrono::duration<double>(bench::ProcessorClock::now() - start).count();
+    seconds += duration;
+    if (i >= steps - resting) cost.resting_step += per_body(duration, resting);
     if (i % 10 != 0) continue;
     for (const Contact& contact : finder.find(simulation.state(), simulation.time(), 0))
       cost.deepest = std::max(cost.deepest, -contact.gap / 0.1);
@@ -136,20 +142,20 @@ Cost measure(const System& system, int n) {
   auto stage = [&](auto&& act) {
     return per_body(bench::seconds_per_call<bench::ProcessorClock>(act, 0.01, 5), 1);
   };
-  State unsupported = state;
-  unsupported.contact_cache.clear();
+  State without_cache = state;
+  without_cache.contact_cache.clear();
   auto step_from = [&](const State& from) {
     return stage([&] {
       simulation.set_state(from);
       simulation.step(kStep);
     });
   };
-  cost.begun = step_from(state);
-  cost.anew = step_from(unsupported);
-  loose.set_state(state);
+  cost.warm = step_from(state);
+  cost.cold = step_from(without_cache);
+  contact_free.set_state(state);
   cost.motion = stage([&] {
-    loose.set_state(state);
-    loose.step(kStep);
+    contact_free.set_state(state);
+    contact_free.step(kStep);
   });
   State asleep = state;
   asleep.v.setZero();
@@ -180,7 +186,7 @@ Cost measure(const System& system, int n) {
 
 int main(int argc, char** argv) try {
   const std::string folder = argc > 1 ? std::string(argv[1]) + "/" : "";
-  const int most = argc > 2 ? std::atoi(argv[2]) : 10000;
+  const int max_bodies = argc > 2 ? std::atoi(argv[2]) : 10000;
   auto in_folder = [&](const char* name) { return folder.empty() ? std::string() : folder + name; };
   char calibration[128];
   std::snprintf(calibration, sizeof calibration, "# multiply-adds per second %.3g, triad %.3g bytes/s\n",
@@ -200,30 +206,31 @@ int main(int argc, char** argv) try {
                                     {"pyramids of ten", Bodies::pyramids, 10, 1000}};
   std::printf(
       "microseconds per body and step\n%-15s %6s %8s | %8s %8s %8s %8s %8s | %8s %8s %8s %8s | %8s %8s %s\n",
-      "system", "bodies", "contacts", "step", "still", "begun", "anew", "asleep", "motion", "near", "find",
+      "system", "bodies", "contacts", "step", "at rest", "warm", "cold", "asleep", "motion", "near", "find",
       "solve", "deepest", "residual", "fallbacks");
   for (const System& system : systems) {
     std::vector<Cost> costs;
-    for (int n = 10; n <= std::min(most, system.most); n *= 10) {
+    for (int n = 10; n <= std::min(max_bodies, system.max_bodies); n *= 10) {
       const Cost c = measure(system, n);
       costs.push_back(c);
       std::printf(
           "%-15s %6d %8d | %8.3f %8.3f %8.3f %8.3f %8.3f | %8.3f %8.3f %8.3f %8.3f | %8.1e %8.1e %ld\n",
-          c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.begun, c.anew, c.asleep, c.motion,
+          c.system.c_str(), c.bodies, c.contacts, c.step, c.resting_step, c.warm, c.cold, c.asleep, c.motion,
           c.near, c.find, c.solve, c.deepest, c.residual, c.fallbacks);
       std::fflush(stdout);
       costs_file.row("\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3e,%.3e,%ld\n",
-                     c.system.c_str(), c.bodies, c.contacts, c.step, c.still_step, c.begun, c.anew, c.asleep,
+                     c.system.c_str(), c.bodies, c.contacts, c.step, c.resting_step, c.warm, c.cold, c.asleep,
                      c.motion, c.near, c.find, c.solve, c.deepest, c.residual, c.fallbacks);
     }
     if (costs.size() < 2) continue;
     const double moving = bench::exponent(costs, &Cost::bodies, &Cost::step),
-                 still = bench::exponent(costs, &Cost::bodies, &Cost::still_step);
-    std::printf("%-15s grows as bodies to the power %.3f (step) %.3f (still)\n", system.name, moving, still);
-    exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, still);
+                 resting = bench::exponent(costs, &Cost::bodies, &Cost::resting_step);
+    std::printf("%-15s grows as bodies to the power %.3f (step) %.3f (at rest)\n", system.name, moving,
+                resting);
+    exponents_file.row("\"%s\",%.4f,%.4f\n", system.name, moving, resting);
   }
   return 0;
-} catch (const std::exception& fault) {
-  std::fprintf(stderr, "%s\n", fault.what());
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }

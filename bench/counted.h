@@ -1,4 +1,4 @@
-// A number that counts the additions, multiplications and divisions done with it.
+// A scalar type that counts the additions, multiplications, divisions and square roots done with it.
 #pragma once
 
 #include <cmath>

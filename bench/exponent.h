@@ -1,4 +1,4 @@
-// How cost grows with size.
+// The exponent with which the cost grows with the size of a problem.
 #pragma once
 
 #include <cmath>
@@ -6,7 +6,8 @@
 
 namespace pliant::bench {
 
-/// Slope of log(time of all) over log(size), least squares, from times of one (time / size).
+/// Returns the slope of log(total time) over log(size) by least squares. `time` is the time per unit of size:
+/// the total is `time * size`.
 template <class Cost, class Size>
 double exponent(const std::vector<Cost>& costs, Size Cost::*size, double Cost::*time) {
   double x = 0, y = 0, xx = 0, xy = 0;

@@ -1,6 +1,6 @@
-// The scenes of the figures of the paper on one core: the real-time factor (simulated seconds for each second
-// of the clock), the shares of the stages, and the largest overlap at 60 moments a second, in sizes of the
-// smaller body. CSV to standard output.
+// The scenes of the paper's figures on one core: the real-time factor (simulated time over clock time), the
+// shares of the stages, and the largest overlap, in sizes of the smaller body, sampled 60 times per simulated
+// second. CSV to standard output.
 //
 //   figure_bench SCENES_FOLDER [FOLDER]     writes figure_bench.csv to FOLDER as well
 #include <algorithm>
@@ -25,7 +25,7 @@ using StageTimes = ContactStepping::StageTimes;
 
 namespace {
 
-/// One row of the table.
+/// Simulates a scene and returns its row of the table.
 std::string measure(const std::string& folder, const std::string& name) {
   using Clock = std::chrono::steady_clock;
   auto seconds = [](Clock::time_point from) {
@@ -35,27 +35,28 @@ std::string measure(const std::string& folder, const std::string& name) {
 #ifdef PLIANT_HAS_SUITESPARSE
   use_suitesparse(solver);
 #endif
-  Diagnostics faults;
+  Diagnostics problems;
   const auto before = Clock::now();
-  const auto scene = read_scene(folder + "/" + name + ".json", {}, faults, solver);
+  const auto scene = read_scene(folder + "/" + name + ".json", {}, problems, solver);
   Simulation simulation(scene->body, scene->integrator);
   const double load = seconds(before);
   const auto steps = static_cast<long>(scene->end / scene->step + 0.5);
-  const auto between_looks = std::max(1L, static_cast<long>(1 / (60 * scene->step)));
-  double taken = 0, deepest = 0;
+  const auto steps_per_sample = std::max(1L, static_cast<long>(1 / (60 * scene->step)));
+  double run_time = 0, deepest = 0;
   for (long i = 0; i < steps;) {
     const auto start = Clock::now();
-    for (const long next = std::min(steps, i + between_looks); i < next; ++i) simulation.step(scene->step);
-    taken += seconds(start);
+    for (const long next = std::min(steps, i + steps_per_sample); i < next; ++i) simulation.step(scene->step);
+    run_time += seconds(start);
     deepest = std::max(deepest, deepest_share(simulation));
   }
   const ContactStepping* contact = simulation.contact();
-  const ContactStepping::StageTimes stages = contact != nullptr ? contact->times() : StageTimes{taken, 0, 0};
+  const ContactStepping::StageTimes stages =
+      contact != nullptr ? contact->times() : StageTimes{run_time, 0, 0};
   char line[256];
   std::snprintf(line, sizeof line, "%s,%d,%.3g,%.3g,%.2f,%.2f,%.2f,%.1f,%.1f,%.1f,%.1e\n", name.c_str(),
-                simulation.model().n_v(), scene->end, scene->step, load, taken, simulation.time() / taken,
-                100 * stages.motion / taken, 100 * stages.finding / taken, 100 * stages.resolution / taken,
-                deepest);
+                simulation.model().n_v(), scene->end, scene->step, load, run_time,
+                simulation.time() / run_time, 100 * stages.motion / run_time, 100 * stages.finding / run_time,
+                100 * stages.resolution / run_time, deepest);
   return line;
 }
 

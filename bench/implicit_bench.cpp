@@ -27,13 +27,13 @@ using namespace pliant;
 namespace {
 
 using Clock = bench::ProcessorClock;
-double since(Clock::time_point start) {
+double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 struct Measured {
   Eigen::Index unknowns = 0, entries = 0;
-  double analysis = 0, factorisation = 0;  // s, of the last
+  double analysis = 0, factorisation = 0;  // s, of the last call
 };
 
 /// A sparse factor that measures its cost.
@@ -47,13 +47,13 @@ class MeasuredFactor final : public SparseFactor {
   void do_analyse(const SparseMatrix& A) override {
     const auto start = Clock::now();
     factor_->analyse(A);
-    measured_.analysis = since(start);
+    measured_.analysis = seconds_since(start);
     measured_.unknowns = A.rows();
   }
   bool do_factor(const SparseMatrix& A) override {
     const auto start = Clock::now();
     if (!factor_->factor(A)) return false;
-    measured_.factorisation = since(start);
+    measured_.factorisation = seconds_since(start);
     measured_.entries = factor_->nonzeros();
     for (Eigen::Index i = 0; i < A.rows(); ++i)
       if (!accept_pivot(i, factor_->pivots()[static_cast<std::size_t>(i)])) return false;
@@ -72,8 +72,8 @@ std::unique_ptr<SparseFactor> make_factor(const std::string& kind) {
   return make_cholmod_factor(options);
 }
 
-/// A solid that hangs from a joint at its top, displaced sideways.
-void swinging(MultiBody& body, const std::string& law, int resolution, double E) {
+/// Adds a solid that hangs from a joint at its top, with a sideways initial velocity.
+void add_pendulum(MultiBody& body, const std::string& law, int resolution, double E) {
   auto& part = body.add<Primitive<Ellipsoid>>("solid", 1000.0);
   part.rest({{"a1", 0.15}, {"a2", 0.1}, {"a3", 0.4}}).place({0, 0, -0.4}).velocity({0.4, 0, 0}, {0, -1, 0});
   LocalSettings settings;
@@ -90,7 +90,7 @@ double step_time(const std::string& law, int resolution, const std::string& meth
   body.joint_solver.make_factor = [&] {
     return std::make_unique<MeasuredFactor>(make_factor(factor), measured);
   };
-  swinging(body, law, resolution, 1e6);
+  add_pendulum(body, law, resolution, 1e6);
   Simulation simulation(body, method);
   const double h = 0.5 * largest_stable_step(Simulation(body, "rk4"));
   simulation.step(h);
@@ -99,7 +99,7 @@ double step_time(const std::string& law, int resolution, const std::string& meth
 
 double evaluation_time(const std::string& law, int resolution) {
   MultiBody body;
-  swinging(body, law, resolution, 1e6);
+  add_pendulum(body, law, resolution, 1e6);
   const Simulation simulation(body, "rk4");
   Workspace<double> work;
   const State& state = simulation.state();
@@ -121,7 +121,7 @@ void measure_cost(const std::string& folder) {
       const double evaluation = evaluation_time(law, resolution),
                    rk4 = step_time(law, resolution, "rk4", "eigen", unused);
       for (const std::string factor : {"eigen", "simplicial", "cholmod"}) {
-        if (factor != "cholmod" && resolution > 6) continue;  // minutes
+        if (factor != "cholmod" && resolution > 6) continue;  // would run for minutes
         Measured measured;
         const double implicit = step_time(law, resolution, "linearly_implicit", factor, measured);
         char line[256];
@@ -153,19 +153,19 @@ void measure_error(const std::string& folder) {
     auto run = [&, law = law, E = E](const std::string& method, double h) -> Outcome {
       MultiBody body;
       use_suitesparse(body.joint_solver);
-      swinging(body, law, 3, E);
+      add_pendulum(body, law, 3, E);
       Simulation simulation(body, method);
       const long steps = std::max(1L, static_cast<long>(std::ceil(end / h)));
       const auto start = Clock::now();
       for (long i = 0; i < steps; ++i) simulation.step(end / static_cast<double>(steps));
-      return {simulation.model().position(simulation.state(), 0), since(start), steps};
+      return {simulation.model().position(simulation.state(), 0), seconds_since(start), steps};
     };
     MultiBody body;
-    swinging(body, law, 3, E);
+    add_pendulum(body, law, 3, E);
     const double limit = largest_stable_step(Simulation(body, "rk4"));
-    // RK4 at its stable step and at half of it.
+    // The reference: RK4 at half of the step that is measured below.
     const Outcome exact = run("rk4", 0.45 * limit);
-    auto tell = [&, law = law, E = E](const char* method, double times) {
+    auto measure = [&, law = law, E = E](const char* method, double times) {
       const Outcome outcome = run(method, times * limit);
       char line[256];
       std::snprintf(line, sizeof line, "%s,%.0e,%s,%g,%.3g,%ld,%.4g,%.3g\n", law.c_str(), E, method, times,
@@ -175,8 +175,8 @@ void measure_error(const std::string& folder) {
       std::fflush(stdout);
       file.row("%s", line);
     };
-    tell("rk4", 0.9);
-    for (const double times : {1., 3., 10., 30., 100., 300., 1000.}) tell("linearly_implicit", times);
+    measure("rk4", 0.9);
+    for (const double times : {1., 3., 10., 30., 100., 300., 1000.}) measure("linearly_implicit", times);
   }
 }
 

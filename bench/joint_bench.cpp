@@ -1,13 +1,14 @@
-// Cost of joints: time per link of an evaluation, of a stage of RK4 and of a step, for chains, trees, nets,
-// rings and stars of growing size; the exponents of the growth, and the share of each stage.
+// The cost of joints: time per link of an evaluation of the accelerations, of a stage of RK4 and of a step,
+// for chains, trees, nets, rings and stars of growing size; the exponents of the growth, and the share of
+// each stage.
 //
 //   joint_bench [FOLDER]     writes joint_bench.csv and joint_exponents.csv to FOLDER, a table to standard
 //   output
 //
 // Stages of an evaluation: parts (the same parts without joints), rows (C_q and bias), factor (M^-1 C_q^T,
 // W_c and its factor), solve (lambda and accelerations), rest (points of joints, powers). A stage needs rates
-// alone, which rigid islands compute faster. Both solvers are timed beside the choice of "auto". Projection
-// is a step minus its stages or evaluations. The stages are timed one by one, in loops of their own, with
+// only, which rigid islands compute faster. Both solvers are timed, beside the choice of "auto". Projection
+// is a step minus its stages or evaluations. The stages are timed one by one in separate loops, with
 // warm caches. Every time is the minimum over rounds of all sizes: other load of the machine lasts longer
 // than one measurement and would distort the growth.
 #include <algorithm>
@@ -35,7 +36,7 @@ struct System {
   const char* name;
   bool soft;
   std::function<void(Linkage&, int)> build;
-  std::vector<int> sizes;  ///< what build takes
+  std::vector<int> sizes;  ///< arguments of build
 };
 
 /// Times in microseconds per link.
@@ -44,10 +45,10 @@ struct Cost {
   int links, joints;
   double evaluation, stage, rk4_step, euler_step;
   double parts, rows, factor, solve;
-  double blocks, augmented;  ///< an evaluation by either solver
-  bool takes_augmented;      ///< what solver "auto" takes
+  double blocks, augmented;  ///< of an evaluation with either solver
+  bool auto_is_augmented;    ///< whether solver "auto" selects "augmented"
 
-  void keep_less(const Cost& other) {
+  void minimise_with(const Cost& other) {
     for (double Cost::*time :
          {&Cost::evaluation, &Cost::stage, &Cost::rk4_step, &Cost::euler_step, &Cost::parts, &Cost::rows,
           &Cost::factor, &Cost::solve, &Cost::blocks, &Cost::augmented})
@@ -75,39 +76,39 @@ double step_seconds(Simulation& simulation, const State& start) {
       0.02, 3);
 }
 
-/// Returns the time of an evaluation at a state with a solver, s.
-double evaluation_by(JointSolver::Choice choice, const System& system, int size, const State& at) {
+/// Returns the time of an evaluation at a state with the chosen solver, s.
+double evaluation_seconds(JointSolver::Choice choice, const System& system, int size, const State& state) {
   MultiBody body;
   body.joint_solver.choice = choice;
   Linkage linkage(body, system.soft);
   system.build(linkage, size);
   const Simulation simulation(body, "rk4");
   Workspace<double> work;
-  return seconds([&] { simulation.dynamics().accelerations(at.time(), at.q, at.v, at, work); });
+  return seconds([&] { simulation.dynamics().accelerations(state.time(), state.q, state.v, state, work); });
 }
 
 Cost measure(const System& system, int size) {
-  MultiBody tied, loose;
-  Linkage with(tied, system.soft), without(loose, system.soft, false);
-  system.build(with, size);
-  system.build(without, size);
-  Simulation rk4(tied, "rk4"), euler(tied, "semi_implicit_euler"), apart(loose, "rk4");
+  MultiBody body, loose_body;
+  Linkage linkage(body, system.soft), loose_linkage(loose_body, system.soft, false);
+  system.build(linkage, size);
+  system.build(loose_linkage, size);
+  Simulation rk4(body, "rk4"), euler(body, "semi_implicit_euler"), loose(loose_body, "rk4");
   for (int i = 0; i < 10; ++i) rk4.step(kStep);
   const State start = rk4.state();
   const Model& model = rk4.model();
-  const double t = start.time(), links = static_cast<double>(tied.parts().size());
+  const double t = start.time(), links = static_cast<double>(body.parts().size());
 
   Cost cost{};
   cost.system = system.name;
-  cost.links = static_cast<int>(tied.parts().size());
-  cost.joints = static_cast<int>(tied.joints().size());
+  cost.links = static_cast<int>(body.parts().size());
+  cost.joints = static_cast<int>(body.joints().size());
   auto per_link = [&](auto&& stage) { return seconds(stage) * 1e6 / links; };
-  Workspace<double> work, own_work;
+  Workspace<double> work, loose_work;
   cost.evaluation = per_link([&] { rk4.dynamics().accelerations(t, start.q, start.v, start, work); });
   cost.stage = per_link([&] { rk4.dynamics().rates(t, start.q, start.v, start, work); });
   rk4.dynamics().accelerations(t, start.q, start.v, start, work);
   cost.parts =
-      per_link([&] { apart.dynamics().accelerations(t, start.q, start.v, apart.state(), own_work); });
+      per_link([&] { loose.dynamics().accelerations(t, start.q, start.v, loose.state(), loose_work); });
   auto each_island = [&](auto&& act) {
     return [&model, act] {
       for (const Island& island : model.islands()) act(island);
@@ -118,9 +119,9 @@ Cost measure(const System& system, int size) {
   cost.factor = per_link(each_island(
       [&](const Island& island) { factor_joints<double>(model, island, work.parts, work.joints); }));
   cost.solve = per_link(each_island([&](const Island& island) { solve_joints(model, island, {}, work); }));
-  cost.blocks = evaluation_by(JointSolver::Choice::blocks, system, size, start) * 1e6 / links;
-  cost.augmented = evaluation_by(JointSolver::Choice::augmented, system, size, start) * 1e6 / links;
-  cost.takes_augmented = model.islands().front().augmented;
+  cost.blocks = evaluation_seconds(JointSolver::Choice::blocks, system, size, start) * 1e6 / links;
+  cost.augmented = evaluation_seconds(JointSolver::Choice::augmented, system, size, start) * 1e6 / links;
+  cost.auto_is_augmented = model.islands().front().augmented;
   cost.rk4_step = step_seconds(rk4, start) * 1e6 / links;
   cost.euler_step = step_seconds(euler, start) * 1e6 / links;
   return cost;
@@ -165,31 +166,31 @@ int main(int argc, char** argv) try {
     std::vector<Cost> costs;
     for (const int size : system.sizes) costs.push_back(measure(system, size));
     for (int round = 1; round < kRounds; ++round)
-      for (std::size_t i = 0; i < costs.size(); ++i) costs[i].keep_less(measure(system, system.sizes[i]));
+      for (std::size_t i = 0; i < costs.size(); ++i) costs[i].minimise_with(measure(system, system.sizes[i]));
     for (const Cost& c : costs) {
       std::printf(
           "%-20s %6d %6d | %8.3f %8.3f %8.3f %8.3f | %7.3f %7.3f %7.3f %7.3f %7.3f | %7.3f %7.3f | %8.3f "
-          "%9.3f, takes %s\n",
+          "%9.3f, auto: %s\n",
           c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step, c.parts,
           c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(), c.blocks,
-          c.augmented, c.takes_augmented ? "augmented" : "blocks");
+          c.augmented, c.auto_is_augmented ? "augmented" : "blocks");
       std::fflush(stdout);
       costs_file.row(
           "\"%s\",%d,%d,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f,%.0f,%.4f,%.4f,%s\n",
           c.system.c_str(), c.links, c.joints, c.evaluation, c.stage, c.rk4_step, c.euler_step, c.parts,
           c.rows, c.factor, c.solve, c.rest(), c.rk4_projection(), c.euler_projection(),
-          c.evaluation * 1e-6 * peak, c.blocks, c.augmented, c.takes_augmented ? "augmented" : "blocks");
+          c.evaluation * 1e-6 * peak, c.blocks, c.augmented, c.auto_is_augmented ? "augmented" : "blocks");
     }
-    const double e = bench::exponent(costs, &Cost::links, &Cost::evaluation),
-                 g = bench::exponent(costs, &Cost::links, &Cost::stage),
-                 r = bench::exponent(costs, &Cost::links, &Cost::rk4_step),
-                 s = bench::exponent(costs, &Cost::links, &Cost::euler_step);
+    const double evaluation = bench::exponent(costs, &Cost::links, &Cost::evaluation),
+                 stage = bench::exponent(costs, &Cost::links, &Cost::stage),
+                 rk4 = bench::exponent(costs, &Cost::links, &Cost::rk4_step),
+                 euler = bench::exponent(costs, &Cost::links, &Cost::euler_step);
     std::printf("%-20s grows as links to the power %.3f (evaluation) %.3f (stage) %.3f (rk4) %.3f (euler)\n",
-                system.name, e, g, r, s);
-    exponents_file.row("\"%s\",%.4f,%.4f,%.4f,%.4f\n", system.name, e, g, r, s);
+                system.name, evaluation, stage, rk4, euler);
+    exponents_file.row("\"%s\",%.4f,%.4f,%.4f,%.4f\n", system.name, evaluation, stage, rk4, euler);
   }
   return 0;
-} catch (const std::exception& fault) {
-  std::fprintf(stderr, "%s\n", fault.what());
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "%s\n", error.what());
   return 1;
 }

@@ -1,4 +1,5 @@
-// Linkages for benches: rigid or deformable links tied by ball joints, in SI units, with gravity along -z.
+// Linkages for benches: rigid or deformable links connected by ball joints, in SI units, with gravity along
+// -z.
 #pragma once
 
 #include <cmath>
@@ -11,20 +12,21 @@
 
 namespace pliant::bench {
 
-/// Semi-axes of a link, and the length of its long axis, m.
+/// Semi-axes of a link and the length of its long axis, m.
 inline const Vec3<double> kLinkAxes{0.3, 0.2, 0.1};
 inline constexpr double kLinkLength = 0.6;
 /// Radius of the spheres of a net, m.
 inline constexpr double kNetRadius = 0.1;
 
-/// Builds linkages: parts and joints are numbered in their order.
+/// Adds parts and joints to a body. Their names contain consecutive numbers.
 class Linkage {
  public:
-  /// soft: the semi-axes of links are dynamic. tied: with joints; otherwise the parts fall freely.
-  explicit Linkage(MultiBody& body, bool soft = false, bool tied = true)
-      : body_(body), soft_(soft), tied_(tied) {}
+  /// soft: the semi-axes of links are dynamic. tied: joints are added; without them the parts move
+  /// independently.
+  explicit Linkage(MultiBody& body, bool soft = false, bool with_joints = true)
+      : body_(body), soft_(soft), with_joints_(with_joints) {}
 
-  /// An ellipsoid whose near tip is at a place, its long axis along the first axis of R.
+  /// Adds an ellipsoid whose near tip is at `near`, with its long axis along the first axis of R.
   Part& link(const Vec3<double>& near, const Eigen::Quaterniond& R) {
     auto& part = body_.add<Primitive<Ellipsoid>>("part" + std::to_string(body_.parts().size()));
     part.rest({{"a1", kLinkAxes[0]}, {"a2", kLinkAxes[1]}, {"a3", kLinkAxes[2]}});
@@ -36,8 +38,8 @@ class Linkage {
     part.rest({{"r", radius}});
     return part.place(c);
   }
-  void tie(const Point& a, const Point& b) {
-    if (tied_) body_.ball("joint" + std::to_string(body_.joints().size()), a, b);
+  void connect(const Point& a, const Point& b) {
+    if (with_joints_) body_.ball("joint" + std::to_string(body_.joints().size()), a, b);
   }
 
   static Point near_tip(const Part& link) { return point(link, 0, kPi); }
@@ -45,23 +47,24 @@ class Linkage {
 
  private:
   MultiBody& body_;
-  bool soft_, tied_;
+  bool soft_, with_joints_;
 };
 
-/// A chain of n links from the origin: along x, released at rest, or hanging down; link i is rolled by 0.7 i
-/// rad.
+/// Adds n links from the origin onwards, along x or hanging down, at rest. Link i is rolled by 0.7 i rad.
 inline void chain(Linkage& linkage, int n, bool hanging = false) {
   const Eigen::Quaterniond along(Eigen::AngleAxisd(hanging ? kPi / 2 : 0, Vec3<double>::UnitY()));
-  const Part* before = nullptr;
+  const Part* previous = nullptr;
   for (int i = 0; i < n; ++i) {
     const Eigen::Quaterniond roll(Eigen::AngleAxisd(0.7 * i, Vec3<double>::UnitX()));
     const Part& link = linkage.link(along * Vec3<double>(kLinkLength * i, 0, 0), along * roll);
-    linkage.tie(before == nullptr ? world(0, 0, 0) : Linkage::far_tip(*before), Linkage::near_tip(link));
-    before = &link;
+    linkage.connect(previous == nullptr ? world(0, 0, 0) : Linkage::far_tip(*previous),
+                    Linkage::near_tip(link));
+    previous = &link;
   }
 }
 
-/// A binary tree of n links from the origin: link i carries links 2i + 1 and 2i + 2 at its far tip.
+/// Adds n links as a binary tree from the origin onwards: links 2i + 1 and 2i + 2 are connected to the far
+/// tip of link i.
 inline void tree(Linkage& linkage, int n) {
   struct Node {
     const Part* part;
@@ -71,7 +74,7 @@ inline void tree(Linkage& linkage, int n) {
   for (int i = 0; i < n; ++i) {
     if (i == 0) {
       const Part& root = linkage.link(Vec3<double>::Zero(), Eigen::Quaterniond::Identity());
-      linkage.tie(world(0, 0, 0), Linkage::near_tip(root));
+      linkage.connect(world(0, 0, 0), Linkage::near_tip(root));
       nodes.push_back({&root, Eigen::Quaterniond::Identity()});
       continue;
     }
@@ -80,12 +83,12 @@ inline void tree(Linkage& linkage, int n) {
     const Eigen::Quaterniond R = parent.R * bend * Eigen::AngleAxisd(kPi / 2, Vec3<double>::UnitX());
     const Part& link =
         linkage.link(parent.part->c0() + parent.R * Vec3<double>(kLinkAxes[0], 0, 0), R.normalized());
-    linkage.tie(Linkage::far_tip(*parent.part), Linkage::near_tip(link));
+    linkage.connect(Linkage::far_tip(*parent.part), Linkage::near_tip(link));
     nodes.push_back({&link, R.normalized()});
   }
 }
 
-/// A ring of n links: the sides of an upright regular polygon that hangs from the origin at a corner.
+/// Adds n links as the sides of an upright regular polygon that hangs from the origin at a corner.
 inline void ring(Linkage& linkage, int n) {
   std::vector<const Part*> links;
   Vec3<double> corner = Vec3<double>::Zero();
@@ -94,28 +97,28 @@ inline void ring(Linkage& linkage, int n) {
     links.push_back(&linkage.link(corner, R));
     corner += R * Vec3<double>(kLinkLength, 0, 0);
   }
-  linkage.tie(world(0, 0, 0), Linkage::near_tip(*links.front()));
+  linkage.connect(world(0, 0, 0), Linkage::near_tip(*links.front()));
   for (std::size_t i = 0; i < links.size(); ++i)
-    linkage.tie(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
+    linkage.connect(Linkage::far_tip(*links[i]), Linkage::near_tip(*links[(i + 1) % links.size()]));
 }
 
-/// A star: a sphere on a ball joint at its centre, with n links around it.
+/// Adds a sphere that is fixed at its centre, with n links distributed around it.
 inline void star(Linkage& linkage, int n) {
   const double radius = 0.3;
   const Part& hub = linkage.sphere(Vec3<double>::Zero(), radius);
-  linkage.tie(world(0, 0, 0), point(hub, 0, 0, 0));
+  linkage.connect(world(0, 0, 0), point(hub, 0, 0, 0));
   const double golden = kPi * (3 - std::sqrt(5.0));
   for (int i = 0; i < n; ++i) {
     const double z = 1 - (2.0 * i + 1) / n, s = std::sqrt(1 - z * z);
-    const Vec3<double> out(s * std::cos(golden * i), s * std::sin(golden * i), z);
-    const Part& arm =
-        linkage.link(radius * out, Eigen::Quaterniond::FromTwoVectors(Vec3<double>::UnitX(), out));
-    linkage.tie(point(hub, material_towards(out)), Linkage::near_tip(arm));
+    const Vec3<double> direction(s * std::cos(golden * i), s * std::sin(golden * i), z);
+    const Part& arm = linkage.link(radius * direction,
+                                   Eigen::Quaterniond::FromTwoVectors(Vec3<double>::UnitX(), direction));
+    linkage.connect(point(hub, material_towards(direction)), Linkage::near_tip(arm));
   }
 }
 
-/// A net of n x n touching spheres on a wavy surface (a flat net is singular), joined at their contacts and
-/// pinned at two corners.
+/// Adds n x n touching spheres on a wavy surface (a flat net is singular). Each sphere is connected to its
+/// neighbours at the contact points. Two corners are pinned.
 inline void net(Linkage& linkage, int n) {
   const auto size = static_cast<std::size_t>(n);
   auto along_x = [](int i) {
@@ -138,11 +141,11 @@ inline void net(Linkage& linkage, int n) {
   }
   for (const std::size_t corner : {std::size_t{0}, size - 1}) {
     const Vec3<double> pin = spheres[corner]->c0() - Vec3<double>(kNetRadius, 0, 0);
-    linkage.tie(world(pin[0], pin[1], pin[2]), Linkage::near_tip(*spheres[corner]));
+    linkage.connect(world(pin[0], pin[1], pin[2]), Linkage::near_tip(*spheres[corner]));
   }
   auto touch = [&](std::size_t a, std::size_t b, const Vec3<double>& direction) {
-    linkage.tie(point(*spheres[a], material_towards(direction)),
-                point(*spheres[b], material_towards(-direction)));
+    linkage.connect(point(*spheres[a], material_towards(direction)),
+                    point(*spheres[b], material_towards(-direction)));
   };
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {

@@ -1,5 +1,6 @@
 // Time of writing mesh files of a hundred thousand triangles with normals. One CSV row for each format; the
 // target for OBJ is 20 ms.
+//
 //   obj_bench [rounds] [folder for the files]
 #include <algorithm>
 #include <chrono>
@@ -17,13 +18,13 @@
 namespace {
 
 struct Times {
-  double median, least;  // ms
+  double median, min;  // ms
 };
 
 Times measure(int rounds, const std::function<void()>& task) {
   using Clock = std::chrono::steady_clock;
   std::vector<double> ms;
-  for (int i = 0; i <= rounds; ++i) {  // the first is left out
+  for (int i = 0; i <= rounds; ++i) {  // the first round only warms up
     const Clock::time_point start = Clock::now();
     task();
     if (i > 0) ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
@@ -51,7 +52,7 @@ int main(int argc, char** argv) {
     const Times ms = measure(rounds, [&] { write(file); });
     std::printf("mesh_file,%s,%ld,%ld,%.2f,%.2f,%.2f\n", format, triangles,
                 static_cast<long>(meshes[0].mesh.x.cols()),
-                static_cast<double>(std::filesystem::file_size(file)) / 1e6, ms.median, ms.least);
+                static_cast<double>(std::filesystem::file_size(file)) / 1e6, ms.median, ms.min);
     std::filesystem::remove(file);
   };
   row("obj", [&](const std::filesystem::path& file) { pliant::write_obj(file, meshes); });

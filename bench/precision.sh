@@ -1,8 +1,8 @@
 #!/bin/bash
-# Measures run time against error and draws it: the tables of work_precision and a picture of each error over run time, and
-# of the error at the end over evaluations.
+# Measures run time against error: writes the tables of work_precision and draws run time against each kind of error, and
+# evaluations against the error at the end.
 #
-# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: the program; options are for it (--only, --again)
+# usage: bench/precision.sh FOLDER WORK_PRECISION [option...]     WORK_PRECISION: path of the program; options: its options (--only, --again)
 set -euo pipefail
 [ $# -ge 2 ] || { sed -n '2,5s/^# \?//p' "$0"; exit 2; }
 folder=$1 program=$2

@@ -1,18 +1,18 @@
-// The problems on which methods of integration are compared, in SI units. Bodies are solid, of 1000 kg/m^3,
-// under gravity of 9.81 m/s^2 along -z unless it is said otherwise.
+// The problems on which integration methods are compared, in SI units. Bodies are solid with a density of
+// 1000 kg/m^3, and gravity is 9.81 m/s^2 along -z, unless stated otherwise.
 //
-//   A          free ellipsoid, semi-axes 0.3, 0.2, 0.1 m, about its unstable axis
-//   B          that ellipsoid hung at the tip of its long axis and pushed sideways
-//   C8 ...     chain of n of them tip to tip along x, released at rest, link i rolled by 0.7 i rad
-//   D4 ...     net of n x n touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
-//   dust       free spinning ellipsoid whose semi-axes nothing holds: every particle flies straight
+//   A          free ellipsoid with semi-axes 0.3, 0.2, 0.1 m that spins about its unstable axis
+//   B          that ellipsoid suspended at the tip of its long axis, with a sideways initial velocity
+//   C8 ...     chain of 8 (...) of them tip to tip along x, released at rest, link i rolled by 0.7 i rad
+//   D4 ...     net of 4 x 4 (...) touching spheres of radius 0.1 m on a wavy surface, pinned at two corners
+//   dust       free spinning ellipsoid without stiffness of its semi-axes: every particle flies straight
 //   solid      free tumbling superellipsoid, tapered, twisted and bent, all its parameters elastic
-//   four-bars  40 windows of rods on hinges in a row that turn (IFToMM A02)
-//   assembly   five stretching ellipsoids, apart, while their joints draw them together (Baumgarte)
-//   ringing    free balloon of 432 triangles that rings and tumbles
-//   stiff      the same, a thousand times as stiff and damped, on a string
-//   bounce     a ball that rebounds from a plane, 0.8 times as fast each time, in air that drags
-//   see-saw    a ball that falls onto the end of a board on a pivot and throws up another
+//   four-bars  40 windows of rods on hinges in a row that rotate (IFToMM A02)
+//   assembly   five stretching ellipsoids, initially apart, drawn together by their joints (Baumgarte)
+//   ringing    free tumbling balloon of 432 triangles that vibrates
+//   stiff      that balloon suspended at its top by a ball joint, a thousand times as stiff, with damping
+//   bounce     ball that rebounds from a plane with restitution 0.8, in air with drag
+//   see-saw    ball that falls onto one end of a board on a pivot and throws up another ball
 #pragma once
 
 #include <functional>
@@ -25,8 +25,10 @@ namespace pliant::bench {
 
 struct Problem {
   std::string name;
-  double end;     ///< s
-  double length;  ///< of a body, m; errors are those of centres over it; 0: of all coordinates, by ErrorScale
+  double end;  ///< s
+  /// Length of a body, m: errors are distances of centres relative to this length. 0: errors are norms of all
+  /// coordinates by ErrorScale.
+  double length;
   bool long_running;
   std::function<void(MultiBody&)> build;
 };
@@ -37,7 +39,7 @@ inline Problem chain_of(int n, bool long_running = false) {
             chain(linkage, n);
           }};
 }
-/// Nets are chaotic: the larger, the shorter.
+/// Nets are chaotic: the end time is shorter for larger nets.
 inline Problem net_of(int n, double end, bool long_running = false) {
   return {"D" + std::to_string(n), end, 2 * kNetRadius, long_running, [n](MultiBody& body) {
             Linkage linkage(body);
@@ -57,7 +59,7 @@ inline void pendulum(MultiBody& body) {
   Linkage linkage(body);
   Part& part = linkage.link({0, 0, 0}, R);
   part.velocity(omega.cross(part.c0()), R.conjugate() * omega);
-  linkage.tie(world(0, 0, 0), Linkage::near_tip(part));
+  linkage.connect(world(0, 0, 0), Linkage::near_tip(part));
 }
 
 inline void dust(MultiBody& body) {
@@ -119,11 +121,11 @@ inline void assembly(MultiBody& body) {
   Part& middle = linkage.link({-0.3, 0, 0}, Eigen::Quaterniond::Identity());
   for (int i = 0; i < 4; ++i) {
     const double angle = kPi / 4 + i * kPi / 2;
-    const Vec3<double> out(std::cos(angle), std::sin(angle), 0);
+    const Vec3<double> direction(std::cos(angle), std::sin(angle), 0);
     const Eigen::Quaterniond R(Eigen::AngleAxisd(angle, Vec3<double>::UnitZ()) *
                                Eigen::AngleAxisd(0.5, Vec3<double>::UnitY()));
-    const Part& wing = linkage.link(0.6 * out, R);
-    linkage.tie(point(middle, material_towards(out)), Linkage::near_tip(wing));
+    const Part& wing = linkage.link(0.6 * direction, R);
+    linkage.connect(point(middle, material_towards(direction)), Linkage::near_tip(wing));
   }
 }
 
@@ -159,7 +161,7 @@ inline void see_saw(MultiBody& body) {
   body.contact.active = true;
 }
 
-/// All, in order.
+/// Returns all problems in order.
 inline std::vector<Problem> problems() {
   return {{"A", 10, 0, false, free_ellipsoid},
           {"B", 10, kLinkLength, false, pendulum},

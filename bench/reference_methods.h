@@ -1,5 +1,6 @@
-// References for smooth motion, to rounding, by two methods of order 8 that the engine does not use. They
-// need hundreds of evaluations where RK4 needs millions. Both use accelerations alone, without projection.
+// Reference solutions of smooth motions to nearly full precision, by two methods of order 8. The engine
+// contains neither method. They need hundreds of evaluations where RK4 needs millions. Both use accelerations
+// only, without projection.
 #pragma once
 
 #include <array>
@@ -10,23 +11,24 @@
 
 namespace pliant::bench {
 
-/// The motion y = (q, v) from a state, with constant modes of limits and joints.
+/// The motion y = (q, v) from an initial state. The modes of its limits and joints do not change.
 class SmoothMotion {
  public:
   SmoothMotion(const Dynamics& dynamics, const State& start)
       : dynamics_(dynamics), modes_(start), n_q_(start.q.size()), y_(n_q_ + start.v.size()) {
     y_ << start.q, start.v;
-    lost_.setZero(y_.size());
+    compensation_.setZero(y_.size());
   }
   virtual ~SmoothMotion() = default;
   VecX<double> q() const { return y_.head(n_q_); }
   VecX<double> v() const { return y_.tail(y_.size() - n_q_); }
-  /// Moves from time t to t + h.
+  /// Advances from time t to t + h.
   void step(double t, double h) {
-    // Changes within a step are kept apart from y, so that its rounding is not theirs; Kahan's sum.
-    const VecX<double> to_add = change(t, h) + lost_;
-    const VecX<double> sum = y_ + to_add;
-    lost_ = to_add - (sum - y_);
+    // The change within a step is computed separately from y, so that the rounding of y does not affect it.
+    // The sum is Kahan's compensated sum.
+    const VecX<double> compensated = change(t, h) + compensation_;
+    const VecX<double> sum = y_ + compensated;
+    compensation_ = compensated - (sum - y_);
     y_ = sum;
   }
 
@@ -47,13 +49,13 @@ class SmoothMotion {
   const Dynamics& dynamics_;
   const State modes_;
   Eigen::Index n_q_;
-  VecX<double> y_, lost_;
+  VecX<double> y_, compensation_;
   VecX<double> q_, v_, q_dot_;
   Workspace<double> work_;
 };
 
-/// Gragg's midpoint rule, extrapolated (Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I,
-/// section II.9).
+/// Gragg's midpoint rule with extrapolation (Hairer, Norsett & Wanner, Solving Ordinary Differential
+/// Equations I, section II.9).
 class Extrapolation final : public SmoothMotion {
  public:
   using SmoothMotion::SmoothMotion;
@@ -67,30 +69,31 @@ class Extrapolation final : public SmoothMotion {
     for (int k = 0; k < kColumns; ++k) {
       const int n = 2 * (k + 1);
       const double h = step / n;
-      VecX<double> before = VecX<double>::Zero(slope.size()), now = h * slope;
+      VecX<double> previous = VecX<double>::Zero(slope.size()), latest = h * slope;
       for (int i = 1; i < n; ++i) {
-        before += 2 * h * rates(t + i * h, y() + now);
-        before.swap(now);
+        previous += 2 * h * rates(t + i * h, y() + latest);
+        previous.swap(latest);
       }
       for (int j = 1; j <= k; ++j) {
         const double ratio = static_cast<double>(k + 1) / (k + 1 - j);
         VecX<double>& coarser = T[static_cast<std::size_t>(j - 1)];
-        const VecX<double> better = now + (now - coarser) / (ratio * ratio - 1);
-        coarser.swap(now);
-        now = better;
+        const VecX<double> better = latest + (latest - coarser) / (ratio * ratio - 1);
+        coarser.swap(latest);
+        latest = better;
       }
-      T[static_cast<std::size_t>(k)] = now;
+      T[static_cast<std::size_t>(k)] = latest;
     }
     return T.back();
   }
 };
 
-/// Gauss' collocation with four stages, iterated from one to the next as far as rounding lets it (the same,
-/// section II.7).
+/// Gauss collocation with four stages. The stages are iterated until rounding prevents further convergence
+/// (Hairer, Norsett & Wanner, section II.7).
 class Collocation final : public SmoothMotion {
  public:
   Collocation(const Dynamics& dynamics, const State& start) : SmoothMotion(dynamics, start) {
-    // The zeros of Legendre's polynomial of degree 4; integrals of Lagrange's polynomials to each, and to 1.
+    // The zeros of the Legendre polynomial of degree 4; integrals of the Lagrange polynomials up to each
+    // zero, and up to 1.
     const double near = std::sqrt(3.0 / 7 - 2.0 / 7 * std::sqrt(1.2)),
                  far = std::sqrt(3.0 / 7 + 2.0 / 7 * std::sqrt(1.2));
     c_ = (Weights(-far, -near, near, far).array() + 1) / 2;
@@ -106,24 +109,25 @@ class Collocation final : public SmoothMotion {
   }
 
  private:
-  static constexpr int kStages = 4, kMostIterations = 40;
+  static constexpr int kStages = 4, kMaxIterations = 40;
   static constexpr double kConverged = 1e-3;
   using Weights = Eigen::Vector4d;
 
   VecX<double> change(double t, double h) override {
-    MatX<double> k = rates(t, y()) * Eigen::RowVector4d::Ones(), before;
-    double least = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < kMostIterations; ++i) {
-      before = k;
-      const MatX<double> at = h * before * a_.transpose();
-      for (int s = 0; s < kStages; ++s) k.col(s) = rates(t + c_[s] * h, y() + at.col(s));
-      const double moved = (k - before).norm();
-      if (!(moved < least)) break;
-      least = moved;
+    MatX<double> k = rates(t, y()) * Eigen::RowVector4d::Ones(), previous;
+    double smallest_change = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kMaxIterations; ++i) {
+      previous = k;
+      const MatX<double> increment = h * previous * a_.transpose();
+      for (int s = 0; s < kStages; ++s) k.col(s) = rates(t + c_[s] * h, y() + increment.col(s));
+      const double change_norm = (k - previous).norm();
+      if (!(change_norm < smallest_change)) break;
+      smallest_change = change_norm;
     }
-    // A diverging iteration is refused. The bound is not tighter, because four-bars does not reach 1e-8 near
-    // its singular positions; the other method measures the accuracy.
-    if (!(least <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
+    // A diverging iteration gives no solution. The threshold is not smaller because four-bars, near its
+    // singular positions, does not converge to 1e-8. The comparison with the other method shows the accuracy
+    // of a solution.
+    if (!(smallest_change <= kConverged * k.norm())) k.setConstant(std::numeric_limits<double>::quiet_NaN());
     return h * k * b_;
   }
 

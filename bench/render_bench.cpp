@@ -1,6 +1,7 @@
 // Time of a picture: 20 bodies of about 1000 triangles with shadows at 640x480, with new vertices in each
 // frame, with and without writing the PNG. One CSV row for each picture size; the target for 640x480 with PNG
 // is 45 ms (two raster threads).
+//
 //   render_bench [frames] [folder for the last picture]
 #include <algorithm>
 #include <chrono>
@@ -21,7 +22,7 @@ double signed_power(double x, double e) {
   return std::copysign(std::pow(std::abs(x), e), x);
 }
 
-// A superellipsoid of 2 * columns * (rows - 1) triangles, tapered a little.
+// A superellipsoid of 2 * columns * (rows - 1) triangles, with its poles as single vertices.
 pliant::TriangleMesh superellipsoid(int rows, int columns, double eps1, double eps2,
                                     const Eigen::Vector3d& a) {
   const int rings = rows - 1, poles = rings * columns;
@@ -59,16 +60,18 @@ pliant::TriangleMesh superellipsoid(int rows, int columns, double eps1, double e
   return mesh;
 }
 
-// 4 x 5 bodies that turn and hop.
+// Returns the meshes of 4 x 5 bodies that rotate and hop, at time t.
 std::vector<pliant::TriangleMesh> placed(const std::vector<pliant::TriangleMesh>& rest, double t) {
   std::vector<pliant::TriangleMesh> now = rest;
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const double k = static_cast<double>(i);
-    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.4 * t + k, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-    const Eigen::Vector3d at(1.3 * static_cast<double>(i % 5) - 2.6, 1.3 * static_cast<double>(i / 5) - 1.95,
-                             0.5 + 0.3 * std::abs(std::sin(t + k)));
-    now[i].x = (turn * rest[i].x).colwise() + at;
-    now[i].normals = turn * rest[i].normals;
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(0.4 * t + k, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    const Eigen::Vector3d centre(1.3 * static_cast<double>(i % 5) - 2.6,
+                                 1.3 * static_cast<double>(i / 5) - 1.95,
+                                 0.5 + 0.3 * std::abs(std::sin(t + k)));
+    now[i].x = (rotation * rest[i].x).colwise() + centre;
+    now[i].normals = rotation * rest[i].normals;
   }
   return now;
 }

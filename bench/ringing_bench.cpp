@@ -3,10 +3,10 @@
 // same radius and material, 1 mm thick, with the lowest modes n = 2 at 11.695 Hz (Lamb 1882; on a mesh the
 // next ones lie among short waves). The table has the processor time of a period of the lowest mode and the
 // relative error of the frequencies, by basis. Nodes take steps of 0.9 of the largest stable one; modes take
-// three steps a period and are exact. The error of nodes is that of the modes of their mesh and of the
-// method. Meshes of order 2 have more nodes an element than modes use, and smaller errors. CSV to standard
-// output, then the time of each basis at given errors of the lower mode and of both; "not reached" if no row
-// has such an error.
+// three steps per period, which they solve exactly. The error of nodes is that of the modes of their mesh and
+// of the method. Meshes of order 2 have more nodes per element than modes use, and smaller errors. CSV to
+// standard output, then the time of each basis at given errors of the lower mode and of both modes; "not
+// reached" if no row has at most this error.
 //
 //   ringing_bench [FOLDER]     writes ringing_bench.csv to FOLDER as well
 #include <algorithm>
@@ -33,7 +33,7 @@ namespace {
 
 constexpr double kRadius = 0.1, kYoung = 1e5, kPoisson = 0.3, kDensity = 1000, kThickness = 1e-3;
 
-/// A frequency, Hz, and the number of modes with it.
+/// A natural frequency, Hz, and the number of modes that have it.
 struct Mode {
   double frequency;
   int multiplicity;
@@ -50,7 +50,7 @@ double root(F&& f, double low, double high) {
   return low;
 }
 
-/// T2 and S2 of the solid sphere: roots eta = omega r / c_t.
+/// Returns the modes T2 and S2 of the solid sphere: roots eta = omega r / c_t.
 std::vector<Mode> lamb_modes() {
   const auto j = [](int l, double x) { return std::sph_bessel(static_cast<unsigned>(l), x); };
   const double torsional = root([&](double y) { return j(2, y) - y * j(3, y); }, 2.4, 2.6);
@@ -66,7 +66,7 @@ std::vector<Mode> lamb_modes() {
   return {{torsional * unit, 5}, {spheroidal * unit, 5}};
 }
 
-/// n = 2 of the closed membrane.
+/// Returns the modes n = 2 of the closed membrane.
 std::vector<Mode> membrane_modes() {
   const auto mode = [](int n) -> Mode {
     const double b = n * n + n + 1 + 3 * kPoisson, c = 4 * (1 - kPoisson * kPoisson) * (n * n + n - 2);
@@ -79,7 +79,7 @@ std::vector<Mode> membrane_modes() {
 
 struct Row {
   std::string basis;
-  double error, error_of_both, time;  // time: s a period
+  double error, error_of_both, time;  // time: s per period
 };
 
 /// A measured case: a solid or shell, its basis and resolution.
@@ -90,21 +90,21 @@ struct Case {
   int fineness, order;
 };
 
-LocalSettings settings_of(const Case& of) {
+LocalSettings settings_of(const Case& measured) {
   LocalSettings settings;
-  settings.basis = of.basis;
-  settings.degree = of.fineness;
-  settings.resolution = of.basis == Basis::polynomial ? 4 : of.fineness;
-  settings.order = of.order;
+  settings.basis = measured.basis;
+  settings.degree = measured.fineness;
+  settings.resolution = measured.basis == Basis::polynomial ? 4 : measured.fineness;
+  settings.order = measured.order;
   settings.modes = 12;
-  if (of.shell)
+  if (measured.shell)
     settings.energies = {local_law("membrane", {kYoung, kPoisson, kThickness})};
   else
     settings.energies = {local_law("elastic", {kYoung, kPoisson})};
 #ifdef PLIANT_HAS_SUITESPARSE
   settings.make_factor = [] { return make_cholmod_factor(); };
 #endif
-  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> {  // near T2
+  settings.velocity = [](const Vec3<double>& X) -> Vec3<double> {  // close to the mode T2
     return 0.1 * Vec3<double>(-X[1] * X[2], X[0] * X[2], 0);
   };
   return settings;
@@ -117,21 +117,23 @@ class Bench {
     std::fputs(head().c_str(), stdout);
   }
 
-  /// Measures both methods. of_mesh: frequencies of nodes. Returns the frequencies, for modes their own.
-  std::vector<double> measure(const Case& of, std::vector<double> of_mesh = {}) {
-    const std::vector<Mode> exact = of.shell ? membrane_modes() : lamb_modes();
+  /// Measures a case with both methods. mesh_frequencies: the frequencies for nodes. Returns the frequencies;
+  /// for modes, these are their own.
+  std::vector<double> measure(const Case& measured, std::vector<double> mesh_frequencies = {}) {
+    const std::vector<Mode> exact = measured.shell ? membrane_modes() : lamb_modes();
     MultiBody body;
     body.gravity.setZero();
-    auto& part = body.add<Primitive<Sphere>>("ball", of.shell ? kDensity * kThickness : kDensity);
+    auto& part = body.add<Primitive<Sphere>>("ball", measured.shell ? kDensity * kThickness : kDensity);
     part.rest({{"r", kRadius}});
-    if (of.shell) part.make_shell();
-    part.deform_locally(settings_of(of));
+    if (measured.shell) part.make_shell();
+    part.deform_locally(settings_of(measured));
     const double setup = bench::seconds_per_call([&] { part.prepare(); }, 0, 1);
     if (const Oscillators* all = part.local()->oscillators()) {
       Eigen::Index first = 0;
-      of_mesh.clear();
+      mesh_frequencies.clear();
       for (const Mode& mode : exact) {
-        of_mesh.push_back(all->omega2.segment(first, mode.multiplicity).cwiseSqrt().mean() / (2 * kPi));
+        mesh_frequencies.push_back(all->omega2.segment(first, mode.multiplicity).cwiseSqrt().mean() /
+                                   (2 * kPi));
         first += mode.multiplicity;
       }
     }
@@ -139,41 +141,44 @@ class Bench {
       Simulation simulation(body, method);
       const double period = 1 / exact[0].frequency;
       double h = period / 3;
-      if (of.basis == Basis::nodes) h = 0.9 * largest_stable_step(simulation);
+      if (measured.basis == Basis::nodes) h = 0.9 * largest_stable_step(simulation);
       std::vector<double> errors;
       for (std::size_t k = 0; k < exact.size(); ++k) {
-        double error = of_mesh[k] / exact[k].frequency - 1;
-        const double turn = 2 * kPi * exact[k].frequency * h;
-        if (of.basis == Basis::nodes)
-          error += std::string(method) == "rk4" ? -std::pow(turn, 4) / 120 : turn * turn / 24;
+        double error = mesh_frequencies[k] / exact[k].frequency - 1;
+        const double phase = 2 * kPi * exact[k].frequency * h;
+        if (measured.basis == Basis::nodes)
+          error += std::string(method) == "rk4" ? -std::pow(phase, 4) / 120 : phase * phase / 24;
         errors.push_back(std::abs(error));
       }
       const double time =
           bench::seconds_per_call<bench::ProcessorClock>([&] { simulation.step(h); }, 0.002, 60) * period / h;
       char line[256];
-      std::snprintf(line, sizeof line, "%s,%d,%d,%s,%.2f,%.4f,%.3f,%.3e,%.3e\n", of.name.c_str(), of.fineness,
-                    part.n_v(), method, period / h, time * 1e3, setup, errors.front(), errors.back());
+      std::snprintf(line, sizeof line, "%s,%d,%d,%s,%.2f,%.4f,%.3f,%.3e,%.3e\n", measured.name.c_str(),
+                    measured.fineness, part.n_v(), method, period / h, time * 1e3, setup, errors.front(),
+                    errors.back());
       put(line);
-      rows_.push_back({of.name, errors.front(), std::max(errors.front(), errors.back()), time});
+      rows_.push_back({measured.name, errors.front(), std::max(errors.front(), errors.back()), time});
     }
-    return of_mesh;
+    return mesh_frequencies;
   }
 
   void summary() {
     std::vector<std::string> names;
     for (const Row& row : rows_)
       if (std::find(names.begin(), names.end(), row.basis) == names.end()) names.push_back(row.basis);
-    put("# ms a period of the lower mode, at most, at errors of\n# basis,modes,3%,1%,0.1%,0.01%,0.001%\n");
+    put("# smallest time in ms per period of the lower mode, for errors of at most\n# "
+        "basis,modes,3%,1%,0.1%,0.01%,0.001%\n");
     for (const std::string& name : names)
       for (const bool both : {false, true}) {
         std::string text = "# " + name + (both ? ",both" : ",lower");
-        for (const double most : {3e-2, 1e-2, 1e-3, 1e-4, 1e-5}) {
-          double best = std::numeric_limits<double>::infinity();
+        for (const double level : {3e-2, 1e-2, 1e-3, 1e-4, 1e-5}) {
+          double min_time = std::numeric_limits<double>::infinity();
           for (const Row& row : rows_)
-            if (row.basis == name && (both ? row.error_of_both : row.error) <= most)
-              best = std::min(best, row.time);
+            if (row.basis == name && (both ? row.error_of_both : row.error) <= level)
+              min_time = std::min(min_time, row.time);
           char cell[64];
-          std::snprintf(cell, sizeof cell, std::isfinite(best) ? ",%.3f" : ",not reached", best * 1e3);
+          std::snprintf(cell, sizeof cell, std::isfinite(min_time) ? ",%.3f" : ",not reached",
+                        min_time * 1e3);
           text += cell;
         }
         put((text + "\n").c_str());

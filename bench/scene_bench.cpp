@@ -1,5 +1,5 @@
-// Run time against energy error of scenes, with two methods and decreasing steps; by default the mechanisms
-// A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et al. 2006).
+// Run time against energy error of scenes, with every method and decreasing steps. With a folder the scenes
+// are the mechanisms A01, A02 and A04 of the IFToMM benchmark library (Gonzalez et al. 2006).
 //
 //   scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...
 //
@@ -26,29 +26,30 @@ using namespace pliant;
 
 namespace {
 
-constexpr double kFirstStep = 0.02, kSmallest = 1e-10;  // s, and of the kinetic energy
-constexpr int kHalvings = 6, kLooks = 100;
+constexpr double kFirstStep = 0.02,  // s
+    kMinError = 1e-10;               // of the kinetic energy
+constexpr int kHalvings = 6, kSamples = 100;
 
 struct Run {
   double cpu_ms = 0, error = 0, kinetic = 0, gap = 0;
 };
 
 Run run(const std::string& file, const char* method, double end, long steps) {
-  Diagnostics faults;
-  const auto scene = read_scene(file, {}, faults);
-  Run r;
+  Diagnostics problems;
+  const auto scene = read_scene(file, {}, problems);
+  Run result;
   Simulation simulation(scene->body, method);
   const double h = end / static_cast<double>(steps);
-  for (int look = 0; look < kLooks; ++look) {
+  for (int sample = 0; sample < kSamples; ++sample) {
     const std::clock_t start = std::clock();
-    for (long i = steps * look / kLooks; i < steps * (look + 1) / kLooks; ++i) simulation.step(h);
-    r.cpu_ms += 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    for (long i = steps * sample / kSamples; i < steps * (sample + 1) / kSamples; ++i) simulation.step(h);
+    result.cpu_ms += 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     const Ledger ledger = simulation.ledger();
-    r.error = std::max(r.error, std::abs(ledger.balance));
-    r.kinetic = std::max(r.kinetic, ledger.kinetic);
-    r.gap = std::max(r.gap, widest_gaps(simulation).closed);
+    result.error = std::max(result.error, std::abs(ledger.balance));
+    result.kinetic = std::max(result.kinetic, ledger.kinetic);
+    result.gap = std::max(result.gap, widest_gaps(simulation).closed);
   }
-  return r;
+  return result;
 }
 
 }  // namespace
@@ -69,26 +70,26 @@ int main(int argc, char** argv) try {
       scenes.push_back(argv[i]);
   }
   if (scenes.empty() || !(end > 0)) {
-    std::fprintf(stderr, "scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...\n");
+    std::fprintf(stderr, "usage: scene_bench [--end SECONDS] [-o FILE.csv] SCENES_FOLDER | SCENE.json ...\n");
     return 2;
   }
   bench::TableFile file(csv, "scene,method,end_s,step_s,cpu_ms,energy_error_J,largest_kinetic_J,gap_m\n");
   for (const std::string& scene : scenes) {
     const std::string name = std::filesystem::path(scene).stem().string();
     for (const IntegratorInfo& method : all_integrators()) {
-      double before = std::nan("");
+      double previous_error = std::nan("");
       for (int halving = 0; halving <= kHalvings; ++halving) {
         const long steps = std::max(1L, std::lround(end / kFirstStep)) << halving;
         const double h = end / static_cast<double>(steps);
         try {
-          const Run r = run(scene, method.name, end, steps);
+          const Run result = run(scene, method.name, end, steps);
           std::printf("%-16s %-20s h %9.3g s  %9.2f ms  energy %8.1e of %.1e J  order %5.2f  gap %.1e m\n",
-                      name.c_str(), method.name, h, r.cpu_ms, r.error, r.kinetic, std::log2(before / r.error),
-                      r.gap);
-          file.row("%s,%s,%g,%g,%.3f,%.3e,%.3e,%.3e\n", name.c_str(), method.name, end, h, r.cpu_ms, r.error,
-                   r.kinetic, r.gap);
-          before = r.error;
-          if (r.error < kSmallest * r.kinetic) break;
+                      name.c_str(), method.name, h, result.cpu_ms, result.error, result.kinetic,
+                      std::log2(previous_error / result.error), result.gap);
+          file.row("%s,%s,%g,%g,%.3f,%.3e,%.3e,%.3e\n", name.c_str(), method.name, end, h, result.cpu_ms,
+                   result.error, result.kinetic, result.gap);
+          previous_error = result.error;
+          if (result.error < kMinError * result.kinetic) break;
         } catch (const StepFailure& failure) {
           std::printf("%-16s %-20s h %9.3g s  %s\n", name.c_str(), method.name, h, failure.what());
           file.row("%s,%s,%g,%g,nan,nan,nan,nan\n", name.c_str(), method.name, end, h);

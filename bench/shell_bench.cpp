@@ -22,12 +22,13 @@ using namespace pliant;
 
 namespace {
 
-/// Per triangle; a triangle has half a node and three halves of an edge.
+/// Work per triangle. On average there are 0.5 nodes and 1.5 edges per triangle.
 struct Work {
   double multiply_adds, bytes;
 };
-/// What a node gathers from the corners of K-cornered elements, `elements` a triangle: coordinates read,
-/// forces written and read, their places and the nodes' numbers, forces of nodes.
+/// Returns the bytes per triangle of gathering at the nodes, with `elements` elements of `corners` corners
+/// per triangle: coordinates read, forces of corners written and read, their positions, node numbers, and
+/// forces of nodes.
 double gather_bytes(int corners, double elements) {
   return elements * corners * (3 * 8 + 2 * 3 * 8 + 4 + 4) + 0.5 * 2 * 3 * 8;
 }

@@ -23,7 +23,7 @@ namespace {
 
 void measure(int resolution, int threads, bench::TableFile& file) {
   MultiBody body;
-  body.gravity.setZero();  // it would fall at hundreds of m/s before the last of many steps
+  body.gravity.setZero();  // with gravity its speed would reach hundreds of m/s in the many steps
   auto& part = body.add<Primitive<Sphere>>("balloon", 1.0);
   part.make_shell().velocity({0, 0, 0}, {0.1, 0.2, 0.3});
   LocalSettings settings;
@@ -44,21 +44,21 @@ void measure(int resolution, int threads, bench::TableFile& file) {
   NodalEnergy::Buffer buffer;
   ThreadPool pool(threads);
   Workspace<double> work;
-  // Minimum times of rounds over all of them, so that other load does not distort the ratios.
-  double kernel = std::numeric_limits<double>::infinity(), evaluation = kernel, of_euler = kernel,
-         of_rk4 = kernel;
-  auto least = [](double& time, auto&& call) {
+  // Minimum times over rounds of all calls, so that other load does not distort the ratios.
+  double kernel = std::numeric_limits<double>::infinity(), evaluation = kernel, euler_step = kernel,
+         rk4_step = kernel;
+  auto update_min = [](double& time, auto&& call) {
     time = std::min(time, bench::seconds_per_call(call, 0.002, 30));
   };
   for (int round = 0; round < 4; ++round) {
-    least(kernel, [&] { membrane.add_force(d, f, buffer, &pool); });
-    least(evaluation, [&] { rk4.dynamics().accelerations(0, state.q, state.v, state, work); });
-    least(of_euler, [&] { euler.step(h_euler); });
-    least(of_rk4, [&] { rk4.step(h); });
+    update_min(kernel, [&] { membrane.add_force(d, f, buffer, &pool); });
+    update_min(evaluation, [&] { rk4.dynamics().accelerations(0, state.q, state.v, state, work); });
+    update_min(euler_step, [&] { euler.step(h_euler); });
+    update_min(rk4_step, [&] { rk4.step(h); });
   }
-  auto row = [&](const char* what, double seconds, int evaluations) {
+  auto row = [&](const char* name, double seconds, int evaluations) {
     char line[128];
-    std::snprintf(line, sizeof line, "%s,%.0f,%d,%.3f,%.2f\n", what, triangles, threads,
+    std::snprintf(line, sizeof line, "%s,%.0f,%d,%.3f,%.2f\n", name, triangles, threads,
                   seconds / triangles * 1e9, seconds / evaluations / kernel);
     std::fputs(line, stdout);
     std::fflush(stdout);
@@ -66,8 +66,8 @@ void measure(int resolution, int threads, bench::TableFile& file) {
   };
   row("kernel", kernel, 1);
   row("evaluation", evaluation, 1);
-  row("semi_implicit_euler", of_euler, 1);
-  row("rk4", of_rk4, 4);
+  row("semi_implicit_euler", euler_step, 1);
+  row("rk4", rk4_step, 4);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Time of one force evaluation of solid energies by element, law, size and threads. CSV to standard output,
-// after a table with the meaning of the columns. Operations are counted by evaluating the formulas of an
-// element with a counting number. Bytes are those that pass through memory if no data stay in a cache:
+// after a comment about the columns. Operations are counted by evaluating the formulas of an
+// element with a counting number type. Bytes are those that pass through memory if caches do not retain data:
 // constants of the points, node numbers, forces written and read back, coordinates and forces once for each
 // node. The bandwidth is that of a triad over as many bytes, in the same cache.
 //
@@ -38,7 +38,7 @@ Mesh sphere(int resolution, Solid::Order order) {
   return {part->s(solid.material(), part->parameters().rest()).transpose(), solid.elements()};
 }
 
-/// Returns the operations of one element: the kernel of SolidEnergy with a counting number.
+/// Returns the operations of one element: the kernel of SolidEnergy with a counting number type.
 template <class Element, class Law>
 long operations() {
   using bench::Counted;
@@ -113,7 +113,8 @@ void measure_law(const char* name, const Mesh& mesh, const Machine& machine, ben
 template <class Element>
 void measure_all(const Mesh& mesh, const Machine& machine, bench::TableFile& file) {
   measure_law<Element, LinearLaw>("linear", mesh, machine, file);
-  // Beside the linear energy: the spread of an element and its pushes once more, 6 and 3 operations a corner.
+  // In addition to the linear energy: the volume change of an element and the forces of its mean dilatation,
+  // 6 and 3 operations per corner.
   constexpr long N = Element::n_nodes;
   const AveragedLinearSolid<Element> averaged(mesh.rest, mesh.elements, kMaterial);
   measure({"averaged_linear", N, operations<Element, LinearLaw>() + 9 * N,
@@ -131,7 +132,8 @@ int main(int argc, char** argv) {
     const Machine machine{bench::multiply_add_peak()};
     char head[512];
     std::snprintf(head, sizeof head,
-                  "# one core: %.2f 1e9 multiply-adds/s; shares: of the cores in use, of one triad\n"
+                  "# one core: %.2f 1e9 multiply-adds/s; shares: of the peak of the cores in use, of the "
+                  "bandwidth of one triad\n"
                   "law,element_nodes,elements,nodes,threads,ns_per_element,operations,bytes,gflops,gb_per_s,"
                   "triad_gb_per_s,share_of_peak,share_of_bandwidth\n",
                   machine.multiply_adds * 1e-9);

@@ -19,7 +19,7 @@ void rigid(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
 }
-/// A frozen deformation at its identity: a rigid part must cost no more with it.
+/// A rigid part with a frozen deformation at its identity; it must not cost more.
 void rigid_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Twist>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"twist.angle", 0}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -29,7 +29,7 @@ void three(MultiBody& body, const std::string& name) {
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}}).velocity({0, 0, 0}, {1, 2, 3});
   part.stiffness({{"a1", 1e4}, {"a2", 1e4}, {"a3", 1e4}}).initial_rate({{"a1", 0.1}, {"a2", 0}, {"a3", 0}});
 }
-/// With frozen deformations at their identity: at most 5 % more.
+/// Three parameters with frozen deformations at their identity; they must cost at most 5 % more.
 void three_null(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Ellipsoid, Chain<Taper, Bend>>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.1}, {"bend.direction", 0.3}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -52,7 +52,7 @@ void eleven(MultiBody& body, const std::string& name) {
   part.initial({{"bend.angle", 0.2}, {"twist.angle", 0.1}});
 }
 
-/// With dynamic exponents over their whole ranges: no ring keeps its shape, and the full rule is needed.
+/// Dynamic exponents over their whole ranges: the shape of every ring changes, and the full rule is needed.
 void exponents(MultiBody& body, const std::string& name) {
   auto& part = body.add<Primitive<Soft>>(name);
   part.rest({{"a1", 0.3}, {"a2", 0.2}, {"a3", 0.5}}).velocity({0, 0, 0}, {1, 2, 3});
@@ -71,9 +71,9 @@ void measure(const char* kind, void (*add)(MultiBody&, const std::string&), int 
                               simulation.dynamics().accelerations(0, start.q, start.v, start, work);
                             }) /
                             parts;
-  const Part& one = *body.parts()[0];
-  std::printf("%s,%d,%d,%s,%d,%.4f,%.4f,%.0f\n", kind, one.n_s(), parts, one.mass_points().rule.c_str(),
-              one.mass_points().n_points, step * 1e6, evaluation * 1e6, evaluation * peak);
+  const Part& first = *body.parts()[0];
+  std::printf("%s,%d,%d,%s,%d,%.4f,%.4f,%.0f\n", kind, first.n_s(), parts, first.mass_points().rule.c_str(),
+              first.mass_points().n_points, step * 1e6, evaluation * 1e6, evaluation * peak);
   std::fflush(stdout);
 }
 

@@ -1,4 +1,4 @@
-// A CSV file of a bench, written row by row; none without a path.
+// A CSV file that a bench writes row by row, and a reader for it. Without a path no file is written.
 #pragma once
 
 #include <cstdio>
@@ -9,15 +9,15 @@
 
 namespace pliant::bench {
 
-/// The cells of the rows of a CSV file with this head; none when it is not there. Throws std::runtime_error
-/// when it has another head.
+/// Returns the cells of the rows of a CSV file that starts with `head`; returns no rows if the file does not
+/// exist. Throws std::runtime_error if the file starts differently.
 inline std::vector<std::vector<std::string>> read_rows(const std::string& path, const std::string& head) {
   std::ifstream file(path);
   std::string columns(head.size(), '\0'), line;
   std::vector<std::vector<std::string>> rows;
   if (!file) return rows;
   if (!file.read(columns.data(), static_cast<std::streamsize>(head.size())) || columns != head)
-    throw std::runtime_error(path + ": other columns than " + head);
+    throw std::runtime_error(path + ": expected a file that starts with " + head);
   while (std::getline(file, line)) {
     std::vector<std::string>& row = rows.emplace_back(1);
     for (const char c : line)
@@ -31,7 +31,8 @@ inline std::vector<std::vector<std::string>> read_rows(const std::string& path, 
 
 class TableFile {
  public:
-  /// head: comments and the line of column names. Throws std::runtime_error when it cannot be written.
+  /// head: comment lines and the line of column names. Throws std::runtime_error if the file cannot be
+  /// written.
   TableFile(const std::string& path, const std::string& head) {
     if (path.empty()) return;
     file_.open(path);

@@ -1,5 +1,5 @@
-// Timing for benches: the least time of several repeats, and calibration kernels measured beside them, so
-// that results are ratios that hold on any machine.
+// Timing for benches: the minimum time of several repeats, and calibration kernels measured in the same run,
+// so that results can be given as ratios that are comparable between machines.
 #pragma once
 
 #include <algorithm>
@@ -12,16 +12,16 @@
 
 namespace pliant::bench {
 
-/// Processor time of this process, which others on the machine stretch less: for calls in one thread that are
-/// too long to escape them.
+/// Clock of the processor time of this process. Other processes on the machine disturb it less than
+/// wall-clock time. Use it for calls in one thread that are too long to fit between such disturbances.
 struct ProcessorClock {
   using duration = std::chrono::duration<double>;
   using time_point = std::chrono::time_point<ProcessorClock, duration>;
   static time_point now() { return time_point(duration(static_cast<double>(std::clock()) / CLOCKS_PER_SEC)); }
 };
 
-/// Seconds that one call of f takes: the least of `repeats` batches, each as long as `batch` seconds; short
-/// ones run between what else the machine does.
+/// Returns the seconds per call of f: the minimum over `repeats` batches. A batch contains as many calls as
+/// fill `batch` seconds. Short batches can run undisturbed between other work of the machine.
 template <class Clock = std::chrono::steady_clock, class F>
 double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   auto elapsed = [&](long calls) {
@@ -40,7 +40,8 @@ double seconds_per_call(F&& f, double batch = 0.002, int repeats = 90) {
   return time / static_cast<double>(calls);
 }
 
-/// Multiply-adds per second of one core, in registers; fused where the target has them.
+/// Returns the multiply-adds per second of one core, with operands in registers; fused where the target
+/// supports them.
 inline double multiply_add_peak() {
 #ifdef __AVX__
   constexpr int lanes = 12 * 4;
@@ -64,7 +65,8 @@ inline double multiply_add_peak() {
   return 1000.0 * lanes / time;
 }
 
-/// Bytes per second of a = b + s c over arrays of so many bytes in all; by default they fit no cache.
+/// Returns the bandwidth in bytes per second of a = b + s c over arrays of `bytes` bytes in total. The
+/// default is larger than any cache.
 inline double triad_bandwidth(std::size_t bytes = std::size_t{3} << 26) {
   const std::size_t n = bytes / (3 * sizeof(double));
   std::vector<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);

@@ -1,33 +1,41 @@
-// Run time against error of every method of integration, on the problems of problems.h.
+// Run time against error of every method of integration, over the problems of problems.h.
 //
 //   work_precision [--all] [--only PROBLEM] [--again] [FOLDER]
 //
-// writes to FOLDER work_precision.csv (one row for each run; bench/plot.py draws it), precision_cost.csv
-// (time at a given error), precision_auto.csv (time of auto over the time of the best method) and
-// precision_reference.csv (final positions), and tables to standard output. --all: the long problems too, and
-// four times as long runs. --again: rows of FOLDER for problems that are not measured stay. Of two runs with
-// as many steps and evaluations the smaller time counts: on a shared machine some rounds of the same code
-// give the true cost.
+//   FOLDER     the program writes four files to it:
+//                work_precision.csv       one row per run; bench/plot.py draws it
+//                precision_cost.csv       time at an error
+//                precision_auto.csv       time of auto relative to the best method chosen manually
+//                precision_reference.csv  poses of the bodies at the end
+//   --all      the long problems too, and a time limit of 16 s per run instead of 4 s
+//   --only     this problem only
+//   --again    The rows in FOLDER of problems that are not measured now are preserved. If FOLDER already
+//              contains a run with equal numbers of steps and evaluations, the smaller time is written. Use
+//              it on a machine that others use: several rounds of identical code reveal its run time.
 //
-// Methods without error control take steps of 0.05 s, or eight a run, then each half as long; the others
-// tolerances from 0.1 on, each a tenth of the last. linearly_implicit is measured in both ways, with a
-// tolerance as linearly_implicit_controlled. Each method has at least six settings that succeed; the sweep
-// ends when a run takes 4 s, or when errors are below those of the reference.
+// Tables go to standard output.
 //
-// error: of positions at the end over the length of their bodies, or of all coordinates (error_scale.h);
-// error_along: the worst at eight moments of a run that stops at each, as for gaps and energies; error_v: of
-// velocities at the end, over the fastest; error_lambda: of the forces of joints at the end, over the
-// largest.
+// Methods without error control start with steps of 0.05 s, or with eight steps per run; each further setting
+// halves the step. The others start with the tolerance 0.1; each further setting divides it by ten.
+// linearly_implicit is measured in both ways; with a tolerance it is called linearly_implicit_controlled. A
+// method is measured with at least six settings that succeed. After them, the measurement stops if a run
+// exceeds 4 s, or if the error is below the resolution of the reference.
 //
-// Time: CPU time of the stepping loop, one thread, the minimum of several runs without stops, without the
-// trial of auto.
+// error: at the end; positions of the bodies relative to their length, or all coordinates (error_scale.h).
+// error_along: the maximum at eight times, of a run that stops at each of them; gaps and energies are maxima
+// over these times too. error_v: velocities at the end, relative to the fastest. error_lambda: joint forces
+// at the end, relative to the largest.
 //
-// Reference: collocation, with its difference from extrapolation (reference_methods.h). For nodes and closing
-// joints: dop853 to 1e-12 and dormand_prince to 1e-11, or the smallest tolerance that rounding allows; both
-// use the projection of the engine and its search for the time of closing. For contact: dop853 to 1e-10 and
-// rk4, each in short steps and in half as long ones, extrapolated, because the error of lasting contact is of
-// first order. Errors below 100 times the difference of the references are replaced by that bound; velocities
-// and forces have differences of their own.
+// Time: CPU time of the stepping loop, one thread, the minimum of several runs without intermediate stops.
+// The trial by which auto chooses its method is not included.
+//
+// Reference: the result of collocation; its accuracy is the difference between it and the result of
+// extrapolation (reference_methods.h). With nodes, or with joints that close: dop853 to 1e-12 and
+// dormand_prince to 1e-11, or to the smallest tolerance that rounding permits. These are two methods, but
+// both contain the engine's projection and its search for the time of closing. With contact: dop853 to 1e-10
+// and rk4 with short steps and with half of them, extrapolated, because the error of persistent contacts is
+// of first order. Errors below 100 times the difference are written as 100 times the difference. Velocities
+// and forces have their own differences.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -57,20 +65,20 @@ namespace {
 
 constexpr int kSamples = 8;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Names of the rows with steps of one length, and with a tolerance.
+/// Names of the linearly implicit method with fixed steps and with error control.
 const std::string kFixed = "linearly_implicit", kControlled = kFixed + "_controlled";
 
-/// A setting of a method: a tolerance, or a number of steps.
+/// How a method steps: to a tolerance, or with a number of equal steps.
 struct Setting {
   std::string method;
   double tolerance;
   long steps;
 };
 
-/// A run: its states at the samples and at the end, the forces of joints at the end, and its cost.
+/// A run: its states at the samples and at the end, the joint forces at the end, and its cost.
 struct Outcome {
   std::vector<State> states;
-  State end;  // of a reference: the last of them
+  State end;  // of a reference: the last of the states
   VecX<double> lambda;
   double cpu_ms = 0, balance = 0, kinetic = 0, gap = 0;
   long evaluations = 0, steps = 0;
@@ -83,33 +91,33 @@ double worst_gap(const Model& model, const State& state) {
   return worst;
 }
 
-/// Advances from the start to the end in parts of equal length, with a call after each, whose processor time
-/// is not counted. Returns the time of the parts, s. Throws StepFailure.
+/// Simulates from the start to the end in `intervals` intervals of equal length and calls after_interval
+/// after each of them. Returns the processor time in s, without that of after_interval. Throws StepFailure.
 template <class F>
-double go(const Problem& problem, const Setting& setting, int parts, F&& after_part) {
+double simulate(const Problem& problem, const Setting& setting, int intervals, F&& after_interval) {
   MultiBody body;
   problem.build(body);
   Simulation simulation(body, setting.method, 1, setting.tolerance);
   double seconds = 0;
-  for (int part = 1; part <= parts; ++part) {
-    const double until = problem.end * part / parts;
-    const std::clock_t begin = std::clock();
+  for (int interval = 1; interval <= intervals; ++interval) {
+    const double until = problem.end * interval / intervals;
+    const std::clock_t start = std::clock();
     if (setting.tolerance > 0) {
       while (simulation.time() < until) simulation.step_up_to(until);
     } else {
-      for (long i = 0; i < setting.steps / parts; ++i)
+      for (long i = 0; i < setting.steps / intervals; ++i)
         simulation.step(problem.end / static_cast<double>(setting.steps));
     }
-    seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    after_part(simulation);
+    seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    after_interval(simulation);
   }
   return seconds;
 }
 
-/// Runs once with samples, then repeats for the timing until `repeats` seconds are spent. Samples would cut
-/// steps to a tolerance, so that timed runs go to the end at once; results at the end are of the timed runs.
-/// Throws StepFailure.
-Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) {
+/// Simulates once with samples, then repeatedly until `timed_seconds` seconds are used. With a tolerance the
+/// timed runs have no samples, because samples would shorten steps. In that case the values at the end are
+/// those of the timed runs. Throws StepFailure.
+Outcome run(const Problem& problem, const Setting& setting, double timed_seconds = 0) {
   Outcome result;
   auto at_end = [&](const Simulation& simulation) {
     result.end = simulation.state();
@@ -119,7 +127,7 @@ Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) 
     simulation.dynamics().accelerations(result.end.time(), result.end.q, result.end.v, result.end, work);
     result.lambda = work.joints.lambda;
   };
-  double least = go(problem, setting, kSamples, [&](Simulation& simulation) {
+  double min_seconds = simulate(problem, setting, kSamples, [&](Simulation& simulation) {
     const Ledger ledger = simulation.ledger();
     result.balance = std::max(result.balance, std::abs(ledger.balance));
     result.kinetic = std::max(result.kinetic, ledger.kinetic);
@@ -127,31 +135,31 @@ Outcome run(const Problem& problem, const Setting& setting, double repeats = 0) 
     result.states.push_back(simulation.state());
     at_end(simulation);
   });
-  double spent = least;
-  if (setting.tolerance > 0 && repeats > 0) {
-    least = std::numeric_limits<double>::infinity();
+  double spent = min_seconds;
+  if (setting.tolerance > 0 && timed_seconds > 0) {
+    min_seconds = std::numeric_limits<double>::infinity();
     spent = 0;
   }
-  while (spent < repeats) {
-    const double seconds = go(problem, setting, 1, at_end);
-    least = std::min(least, seconds);
+  while (spent < timed_seconds) {
+    const double seconds = simulate(problem, setting, 1, at_end);
+    min_seconds = std::min(min_seconds, seconds);
     spent += seconds;
   }
-  result.cpu_ms = least * 1e3;
+  result.cpu_ms = min_seconds * 1e3;
   return result;
 }
 
-/// Measures errors by a model of the problem.
-class Meter {
+/// Measures errors with the help of a model of the problem.
+class ErrorMeter {
  public:
-  explicit Meter(const Problem& problem) : length_(problem.length) {
+  explicit ErrorMeter(const Problem& problem) : length_(problem.length) {
     problem.build(body_);
     simulation_ = std::make_unique<Simulation>(body_);
     scale_ = std::make_unique<ErrorScale>(simulation_->model(), 1);
   }
   const Model& model() const { return simulation_->model(); }
 
-  double of_places(const State& a, const State& b) const {
+  double position_error(const State& a, const State& b) const {
     if (!a.q.allFinite() || !b.q.allFinite()) return std::numeric_limits<double>::infinity();
     if (length_ == 0) return scale_->norm(a.q - b.q);
     double worst = 0;
@@ -160,17 +168,17 @@ class Meter {
         worst = std::max(worst, (a.q.segment<3>(part.q0) - b.q.segment<3>(part.q0)).norm() / length_);
     return worst;
   }
-  double along(const Outcome& a, const Outcome& b) const {
+  double error_along(const Outcome& a, const Outcome& b) const {
     double worst = 0;
     for (std::size_t i = 0; i < a.states.size(); ++i)
-      worst = std::max(worst, of_places(a.states[i], b.states[i]));
+      worst = std::max(worst, position_error(a.states[i], b.states[i]));
     return worst;
   }
-  double of_velocities(const Outcome& a, const Outcome& b) const {
+  double velocity_error(const Outcome& a, const Outcome& b) const {
     return scale_->norm(VecX<double>::Zero(a.end.q.size()), a.end.v - b.end.v, b.end.v);
   }
-  /// Returns the difference over the largest entry of b; NaN if b is empty.
-  static double of_forces(const Outcome& a, const Outcome& b) {
+  /// Relative to the largest force of b; NaN without forces.
+  static double force_error(const Outcome& a, const Outcome& b) {
     const double largest = b.lambda.size() > 0 ? b.lambda.cwiseAbs().maxCoeff() : 0;
     return largest > 0 ? (a.lambda - b.lambda).cwiseAbs().maxCoeff() / largest : kNone;
   }
@@ -182,8 +190,8 @@ class Meter {
   std::unique_ptr<ErrorScale> scale_;
 };
 
-/// Returns whether the motion is one smooth function of time that follows from accelerations: closed joints,
-/// no nodes, whose stiffness would bound the steps.
+/// Returns whether the motion is one smooth function of time given by the accelerations: all joints are
+/// closed, and there are no contacts and no nodes (whose stiffness would limit the steps).
 bool is_smooth(const Problem& problem) {
   MultiBody body;
   problem.build(body);
@@ -197,8 +205,9 @@ bool is_smooth(const Problem& problem) {
   });
 }
 
-/// Runs a method to the smallest tolerance that rounding allows: from `finest` on, each ten times the last.
-Outcome to_the_finest(const Problem& problem, const std::string& method, double finest) {
+/// Runs with the first tolerance of finest, 10 finest, 100 finest, ... at which rounding lets the method
+/// succeed.
+Outcome run_at_finest_tolerance(const Problem& problem, const std::string& method, double finest) {
   constexpr double kCoarsest = 1e-9;
   for (double tolerance = finest;; tolerance *= 10) try {
       return run(problem, {method, tolerance, 0});
@@ -207,36 +216,36 @@ Outcome to_the_finest(const Problem& problem, const std::string& method, double 
     }
 }
 
-/// Runs a method of reference_methods.h with the step that agrees best with the step of twice the length;
-/// shorter steps only add rounding.
+/// Computes a reference by a method of reference_methods.h. The step is the one whose result agrees best with
+/// that of the double step; shorter steps only add rounding errors.
 template <class Method>
-Outcome smooth(const Problem& problem, const Meter& meter) {
+Outcome smooth(const Problem& problem, const ErrorMeter& meter) {
   constexpr double kAgree = 1e-14, kFirstStep = 0.0125;
-  constexpr int kMostHalvings = 6;
+  constexpr int kMaxHalvings = 6;
   MultiBody body;
   problem.build(body);
   const Simulation simulation(body, "rk4");
-  Outcome best, before;
-  double least = std::numeric_limits<double>::infinity();
-  for (int halving = 0; halving <= kMostHalvings && least > kAgree; ++halving) {
+  Outcome best, previous;
+  double min_difference = std::numeric_limits<double>::infinity();
+  for (int halving = 0; halving <= kMaxHalvings && min_difference > kAgree; ++halving) {
     const long each = std::max(1L, std::lround(problem.end / kSamples / kFirstStep)) << halving;
     const double h = problem.end / kSamples / static_cast<double>(each);
     Method method(simulation.dynamics(), simulation.state());
-    Outcome now;
+    Outcome latest;
     for (long i = 0; i < kSamples * each; ++i) {
       method.step(static_cast<double>(i) * h, h);
       if ((i + 1) % each != 0) continue;
-      State& state = now.states.emplace_back(simulation.state());
+      State& state = latest.states.emplace_back(simulation.state());
       state.q = method.q();
       state.v = method.v();
       normalise_rotations(simulation.model(), state.q);
-      now.gap = std::max(now.gap, worst_gap(simulation.model(), state));
+      latest.gap = std::max(latest.gap, worst_gap(simulation.model(), state));
     }
-    const double difference = halving == 0 ? least : meter.along(now, before);
-    before = now;
-    if (halving > 0 && !(difference < least)) continue;
-    least = difference;
-    best = now;
+    const double difference = halving == 0 ? min_difference : meter.error_along(latest, previous);
+    previous = latest;
+    if (halving > 0 && !(difference < min_difference)) continue;
+    min_difference = difference;
+    best = latest;
   }
   if (best.states.empty())
     throw std::runtime_error(problem.name + ": no step is short enough for a reference");
@@ -247,7 +256,8 @@ Outcome smooth(const Problem& problem, const Meter& meter) {
   return best;
 }
 
-/// Extrapolates two runs of first order; the second has half the step.
+/// Extrapolates two runs, with errors proportional to their steps, to the step zero. The steps of the second
+/// run are half as long.
 Outcome limit_of(const Outcome& coarse, Outcome fine, const Model& model) {
   for (std::size_t i = 0; i < fine.states.size(); ++i) {
     fine.states[i].q = (2 * fine.states[i].q - coarse.states[i].q).eval();
@@ -263,8 +273,8 @@ struct Cost {
   double cpu_ms, error;
 };
 
-/// Returns the CPU time at an error, by log-log interpolation between the runs on either side, from where all
-/// finer runs are below it; NaN if there are none.
+/// Returns the CPU time at an error level. It is interpolated, log-log, between the coarsest run from which
+/// on all errors are at most `level` and the run before it. Returns NaN if there is no such run.
 double cost_at(const std::vector<Cost>& runs, double level) {
   for (std::size_t i = runs.size(); i-- > 0;) {
     if (runs[i].error <= level) continue;
@@ -275,27 +285,28 @@ double cost_at(const std::vector<Cost>& runs, double level) {
   }
   return runs.empty() ? kNone : runs.front().cpu_ms;
 }
-/// Returns the CPU time of the cheapest run with at most this error for which the next two finer runs are at
-/// most three times worse; NaN if there is none.
+/// Returns the CPU time of the cheapest run with at most this error whose next two finer runs have at most
+/// three times its error. Returns NaN if there is none.
 double cost_of_run(const std::vector<Cost>& runs, double level) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_cost = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    bool counts = runs[i].error <= level;
+    bool qualifies = runs[i].error <= level;
     for (std::size_t k = i + 1; k < std::min(i + 3, runs.size()); ++k)
-      counts = counts && runs[k].error <= 3 * runs[i].error;
-    if (counts) least = std::min(least, runs[i].cpu_ms);
+      qualifies = qualifies && runs[k].error <= 3 * runs[i].error;
+    if (qualifies) min_cost = std::min(min_cost, runs[i].cpu_ms);
   }
-  return std::isfinite(least) ? least : kNone;
+  return std::isfinite(min_cost) ? min_cost : kNone;
 }
 
-/// The rows of earlier rounds in a folder.
+/// The results of earlier rounds in a folder.
 class Rounds {
  public:
-  /// is_measured: whether a problem is measured now, by name. again: whether earlier rows count.
+  /// is_measured: whether a problem, by name, is measured now. again: whether the earlier rows are used.
   Rounds(std::string folder, bool again, std::function<bool(const std::string&)> is_measured)
       : folder_(std::move(folder)), again_(again), is_measured_(std::move(is_measured)) {}
 
-  /// Opens a file of the folder, with the rows that stay.
+  /// Opens a file of the folder for writing and copies the earlier rows of problems that are not measured
+  /// now.
   std::unique_ptr<bench::TableFile> open(const char* name, const std::string& head) const {
     const std::string path = folder_.empty() ? "" : folder_ + name;
     const auto rows = again_ ? bench::read_rows(path, head) : decltype(bench::read_rows(path, head))();
@@ -304,20 +315,21 @@ class Rounds {
       if (!is_measured_(row.front())) file->row(row);
     return file;
   }
-  /// Runs of earlier rounds, by the first columns of their rows.
+  /// Reads the times of earlier runs, with the first columns of their rows as keys.
   void read_runs(const char* name, const std::string& head) {
     if (!again_) return;
     for (const std::vector<std::string>& row : bench::read_rows(folder_ + name, head))
-      if (row.size() > kTime && !row[kTime].empty()) least_[key(row)] = std::stod(row[kTime]);
+      if (row.size() > kTime && !row[kTime].empty()) min_times_[key(row)] = std::stod(row[kTime]);
   }
-  /// Returns the smallest time of a run, including `measured`, ms. run: the cells before the time.
-  double least(const std::string& run, double cpu_ms) const {
-    const auto found = least_.find(run);
-    return found == least_.end() ? cpu_ms : std::min(cpu_ms, found->second);
+  /// Returns the minimum of the time of this run now and in earlier rounds, ms. run: the cells before the
+  /// time.
+  double min_time(const std::string& run, double cpu_ms) const {
+    const auto found = min_times_.find(run);
+    return found == min_times_.end() ? cpu_ms : std::min(cpu_ms, found->second);
   }
 
  private:
-  static constexpr std::size_t kTime = 5;  // its column
+  static constexpr std::size_t kTime = 5;  // column of the time
   static std::string key(const std::vector<std::string>& row) {
     std::string key;
     for (std::size_t i = 0; i < kTime; ++i) key += row[i] + ",";
@@ -327,17 +339,17 @@ class Rounds {
   std::string folder_;
   bool again_;
   std::function<bool(const std::string&)> is_measured_;
-  std::map<std::string, double> least_;
+  std::map<std::string, double> min_times_;
 };
 
-/// The time of auto at an error against that of the best method. Levels that the same two runs reach count
-/// once.
-class Choices {
+/// Compares the cost of auto at an error with that of the best method. If two successive levels have equal
+/// ratios, because the same two runs reach them, the second is ignored.
+class AutomaticChoice {
  public:
-  explicit Choices(const Rounds& rounds)
+  explicit AutomaticChoice(const Rounds& rounds)
       : file_(rounds.open("precision_auto.csv",
                           "problem,error,auto_cpu_ms_per_s,best_cpu_ms_per_s,best,auto_over_best\n")) {}
-  /// NaN: the method does not reach this error.
+  /// cpu_ms: NaN if the method does not reach this error.
   void add(const std::string& method, double error, double cpu_ms) {
     if (std::isnan(cpu_ms)) return;
     if (method == kAutomatic)
@@ -361,17 +373,17 @@ class Choices {
                  ratio);
       sum_ += std::log(ratio);
       ++count_;
-      if (!(ratio <= most_)) {
-        most_ = ratio;
+      if (!(ratio <= max_ratio_)) {
+        max_ratio_ = ratio;
         worst_ = name;
       }
     }
     automatic_.clear();
     best_.clear();
   }
-  void tell() const {
+  void print_summary() const {
     std::printf("auto over the best method: %.2f in the geometric mean over %d levels, %.2f at most (%s)\n",
-                std::exp(sum_ / std::max(1, count_)), count_, most_, worst_.c_str());
+                std::exp(sum_ / std::max(1, count_)), count_, max_ratio_, worst_.c_str());
     std::printf("not reached by auto: %s\n", missed_.empty() ? "none" : missed_.c_str());
   }
 
@@ -389,12 +401,12 @@ class Choices {
 
   std::map<double, double> automatic_;  // by error
   std::map<double, Best, std::greater<>> best_;
-  double sum_ = 0, most_ = 0;
+  double sum_ = 0, max_ratio_ = 0;
   int count_ = 0;
   std::string worst_, missed_;
 };
 
-/// Returns the settings of a method, from the coarsest on.
+/// Returns the settings of a method, the coarsest first.
 std::vector<Setting> settings_of(const std::string& method, bool controlled, double end) {
   std::vector<Setting> all;
   if (controlled) {
@@ -425,7 +437,7 @@ int main(int argc, char** argv) try {
   for (Problem& problem : bench::problems())
     if (only.empty() ? all || !problem.long_running : only == problem.name)
       problems.push_back(std::move(problem));
-  if (problems.empty()) throw std::invalid_argument("there is no problem " + only);
+  if (problems.empty()) throw std::invalid_argument("unknown problem: " + only);
   Rounds rounds(folder, again, [&](const std::string& name) {
     return std::any_of(problems.begin(), problems.end(),
                        [&](const Problem& problem) { return problem.name == name; });
@@ -441,45 +453,46 @@ int main(int argc, char** argv) try {
                                      "problem,method,error,cpu_ms_per_s_interpolated,cpu_ms_per_s_of_run\n");
   const auto reference_file =
       rounds.open("precision_reference.csv", "problem,part,t_s,x,y,z,qw,qx,qy,qz,difference,gap_m\n");
-  Choices choices(rounds);
+  AutomaticChoice choices(rounds);
   constexpr double kLevels[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}, kResolved = 100, kAgreement = 1e-6;
-  constexpr std::size_t kFewest = 6;
-  const double most_ms = all ? 16e3 : 4e3, enough = 0.05;
+  constexpr std::size_t kMinSettings = 6;
+  const double max_ms = all ? 16e3 : 4e3, timed_seconds = 0.05;
   std::vector<std::string> methods{kAutomatic};
   for (const IntegratorInfo& info : all_integrators()) methods.emplace_back(info.name);
   methods.insert(std::find(methods.begin(), methods.end(), kFixed) + 1, kControlled);
 
   for (const Problem& problem : problems) {
-    const Meter meter(problem);
+    const ErrorMeter meter(problem);
     const bool touches = meter.model().body().contact.active;
-    constexpr long steps = 1L << 17;
+    constexpr long steps = 1L << 17;  // of rk4 with contacts
     Outcome exact, other;
     if (is_smooth(problem)) {
       exact = smooth<bench::Collocation>(problem, meter);
       other = smooth<bench::Extrapolation>(problem, meter);
     } else if (touches) {
-      exact = to_the_finest(problem, "dop853", 1e-10);
+      exact = run_at_finest_tolerance(problem, "dop853", 1e-10);
       other = limit_of(run(problem, {"rk4", 0, steps}), run(problem, {"rk4", 0, 2 * steps}), meter.model());
     } else {
-      exact = to_the_finest(problem, "dop853", 1e-12);
-      other = to_the_finest(problem, "dormand_prince", 1e-11);
+      exact = run_at_finest_tolerance(problem, "dop853", 1e-12);
+      other = run_at_finest_tolerance(problem, "dormand_prince", 1e-11);
     }
     exact.end = exact.states.back();
     other.end = other.states.back();
-    const double difference = meter.along(other, exact), difference_v = meter.of_velocities(other, exact),
-                 difference_lambda = Meter::of_forces(other, exact);
-    for (const double most : {difference, difference_v, difference_lambda})
-      if (most > kAgreement || std::isnan(difference) || std::isnan(difference_v))
-        throw std::runtime_error(problem.name + ": the references differ by " + std::to_string(most));
+    const double difference = meter.error_along(other, exact),
+                 difference_v = meter.velocity_error(other, exact),
+                 difference_lambda = ErrorMeter::force_error(other, exact);
+    for (const double largest : {difference, difference_v, difference_lambda})
+      if (largest > kAgreement || std::isnan(difference) || std::isnan(difference_v))
+        throw std::runtime_error(problem.name + ": the references differ by " + std::to_string(largest));
     std::printf("%s: the two references differ by %.1e, velocities by %.1e, forces by %.1e; gap %.1e m\n",
                 problem.name.c_str(), difference, difference_v, difference_lambda, exact.gap);
     for (std::size_t i = 0; i < meter.model().parts().size(); ++i) {
-      const int at = meter.model().parts()[i].q0;
-      if (at < 0) continue;
+      const int q0 = meter.model().parts()[i].q0;
+      if (q0 < 0) continue;
       const VecX<double>& q = exact.end.q;
       reference_file->row("%s,%zu,%g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.15g,%.3e,%.3e\n",
-                          problem.name.c_str(), i, problem.end, q[at], q[at + 1], q[at + 2], q[at + 3],
-                          q[at + 4], q[at + 5], q[at + 6], difference, exact.gap);
+                          problem.name.c_str(), i, problem.end, q[q0], q[q0 + 1], q[q0 + 2], q[q0 + 3],
+                          q[q0 + 4], q[q0 + 5], q[q0 + 6], difference, exact.gap);
     }
     for (const std::string& method : methods) {
       const bool controlled = method == kAutomatic || method == kControlled ||
@@ -487,49 +500,52 @@ int main(int argc, char** argv) try {
       std::vector<Cost> points;
       for (const Setting& setting :
            settings_of(method == kControlled ? kFixed : method, controlled, problem.end)) {
-        const double asked =
+        const double requested =
             controlled ? setting.tolerance : problem.end / static_cast<double>(setting.steps);
-        Outcome of;
+        Outcome outcome;
         try {
-          of = run(problem, setting, enough);
+          outcome = run(problem, setting, timed_seconds);
         } catch (const StepFailure&) {
           runs_file->row("%s,%s,%g,,,,,,,,,,,,1,%.3e,%.3e,%.3e\n", problem.name.c_str(), method.c_str(),
-                         asked, difference, difference_v, difference_lambda);
+                         requested, difference, difference_v, difference_lambda);
           continue;
         }
         char key[160];
-        std::snprintf(key, sizeof key, "%s,%s,%g,%ld,%ld,", problem.name.c_str(), method.c_str(), asked,
-                      of.steps, of.evaluations);
-        of.cpu_ms = rounds.least(key, of.cpu_ms);
-        // The reference is known to the difference of its two methods only.
-        auto resolved = [](double error, double between) { return std::max(error, kResolved * between); };
-        const double error = resolved(meter.of_places(of.end, exact.end), difference),
-                     along = resolved(meter.along(of, exact), difference);
-        points.push_back({of.cpu_ms, error});
-        runs_file->row("%s%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e,%.3e,%.3e\n", key, of.cpu_ms,
-                       of.cpu_ms / problem.end, error, along,
-                       told(meter.of_velocities(of, exact), difference_v),
-                       told(Meter::of_forces(of, exact), difference_lambda), of.gap, of.balance, of.kinetic,
-                       difference, difference_v, difference_lambda);
-        std::printf("  %-20s %9.3g  %8ld steps  %9.2f ms  error %.2e, along %.2e\n", method.c_str(), asked,
-                    of.steps, of.cpu_ms, error, along);
+        std::snprintf(key, sizeof key, "%s,%s,%g,%ld,%ld,", problem.name.c_str(), method.c_str(), requested,
+                      outcome.steps, outcome.evaluations);
+        outcome.cpu_ms = rounds.min_time(key, outcome.cpu_ms);
+        // An error smaller than the uncertainty of the reference cannot be resolved.
+        auto resolved = [](double error, double uncertainty) {
+          return std::max(error, kResolved * uncertainty);
+        };
+        const double error = resolved(meter.position_error(outcome.end, exact.end), difference),
+                     error_along = resolved(meter.error_along(outcome, exact), difference);
+        points.push_back({outcome.cpu_ms, error});
+        runs_file->row("%s%.4f,%.4f,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,%.3e,0,%.3e,%.3e,%.3e\n", key,
+                       outcome.cpu_ms, outcome.cpu_ms / problem.end, error, error_along,
+                       resolved(meter.velocity_error(outcome, exact), difference_v),
+                       resolved(ErrorMeter::force_error(outcome, exact), difference_lambda), outcome.gap,
+                       outcome.balance, outcome.kinetic, difference, difference_v, difference_lambda);
+        std::printf("  %-20s %9.3g  %8ld steps  %9.2f ms  error %.2e, along %.2e\n", method.c_str(),
+                    requested, outcome.steps, outcome.cpu_ms, error, error_along);
         std::fflush(stdout);
-        const bool enough_told = error <= kResolved * difference || error < 1e-11;
-        if (points.size() >= kFewest && (of.cpu_ms > most_ms || enough_told)) break;
+        const bool resolution_reached = error <= kResolved * difference || error < 1e-11;
+        if (points.size() >= kMinSettings && (outcome.cpu_ms > max_ms || resolution_reached)) break;
       }
       std::printf("  %-20s CPU ms per simulated s (of one run) at error", method.c_str());
       for (const double level : kLevels) {
-        const double between = cost_at(points, level) / problem.end,
-                     of = cost_of_run(points, level) / problem.end;
-        std::printf("  %g: %.3g (%.3g)", level, between, of);
-        cost_file->row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, between, of);
-        choices.add(method, level, of);
+        const double interpolated = cost_at(points, level) / problem.end,
+                     cost_of_one = cost_of_run(points, level) / problem.end;
+        std::printf("  %g: %.3g (%.3g)", level, interpolated, cost_of_one);
+        cost_file->row("%s,%s,%g,%.4g,%.4g\n", problem.name.c_str(), method.c_str(), level, interpolated,
+                       cost_of_one);
+        choices.add(method, level, cost_of_one);
       }
       std::printf("\n");
     }
     choices.end_problem(problem.name);
   }
-  choices.tell();
+  choices.print_summary();
   return 0;
 } catch (const std::exception& fault) {
   std::fprintf(stderr, "%s\n", fault.what());

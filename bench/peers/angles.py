@@ -1,4 +1,7 @@
-"""Ball joints as three angles, for engines that have no other: in the order that keeps the middle one small."""
+"""Ball joints as three angles, for engines without other ball joints.
+
+The order of the axes keeps the middle angle small.
+"""
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -6,7 +9,10 @@ from problems import conjugate, product, rotation
 
 
 def order(problem):
-    """Axes in turn, each of the frame that those before it turned: a chain swings about y, B goes round z."""
+    """Returns the axes in order; each is an axis of the frame rotated about the previous axes.
+
+    A chain swings about y; body B revolves about z.
+    """
     return "ZYX" if problem.name == "B" else "YZX"
 
 
@@ -15,16 +21,17 @@ def matrix(problem, angles):
 
 
 def start(problem, parent, child):
-    """Angles of body child in body parent and their rates."""
+    """Returns the angles of body child relative to body parent, and their rates."""
     body = problem.bodies[child]
     quat, omega, world = body.quat, body.omega, np.eye(3)
     if parent >= 0:
-        over = problem.bodies[parent]
-        quat, omega, world = product(conjugate(over.quat), quat), omega - over.omega, rotation(over.quat)
+        parent_body = problem.bodies[parent]
+        quat = product(conjugate(parent_body.quat), quat)
+        omega, world = omega - parent_body.omega, rotation(parent_body.quat)
     axes = ["XYZ".index(axis) for axis in order(problem)]
     angles = Rotation.from_quat(np.roll(quat, -1)).as_euler(order(problem))
-    turned, columns = np.eye(3), []
+    rotated, columns = np.eye(3), []
     for axis, angle in zip(axes, angles):
-        columns.append(turned[:, axis])
-        turned = turned @ Rotation.from_rotvec(angle * np.eye(3)[axis]).as_matrix()
+        columns.append(rotated[:, axis])
+        rotated = rotated @ Rotation.from_rotvec(angle * np.eye(3)[axis]).as_matrix()
     return angles, np.linalg.solve(np.column_stack(columns), world.T @ omega)

@@ -1,10 +1,10 @@
 #!/bin/bash
-# pliant and the peers beside each other, on a machine that others use too: each problem here, then in the peers;
-# and all of that again, of which the least times count:
+# Measures pliant and the peers in alternation, on a machine that others use: each problem in pliant, then in the peers.
+# Repeats this ROUNDS times; the smallest times are written.
 #   bench/peers/beside.sh FOLDER WORK_PRECISION ROUNDS PROBLEMS [options of run.py]
 #   bench/peers/beside.sh out build/release/bench/work_precision 2 "A B C8"
-# FOLDER: where run.sh has installed the peers; gets work_precision.csv and its tables, and peers.csv. The ROUNDS
-# are added to those that it has.
+# FOLDER: the folder in which run.sh has installed the peers. work_precision.csv, its tables and peers.csv are written
+# to it. Results of earlier rounds in it are used too.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 [ $# -ge 4 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What contact costs in other engines, one thread: the problems of bench/contact_bench.cpp and balloon_bench.cpp.
+"""The cost of contact in other engines, one thread: problems of bench/contact_bench.cpp and balloon_bench.cpp.
 
 usage: contact.py FOLDER [--out contact_peers.csv] [--engines mujoco,bullet] [--most 1000] [--rounds 3]
 """
@@ -23,21 +23,21 @@ from run import in_child
 COLUMNS = ("engine,problem,count_or_triangles,step_s,us_per_body_and_step,real_time_factor,deepest_m,"
            "string_error_m").split(",")
 DENSITY, FRICTION, GRAVITY = 1000, 0.5, [0, 0, -9.81]
-# The problems of contact_bench: layers.
+# The problems of contact_bench, with their numbers of layers.
 HEAPS = {"rigid": 1, "rigid, heap": 5}
-STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps from one look at the contacts to the next
-# Those of balloon_bench, and nine of the balloon that is dropped there. beta: damping by its stiffness, s; drag: of
-# all motion, 1/s; balloon, count, duration in s, triangles.
-POISSON, RADIUS, LONGEST, SMALLEST = 0.45, 0.1, 2**-10, 2**-20  # the longest and the smallest step tried, s
+STEP, DURATION, SAMPLED = 2e-3, 1, 10  # s, s, steps between samples of the contacts
+# The problems of balloon_bench. beta: stiffness-proportional damping, s; drag: damping of all motion, 1/s.
+POISSON, RADIUS, MAX_STEP, MIN_STEP = 0.45, 0.1, 2**-10, 2**-20  # the steps tried are between these limits, s
 FIRM = SimpleNamespace(E=1e7, thickness=1e-3, pressure=0, beta=0, drag=0)
 THIN = SimpleNamespace(E=1e5, thickness=5e-4, pressure=30, beta=3e-4, drag=0.25)
+# balloon, count, duration in s, numbers of triangles
 BALLOONS = {"drop": (FIRM, 1, 0.5, [320, 1280, 5120]), "nine on strings": (THIN, 9, 1, [320]),
             "nine firm ones on strings": (FIRM, 9, 1, [320])}
-PATIENCE = 60  # CPU s, after which a configuration is not run again
+MAX_SECONDS = 60  # CPU s after which a configuration is not repeated
 
 
 def ellipsoids(count, layers):
-    """(semi-axes, mass, centre, quaternion w x y z): side by side, or on top of each other."""
+    """Yields (semi-axes, mass, centre, quaternion w x y z) of ellipsoids, side by side or in layers."""
     across = math.ceil(math.sqrt(count / layers))
     for i in range(count):
         a, b, c = ((i + 1) * ratio % 1 for ratio in (0.6180339887498949, 0.7548776662466927, 0.5698402909980532))
@@ -50,7 +50,10 @@ def ellipsoids(count, layers):
 
 
 def mujoco_contact(step):
-    """The stiffest that the documentation calls stable, which is also the fastest here: default 0.02 s."""
+    """Returns the contact parameters that are the stiffest stable ones by the documentation.
+
+    They are also the fastest here. The default time constant is 0.02 s.
+    """
     return {"solref": [2 * step, 1], "friction": [FRICTION, 0.005, 0.0001]}
 
 
@@ -74,13 +77,13 @@ def mujoco_ellipsoids(bodies):
 
 
 def bullet_ellipsoids(bodies):
-    """It has no ellipsoids: hulls of 100 points, spread evenly over them along a spiral."""
+    """Bullet has no ellipsoids: convex hulls of 100 points, distributed evenly on a spiral, replace them."""
     import pybullet
     pybullet.connect(pybullet.DIRECT)
     pybullet.setGravity(*GRAVITY)
     pybullet.setPhysicsEngineParameter(fixedTimeStep=STEP)
     plane = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
-    pybullet.changeDynamics(plane, -1, lateralFriction=1)  # the coefficients are multiplied
+    pybullet.changeDynamics(plane, -1, lateralFriction=1)  # Bullet multiplies the coefficients of two bodies
     z = 1 - (2 * np.arange(100) + 1) / 100
     turn = math.pi * (1 + math.sqrt(5)) * (np.arange(100) + 0.5)
     across = np.sqrt(1 - z * z)
@@ -101,7 +104,7 @@ def bullet_ellipsoids(bodies):
 
 
 def drake_ellipsoids(bodies):
-    """Point contact, solver SAP."""
+    """Drake with point contact and the solver SAP."""
     from pydrake.common.eigen_geometry import Quaternion
     from pydrake.geometry import Ellipsoid, HalfSpace
     from pydrake.math import RigidTransform
@@ -109,7 +112,7 @@ def drake_ellipsoids(bodies):
     from pydrake.multibody.tree import SpatialInertia
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder
-    logging.getLogger("drake").setLevel(logging.ERROR)  # half spaces do not touch soft bodies
+    logging.getLogger("drake").setLevel(logging.ERROR)  # no warnings that half spaces do not touch soft bodies
     friction = CoulombFriction(FRICTION, FRICTION)
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlant(MultibodyPlantConfig(
@@ -138,36 +141,39 @@ def drake_ellipsoids(bodies):
 
 
 def rigid_run(make, count, layers):
-    """(CPU s, deepest)"""
+    """Returns (CPU s, largest depth in m). Throws if the ellipsoids are not on the plane at the end."""
     advance, deepest, heights = make(ellipsoids(count, layers))
-    seconds, deep = 0, 0
+    seconds, max_depth = 0, 0
     for _ in range(round(DURATION / STEP / SAMPLED)):
-        begin = time.process_time()
+        start = time.process_time()
         advance(SAMPLED)
-        seconds += time.process_time() - begin
-        deep = max(deep, deepest())
+        seconds += time.process_time() - start
+        max_depth = max(max_depth, deepest())
     if not (min(heights()) > 0.05 and max(heights()) < 0.06 + 0.2 * layers):
-        raise RuntimeError("they do not lie on the plane")
-    return seconds, deep
+        raise RuntimeError("at the end the ellipsoids are not on the plane")
+    return seconds, max_depth
 
 
 def balloons(balloon, count, triangles, step, integrator):
-    """A flex that resists by its membrane alone, dropped, or nine on tendons from hooks to their topmost vertices."""
+    """Returns a model with one falling balloon, or nine on tendons from hooks to their topmost vertices, and the faces.
+
+    A balloon is a flex with membrane stiffness only.
+    """
     import mujoco
     points, faces = sphere(triangles)
     text = lambda numbers: " ".join(map(str, np.ravel(numbers)))
     mass = DENSITY * balloon.thickness * 4 * math.pi * RADIUS**2
     hooks, parts = [], []
     for i in range(count):
-        at = np.array([0.22 * (i % 3 - 1), 0.22 * (i // 3 - 1), 0]) if count > 1 else np.zeros(3)
-        away, turn = np.linalg.norm(at), np.zeros(4)
-        out, angle = (at / away, 0.5) if away else (at, 0)
+        hook = np.array([0.22 * (i % 3 - 1), 0.22 * (i // 3 - 1), 0]) if count > 1 else np.zeros(3)
+        distance, turn = np.linalg.norm(hook), np.zeros(4)
+        out, angle = (hook / distance, 0.5) if distance else (hook, 0)
         up = [0, 0, math.cos(angle)] - math.sin(angle) * out
         matrix = np.zeros(9)
         mujoco.mju_quatZ2Vec(turn, up)
         mujoco.mju_quat2Mat(matrix, turn)
-        centre = at - (1 + RADIUS) * up if count > 1 else [0, 0, 1.5 * RADIUS]
-        hooks.append(at)
+        centre = hook - (1 + RADIUS) * up if count > 1 else [0, 0, 1.5 * RADIUS]
+        hooks.append(hook)
         parts.append(
             f'<flexcomp name="balloon{i}" type="direct" dim="2" radius="{balloon.thickness / 2}" mass="{mass}"'
             f' point="{text(centre + RADIUS * points @ matrix.reshape(3, 3).T)}" element="{text(faces)}">'
@@ -176,7 +182,7 @@ def balloons(balloon, count, triangles, step, integrator):
     spec = mujoco.MjSpec.from_string(f"<mujoco><worldbody>{''.join(parts)}</worldbody></mujoco>")
     option = spec.option
     option.timestep, option.gravity = step, GRAVITY
-    if integrator != "euler":  # and CG, which is the faster solver there
+    if integrator != "euler":  # with CG, the faster solver for this integrator
         option.integrator, option.solver = mujoco.mjtIntegrator.mjINT_DISCRETE, mujoco.mjtSolver.mjSOL_CG
     if integrator == "ipc":
         option.enableflags |= mujoco.mjtEnableBit.mjENBL_IPC
@@ -185,8 +191,8 @@ def balloons(balloon, count, triangles, step, integrator):
     if count == 1:
         spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1], **mujoco_contact(step))
     else:
-        for i, at in enumerate(hooks):
-            spec.worldbody.add_site(name=f"hook{i}", pos=at)
+        for i, hook in enumerate(hooks):
+            spec.worldbody.add_site(name=f"hook{i}", pos=hook)
             spec.body(f"balloon{i}_0").add_site(name=f"top{i}")
             string = spec.add_tendon(limited=True, range=[0, 1], solref_limit=[2 * step, 1],
                                      solimp_limit=[0.9999, 0.9999, 0.001, 0.5, 2])
@@ -198,7 +204,10 @@ def balloons(balloon, count, triangles, step, integrator):
 
 
 def deepest_balloon(data, faces, count):
-    """What contacts say, but for those that slipped through: vertices behind the floor or another's surface too."""
+    """Returns the largest depth of the contacts, and of vertices behind the floor or inside another balloon.
+
+    Vertices that have passed through a surface have no contacts.
+    """
     each, corners = data.flexvert_xpos.reshape(count, -1, 3), data.flexvert_xpos[faces].reshape(count, -1, 3, 3)
     if count == 1:
         return max(mujoco_depth(data), -each[0, :, 2].min())
@@ -206,8 +215,8 @@ def deepest_balloon(data, faces, count):
                                      for i in range(count) for j in range(count) if i != j))
 
 
-def push(model, data, faces, pressure):
-    """The force of a pressure inside; flexes have none."""
+def add_pressure(model, data, faces, pressure):
+    """Applies the forces of an internal pressure; flexes have no pressure of their own."""
     a, b, c = data.flexvert_xpos[faces.T]
     forces = np.zeros((model.nflexvert, 3))
     for corner in faces.T:
@@ -216,42 +225,45 @@ def push(model, data, faces, pressure):
 
 
 def balloon_run(balloon, count, duration, triangles, step, integrator):
-    """(CPU s, deepest, greatest stretch of a string), or None where it is not stable. Pressure is not timed."""
+    """Returns (CPU s, largest depth, largest stretch of a string in m), or None if the run is unstable.
+
+    The pressure is not timed.
+    """
     import mujoco
     mujoco.set_mju_user_warning(lambda _: None)
     warnings.simplefilter("ignore")
     model, faces = balloons(balloon, count, triangles, step, integrator)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    seconds, deep, stretch = 0, 0, 0
+    seconds, max_depth, stretch = 0, 0, 0
     for i in range(round(duration / step)):
         if balloon.pressure:
-            push(model, data, faces, balloon.pressure)
-        begin = time.process_time()
+            add_pressure(model, data, faces, balloon.pressure)
+        start = time.process_time()
         try:
             mujoco.mj_step(model, data)
-        except mujoco.FatalError:  # no memory for the contacts of what burst
+        except mujoco.FatalError:  # not enough memory for the contacts after a blow-up
             return None
-        seconds += time.process_time() - begin
+        seconds += time.process_time() - start
         if i % SAMPLED == 0:
-            deep = max(deep, deepest_balloon(data, faces, count))
+            max_depth = max(max_depth, deepest_balloon(data, faces, count))
         stretch = max(stretch, *data.ten_length - 1, 0) if count > 1 else 0
         extent = np.ptp(data.flexvert_xpos.reshape(count, -1, 3), axis=1)
         if any(warning.number for warning in data.warning) or not extent.max() < 4 * RADIUS:
             return None
-    return seconds, deep, stretch
+    return seconds, max_depth, stretch
 
 
-def least(run, *args, rounds):
-    """The run of least CPU time, each in a process of its own."""
+def fastest(run, *args, rounds):
+    """Returns the run of minimum CPU time. Each run is a separate process."""
     best = in_child(run, *args)
     spent = best[0] if best else 0
     for _ in range(rounds - 1):
-        if not best or spent > PATIENCE:
+        if not best or spent > MAX_SECONDS:
             break
-        again = in_child(run, *args)
-        spent += again[0]
-        best = min(best, again)
+        repeated = in_child(run, *args)
+        spent += repeated[0]
+        best = min(best, repeated)
     return best
 
 
@@ -259,30 +271,30 @@ RIGID = {"mujoco": mujoco_ellipsoids, "bullet": bullet_ellipsoids, "drake": drak
 DISTRIBUTIONS = {"mujoco": "mujoco", "bullet": "pybullet", "drake": "drake"}
 
 
-def rows(engines, most, rounds):
+def rows(engines, max_bodies, rounds):
     for engine in engines:
         for problem, layers in HEAPS.items():
-            for count in (n for n in (10, 100, 1000) if n <= most):
+            for count in (n for n in (10, 100, 1000) if n <= max_bodies):
                 try:
-                    seconds, deep = least(rigid_run, RIGID[engine], count, layers, rounds=rounds)
-                except Exception as fault:  # whatever an engine throws
+                    seconds, max_depth = fastest(rigid_run, RIGID[engine], count, layers, rounds=rounds)
+                except Exception as fault:  # any exception of an engine
                     print(f"{engine}, {problem}, {count}: FAILED, {fault}", flush=True)
                     continue
                 yield [engine, problem, count, STEP, f"{seconds / count / (DURATION / STEP) * 1e6:.3f}",
-                       f"{DURATION / seconds:.4g}", f"{deep:.3e}", ""]
+                       f"{DURATION / seconds:.4g}", f"{max_depth:.3e}", ""]
     if "mujoco" not in engines:
         return
     for problem, (balloon, count, duration, sizes) in BALLOONS.items():
         for triangles in sizes:
             for integrator in ("euler", "discrete", "ipc"):
-                step, found = LONGEST, None
-                while step >= SMALLEST and not found:
-                    found = least(balloon_run, balloon, count, duration, triangles, step, integrator, rounds=rounds)
+                step, found = MAX_STEP, None
+                while step >= MIN_STEP and not found:
+                    found = fastest(balloon_run, balloon, count, duration, triangles, step, integrator, rounds=rounds)
                     step /= 2
                 if found:
-                    seconds, deep, stretch = found
+                    seconds, max_depth, stretch = found
                     yield [f"mujoco {integrator}", problem, triangles, 2 * step, "", f"{duration / seconds:.4g}",
-                           f"{deep:.3e}", f"{stretch:.3e}" if count > 1 else ""]
+                           f"{max_depth:.3e}", f"{stretch:.3e}" if count > 1 else ""]
 
 
 def main():
@@ -290,8 +302,8 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, help="default: FOLDER/contact_peers.csv")
     parser.add_argument("--engines", type=lambda s: s.split(","), default=list(RIGID))
-    parser.add_argument("--most", type=int, default=1000, help="bodies")
-    parser.add_argument("--rounds", type=int, default=3, help="of which the least time counts")
+    parser.add_argument("--most", type=int, default=1000, help="largest number of bodies")
+    parser.add_argument("--rounds", type=int, default=3, help="runs per configuration; the minimum time is written")
     options = parser.parse_args()
     for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ[variable] = "1"

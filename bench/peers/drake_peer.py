@@ -1,5 +1,7 @@
-"""Drake: ball joints of three angles in a tree, continuous plant, error-controlled integrators; nets by its
-discrete solver with ball constraints."""
+"""Drake: a tree of ball joints with three angles, continuous plant, error-controlled integrators.
+
+Nets: the discrete solver with ball constraints.
+"""
 from functools import partial
 
 import numpy as np
@@ -11,7 +13,7 @@ from pydrake.systems.analysis import GetIntegrationSchemes, ResetIntegratorFromF
 
 import angles
 from problems import WORLD, rotation
-from timing import least_seconds
+from timing import minimum_seconds
 
 DISTRIBUTION = "drake"
 
@@ -25,12 +27,12 @@ def plant_of(problem, step):
     for i, body in enumerate(problem.bodies):
         inertia = SpatialInertia(body.mass, np.zeros(3), UnitInertia(*(body.inertia / body.mass)))
         bodies[i] = plant.AddRigidBody(f"body{i}", inertia)
-    # Yaw, pitch and roll of the joint's frames are the angles of angles.py.
+    # Yaw, pitch and roll of the frames of a joint are the angles of angles.py.
     aligned = RotationMatrix() if angles.order(problem) == "ZYX" else RotationMatrix.MakeXRotation(-np.pi / 2)
     spanning, loops = problem.tree()
 
-    def frame(k, body, point):
-        return plant.AddFrame(FixedOffsetFrame(f"{k}", bodies[body].body_frame(), RigidTransform(aligned, point)))
+    def frame(name, body, point):
+        return plant.AddFrame(FixedOffsetFrame(name, bodies[body].body_frame(), RigidTransform(aligned, point)))
 
     joints = [plant.AddJoint(BallRpyJoint(f"joint{child}", frame(f"parent{child}", parent, rp),
                                           frame(f"child{child}", child, rc), 0.0))
@@ -49,12 +51,12 @@ def simulate(problem, step, configure):
         context = simulator.get_mutable_context()
         for joint, (parent, _, child, _) in zip(joints, problem.tree()[0]):
             body = problem.bodies[child]
-            over = rotation(problem.bodies[parent].quat) if parent != WORLD else np.eye(3)
+            parent_rotation = rotation(problem.bodies[parent].quat) if parent != WORLD else np.eye(3)
             omega = body.omega - (problem.bodies[parent].omega if parent != WORLD else 0)
             (first, second, third), _ = angles.start(problem, parent, child)
             pitch = second if angles.order(problem) == "ZYX" else -second
             joint.set_angles(context, [third, pitch, first])
-            joint.set_angular_velocity(context, aligned.matrix().T @ over.T @ omega)
+            joint.set_angular_velocity(context, aligned.matrix().T @ parent_rotation.T @ omega)
         if not joints:
             for i, body in enumerate(problem.bodies):
                 pose = RigidTransform(RotationMatrix(rotation(body.quat)), body.pos)
@@ -64,7 +66,7 @@ def simulate(problem, step, configure):
         simulator.Initialize()
         return simulator
 
-    seconds, simulator = least_seconds(prepare, lambda simulator: simulator.AdvanceTo(problem.end))
+    seconds, simulator = minimum_seconds(prepare, lambda simulator: simulator.AdvanceTo(problem.end))
     context = simulator.get_context()
     poses = [plant.EvalBodyPoseInWorld(context, bodies[i]) for i in range(len(problem.bodies))]
     return (seconds, np.array([X.translation() for X in poses]),

@@ -1,11 +1,11 @@
-"""Reference end poses, what they are known to, and the error against them."""
+"""Reference poses at the end, their resolution, and the error of a pose."""
 import csv
 
 import numpy as np
 
 
 def read_references(path):
-    """{problem: (centres, quaternions)} of a precision_reference.csv."""
+    """Returns {problem: (centres, quaternions)} from a precision_reference.csv."""
     poses = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
@@ -13,14 +13,14 @@ def read_references(path):
     return {name: (np.array(p)[:, :3], np.array(p)[:, 3:]) for name, p in poses.items()}
 
 
-def read_least(path):
-    """{problem: error below which nothing is told apart}: 100 times what the two methods of the reference differ by."""
+def read_resolutions(path):
+    """Returns {problem: smallest error that can be resolved}: 100 times the difference of the two reference methods."""
     with open(path, newline="") as file:
         return {row["problem"]: 100 * float(row["difference"]) for row in csv.DictReader(file)}
 
 
 def error(problem, pose, reference):
-    """The worst distance of a body's centre in lengths of a body; of A the angle of rotation, rad."""
+    """Returns the largest distance of a body centre, in lengths of a body; for A, the angle of rotation, rad."""
     (c, q), (c0, q0) = pose, reference
     if not (np.isfinite(c).all() and np.isfinite(q).all()):
         return float("nan")

@@ -1,4 +1,4 @@
-"""Exudyn: explicit Lie-group and kinematic-tree runs, and implicit ones with spherical joints."""
+"""Exudyn: explicit runs with Lie-group nodes and kinematic trees, and implicit runs with spherical joints."""
 from functools import partial
 
 import exudyn as exu
@@ -8,17 +8,17 @@ from scipy.spatial.transform import Rotation
 
 import angles
 from problems import WORLD, rotation
-from timing import least_seconds
+from timing import minimum_seconds
 
 DISTRIBUTION = "exudyn"
 
 exu.SetWriteToConsole(False)
-SPARSE_FROM = 4  # bodies
+SPARSE_FROM = 4  # bodies from which on the linear solver is sparse
 REVOLUTE = {"X": exu.JointType.RevoluteX, "Y": exu.JointType.RevoluteY, "Z": exu.JointType.RevoluteZ}
 
 
 class Bodies:
-    """A node of 6 or 7 coordinates a body, spherical joints between them."""
+    """One node of 6 or 7 coordinates per body, and spherical joints between bodies."""
 
     def __init__(self, problem, node):
         self.system = exu.SystemContainer().AddSystem()
@@ -27,10 +27,10 @@ class Bodies:
         self.bodies = []
         for body in problem.bodies:
             inertia = items.RigidBodyInertia(mass=body.mass, inertiaTensor=np.diag(body.inertia))
-            made = mbs.CreateRigidBody(inertia=inertia, nodeType=node, referencePosition=body.pos,
+            number = mbs.CreateRigidBody(inertia=inertia, nodeType=node, referencePosition=body.pos,
                                        referenceRotationMatrix=rotation(body.quat), initialVelocity=body.vel,
                                        initialAngularVelocity=body.omega, gravity=problem.gravity)
-            self.bodies.append(made)
+            self.bodies.append(number)
         for joint in problem.joints:
             markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=ground if k == WORLD else self.bodies[k],
                                                            localPosition=point))
@@ -39,15 +39,15 @@ class Bodies:
         mbs.Assemble()
 
     def pose(self):
-        def of(kind):
+        def output(kind):
             return np.array([self.system.GetObjectOutputBody(b, kind) for b in self.bodies])
 
-        R = of(exu.OutputVariableType.RotationMatrix).reshape(-1, 3, 3)
-        return of(exu.OutputVariableType.Position), np.roll(Rotation.from_matrix(R).as_quat(), 1, axis=1)
+        R = output(exu.OutputVariableType.RotationMatrix).reshape(-1, 3, 3)
+        return output(exu.OutputVariableType.Position), np.roll(Rotation.from_matrix(R).as_quat(), 1, axis=1)
 
 
 class Tree:
-    """Minimal coordinates: three revolute joints for each ball joint, the first two of massless links."""
+    """Minimal coordinates: three revolute joints per ball joint; the first two links have no mass."""
 
     def __init__(self, problem):
         self.problem = problem
@@ -64,9 +64,9 @@ class Tree:
                 centres.append(-rc if k == 2 else np.zeros(3))
                 masses.append(body.mass if k == 2 else 0)
             last[child], origin[child] = len(kinds) - 1, rc
-            turned, turning = angles.start(problem, parent, child)
-            start += list(turned)
-            rates += list(turning)
+            joint_angles, joint_rates = angles.start(problem, parent, child)
+            start += list(joint_angles)
+            rates += list(joint_rates)
         self.system = exu.SystemContainer().AddSystem()
         n = len(kinds)
         node = self.system.AddNode(items.NodeGenericODE2(
@@ -80,12 +80,12 @@ class Tree:
 
     def pose(self):
         q = self.system.systemData.GetODE2Coordinates().reshape(-1, 3)
-        at = {WORLD: (np.zeros(3), np.eye(3))}
-        for (parent, rp, child, rc), turned in zip(self.spanning, q):
-            c, R = at[parent]
-            turn = R @ angles.matrix(self.problem, turned)
-            at[child] = c + R @ rp - turn @ rc, turn
-        poses = [at[i] for i in range(len(q))]
+        placed = {WORLD: (np.zeros(3), np.eye(3))}
+        for (parent, rp, child, rc), joint_angles in zip(self.spanning, q):
+            c, R = placed[parent]
+            child_rotation = R @ angles.matrix(self.problem, joint_angles)
+            placed[child] = c + R @ rp - child_rotation @ rc, child_rotation
+        poses = [placed[i] for i in range(len(q))]
         R = np.array([R for _, R in poses])
         return np.array([c for c, _ in poses]), np.roll(Rotation.from_matrix(R).as_quat(), 1, axis=1)
 
@@ -119,7 +119,7 @@ def solve(model, make_solver, options):
     def loop(solver):
         failed.append(not solver.SolveSteps(mbs, options))
 
-    seconds, solver = least_seconds(prepare, loop)
+    seconds, solver = minimum_seconds(prepare, loop)
     solver.FinalizeSolver(mbs, options)
     if any(failed):
         raise RuntimeError(solver.GetErrorString())
@@ -136,7 +136,7 @@ def by_tolerance(problem, make_model, kind, tolerance):
     options = settings(problem, kind)
     time = options.timeIntegration
     time.automaticStepSize = True
-    time.numberOfSteps = round(problem.end / 0.1)  # the longest step
+    time.numberOfSteps = round(problem.end / 0.1)  # from the longest step
     time.initialStepSize, time.minimumStepSize = 1e-4, 1e-9
     time.relativeTolerance = time.absoluteTolerance = tolerance
     return solve(make_model(problem), exu.MainSolverExplicit, options)

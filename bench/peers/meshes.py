@@ -1,11 +1,14 @@
-"""Closed triangle meshes: a sphere, and how deep points are in one."""
+"""Closed triangle meshes: a sphere, and the depth of points inside a mesh."""
 import math
 
 import numpy as np
 
 
 def sphere(triangles):
-    """Vertices on the unit sphere, the first of them on top, and triangles: an icosahedron, each divided in four."""
+    """Returns vertices on the unit sphere, the topmost one first, and triangles.
+
+    The triangles of an icosahedron are divided into four until there are enough of them.
+    """
     ring = [[2 * math.cos(a), 2 * math.sin(a), 1] for a in np.arange(10) * math.pi / 5]
     upper, lower = ring[::2], [[x, y, -z] for x, y, z in ring[1::2]]
     points = [np.array(p) / np.linalg.norm(p) for p in [[0, 0, 1], *upper, *lower, [0, 0, -1]]]
@@ -17,7 +20,7 @@ def sphere(triangles):
         middles, finer = {}, []
 
         def middle(i, j):
-            if (found := middles.get((j, i))) is None:  # an edge is met once in either sense
+            if (found := middles.get((j, i))) is None:  # each edge occurs once in each direction
                 points.append((points[i] + points[j]) / np.linalg.norm(points[i] + points[j]))
                 found = middles[i, j] = len(points) - 1
             return found
@@ -34,16 +37,19 @@ def dot(a, b):
 
 
 def deepest_inside(points, corners):
-    """The greatest distance to the surface of points inside it; corners: of each triangle, counter-clockwise."""
+    """Returns the largest distance to the surface over the points inside it.
+
+    corners: the corners of each triangle, counter-clockwise.
+    """
     points = points[((points > corners.min(axis=(0, 1))) & (points < corners.max(axis=(0, 1)))).all(axis=1)]
-    to = [corners[:, k] - points[:, None] for k in range(3)]
-    a, b, c = to
-    la, lb, lc = (np.linalg.norm(side, axis=2) for side in to)
-    below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
-    inside = np.arctan2(dot(a, np.cross(b, c)), below).sum(axis=1) > math.pi  # halves of solid angles
+    sides = [corners[:, k] - points[:, None] for k in range(3)]
+    a, b, c = sides
+    la, lb, lc = (np.linalg.norm(side, axis=2) for side in sides)
+    denominator = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    inside = np.arctan2(dot(a, np.cross(b, c)), denominator).sum(axis=1) > math.pi  # sum of half solid angles
     if not inside.any():
         return 0.0
-    a, b, c = (side[inside] for side in to)
+    a, b, c = (side[inside] for side in sides)
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal, axis=2)[..., None]
     to_edges, above = np.inf, True

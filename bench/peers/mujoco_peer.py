@@ -4,14 +4,14 @@ from functools import partial
 import mujoco
 
 from problems import WORLD, conjugate, product, rotation
-from timing import least_seconds
+from timing import minimum_seconds
 
 DISTRIBUTION = "mujoco"
 
-mujoco.set_mju_user_warning(lambda _: None)  # of what is counted as failed
+mujoco.set_mju_user_warning(lambda _: None)  # no messages about runs that fail
 
-IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]  # of `connect`: the stiffest that is taken
-STEPS_OF_CONNECT = 2  # its time constant in steps, the shortest that the documentation calls stable
+IMPEDANCE = [0.9999, 0.9999, 0.001, 0.5, 2]  # of `connect`: the stiffest that MuJoCo accepts
+STEPS_OF_CONNECT = 2  # time constant of `connect` in steps: the shortest that is stable by the documentation
 
 
 def add_body(parent, body, name, pos, quat):
@@ -20,7 +20,7 @@ def add_body(parent, body, name, pos, quat):
 
 
 def connect(spec, step, a, ra, b):
-    """Point ra of body a is where it touches body b at the start."""
+    """Connects body a at its point ra with body b, at their relative pose at the start."""
     name = "world" if a == WORLD else f"body{a}"
     spec.add_equality(type=mujoco.mjtEq.mjEQ_CONNECT, objtype=mujoco.mjtObj.mjOBJ_BODY, name1=name,
                       name2=f"body{b}", data=[*ra, *[0] * (mujoco.mjNEQDATA - 3)],
@@ -42,9 +42,9 @@ def model_of(problem, tree, integrator, step):
             body = problem.bodies[child]
             pos, quat = body.pos, body.quat
             if parent != WORLD:
-                over = problem.bodies[parent]
-                pos = rotation(over.quat).T @ (pos - over.pos)
-                quat = product(conjugate(over.quat), quat)
+                parent_body = problem.bodies[parent]
+                pos = rotation(parent_body.quat).T @ (pos - parent_body.pos)
+                quat = product(conjugate(parent_body.quat), quat)
             bodies[child] = add_body(bodies[parent], body, f"body{child}", pos, quat)
             bodies[child].add_joint(type=mujoco.mjtJoint.mjJNT_BALL, pos=rc)
     else:
@@ -57,12 +57,12 @@ def model_of(problem, tree, integrator, step):
     model = spec.compile()
     data = mujoco.MjData(model)
     for i, body in enumerate(problem.bodies):
-        at = model.body(f"body{i}")
-        v = data.qvel[at.dofadr[0] :][: at.dofnum[0]]
+        view = model.body(f"body{i}")
+        v = data.qvel[view.dofadr[0] :][: view.dofnum[0]]
         if len(v) == 6:
             v[:3] = body.vel
         omega = body.omega
-        parent = at.parentid[0]
+        parent = view.parentid[0]
         if parent and len(v) == 3:
             omega = omega - problem.bodies[int(model.body(parent).name[4:])].omega
         v[-3:] = rotation(body.quat).T @ omega
@@ -72,13 +72,13 @@ def model_of(problem, tree, integrator, step):
 def run(problem, tree, integrator, step):
     steps = round(problem.end / step)
     model, start = model_of(problem, tree, integrator, problem.end / steps)
-    seconds, data = least_seconds(lambda: mujoco.MjData.__copy__(start),
+    seconds, data = minimum_seconds(lambda: mujoco.MjData.__copy__(start),
                                   lambda data: mujoco.mj_step(model, data, nstep=steps))
     if data.warning[mujoco.mjtWarning.mjWARN_BADQACC].number:
         raise RuntimeError("unstable")
     mujoco.mj_kinematics(model, data)
-    at = [model.body(f"body{i}").id for i in range(len(problem.bodies))]
-    return seconds, data.xpos[at].copy(), data.xquat[at].copy()
+    ids = [model.body(f"body{i}").id for i in range(len(problem.bodies))]
+    return seconds, data.xpos[ids].copy(), data.xquat[ids].copy()
 
 
 def ladders(problem, folder):

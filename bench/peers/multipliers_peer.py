@@ -1,7 +1,7 @@
-"""Exact multipliers in NumPy: no engine, but the second method that references are confirmed by.
+"""Exact multipliers in NumPy: not an engine, but the second method, which confirms the references.
 
-All 6 velocities of each body, the accelerations of the joints made zero by multipliers of a banded Cholesky
-factor, the whole integrated by the 8th-order pair DOP853.
+Each body has 6 velocities. Multipliers, computed with a banded Cholesky factor, make the relative accelerations of
+the joints zero. The 8th-order pair DOP853 integrates the system.
 """
 from functools import partial
 
@@ -12,13 +12,13 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from problems import WORLD
-from timing import least_seconds
+from timing import minimum_seconds
 
 DISTRIBUTION = "scipy"
 
 
 def rotations(q):
-    """Of rows w x y z, normalised."""
+    """Returns the rotation matrices of quaternions in rows w x y z, which are normalised first."""
     w, x, y, z = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
     R = np.empty((len(q), 3, 3))
     R[:, 0, 0], R[:, 0, 1], R[:, 0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
@@ -54,7 +54,7 @@ class Multipliers:
 
     @staticmethod
     def _numbered(joints):
-        """In an order of little bandwidth."""
+        """Returns the joints in an order of small bandwidth."""
         share = [(i, j) for i, a in enumerate(joints) for j, b in enumerate(joints)
                  if {a.a, a.b} & {b.a, b.b} - {WORLD}]
         rows, columns = np.array(share).T
@@ -62,7 +62,7 @@ class Multipliers:
         return [joints[k] for k in reverse_cuthill_mckee(graph, symmetric_mode=True)]
 
     def _pattern(self, joints):
-        # A side is a joint's point on a body; the pairs of sides on one body make the blocks of the matrix.
+        # A side is the point of a joint on a body. The pairs of sides on one body form the blocks of the matrix.
         sides = [(k, body, point, sign) for k, joint in enumerate(joints)
                  for body, point, sign in ((joint.a, joint.ra, 1.0), (joint.b, joint.rb, -1.0)) if body != WORLD]
         self.side_joint = np.array([s[0] for s in sides])
@@ -73,7 +73,7 @@ class Multipliers:
         on_body = [[] for _ in range(self.n)]
         for s, body in enumerate(self.side_body):
             on_body[body].append(s)
-        pairs = [(s, t) for same in on_body for s in same for t in same if sides[s][0] >= sides[t][0]]
+        pairs = [(s, t) for group in on_body for s in group for t in group if sides[s][0] >= sides[t][0]]
         self.pair_s, self.pair_t = np.array(pairs).T
         self.pair_body = self.side_body[self.pair_s]
         sign = self.side_sign[self.pair_s] * self.side_sign[self.pair_t]
@@ -105,10 +105,10 @@ class Multipliers:
         alpha = np.cross(self.inertia * w, w) / self.inertia
         if self.joints:
             R = rotations(q)
-            at = self.side_body
-            Rs, ws, r = R[at], w[at], self.side_point
-            local = np.cross(alpha[at], r) + np.cross(ws, np.cross(ws, r))
-            free = self.side_sign[:, None] * (a[at] + np.einsum("sij,sj->si", Rs, local))
+            bodies = self.side_body
+            Rs, ws, r = R[bodies], w[bodies], self.side_point
+            local = np.cross(alpha[bodies], r) + np.cross(ws, np.cross(ws, r))
+            free = self.side_sign[:, None] * (a[bodies] + np.einsum("sij,sj->si", Rs, local))
             bias = np.zeros((self.joints, 3))
             np.add.at(bias, self.side_joint, free)
             Rp = R[self.pair_body]
@@ -116,17 +116,17 @@ class Multipliers:
             matrix = np.bincount(self.flat, blocks[self.low], self.band * 3 * self.joints)
             force = solveh_banded(matrix.reshape(self.band, -1), -bias.ravel(), lower=True, check_finite=False)
             on_side = self.side_sign[:, None] * force.reshape(-1, 3)[self.side_joint]
-            np.add.at(a, at, on_side * self.inverse_mass[at][:, None])
+            np.add.at(a, bodies, on_side * self.inverse_mass[bodies][:, None])
             torque = np.cross(r, np.einsum("sji,sj->si", Rs, on_side))
-            np.add.at(alpha, at, torque / self.inertia[at])
+            np.add.at(alpha, bodies, torque / self.inertia[bodies])
         return np.concatenate([v.ravel(), spin.ravel(), a.ravel(), alpha.ravel()])
 
 
 def run(problem, tolerance):
-    """CPU seconds, centres and quaternions at the end."""
+    """Returns CPU seconds, and the centres and quaternions at the end."""
     system = Multipliers(problem)
     paths = []
-    seconds, _ = least_seconds(lambda: None, lambda _: paths.append(
+    seconds, _ = minimum_seconds(lambda: None, lambda _: paths.append(
         solve_ivp(system.rate, (0, problem.end), system.start, "DOP853", t_eval=[problem.end], rtol=tolerance,
                   atol=tolerance)))
     if not paths[-1].success:

@@ -1,4 +1,4 @@
-"""What the compiled peers have in common: built once in the working folder, run as a process each."""
+"""Common functions of the compiled peers: they are built once in the working folder; each run is a process."""
 import subprocess
 from pathlib import Path
 
@@ -8,18 +8,18 @@ SOURCE = Path(__file__).parent / "native"
 
 
 def build(folder, prefix):
-    """Builds what the machine or the Python environment at prefix has the libraries of."""
+    """Builds the peers whose libraries are in the system or in the Python environment at prefix."""
     wheels = [str(p) for p in Path(prefix).glob("lib/python*/site-packages/cmeel.prefix")]
     configure = ["cmake", "-S", str(SOURCE), "-B", str(folder),
                  "-DCMAKE_PREFIX_PATH=" + ";".join([str(prefix), *wheels])]
     for command in (configure, ["cmake", "--build", str(folder)]):
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            raise RuntimeError(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        process = subprocess.run(command, capture_output=True, text=True)
+        if process.returncode:
+            raise RuntimeError(f"{' '.join(command)} failed:\n{process.stdout[-2000:]}{process.stderr[-2000:]}")
 
 
 def write_problem(problem, path):
-    """For native/problem.h."""
+    """Writes a problem in the format of native/problem.h."""
     def row(*parts):
         return " ".join(repr(float(x)) for part in parts for x in np.atleast_1d(part))
 
@@ -32,10 +32,10 @@ def write_problem(problem, path):
 
 
 def run(*command):
-    """CPU seconds, centres and quaternions at the end."""
-    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
-    if done.returncode:
-        raise RuntimeError(done.stderr.strip() or f"exit status {done.returncode}")
-    lines = done.stdout.split("\n")
+    """Returns CPU seconds, and the centres and quaternions at the end."""
+    process = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if process.returncode:
+        raise RuntimeError(process.stderr.strip() or f"exit status {process.returncode}")
+    lines = process.stdout.split("\n")
     pose = np.array([[float(x) for x in line.split()] for line in lines[1:] if line])
     return float(lines[0]), pose[:, :3], pose[:, 3:]

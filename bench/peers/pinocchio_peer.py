@@ -1,4 +1,4 @@
-"""Pinocchio: articulated-body algorithm (trees) or constraintDynamics (nets) under compiled Runge-Kutta loops."""
+"""Pinocchio: articulated-body algorithm (trees) or constraintDynamics (nets) in compiled Runge-Kutta loops."""
 from functools import partial
 
 from scipy.integrate import DOP853

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Draws pliant's curves and the peers' on one figure, a panel a problem, and tables the best of each engine.
+"""Draws the curves of pliant and of the peers, one panel per problem, and tabulates the best time of each engine.
 
 usage: plot.py PEERS.csv PLIANT.csv FOLDER
 
-PLIANT.csv: of work_precision (columns problem, method, cpu_ms_per_s, error). Writes
-FOLDER/peers.png and FOLDER/peers_table.csv: CPU ms per simulated second at each error. A run counts at an error
-only if neither of the next two finer ones is 3 times worse.
+PLIANT.csv: work_precision.csv of work_precision (columns problem, method, cpu_ms_per_s, error). Writes
+FOLDER/peers.png and FOLDER/peers_table.csv: CPU ms per simulated second at each error. A run qualifies for an
+error only if the errors of the next two finer runs are at most 3 times its own error.
 """
 import csv
 import math
@@ -19,7 +19,7 @@ import matplotlib.pyplot as plt
 
 LEVELS = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 COLUMNS = 3
-NO_ENGINE = "multipliers"  # drawn and tabled, but no peer
+NO_ENGINE = "multipliers"  # drawn and tabulated, but not a peer
 
 
 def read(path):
@@ -28,31 +28,32 @@ def read(path):
 
 
 def curves(peers, pliant):
-    """{problem: {(engine, formulation, method): [(error, time) coarse to fine]}}; NaN for a failed run."""
-    out = {}
+    """Returns {problem: {(engine, formulation, method): [(error, time) coarse to fine]}}; NaN for a failed run."""
+    result = {}
     for row in peers:
-        at = out.setdefault(row["problem"], {}).setdefault((row["engine"], row["formulation"], row["method"]), [])
-        at.append((math.nan, math.nan) if row["failed"] == "1"
+        key = row["engine"], row["formulation"], row["method"]
+        points = result.setdefault(row["problem"], {}).setdefault(key, [])
+        points.append((math.nan, math.nan) if row["failed"] == "1"
                   else (float(row["error"]), float(row["cpu_ms_per_s"])))
     for row in pliant:
-        if row["problem"] in out:
-            at = out[row["problem"]].setdefault(("pliant", "", row["method"]), [])
-            at.append((float(row["error"] or math.nan), float(row["cpu_ms_per_s"] or math.nan)))
-    return out
+        if row["problem"] in result:
+            points = result[row["problem"]].setdefault(("pliant", "", row["method"]), [])
+            points.append((float(row["error"] or math.nan), float(row["cpu_ms_per_s"] or math.nan)))
+    return result
 
 
 def time_at(points, level):
-    """Least time of the runs that count at a level; infinite without. Failed runs are left out."""
-    least, points = math.inf, [p for p in points if not math.isnan(p[0])]
+    """Returns the minimum time of the runs that qualify for a level, or infinity. Failed runs are ignored."""
+    min_time, points = math.inf, [p for p in points if not math.isnan(p[0])]
     for i, (error, time) in enumerate(points):
         finer = points[i + 1 : i + 3]
         if error <= level and all(e <= 3 * error for e, _ in finer):
-            least = min(least, time)
-    return least
+            min_time = min(min_time, time)
+    return min_time
 
 
 def table(problem, by_method):
-    """Rows problem, engine, time at each level, method that takes it; then the ratio of best peer to pliant."""
+    """Returns rows with problem, engine, time and method at each level, and the ratio of the best peer to pliant."""
     rows, best = [], {}
     for engine in dict.fromkeys(key[0] for key in by_method):
         cells = []
@@ -74,14 +75,14 @@ def draw(by_problem, target):
     engines = list(dict.fromkeys(key[0] for methods in by_problem.values() for key in methods))
     engines.sort(key=lambda engine: engine != "pliant")
     colours = {engine: "black" if engine == "pliant" else f"C{i - 1}" for i, engine in enumerate(engines)}
-    lines = math.ceil(len(by_problem) / COLUMNS)
-    figure, panels = plt.subplots(lines, COLUMNS, figsize=(5 * COLUMNS, 4 * lines), squeeze=False)
+    n_rows = math.ceil(len(by_problem) / COLUMNS)
+    figure, panels = plt.subplots(n_rows, COLUMNS, figsize=(5 * COLUMNS, 4 * n_rows), squeeze=False)
     for panel in panels.flat[len(by_problem):]:
         panel.set_axis_off()
     for panel, (problem, by_method) in zip(panels.flat, by_problem.items()):
         for engine in engines:
-            mine = [key for key in by_method if key[0] == engine]
-            for marker, key in zip("osv^Dx+*", mine):
+            keys = [key for key in by_method if key[0] == engine]
+            for marker, key in zip("osv^Dx+*", keys):
                 points = [p for p in by_method[key] if math.isfinite(p[0]) and p[0] > 0]
                 panel.loglog(*zip(*points) if points else ([], []), marker + "-", ms=3, color=colours[engine],
                              lw=1.6 if engine == "pliant" else 0.8)
@@ -92,7 +93,7 @@ def draw(by_problem, target):
         panel.grid(True, which="major", alpha=0.3)
     handles = [plt.Line2D([], [], color=colour) for colour in colours.values()]
     figure.legend(handles, colours, loc="upper center", ncols=len(colours))
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.15 / lines))
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.15 / n_rows))
     figure.savefig(target)
 
 
@@ -101,11 +102,11 @@ def main():
     by_problem = curves(read(peers), read(pliant))
     draw(by_problem, Path(folder) / "peers.png")
     with open(Path(folder) / "peers_table.csv", "w", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["problem", "engine", *(x for level in LEVELS for x in (f"ms_per_s_at_{level:g}", "by"))])
+        table_file = csv.writer(file, lineterminator="\n")
+        table_file.writerow(["problem", "engine", *(x for level in LEVELS for x in (f"ms_per_s_at_{level:g}", "by"))])
         for problem, by_method in by_problem.items():
             for row in table(problem, by_method):
-                out.writerow(row)
+                table_file.writerow(row)
                 print(f"{row[0]:5} {row[1]:20}" + "".join(f"{t or '-':>9} {by:28}" for t, by in zip(row[2::2], row[3::2])))
 
 

@@ -1,4 +1,4 @@
-"""The rigid problems of bench/linkage.h and bench/problems.h, from their few parameters.
+"""The rigid problems of bench/linkage.h and bench/problems.h, generated from their parameters.
 
 SI units; quaternions w x y z, body to world; the body frame is central and principal.
 """
@@ -42,31 +42,32 @@ class Problem:
     joints: list
 
     def tree(self):
-        """Joints that span a tree of least depth from the world on, and the joints that close loops.
+        """Returns the joints of a spanning tree of minimum depth with the world as root, and the loop-closing joints.
 
-        Each of the tree is (parent, its point, child, its point), subtrees together; a free body has no joint.
+        A joint of the tree is (parent, its point, child, its point). Joints of a subtree are consecutive. A free
+        body has no joint.
         """
-        at = {}
+        joints_at = {}
         for k, joint in enumerate(self.joints):
-            at.setdefault(joint.a, []).append((k, joint.a, joint.ra, joint.b, joint.rb))
-            at.setdefault(joint.b, []).append((k, joint.b, joint.rb, joint.a, joint.ra))
+            joints_at.setdefault(joint.a, []).append((k, joint.a, joint.ra, joint.b, joint.rb))
+            joints_at.setdefault(joint.b, []).append((k, joint.b, joint.rb, joint.a, joint.ra))
         children, reached, used, level = {}, {WORLD}, set(), [WORLD]
         while level:
-            after = []
+            next_level = []
             for body in level:
-                for k, *joint in at.get(body, []):
+                for k, *joint in joints_at.get(body, []):
                     child = joint[2]
                     if child in reached:
                         continue
                     reached.add(child)
                     used.add(k)
                     children.setdefault(body, []).append(joint)
-                    after.append(child)
-            level = after
-        spanning, ahead = [], children.get(WORLD, [])[:]
-        while ahead:
-            spanning.append(ahead.pop())
-            ahead += reversed(children.get(spanning[-1][2], []))
+                    next_level.append(child)
+            level = next_level
+        spanning, pending = [], children.get(WORLD, [])[:]
+        while pending:
+            spanning.append(pending.pop())
+            pending += reversed(children.get(spanning[-1][2], []))
         return spanning, [joint for k, joint in enumerate(self.joints) if k not in used]
 
 

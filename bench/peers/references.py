@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Confirms the end poses that errors are measured against by a second method.
+"""Confirms the reference poses, from which errors are measured, by a second method.
 
 usage: references.py OUT.csv [JOINT_REFERENCE.csv]
 
-A: Taylor series in 25 digits. The others: exact multipliers (multipliers_peer.py) at two tolerances. Columns:
-what the reference differs by from its own run of twice the step, the second method from its looser run, and the
-two methods from each other; all in the measure of the errors.
+A: Taylor series with 25 digits. The others: exact multipliers (multipliers_peer.py) with two tolerances. Columns:
+reference_difference: difference of the two methods of the reference; second_difference: difference between the two
+runs of the second method; agreement: difference between the reference and the second method. All differences are
+measured as errors are.
 """
 import csv
 import sys
@@ -22,7 +23,7 @@ TOLERANCES = 1e-12, 1e-13
 
 
 def taylor(problem, digits):
-    """Euler's equations and the quaternion of a free body."""
+    """Integrates Euler's equations and the quaternion of a free body; returns its pose at the end."""
     mpmath.mp.dps = digits
     body = problem.bodies[0]
     a, b, c = (mpmath.mpf(repr(float(x))) ** 2 for x in problems.LINK_AXES)
@@ -40,7 +41,7 @@ def taylor(problem, digits):
 
 
 def second(problem):
-    """Name, looser and tighter pose."""
+    """Returns the name of the second method, and its poses with the looser and the tighter setting."""
     if problem.name == "A":
         return "taylor", taylor(problem, 20), taylor(problem, 25)
     return "multipliers", *(multipliers_peer.run(problem, t)[1:] for t in TOLERANCES)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the problems in every engine that is installed, one thread, and writes run time against error.
+"""Runs the problems in every installed engine with one thread, and writes run time against error.
 
 usage: run.py FOLDER [--out peers.csv] [--quick] [--problems A,B] [--engines mujoco,simbody] [--limit SECONDS]
               [--again]
@@ -25,9 +25,12 @@ QUICK = "A B C8 D4".split()
 REFERENCES = Path(__file__).resolve().parents[1] / "results" / "amd_epyc_portable" / "precision_reference.csv"
 RUN = "problem,engine,formulation,method,step_or_tolerance,error".split(",")
 COLUMNS = "problem,engine,formulation,method,step_or_tolerance,cpu_ms,cpu_ms_per_s,error,failed".split(",")
-# Nothing finer is run after an error below SMALLEST, after STALLED runs below ROUNDING that did not better the
-# ladder's best, after FAILURES failed runs, after half the limit of time, or, of the runs above a 16th of it,
-# after one DOMINATED times slower than another that is at least as good.
+# The settings of a method, from coarse to fine, are its ladder. A ladder ends after
+# - an error below SMALLEST,
+# - STALLED successive runs below ROUNDING without an improvement of the smallest error of the ladder,
+# - FAILURES failed runs,
+# - a run of more than half the time limit, or
+# - a run of more than a 16th of the limit that is DOMINATED times slower than a run whose error is not larger.
 SMALLEST, ROUNDING, STALLED = 1e-10, 1e-7, 3
 FAILURES = 6
 DOMINATED = 30
@@ -35,15 +38,17 @@ DOMINATED = 30
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("folder", type=Path, help="for what is built and written on the way")
+    parser.add_argument("folder", type=Path, help="folder for built programs and intermediate files")
     parser.add_argument("--out", type=Path, help="default: FOLDER/peers.csv")
-    parser.add_argument("--quick", action="store_true", help=f"only {' '.join(QUICK)}, and a limit of 1 s")
+    parser.add_argument("--quick", action="store_true",
+                        help=f"only the problems {' '.join(QUICK)}, with a limit of 1 s")
     parser.add_argument("--problems", type=lambda s: s.split(","), help="default: all")
     parser.add_argument("--engines", type=lambda s: s.split(","), default=ENGINES)
-    parser.add_argument("--limit", type=float, help="CPU s of one configuration, default 10; killed at 4 times that")
-    parser.add_argument("--again", action="store_true", help="another round: what --out has of other problems and "
-                        "engines stays, and of the same run the least time")
-    parser.add_argument("--prefix", default=sys.prefix, help="where native libraries of wheels are looked for")
+    parser.add_argument("--limit", type=float, help="CPU s per configuration (default: 10); it is killed after 4 times "
+                        "this limit")
+    parser.add_argument("--again", action="store_true", help="add a round: rows in --out of other problems and "
+                        "engines are preserved; of equal runs the smaller time is written")
+    parser.add_argument("--prefix", default=sys.prefix, help="Python environment whose wheels contain native libraries")
     parser.add_argument("--references", type=Path, default=REFERENCES)
     return parser.parse_args()
 
@@ -69,46 +74,46 @@ def read_rows(path):
 
 
 def in_child(function, *args):
-    """Engines are loaded in processes of their own only."""
+    """Calls function(*args) in a new process: engines are loaded only in separate processes."""
     with multiprocessing.Pool(1) as pool:
         return pool.apply(function, args)
 
 
 def available(engine, folder):
-    """Its version, or None with a message."""
+    """Returns the version of an engine. If it cannot be loaded, prints a message and returns None."""
     try:
         return in_child(version, engine, folder)
-    except Exception as fault:  # whatever keeps an engine from being loaded
+    except Exception as fault:  # any error of loading
         print(f"{engine}: SKIPPED, {fault}", flush=True)
         return None
 
 
 def serve(connection, engine, name, folder, index):
-    """In a process of its own: runs of one ladder, each asked for by the parent."""
-    os.setsid()  # so that what it starts ends with it
+    """Runs in a separate process: receives settings of one ladder and sends the results of their runs."""
+    os.setsid()  # a group of its own: the parent kills it with all processes started here
     run = ladders(engine, name, folder)[index][3]
     while True:
         setting = connection.recv()
         try:
             connection.send(run(setting))
-        except Exception as fault:  # whatever an engine throws is a failed run
+        except Exception as fault:  # any exception of an engine is a failed run
             connection.send(str(fault) or type(fault).__name__)
 
 
 def runs(engine, name, folder, index, settings, limit):
-    """(setting, (seconds, centres, quaternions) or the reason of a failure), coarse to fine."""
-    here, there = multiprocessing.Pipe()
-    process = multiprocessing.Process(target=serve, args=(there, engine, name, folder, index))
+    """Yields (setting, (seconds, centres, quaternions) or the reason of a failure), from coarse to fine."""
+    parent_end, child_end = multiprocessing.Pipe()
+    process = multiprocessing.Process(target=serve, args=(child_end, engine, name, folder, index))
     process.start()
-    there.close()
+    child_end.close()
     try:
         for setting in settings:
-            here.send(setting)
-            if not here.poll(4 * limit):
+            parent_end.send(setting)
+            if not parent_end.poll(4 * limit):
                 yield setting, f"killed after {4 * limit:g} s"
                 return
             try:
-                result = here.recv()
+                result = parent_end.recv()
             except EOFError:
                 yield setting, "crashed"
                 return
@@ -121,11 +126,14 @@ def runs(engine, name, folder, index, settings, limit):
         process.join()
 
 
-def measure(problem, engine, folder, reference, smallest, limit, best, least, write):
-    """All ladders of an engine on a problem; smallest: errors below count as that; best: (CPU s, error) of the runs
-    so far; least: CPU ms of those of earlier rounds."""
+def measure(problem, engine, folder, reference, smallest, limit, best, min_times, write):
+    """Measures all ladders of an engine on a problem.
+
+    smallest: smaller errors are replaced by this error; best: (CPU s, error) of the runs so far; min_times: CPU ms of
+    the runs of earlier rounds.
+    """
     for index, (formulation, method, settings) in enumerate(in_child(titles, engine, problem.name, folder)):
-        failures, mine, begin = 0, [], time.monotonic()
+        failures, ladder_errors, start = 0, [], time.monotonic()
         for setting, result in runs(engine, problem.name, folder, index, settings, limit):
             seconds, error, reason = math.nan, math.nan, result
             if not isinstance(result, str):
@@ -136,17 +144,18 @@ def measure(problem, engine, folder, reference, smallest, limit, best, least, wr
             if failed:
                 write(key + ["", "", "", 1], reason.strip().split("\n")[0][:100])
                 failures += 1
-                if failures >= FAILURES or time.monotonic() - begin > 4 * limit:
+                if failures >= FAILURES or time.monotonic() - start > 4 * limit:
                     break
                 continue
-            told = f"{error:.3e}"
-            seconds = min(seconds, least.get((*key, told), math.inf) / 1e3)
-            write(key + [f"{seconds * 1e3:.4f}", f"{seconds * 1e3 / problem.end:.4f}", told, 0], "")
-            mine.append(error)
+            error_text = f"{error:.3e}"
+            seconds = min(seconds, min_times.get((*key, error_text), math.inf) / 1e3)
+            write(key + [f"{seconds * 1e3:.4f}", f"{seconds * 1e3 / problem.end:.4f}", error_text, 0], "")
+            ladder_errors.append(error)
             best.append((seconds, error))
             dominated = seconds > limit / 16 and any(seconds > DOMINATED * s and error >= e for s, e in best)
-            last = mine[-STALLED:]
-            stalled = len(mine) > STALLED and max(last) < ROUNDING and min(last) >= min(mine[:-STALLED])
+            last = ladder_errors[-STALLED:]
+            stalled = (len(ladder_errors) > STALLED and max(last) < ROUNDING
+                       and min(last) >= min(ladder_errors[:-STALLED]))
             if error < SMALLEST or seconds > limit / 2 or dominated or stalled:
                 break
 
@@ -159,13 +168,14 @@ def main():
     folder = options.folder.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     native_peer.build(folder / "native", options.prefix)
-    references, smallest = errors.read_references(options.references), errors.read_least(options.references)
+    references = errors.read_references(options.references)
+    resolutions = errors.read_resolutions(options.references)
     limit = options.limit or (1 if options.quick else 10)
     names = options.problems or (QUICK if options.quick else list(problems.MAKERS))
     engines = {engine: found for engine in options.engines if (found := available(engine, folder))}
     out = options.out or folder / "peers.csv"
     earlier = read_rows(out) if options.again and out.exists() else []
-    least = {tuple(row[column] for column in RUN): float(row["cpu_ms"]) for row in earlier if row["cpu_ms"]}
+    min_times = {tuple(row[column] for column in RUN): float(row["cpu_ms"]) for row in earlier if row["cpu_ms"]}
     with open(out, "w", newline="") as file:
         file.write("# " + ", ".join(f"{engine} {found}" for engine, found in engines.items()) + "\n")
         table = csv.writer(file, lineterminator="\n")
@@ -182,7 +192,8 @@ def main():
         for name in names:
             best = []
             for engine in engines:
-                measure(problems.problem(name), engine, folder, references[name], smallest[name], limit, best, least, write)
+                measure(problems.problem(name), engine, folder, references[name], resolutions[name], limit, best,
+                        min_times, write)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs the peers in FOLDER and runs the problems in them:  bench/peers/run.sh FOLDER [options of run.py]
-# Those of contact instead:  bench/peers/run.sh FOLDER --contact [options of contact.py]
-# Simbody is of the system (libsimbody-dev); a C++ compiler, CMake and libeigen3-dev build the compiled peers.
+# Runs the contact problems instead:  bench/peers/run.sh FOLDER --contact [options of contact.py]
+# Requires a C++ compiler, CMake and libeigen3-dev for the compiled peers, and libsimbody-dev for Simbody.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 [ $# -ge 1 ] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
@@ -12,7 +12,7 @@ script=run.py
 mkdir -p "$folder"
 python="$folder/venv/bin/python"
 [ -x "$python" ] || python3 -m venv "$folder/venv"
-# One by one: an engine that has no wheel for this machine is left out, and the script says so.
+# Packages are installed one by one: an engine without a wheel for this machine is skipped with a message.
 sed 's/#.*//' "$here/requirements.txt" | while read -r package; do
   [ -z "$package" ] || "$python" -m pip install -q --disable-pip-version-check "$package" ||
     echo "$package: not installed" >&2

@@ -1,18 +1,18 @@
-"""How a stepping loop is timed."""
+"""Timing of a stepping loop."""
 import time
 
-AT_LEAST, MOST_REPEATS = 0.2, 50  # s of loops, repeats
+MIN_SECONDS, MAX_REPEATS = 0.2, 50  # total time of the loops, s; number of loops
 
 
-def least_seconds(prepare, loop):
-    """Least CPU seconds of loop(prepare()), and what the last prepare() gave."""
-    least, spent = float("inf"), 0.0
-    for _ in range(MOST_REPEATS):
+def minimum_seconds(prepare, loop):
+    """Returns the minimum CPU seconds of loop(prepare()), and the result of the last prepare()."""
+    minimum, spent = float("inf"), 0.0
+    for _ in range(MAX_REPEATS):
         state = prepare()
-        begin = time.process_time()
+        start = time.process_time()
         loop(state)
-        seconds = time.process_time() - begin
-        least, spent = min(least, seconds), spent + seconds
-        if spent >= AT_LEAST:
+        seconds = time.process_time() - start
+        minimum, spent = min(minimum, seconds), spent + seconds
+        if spent >= MIN_SECONDS:
             break
-    return least, state
+    return minimum, state

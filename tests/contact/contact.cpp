@@ -437,9 +437,11 @@ TEST_CASE("without contact nothing is evaluated, and bits do not depend on earli
 TEST_CASE("invalid contact settings are refused by name", "[contact]") {
   MultiBody body;
   ball(body, "ball", 0.1, {0, 0, 1});
-  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 0}), test::has_text("its normal needs a finite length"));
+  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 0}),
+                    test::has_text("its normal needs a finite length"));
   floor(body);
-  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1}), test::has_text("there are two planes called 'floor'"));
+  CHECK_THROWS_WITH(body.plane("floor", Vec3<double>(0, 0, 0), {0, 0, 1}),
+                    test::has_text("there are two planes called 'floor'"));
   body.contact.pairs.push_back({"ball", "celing"});
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("celing"));
   body.contact.pairs.back() = {"ball", "floor", true, -1, 0};
@@ -452,7 +454,8 @@ TEST_CASE("invalid contact settings are refused by name", "[contact]") {
   body.contact.groups = {{"floor", {"ball"}}};
   CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("'floor'"));
   body.contact.groups = {{"round", {"ball"}}, {"all", {"round", "floor"}}};
-  CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("expected parts, planes and obstacles as members"));
+  CHECK_THROWS_WITH(Simulation(body, "rk4"),
+                    test::has_text("expected parts, planes and obstacles as members"));
 }
 
 TEST_CASE("the most specific rule of pairs and groups applies, and of equal ones the last", "[contact]") {

@@ -362,7 +362,8 @@ TEST_CASE("sleep settings out of range are refused", "[sleep][failure]") {
     MultiBody body;
     tower(body, 1);
     body.contact.sleep = bad;
-    CHECK_THROWS_WITH(Simulation(body, "rk4"), test::has_text("expected a speed and a time above 0"));
+    CHECK_THROWS_WITH(Simulation(body, "rk4"),
+                      test::has_text("expected a finite speed and a finite time above 0"));
   }
 }
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Measures the structure of the engine: python3 tests/package/house.py [--check] [FOLDER OF THE PROJECT].
 
-Prints lines and concepts of each folder, and functions above 60 lines or with more than 6 parameters. A concept is a
-name of files: dynamics.h, dynamics-inl.h and dynamics.cpp are one. --check fails when a folder has more than 20 concepts.
+Prints the lines and concepts of each folder, and the functions with more than 60 lines or 6 parameters. A concept is a
+file name without its suffix: dynamics.h, dynamics-inl.h and dynamics.cpp are one concept. --check fails when a folder has more than 20 concepts.
 """
 import re
 import sys
@@ -10,18 +10,18 @@ from pathlib import Path
 
 ROOMS = "math shape deform local part solve body collision project method contact simulate scene io render".split()
 ENGINE = ROOMS[:12]
-MOST_CONCEPTS, MOST_LINES, MOST_PARAMETERS = 20, 60, 6
+MAX_CONCEPTS, MAX_LINES, MAX_PARAMETERS = 20, 60, 6
 NO_FUNCTION = re.compile(r"^\s*(if|for|while|switch|else|do|try|catch|namespace|class|struct|enum|union|extern|return)\b")
 
 
 def without_comments(text):
-    """The text with comments and the contents of literals blanked, so that braces are those of the code."""
+    """Returns the text with comments and literals replaced by spaces, so that every brace belongs to the code."""
     pattern = re.compile(r'//[^\n]*|/\*.*?\*/|R"\(.*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'', re.S)
     return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m[0]), text)
 
 
 def parameters(head):
-    """The number of parameters of a function with this head."""
+    """Returns the number of parameters of a function with this head."""
     inside = re.sub(r"<[^<>()]*>", "", head)
     while re.search(r"<[^<>()]*>", inside):
         inside = re.sub(r"<[^<>()]*>", "", inside)
@@ -37,7 +37,7 @@ def parameters(head):
 
 
 def functions(path):
-    """(name, line, lines, parameters) of each function defined in a file; lambdas count with their function."""
+    """Returns (name, line, lines, parameters) of each function defined in a file. A lambda belongs to its function."""
     text = without_comments(path.read_text(encoding="utf8"))
     found, open_at, head_start, inner = [], [], 0, 0
     for i, c in enumerate(text):
@@ -69,33 +69,33 @@ def sources(folder):
 
 def main():
     check = "--check" in sys.argv
-    places = [a for a in sys.argv[1:] if a != "--check"]
-    project = Path(places[0]) if places else Path(__file__).resolve().parents[2]
+    folders = [a for a in sys.argv[1:] if a != "--check"]
+    project = Path(folders[0]) if folders else Path(__file__).resolve().parents[2]
     crowded, totals, long, wide = [], {}, [], []
     print("folder, concepts, lines in headers, lines in src")
     for room in ROOMS:
         for folder in sorted({p.parent.relative_to(project / base) for base in ("include/pliant", "src")
                               for p in (project / base / room).rglob("*") if p.suffix in (".h", ".cpp")}):
             files = {base: sources(project / base / folder) for base in ("include/pliant", "src")}
-            lines = {base: sum(len(p.read_text(encoding="utf8").split("\n")) - 1 for p in of) for base, of in files.items()}
-            concepts = {re.sub(r"(-inl)?$", "", p.stem) for of in files.values() for p in of}
+            lines = {base: sum(len(p.read_text(encoding="utf8").split("\n")) - 1 for p in paths) for base, paths in files.items()}
+            concepts = {re.sub(r"(-inl)?$", "", p.stem) for paths in files.values() for p in paths}
             print(f"{folder}, {len(concepts)}, {lines['include/pliant']}, {lines['src']}")
-            if len(concepts) > MOST_CONCEPTS:
-                crowded.append(f"{folder} has {len(concepts)} concepts; expected at most {MOST_CONCEPTS}")
+            if len(concepts) > MAX_CONCEPTS:
+                crowded.append(f"{folder} has {len(concepts)} concepts; expected at most {MAX_CONCEPTS}")
             for base, count in lines.items():
                 key = ("engine" if room in ENGINE else "programs", base)
                 totals[key] = totals.get(key, 0) + count
             for path in files["include/pliant"] + files["src"]:
                 for name, line, length, count in functions(path):
                     where = f"{path.relative_to(project)}:{line}: {name}"
-                    if length > MOST_LINES:
+                    if length > MAX_LINES:
                         long.append(f"{where}, {length} lines")
-                    if count > MOST_PARAMETERS:
+                    if count > MAX_PARAMETERS:
                         wide.append(f"{where}, {count} parameters")
     for (part, base), count in sorted(totals.items()):
         print(f"{part}: {count} lines in {base}")
-    print(f"{len(long)} functions above {MOST_LINES} lines:", *long, sep="\n  ")
-    print(f"{len(wide)} functions with more than {MOST_PARAMETERS} parameters:", *wide, sep="\n  ")
+    print(f"{len(long)} functions with more than {MAX_LINES} lines:", *long, sep="\n  ")
+    print(f"{len(wide)} functions with more than {MAX_PARAMETERS} parameters:", *wide, sep="\n  ")
     if check and crowded:
         sys.exit("\n".join(crowded))
 

@@ -1,5 +1,5 @@
-# page_block(PAGE place opening result): the text of the first code block of a Markdown page after `place` that the line `opening`
-# begins. Stops if there is none.
+# page_block(PAGE place opening result): stores the text of the first code block after `place` in a Markdown page whose first
+# line is `opening`. Stops if there is none.
 function(page_block page place opening result)
   file(READ ${page} text)
   string(FIND "${text}" "${place}" at)

@@ -1,5 +1,5 @@
-# The links between the pages of the project lead to files, and files that they name in backticks with a folder exist. Run as
-# cmake -D SOURCE=... -P page_links.cmake.
+# Checks that links between the pages of the project lead to files, and that files named in backticks with a folder exist.
+# Run as cmake -D SOURCE=... -P page_links.cmake.
 cmake_minimum_required(VERSION 3.25)
 file(GLOB pages ${SOURCE}/*.md)
 foreach(folder apps bench include scenes src tests)

@@ -1,8 +1,8 @@
-// Pinocchio's forward dynamics under explicit Runge-Kutta loops.
+// Pinocchio's forward dynamics in explicit Runge-Kutta loops.
 //
 //   pinocchio_peer PROBLEM TABLEAU fixed STEPS | pinocchio_peer PROBLEM TABLEAU adaptive TOLERANCE
 //
-// Trees by the articulated-body algorithm, loops closed by constraintDynamics.
+// Trees use the articulated-body algorithm; loops are closed by constraintDynamics.
 #include <cmath>
 #include <cstring>
 #include <exception>
@@ -35,7 +35,7 @@ Quaterniond quat(const peers::Quat& q) {
 struct Tableau {
   MatrixXd A;  ///< stages x stages, strictly lower
   VectorXd b;
-  MatrixXd E;  ///< 2 x (stages + 1): the errors of orders 3 and 5; empty without
+  MatrixXd E;  ///< 2 x (stages + 1): weights of the errors of orders 3 and 5; empty without error control
 };
 
 Tableau read_tableau(const std::string& path) {
@@ -54,13 +54,16 @@ class System {
  public:
   explicit System(const peers::Problem& problem) : problem_(problem), joint_of_(problem.bodies.size(), 0) {
     model_.gravity.linear(vec(problem.gravity));
-    std::vector<Vector3d> origin(problem.bodies.size(), Vector3d::Zero());  // of the joint, in the body
-    auto add = [&](int parent, const Vector3d& at, int child, const Vector3d& point, const auto& kind) {
+    std::vector<Vector3d> origin(problem.bodies.size(),
+                                 Vector3d::Zero());  // position of the joint in the body frame
+    auto add = [&](int parent, const Vector3d& parent_point, int child, const Vector3d& point,
+                   const auto& kind) {
       const auto c = static_cast<std::size_t>(child);
       const peers::Body& body = problem.bodies[c];
       const bool rooted = parent < 0;
       const auto p = static_cast<std::size_t>(std::max(parent, 0));
-      const pin::SE3 place(Eigen::Matrix3d::Identity(), rooted ? at : Vector3d(at - origin[p]));
+      const pin::SE3 place(Eigen::Matrix3d::Identity(),
+                           rooted ? parent_point : Vector3d(parent_point - origin[p]));
       joint_of_[c] = model_.addJoint(rooted ? 0 : joint_of_[p], kind, place, "body" + std::to_string(child));
       const Eigen::Matrix3d inertia = vec(body.inertia).asDiagonal();
       model_.appendBodyToJoint(joint_of_[c], pin::Inertia(body.mass, -point, inertia), pin::SE3::Identity());
@@ -71,11 +74,11 @@ class System {
     if (problem.tree.empty())
       for (std::size_t i = 0; i < problem.bodies.size(); ++i)
         add(-1, Vector3d::Zero(), static_cast<int>(i), Vector3d::Zero(), pin::JointModelFreeFlyer());
-    constexpr double kMostBytes = 8e9;
+    constexpr double kMaxBytes = 8e9;
     const double bytes = 4 * sizeof(double) * std::pow(model_.nv, 3);
-    if (bytes > kMostBytes)
-      throw std::runtime_error("its Data has four arrays of nv^3 numbers: " + std::to_string(bytes / 1e9) +
-                               " GB");
+    if (bytes > kMaxBytes)
+      throw std::runtime_error(
+          "pinocchio::Data needs four arrays of nv^3 numbers: " + std::to_string(bytes / 1e9) + " GB");
     data_ = std::make_unique<pin::Data>(model_);
     tau_ = VectorXd::Zero(model_.nv);
     for (const peers::Joint& j : problem.loops) {
@@ -95,11 +98,11 @@ class System {
     pin::normalize(model_, q_);
     v_ = y.tail(model_.nv);
     for (pin::JointIndex j = 1; j < model_.joints.size(); ++j) {
-      const int at = model_.idx_qs[j], to = model_.idx_vs[j], free = model_.nqs[j] == 7 ? 3 : 0;
-      const Quaterniond q(q_.segment<4>(at + free));
-      const Vector3d w = v_.segment<3>(to + free);
-      if (free) dy.segment<3>(at) = q * v_.segment<3>(to);
-      dy.segment<4>(at + free) = 0.5 * (q * Quaterniond(0, w[0], w[1], w[2])).coeffs();
+      const int q0 = model_.idx_qs[j], v0 = model_.idx_vs[j], free = model_.nqs[j] == 7 ? 3 : 0;
+      const Quaterniond q(q_.segment<4>(q0 + free));
+      const Vector3d w = v_.segment<3>(v0 + free);
+      if (free) dy.segment<3>(q0) = q * v_.segment<3>(v0);
+      dy.segment<4>(q0 + free) = 0.5 * (q * Quaterniond(0, w[0], w[1], w[2])).coeffs();
     }
     if (loops_.empty())
       dy.tail(model_.nv) = pin::aba(model_, *data_, q_, v_, tau_);
@@ -184,7 +187,7 @@ class RungeKutta {
     }
   }
 
-  /// Step control as of Hairer's DOP853.
+  /// Step control of Hairer's DOP853.
   void adaptive(VectorXd& y, double end, double tolerance) {
     const auto last = tableau_.b.size();
     double t = 0, h = 1e-3;
@@ -245,14 +248,14 @@ int main(int argc, char** argv) try {
   System system(problem);
   RungeKutta method(system, tableau);
   VectorXd y;
-  const double seconds = peers::least_seconds([&] { y = system.start(); },
-                                              [&] {
-                                                if (fixed)
-                                                  method.fixed(y, problem.end, std::atol(argv[4]));
-                                                else
-                                                  method.adaptive(y, problem.end, std::atof(argv[4]));
-                                              });
-  peers::answer(seconds, system.poses(y));
+  const double seconds = peers::minimum_seconds([&] { y = system.start(); },
+                                                [&] {
+                                                  if (fixed)
+                                                    method.fixed(y, problem.end, std::atol(argv[4]));
+                                                  else
+                                                    method.adaptive(y, problem.end, std::atof(argv[4]));
+                                                });
+  peers::print_result(seconds, system.poses(y));
   return 0;
 } catch (const std::exception& fault) {
   std::fprintf(stderr, "%s\n", fault.what());

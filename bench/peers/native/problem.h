@@ -1,4 +1,5 @@
-// A problem as problems.py gives it to a compiled peer, and how the peer is timed and answers.
+// Reads a problem from the file that native_peer.py writes for a compiled peer, times the peer and prints its
+// result.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +23,7 @@ struct Body {
   Quat quat;
   Vec3 vel, omega;  ///< world axes
 };
-/// Ball joint: point ra of body a on point rb of body b; the world is body -1.
+/// Ball joint: point ra of body a coincides with point rb of body b; the world is body -1.
 struct Joint {
   int a;
   Vec3 ra;
@@ -38,7 +39,7 @@ struct Problem {
   double end;
   Vec3 gravity;
   std::vector<Body> bodies;
-  std::vector<Joint> tree;  ///< a is the parent; parents come first
+  std::vector<Joint> tree;  ///< a is the parent; joints of parents precede those of children
   std::vector<Joint> loops;
 };
 
@@ -77,22 +78,23 @@ inline Problem read_problem(const std::string& path) {
   return p;
 }
 
-/// Least CPU seconds of the loop over repeats that take 0.2 s together; prepare is not timed.
+/// Returns the minimum CPU seconds of the loop over repeats with 0.2 s in total; prepare is not timed.
 template <class Prepare, class Loop>
-double least_seconds(const Prepare& prepare, const Loop& loop) {
-  double least = std::numeric_limits<double>::infinity(), spent = 0;
+double minimum_seconds(const Prepare& prepare, const Loop& loop) {
+  double minimum = std::numeric_limits<double>::infinity(), spent = 0;
   for (int repeat = 0; repeat < 50 && spent < 0.2; ++repeat) {
     prepare();
-    const std::clock_t begin = std::clock();
+    const std::clock_t start = std::clock();
     loop();
-    const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    least = std::min(least, seconds);
+    const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    minimum = std::min(minimum, seconds);
     spent += seconds;
   }
-  return least;
+  return minimum;
 }
 
-inline void answer(double seconds, const std::vector<Pose>& poses) {
+/// Prints the seconds, and a line with the pose of each body at the end.
+inline void print_result(double seconds, const std::vector<Pose>& poses) {
   std::printf("%.9g\n", seconds);
   for (const Pose& p : poses)
     std::printf("%.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", p.pos[0], p.pos[1], p.pos[2], p.quat[0],

@@ -1,5 +1,5 @@
-// Simbody: ball mobilizers in a tree, ball constraints for loops (or for all joints between free bodies),
-// its error-controlled integrators.
+// Simbody with its error-controlled integrators: ball mobilizers in a tree and ball constraints for loops, or
+// free bodies with ball constraints for all joints.
 //
 //   simbody_peer PROBLEM tree|free INTEGRATOR ACCURACY
 #include <cstring>
@@ -25,7 +25,7 @@ std::unique_ptr<Integrator> integrator(const std::string& name, const MultibodyS
   if (name == "RungeKuttaMerson") return std::make_unique<RungeKuttaMersonIntegrator>(system);
   if (name == "RungeKuttaFeldberg") return std::make_unique<RungeKuttaFeldbergIntegrator>(system);
   if (name == "CPodesAdams") return std::make_unique<CPodesIntegrator>(system, CPodes::Adams);
-  throw std::runtime_error("no integrator " + name);
+  throw std::runtime_error("unknown integrator: " + name);
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ int main(int argc, char** argv) try {
     for (int i = 0; i < static_cast<int>(bodies.size()); ++i) place(i, false);
 
   std::unique_ptr<Integrator> method;
-  const double seconds = peers::least_seconds(
+  const double seconds = peers::minimum_seconds(
       [&] {
         method = integrator(argv[3], system);
         method->setAccuracy(std::atof(argv[4]));
@@ -102,7 +102,7 @@ int main(int argc, char** argv) try {
     const Quaternion q = body.getBodyRotation(end).convertRotationToQuaternion();
     poses.push_back({{c[0], c[1], c[2]}, {q[0], q[1], q[2], q[3]}});
   }
-  peers::answer(seconds, poses);
+  peers::print_result(seconds, poses);
   return 0;
 } catch (const std::exception& fault) {
   std::fprintf(stderr, "%s\n", fault.what());

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include <pliant/body/stages/body_stages.h>
 #include <pliant/body/dynamics.h>
+#include <pliant/body/stages/body_stages.h>
 #include <pliant/body/stages/evaluation.h>
 #include <pliant/body/stages/part_stages.h>
 #include <pliant/math/header_only.h>

@@ -1,4 +1,4 @@
-// Lookup of contacts by the pair of bodies.
+// The pair of bodies at a contact, and contacts sorted by their pairs.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// The pair of bodies of a contact: part a, part b, plane, obstacle; -1 for none.
+/// Numbers of part a, part b, plane and obstacle; -1: none.
 using PairKey = std::array<int, 4>;
 inline PairKey key_of(const Contact& contact) {
   return {contact.a.part, contact.b.part, contact.plane, contact.obstacle};
@@ -23,7 +23,7 @@ inline const PairKey& key_of(const std::pair<PairKey, const Contact*>& entry) {
   return entry.first;
 }
 
-/// The order of contacts, cached contacts and entries by their pairs.
+/// Compares contacts, cached contacts and entries of Pairs by their pairs.
 struct ByPair {
   template <class A, class B>
   bool operator()(const A& a, const B& b) const {
@@ -31,31 +31,33 @@ struct ByPair {
   }
 };
 
+/// Some contacts, sorted by their pairs.
 class Pairs {
  public:
-  /// The contacts must outlive the object.
+  /// The contacts must outlive this object.
   explicit Pairs(const std::vector<Contact>& contacts) {
-    for (const Contact& contact : contacts) all_.emplace_back(key_of(contact), &contact);
-    std::sort(all_.begin(), all_.end());
+    for (const Contact& contact : contacts) sorted_.emplace_back(key_of(contact), &contact);
+    std::sort(sorted_.begin(), sorted_.end());
   }
+  /// Returns whether a contact of the same pair is among them.
   bool has(const Contact& contact) const {
     const auto [first, last] = range(contact);
     return first != last;
   }
-  /// Returns whether `is` holds for some contact of the same pair.
+  /// Returns whether a contact of the same pair is among them for which condition(contact) is true.
   template <class F>
-  bool has(const Contact& contact, F&& is) const {
+  bool has(const Contact& contact, F&& condition) const {
     const auto [first, last] = range(contact);
-    return std::any_of(first, last, [&](const Entry& entry) { return is(*entry.second); });
+    return std::any_of(first, last, [&](const Entry& entry) { return condition(*entry.second); });
   }
 
  private:
   using Entry = std::pair<PairKey, const Contact*>;
   std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator> range(
       const Contact& contact) const {
-    return std::equal_range(all_.begin(), all_.end(), contact, ByPair{});
+    return std::equal_range(sorted_.begin(), sorted_.end(), contact, ByPair{});
   }
-  std::vector<Entry> all_;
+  std::vector<Entry> sorted_;
 };
 
 }  // namespace pliant

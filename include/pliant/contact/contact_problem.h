@@ -1,6 +1,6 @@
-// The velocity-level problem of simultaneous contacts. Each contact has a relative velocity u of its sides
-// and an impulse p that obey Coulomb's law (solve/coulomb_system.h). The joints of each body stay closed, no
-// parameter leaves its limits and no taut string grows.
+// The problem of simultaneous contacts at velocity level: each contact has a relative velocity u of its sides
+// and an impulse p that satisfy Coulomb's law (solve/coulomb_system.h), while closed joints stay closed,
+// parameters stay within their limits and taut strings do not grow.
 #pragma once
 
 #include <vector>
@@ -12,77 +12,78 @@
 namespace pliant {
 
 struct ContactSolution {
-  std::vector<Vec3<double>> impulse;   ///< on side a of each contact, N s, world
-  std::vector<Vec3<double>> velocity;  ///< of side a relative to side b after the impulse, m/s, world
-  double residual = 0;                 ///< residual of Coulomb's law at the worst contact, m/s
+  std::vector<Vec3<double>> impulse;   ///< of each contact on side a, N s, world
+  std::vector<Vec3<double>> velocity;  ///< of side a relative to side b afterwards, m/s, world
+  double residual = 0;                 ///< largest violation of Coulomb's law, m/s
   int sweeps = 0;
   int fallbacks = 0;  ///< see CoulombResult
 };
 
 class ContactProblem {
  public:
-  /// work: evaluated, with masses and factors, for every touched part except those whose nodes move one by
-  /// one. state, contacts and work must outlive the problem.
+  /// work: evaluated with masses and factors for all touched parts, except parts that are moved node by node
+  /// (evaluate_touched). state, contacts and work must outlive this object.
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
-  /// Solves for the impulses of the contacts, with their rebounds, and of limits and strings, whose `since`
-  /// is since_of_limits, s.
-  ContactSolution solve(double since_of_limits);
-  /// Sets the initial impulse of a contact, N s, world, on side a. With impulses near the solution standing
-  /// piles need no sweeps; moving heaps need as many as without.
+  /// Computes the impulses of the contacts, with the rebound of each, and of limits and strings. limit_time:
+  /// the time `since` of all limits and strings, see Contact::since.
+  ContactSolution solve(double limit_time);
+  /// Sets the start value of the impulse of a contact, N s, on side a, world. Near the solution it saves all
+  /// sweeps, as in a pile at rest; far from it the search takes as long as without.
   void warm_start_at(int contact, const Vec3<double>& impulse);
-  /// Returns whether a contact may warm-start. Valid after solve().
+  /// Returns whether the impulse of a contact can be a start value. Valid after solve().
   bool may_warm_start(int contact) const { return system_.may_warm_start(contact); }
-  /// Returns the velocity of side a relative to side b at each contact for the velocities of another state,
-  /// m/s, world.
-  std::vector<Vec3<double>> velocities(const State& of) const;
-  /// Bounds the shifts. Large impulses at different times, as on a light body between heavy ones, may nearly
-  /// cancel in velocity but not in position. No mover shifts farther than by its change of velocity in `most`
-  /// seconds; otherwise all its impulses count for a time of `since`, s.
-  void bound_shifts(double since, double most);
-  /// Adds shifts without friction that remove the overlaps that remain, each by at most its `most` (m), down
-  /// to `enough` (m).
-  void separate_bodies(const std::vector<double>& most, double enough = 0);
+  /// Returns the velocity of side a relative to side b at each contact, m/s, world, with the velocities of
+  /// another state.
+  std::vector<Vec3<double>> velocities(const State& state) const;
+  /// Bounds the displacements of movers. Large impulses with different `since` (on a light part between heavy
+  /// ones) may nearly cancel in velocity, but not in displacement. If a displacement exceeds max_time (s)
+  /// times the change of velocity, it becomes limit_time (s) times this change.
+  void bound_shifts(double limit_time, double max_time);
+  /// Adds displacements, without friction, that close the remaining overlaps: each contact opens by at most
+  /// its max_separation (m), and overlaps up to `tolerance` (m) may remain.
+  void separate_bodies(const std::vector<double>& max_separation, double tolerance = 0);
 
   const Movers& movers() const { return movers_; }
-  /// Velocities of a mover before and after the impulses, and its shift (Contact::since).
+  /// Return the velocities of a mover before and after the impulses, and its displacement by them.
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
   auto shift(const Mover& mover) const { return shift_.segment(mover.first, mover.size); }
-  /// Adds the impulses of the joints, N s; C_q^T of them acts on the parts. rows: of all joints.
+  /// Adds the impulses lambda of the joints against the contact impulses, N s; C_q^T lambda acts on the
+  /// parts. rows: of all joints.
   void add_joint_impulses(VecX<double>& rows) const;
 
  private:
-  /// Impulses on the joints of an island by unit impulses at a contact.
+  /// Impulses of the joints of an island by unit impulses at a contact.
   struct JointResponse {
     int contact;
     const Island* island;
     MatX<double> lambda;
   };
-  /// A taut string: its one-sided row, and its number among the rows of all joints.
+  /// A taut string: its number among the contacts of the system, and its row among those of all joints.
   struct String {
     int contact, row;
   };
   /// A side of the contact that is being added.
   struct Side {
-    int part, mover, first;  ///< first of its velocities in those of the mover
+    int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;
-    /// Number of local coordinates in the mover.
+    /// J of some local coordinates; first: index of their rates in the velocities of the mover.
     struct Local {
       int first;
       Eigen::Matrix3Xd J;
     };
     std::vector<Local> local;
   };
-  Side side_of(int part);
+  Side make_side(int part);
   void add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const;
   void add_side(const ContactSide& side, const Contact& contact, double sign);
   void add_limits();
   void add_strings();
   void complete();
   void add_response(const Mover& mover, const Side& side, int rows, CoulombSystem::Push& Y) const;
-  void hold_joints(int contact);
+  void add_joint_responses(int contact);
 
   const Model& model_;
   const State& state_;

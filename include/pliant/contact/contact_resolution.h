@@ -1,4 +1,5 @@
-// Resolution of contacts: impulses, then separation of the overlaps that remain.
+// Contact resolution: impulses that satisfy Coulomb's law at the contacts, and the separation of bodies that
+// still overlap.
 #pragma once
 
 #include <array>
@@ -12,61 +13,75 @@
 
 namespace pliant {
 
-/// The impulses of a step, one entry for each time that an impulse acted at a contact. Impacts within a step,
-/// and fast parts, divide the step into several motions.
+/// The contact impulses of a step. A contact has one entry for each time at which an impulse acted: a step
+/// with impacts, or with fast parts, consists of several motions.
 struct ContactRecord {
   std::vector<Contact> contacts;
-  std::vector<Vec3<double>> impulses;  ///< on side a, N s, world
+  std::vector<Vec3<double>> impulses;  ///< on the sides a, N s, world
   std::vector<double> sliding;         ///< tangential speeds afterwards, m/s
-  VecX<double> joint_impulses;  ///< reactions of the joints, on their rows: C_q^T of it acts on the parts
+  VecX<double> joint_impulses;  ///< lambda of the joints against them, N s; C_q^T lambda acts on the parts
 
   void clear();
 };
 
-/// The motion that ends where contacts are resolved. `before` is the state itself for an impulse at one
-/// moment.
+/// The motion at whose end contacts are resolved.
 struct ResolvedMotion {
-  const State& before;
-  double held;  ///< impulses on limits stand for forces over this time, s (FreeMotion::held)
-  double h;     ///< length of the motion, s; 0 for an impulse at one moment
+  const State& before;  ///< state at its start; the state of the step itself for an impulse at one instant
+  double force_time;    ///< `since` of impulses on limits, s (FreeMotion::force_time)
+  double h;             ///< length, s; 0 for an impulse at one instant
 };
 
 class ContactResolution {
  public:
-  /// All arguments must outlive the object. record: receives the contacts and impulses.
+  /// All arguments must outlive this object. record: the impulses are appended to it.
   ContactResolution(const Dynamics& dynamics, const ContactFinder& finder, MeshFinder& meshes,
                     RestingContacts& resting, ContactRecord& record);
 
-  /// Begins a step: decides whether its resolutions warm-start from the contact cache of the state.
+  /// Begins a step: forgets the impulses of the last step, and decides whether the searches of this step
+  /// start from the contact cache of the state.
   void begin_step(const State& state);
-  /// Stores the mean forces of the step, of h seconds, as the contact cache of the state.
+  /// Stores the impulses of this step of h seconds in the contact cache of a state.
   void end_step(double h, State& state) const;
 
-  /// Applies impulses at contacts at step.t, the end of a motion, each for the time that it says, and then
-  /// separates what still overlaps.
+  /// Applies the impulses at the contacts at step.t, the end of a motion, with the displacements by them
+  /// (Contact::since), and then separates bodies that still overlap.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
-  /// Resolves the impacts of bodies that the impulses at these contacts ejected against others, in the motion
-  /// of step.h seconds, and the impacts that follow from them. slow: speeds below it do not rebound, m/s.
-  void resolve_chain(StepContext& step, std::vector<Contact> resolved, double slow);
+  /// Resolves the impacts of bodies that the impulses at these contacts have pushed into others during the
+  /// motion of step.h seconds, and the impacts that follow. Impacts slower than min_impact_speed (m/s) do not
+  /// rebound.
+  void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
-  /// Projects frames and joints after velocities and places of some parts have changed.
+  /// Projects frames and joints after a change of velocities and coordinates of some parts.
   void reconcile(StepContext& step, const std::vector<int>& parts) const;
 
  private:
-  double sweep(const ContactSide& side, const Vec3<double>& x, const State& state, double h) const;
+  /// A resolved contact with its impulse (N s, in place of the force), the distance within which another
+  /// contact is equal to it (m), and the number of the resolution in the step.
+  struct Resolved {
+    CachedContact cached;
+    double match_distance;
+    int resolution;
+  };
+
+  double departure_from_tangent(const ContactSide& side, const Vec3<double>& x, const State& state,
+                                double h) const;
   void resolve_once(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts,
                     bool warm);
+  void measure_travel(const State& state, double h, const std::vector<Contact>& contacts);
+  ContactSolution solve(StepContext& step, const ResolvedMotion& motion, const std::vector<Contact>& contacts,
+                        bool warm, ContactProblem& problem);
+  void append_to_record(const std::vector<Contact>& contacts, const ContactSolution& solution);
   double largest_separation(const Contact& contact, double h) const;
-  void travel(const Contact& contact, double far);
+  void extend_travel(const Contact& contact, double distance);
   void warm_start(const State& state, double t, double h, const std::vector<Contact>& contacts,
                   ContactProblem& problem) const;
-  void note_pushed(const State& state, double t, const std::vector<Contact>& contacts,
-                   const ContactProblem& problem, const std::vector<Vec3<double>>& impulses);
-  Vec3<double> place(const Contact& contact, const State& state, double t) const;
-  double same_within(const Contact& contact) const;
+  void record_resolved(const State& state, double t, const std::vector<Contact>& contacts,
+                       const ContactProblem& problem, const std::vector<Vec3<double>>& impulses);
+  Vec3<double> local_position(const Contact& contact, const State& state, double t) const;
+  double match_distance(const Contact& contact) const;
   void add_ejections(const State& state);
-  double may_overlap(const Contact& contact) const;
-  void keep_concerned(std::vector<Contact>& contacts, const Workspace<double>& work) const;
+  double allowed_overlap(const Contact& contact) const;
+  void keep_affected(std::vector<Contact>& contacts, const Workspace<double>& work) const;
   void separate_overlaps(StepContext& step);
 
   const Dynamics& dynamics_;
@@ -75,20 +90,13 @@ class ContactResolution {
   RestingContacts& resting_;
   ContactRecord& record_;
   Workspace<double> scratch_;
-  /// A cached contact with its impulse in place of a force, N s; the distance within which another contact is
-  /// the same, m; and the number of the resolution in the step.
-  struct Pushed {
-    CachedContact support;
-    double same_within;
-    int resolution;
-  };
-  std::vector<Pushed> pushed_;  // in this step
+  std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  // In this step: how far parts travel towards contacts, or are ejected, m; and the pairs that were too deep
-  // for a whole separation and have been separated as far as allowed.
-  std::vector<double> travel_;
-  VecX<double> ejected_from_;
+  std::vector<double> travel_;  // travel of each part towards the bodies it meets, and by ejections, m
+  VecX<double> q_before_ejection_;
+  // Pairs whose overlap was too deep to be separated in one step, and that have been separated by the allowed
+  // distance.
   std::set<std::array<int, 4>> fully_separated_;
 };
 

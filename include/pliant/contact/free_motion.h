@@ -1,4 +1,4 @@
-// The motion of a method without contacts.
+// A motion: one step of the method of integration, without contact impulses.
 #pragma once
 
 #include <pliant/body/state.h>
@@ -6,19 +6,20 @@
 namespace pliant {
 
 struct FreeMotion {
-  State before;      ///< at its start
-  double begin = 0;  ///< s
+  State before;      ///< state at the start
+  double begin = 0;  ///< time of the start, s
   double h = 0;      ///< length, s
-  double reach = 0;  ///< displacement by a constant force, in h^2 times the acceleration (Integrator::reach)
-  /// Speeds below this count as zero, m/s: rounding, and gravity in a part of a step, give resting bodies as
-  /// much.
-  double slow = 0;
-  double loose = 0;  ///< largest speed of a resting contact, m/s (State::contact_residual)
+  double reach = 0;  ///< displacement by a constant acceleration, in units of h^2 (Integrator::reach)
+  /// Slower impacts do not rebound, m/s. Rounding and gravity within a part of a step cause such speeds.
+  double min_impact_speed = 0;
+  /// Largest normal speed of a resting contact, m/s. It includes the residual of the last impulses
+  /// (State::contact_residual).
+  double max_resting_speed = 0;
 
   double end() const { return begin + h; }
-  /// Impulses at the end that act as forces over the whole motion displace bodies by their change of velocity
-  /// times this, s.
-  double held() const { return reach * h; }
+  /// Returns the time (s) that multiplies the change of velocity by impulses at the end of the motion, if
+  /// these stand for forces that are constant during the motion: the product is the displacement.
+  double force_time() const { return reach * h; }
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The time of an impact within a step.
+// The times at which impacts happen within a motion.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// Sets the start and the length of the next step of a method, s.
+/// Sets the start t (s) and the length h (s) of the next step of a method.
 inline void set_step(State& state, double t, double h) {
   state.start = t;
   state.step = 0;
@@ -22,8 +22,8 @@ inline void set_step(State& state, double t, double h) {
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 
-/// Sets the time since each contact at the end of a motion began (at its current speed), and its rebound
-/// velocity. Contacts that have a `since` are at rest.
+/// Sets the `since` of contacts at the end of a motion: the time since their sides met, s, at their present
+/// normal velocity. Sets their `rebound` too. Does not change resting contacts, which have a `since`.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

@@ -7,11 +7,11 @@
 
 namespace pliant {
 
-/// Returns the longest step, s. Its error is of first order: for tolerances above 5e-4 it is longer than the
-/// setting in proportion, at most ten times.
+/// Returns the length of that step, s. Its error is of first order: for tolerances above 5e-4 the longest
+/// step of the settings grows in proportion, at most ten times.
 inline double longest_contact_step(const ContactSettings& settings, double tolerance) {
-  constexpr double exact = 5e-4, most = 10;
-  return settings.longest_step * std::clamp(tolerance / exact, 1.0, most);
+  constexpr double reference = 5e-4, max_factor = 10;
+  return settings.longest_step * std::clamp(tolerance / reference, 1.0, max_factor);
 }
 
 }  // namespace pliant

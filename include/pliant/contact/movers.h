@@ -1,8 +1,9 @@
-// Movers: the units that contacts push. A mover is a part without joints, or an island of parts that joints
-// connect, with its velocities as in body/constraint/group.h, followed by the rates of local coordinates that
-// one impulse changes all at once (parts with modes, and parts whose elasticity is implicit). Other parts
-// with nodes have lumped masses: an impulse on a node moves that node alone, so that every node is a mover of
-// its own, with its velocity in the world.
+// Movers: groups of velocities that contact impulses change together. A mover is
+// - a part without joints, or an island (parts that joints connect), with the velocities of body/group.h. If
+//   an impulse moves all local coordinates of a part (deformation by modes, or implicit elasticity), the
+//   rates of these coordinates follow the velocities of the mover;
+// - a node of any other part that deforms locally. Its mass is lumped, so an impulse on a node moves this
+//   node only. Its velocity is in the world frame.
 #pragma once
 
 #include <vector>
@@ -12,36 +13,39 @@
 namespace pliant {
 
 struct Mover {
-  int part = -1;                   ///< a part without joints
-  int node = -1;                   ///< or a node of the part
-  const Island* island = nullptr;  ///< or an island
-  int first = 0, size = 0;         ///< first and number of its velocities among those of all movers
+  int part = -1;                   ///< number of the part without joints, or of the part of the node
+  int node = -1;                   ///< number of the node; -1: not a node
+  const Island* island = nullptr;  ///< the island; nullptr: not an island
+  int first = 0, size = 0;         ///< its velocities in the vector of all movers
 };
 
-/// Return whether an impulse moves all local coordinates of a part, or single nodes.
+/// Returns whether an impulse on a part moves all of its local coordinates.
 bool moves_locally(const PartModel& m, const PartWorkspace<double>& w);
+/// Returns whether an impulse on a part moves single nodes.
 bool moves_by_nodes(const PartModel& m, const PartWorkspace<double>& w);
 
-/// The movers of a problem, numbered in the order of their first use.
+/// The movers that some contacts need, numbered in the order in which they are requested.
 class Movers {
  public:
-  /// The model must outlive the object. work: has the responses of parts to impulses
+  /// The model must outlive this object. work: determines how parts respond to impulses
   /// (LocalWorkspace::response).
   Movers(const Model& model, const Workspace<double>& work);
 
-  /// Returns the number of the mover of a part, or of a node.
-  int of_part(int part);
-  int of_node(int part, int node);
+  /// Returns the number of the mover of a part, or of a node; adds the mover if it is new.
+  int mover_of_part(int part);
+  int mover_of_node(int part, int node);
 
   int n_x() const { return n_x_; }
   const std::vector<Mover>& all() const { return all_; }
   const Mover& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
-  /// Returns the first velocity of a part in those of its mover.
+  /// Returns the index of the first velocity of a part in its mover.
   static int first_in(const Mover& mover, int part);
-  /// Return the first rate of its local coordinates in those of its mover, and their number.
+  /// Returns the index of the first rate of the local coordinates of a part in its mover, if they belong to
+  /// it; n_local() is their number.
   int first_local(const Mover& mover, int part) const;
   int n_local(int part) const { return n_local_[static_cast<std::size_t>(part)]; }
-  /// Returns the velocities of all movers. The state may be earlier than the evaluation in work.
+  /// Returns the velocities of all movers. The coordinates of the state may be those of an earlier time than
+  /// those of work.
   VecX<double> velocities(const State& state, const Workspace<double>& work) const;
 
  private:
@@ -50,9 +54,9 @@ class Movers {
   const Model* model_;
   std::vector<Mover> all_;
   int n_x_ = 0;
-  std::vector<int> n_local_;                // by part
-  std::vector<int> of_parts_;               // number of the mover of each part; -1: none yet
-  std::vector<std::vector<int>> of_nodes_;  // number of the mover of each node
+  std::vector<int> n_local_;                   // of each part
+  std::vector<int> part_movers_;               // number of the mover of each part; -1: none yet
+  std::vector<std::vector<int>> node_movers_;  // number of the mover of each node of each part
 };
 
 }  // namespace pliant

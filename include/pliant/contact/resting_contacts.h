@@ -1,4 +1,4 @@
-// Resting contacts: surfaces that touch without moving apart or striking.
+// Resting contacts: surfaces that touch and do not separate.
 #pragma once
 
 #include <vector>
@@ -10,47 +10,48 @@ namespace pliant {
 
 class RestingContacts {
  public:
-  /// The model and the finder must outlive the object.
+  /// model and finder must outlive this object.
   RestingContacts(const Model& model, const ContactFinder& finder);
 
-  /// Widens the gap of resting contacts by the displacement (m) that the residual of the last step allows.
-  void loosen(double loose);
-  /// Returns the gap below which surfaces that do not move apart rest on each other, m: of this pair, and of
-  /// the largest part.
-  double gap(const Contact& contact) const { return loosened(tight_gap(contact)); }
-  double gap() const { return loosened(gap_); }
-  /// Returns the gap of this pair without a residual, m.
+  /// Widens the largest gap of resting contacts by `extra` (m), the opening that the residual of the last
+  /// impulses may have caused.
+  void widen_gap(double extra);
+  /// Returns the largest gap of a resting contact, m: for the pair of a contact, and for the largest part.
+  double gap(const Contact& contact) const { return widened(tight_gap(contact)); }
+  double gap() const { return widened(gap_); }
+  /// Returns the largest gap for the pair without the residual of the last impulses, m.
   double tight_gap(const Contact& contact) const;
-  /// Returns the contacts within gap() at time t, s.
+  /// Returns the contacts with a gap of at most gap() at a time t (s). Searches again only near parts that
+  /// have moved since the last call.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Returns the near contacts whose normal speed is at most `slow`, m/s.
-  std::vector<Contact> at_rest(const State& state, double t, double slow);
-  /// Returns the longest motion, s, that has led to `state`, in which contacts at rest at its start sink in
-  /// by at most ContactFinder::thin if nothing holds them.
+  /// Returns the resting contacts among them: those whose normal speed is at most max_speed (m/s).
+  std::vector<Contact> at_rest(const State& state, double t, double max_speed);
+  /// Returns the longest motion (s) in which contacts that rest at the start sink by at most
+  /// ContactFinder::thin, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
-  /// Returns its prediction before the motion, by gravity (m/s^2) alone.
+  /// Predicts this length before the motion, for gravity (m/s^2) alone.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// Returns the contacts at the end of a motion that has led to `state`: overlaps, and all near contacts of
-  /// pairs that rested at its start, which rounding or the free motion may have separated. Contacts that
-  /// rested have lasted for the whole motion (Contact::since).
-  std::vector<Contact> met(const FreeMotion& motion, const std::vector<Contact>& resting,
-                           const State& state) const;
+  /// Returns the contacts at the end of a motion, which has led to `state`: the sides that overlap, and the
+  /// contacts that rested at the start and are still near, which rounding or the motion may have opened. The
+  /// `since` of resting contacts is that of a force during the whole motion.
+  std::vector<Contact> contacts_after(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                      const State& state) const;
 
  private:
-  double loosened(double tight) const;
+  double widened(double tight) const;
   bool few_moved(const State& state);
-  bool rests(const Contact& contact, double gap, double velocity, double slow) const;
-  bool rested(const Contact& contact, const FreeMotion& motion, const State& state) const;
+  bool is_resting(const Contact& contact, double gap, double velocity, double max_speed) const;
+  bool was_resting(const Contact& contact, const FreeMotion& motion, const State& state) const;
 
   const Model& model_;
   const ContactFinder& finder_;
-  double gap_ = 0, loose_ = 0;
-  // The state of the last search.
+  double gap_ = 0, extra_gap_ = 0;
+  // The last search: its state and time, and its result.
   VecX<double> last_q_;
   std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<bool> moved_;  // parts that have moved since then
+  std::vector<bool> moved_;  // parts that have moved since
 };
 
 }  // namespace pliant

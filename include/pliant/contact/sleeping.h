@@ -1,5 +1,5 @@
-// Sleeping of bodies at rest (body/contact_settings.h): which bodies fall asleep after a step, and what wakes
-// them before one. A sleeping body keeps its coordinates to the last bit, and its velocities are zero.
+// Sleep of bodies at rest (body/contact_settings.h): which bodies fall asleep after a step, and which wake
+// before one. The coordinates of a sleeping part do not change by a bit, and its velocities are zero.
 #pragma once
 
 #include <functional>
@@ -14,50 +14,51 @@ namespace pliant {
 
 class Sleeping {
  public:
-  /// All arguments must outlive the object. Throws std::invalid_argument for settings out of range.
+  /// All arguments must outlive this object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Wakes bodies before a motion of h seconds from time t (s): those that have a velocity, or a cause of
-  /// motion that changes by then, with all that sleep with them. Stores the coordinates of those that sleep.
+  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have got a velocity, or whose
+  /// drive changes in the motion, with all parts that sleep with them. Stores the coordinates of the others.
   void begin_motion(double t, double h, State& state);
-  /// Restores the sleeping bodies after the motion.
+  /// Ends the motion: restores the coordinates of sleeping parts.
   void restore(State& state) const;
-  /// Returns whether a contact touches a sleeping body.
-  bool is_met(const std::vector<Contact>& contacts, const State& state) const;
-  /// Wakes the touched bodies, with all that sleep with them.
-  void wake_met(const std::vector<Contact>& contacts, State& state) const;
-  /// Wakes the bodies that impulses have moved.
+  /// Returns whether another body has met a sleeping part at one of these contacts. Contacts of sleeping
+  /// parts with each other are not searched.
+  bool touches_sleeping(const std::vector<Contact>& contacts, const State& state) const;
+  /// Wakes the parts at the contacts, with all parts that sleep with them.
+  void wake_touched(const std::vector<Contact>& contacts, State& state) const;
+  /// Wakes parts that impulses have moved since begin_motion().
   void wake_moved(State& state) const;
-  /// Lets bodies fall asleep after h seconds from time t (s) with these contacts: those that have been at
-  /// rest for long enough, together with all that they touch and are tied to. The kinetic energy that they
-  /// had is lost in contact.
+  /// Lets bodies fall asleep after h seconds with these contacts from time t (s) on, if they, and all parts
+  /// that they touch or are connected to, have been at rest for long enough. Their kinetic energy is lost in
+  /// contact.
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
-  /// Returns whether any body sleeps in this motion.
+  /// Returns whether any part sleeps in this motion.
   bool any() const { return q_.size() > 0; }
 
  private:
-  /// A cause that may move a part, and its island, without a contact.
+  /// A cause that may move a sleeping part without contact.
   struct Drive {
     int part;                                         ///< -1: all parts
-    std::function<bool(double t, double h)> changes;  ///< whether its value changes within h seconds of t
+    std::function<bool(double t, double h)> changes;  ///< whether it changes within h seconds after t
   };
 
-  void note_drives();
-  void note_switches();
+  void find_drives();
+  void find_switches();
   double speed(const State& state, int part) const;
-  bool note_rest(double h, State& state) const;
+  bool update_rest_times(double h, State& state) const;
   bool is_kinematic(const ContactSide& side, int plane) const;
-  DisjointSets sets_of(const std::vector<Contact>& contacts) const;
+  DisjointSets connected_parts(const std::vector<Contact>& contacts) const;
 
   const Dynamics& dynamics_;
   const Model& model_;
   RestingContacts& resting_;
   const MeshFinder& meshes_;
-  const Sleep* settings_;    // nullptr: bodies do not sleep
+  const Sleep* settings_;    // nullptr: nothing sleeps
   std::vector<int> moving_;  // parts that have coordinates
   std::vector<Drive> drives_;
-  VecX<double> q_;  // coordinates of sleeping bodies; empty: none sleeps
+  VecX<double> q_;  // coordinates at the start of the motion; empty if nothing sleeps
 };
 
 }  // namespace pliant

@@ -1,7 +1,6 @@
-// Bodies of assemble.h.
+// Bodies of assemble.h: a sequential quadratic method with a line search on a merit function.
 #pragma once
 
-#include <pliant/math/header_only.h>
 #include <pliant/project/assemble.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include <pliant/body/advance.h>
 #include <pliant/body/constraint/one_sided_rows.h>
 #include <pliant/body/step_failure.h>
+#include <pliant/math/header_only.h>
 #include <pliant/project/project.h>
 #include <pliant/project/projection.h>
 
@@ -20,30 +20,32 @@ namespace pliant {
 
 namespace assembly {
 
-/// Largest rotation of a part in one step, rad, and largest change of a parameter, relative or in rad.
-inline constexpr double kMaxTurn = 0.5, kMaxChange = 0.3;
-/// eps divided by the smallest ratio of stiffness to inertia: the cost of rigid motion.
+/// Largest rotation of a part in one step, rad, and largest change of a parameter: relative for lengths,
+/// absolute for other parameters.
+inline constexpr double kMaxRotation = 0.5, kMaxChange = 0.3;
+/// The cost of rigid motion: eps, in units of the smallest ratio of stiffness to inertia.
 inline constexpr double kRigidFirst = 1e-6;
-/// The shape has converged if a step is below this, in rad or relative.
+/// The shape has converged if a step changes rotations (rad) and parameters by less than this.
 inline constexpr double kConverged = 1e-9;
-/// Relative difference at which the merits of two closed configurations are equal.
-inline constexpr double kEqual = 1e-12;
-/// Gap, in lengths of the joint, that the projection at the start closes.
-inline constexpr double kNearlyClosed = 1e-9;
+/// Merits of closed configurations are equal within this relative difference.
+inline constexpr double kEqualMerit = 1e-12;
+/// Gap, in lengths of the joint, that the projection at the start of the run closes without loss of accuracy.
+inline constexpr double kProjectedGap = 1e-9;
 inline constexpr int kMaxIterations = 400;
-/// An island cannot close if its gap does not shrink by kProgress in kPatience iterations.
+/// An island cannot close if its gap does not decrease below kProgress of its value in kPatience iterations.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
-/// Most joints that a message names besides the widest.
+/// Largest number of joints that a message names, without the one with the largest gap.
 inline constexpr int kMaxNamed = 8;
-/// A step longer than kTooFar allowed steps makes rigid motion more expensive by kDearer, once all gaps are
-/// below kNear lengths; accepted steps make it cheaper by kCheaper.
-inline constexpr double kTooFar = 2, kNear = 2, kDearer = 8, kCheaper = 4;
+/// If a step is longer than kMaxStepSize allowed steps, and all gaps are below kNearGap lengths, the cost of
+/// rigid motion rises by kCostIncrease. An accepted step reduces it by kCostDecrease.
+inline constexpr double kMaxStepSize = 2, kNearGap = 2, kCostIncrease = 8, kCostDecrease = 4;
 
 inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-using projection::wider;
+using projection::max_or_nan;
 
+/// The assembly of one island.
 class Assembly {
  public:
   Assembly(const Dynamics& dynamics, const Island& island, State& state, Workspace<double>& work)
@@ -57,24 +59,24 @@ class Assembly {
       if (modes_[at(j)] != JointMode::off) modes_[at(j)] = JointMode::closed;
     for (const int j : island.strings)
       if (modes_[at(j)] != JointMode::off) modes_[at(j)] = JointMode::slack;
-    const double softest = softest_ratio();
-    stiff_ = std::isfinite(softest);
-    eps_ = least_eps_ = kRigidFirst * (stiff_ ? softest : 1);
+    const double ratio = smallest_stiffness_ratio();
+    stiff_ = std::isfinite(ratio);
+    eps_ = min_eps_ = kRigidFirst * (stiff_ ? ratio : 1);
   }
 
-  /// Returns the widest gap, in lengths of its joint.
+  /// Evaluates the joints; returns the largest gap, in lengths of its joint.
   double gap() {
     dynamics_.evaluate_joints(state_.time(), state_.q, state_.v, modes_, island_, work_);
-    double widest = 0;
+    double largest = 0;
     for_each_gap(
-        [&](int, double gap, const JointModel& joint) { widest = wider(gap / joint.length, widest); });
-    return widest;
+        [&](int, double gap, const JointModel& joint) { largest = max_or_nan(gap / joint.length, largest); });
+    return largest;
   }
-  /// Returns the widest gap, m.
-  double metres() const {
-    double widest = 0;
-    for_each_gap([&](int, double gap, const JointModel&) { widest = wider(gap, widest); });
-    return widest;
+  /// Returns the largest gap of the last evaluation, m.
+  double gap_in_metres() const {
+    double largest = 0;
+    for_each_gap([&](int, double gap, const JointModel&) { largest = max_or_nan(gap, largest); });
+    return largest;
   }
 
   /// Returns whether the shape converged within kMaxIterations.
@@ -82,13 +84,13 @@ class Assembly {
 
   /// Iterates to closed gaps and a converged shape; returns the number of iterations.
   int run() {
-    double best_gap = kInfinite, best_merit = kInfinite, price = penalty_;
+    double best_gap = kInfinite, best_merit = kInfinite, last_penalty = penalty_;
     int since_gap = 0, since_merit = 0;
     for (int i = 0; i < kMaxIterations; ++i) {
       const double now = gap();
       if (!std::isfinite(now))
         throw NumericalFailure("assembly: the gap of a joint is not a finite number", state_.time());
-      if (std::exchange(price, penalty_) != penalty_)
+      if (std::exchange(last_penalty, penalty_) != penalty_)
         best_merit = kInfinite;  // merits with another penalty are not comparable
       since_gap = now < kProgress * best_gap ? 0 : since_gap + 1;
       since_merit = merit() < (1 - kConverged) * best_merit ? 0 : since_merit + 1;
@@ -96,8 +98,8 @@ class Assembly {
       best_merit = std::min(best_merit, merit());
       const bool closed = is_closed();
       if (!closed && since_gap > kPatience && (!stiff_ || since_merit > kPatience)) fail(i);
-      // Further changes are rounding, of gaps or of the shape.
-      if (now <= kNearlyClosed && since_merit > kPatience / 4) return i;
+      // The remaining changes of gaps and shape are rounding.
+      if (now <= kProjectedGap && since_merit > kPatience / 4) return i;
       const double moved = step(now);
       if (closed && moved <= kConverged) return i;
     }
@@ -129,7 +131,7 @@ class Assembly {
   }
 
   /// Returns the smallest ratio of stiffness to inertia over the parameters; infinite if none has stiffness.
-  double softest_ratio() {
+  double smallest_stiffness_ratio() {
     dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
     double least = kInfinite;
     for (const int i : island_.parts) {
@@ -143,15 +145,15 @@ class Assembly {
     return least;
   }
 
-  /// Sets the metric M + K_s / eps of the parts, with the inertia of rotation multiplied by a factor.
-  void make_metric(double dear) {
+  /// Sets the metric M + K_s / eps of the parts, with the inertia of rotation multiplied by rotation_cost.
+  void make_metric(double rotation_cost) {
     dynamics_.evaluate_masses(state_.q, state_.v, island_.parts, work_);
     for (const int i : island_.parts) {
       const PartModel& m = model_.parts()[at(i)];
       PartWorkspace<double>& w = work_.parts[at(i)];
       if (w.local) w.inertia.M = w.local->H0;
       MatX<double>& H = w.inertia.M;
-      H.block<3, 3>(3, 3) *= dear;
+      H.block<3, 3>(3, 3) *= rotation_cost;
       H.bottomRightCorner(m.n_s, m.n_s) += m.part->strain_stiffness(q_s(m)) / eps_;
       w.factor.compute(H, m.inertia_floor);
       w.rigid = nullptr;
@@ -159,7 +161,8 @@ class Assembly {
     }
   }
 
-  /// Fixes the nodes on the parts: the metric is that of c, theta and q_s, with immovable nodes.
+  /// Fixes the nodes of a part: the metric is that of c, theta and q_s, with a very large inertia of the
+  /// nodes.
   static void fix_nodes(PartWorkspace<double>& w) {
     constexpr double immovable = 1e12;
     MatX<double>&A = w.local->A, &M = w.inertia.M;
@@ -175,18 +178,18 @@ class Assembly {
     }
   }
 
-  /// Takes one step; returns the largest rotation or relative change of a parameter in it. If rigid motion
-  /// closes little, as in a straight chain that is too short, its cost rises for a while, which moves the
-  /// parameters more.
-  double step(double widest) {
+  /// Makes one step; returns its largest rotation or relative change of a parameter. If rigid motion cannot
+  /// close the gaps, as in a straight chain that is too short, its cost rises for some steps, so that the
+  /// parameters change more.
+  double step(double largest) {
     double size = 0;
     for (int attempt = 0;; ++attempt) {
-      const bool last = !stiff_ || attempt == kMaxAttempts || widest > kNear;
+      const bool last = !stiff_ || attempt == kMaxAttempts || largest > kNearGap;
       const Group<double, Eigen::Dynamic> group(model_, work_, island_, false);
-      const VecX<double> x = direction(group, widest);
+      const VecX<double> x = direction(group, largest);
       size = step_size(group, x);
-      if (!last && size > kTooFar) {
-        eps_ *= kDearer;
+      if (!last && size > kMaxStepSize) {
+        eps_ *= kCostIncrease;
         continue;
       }
       const VecX<double> from = state_.q;
@@ -196,23 +199,23 @@ class Assembly {
         state_.q = from;
         if (halving > 0) gap();  // evaluates the frames again
         move(group, x, share);
-        restore(group);
-        if (merit() < before || (is_closed() && merit() <= (1 + kEqual) * before)) {
-          if (attempt == 0 && halving == 0) eps_ = std::max(least_eps_, eps_ / kCheaper);
-          return share * size * kMaxTurn;
+        correct_curvature(group);
+        if (merit() < before || (is_closed() && merit() <= (1 + kEqualMerit) * before)) {
+          if (attempt == 0 && halving == 0) eps_ = std::max(min_eps_, eps_ / kCostDecrease);
+          return share * size * kMaxRotation;
         }
         if (halving == kMaxHalvings) break;
       }
-      if (last) return share * size * kMaxTurn;
+      if (last) return share * size * kMaxRotation;
       state_.q = from;
       gap();
-      eps_ *= kDearer;
+      eps_ *= kCostIncrease;
     }
   }
 
   /// Returns the step of the linearised problem.
-  VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double widest) {
-    make_metric(1 + widest * widest);
+  VecX<double> direction(const Group<double, Eigen::Dynamic>& group, double largest) {
+    make_metric(1 + largest * largest);
     work_.joints.modes = modes_;
     factor_joints<double>(model_, island_, work_.parts, work_.joints);
     VecX<double> x, rows;
@@ -226,10 +229,11 @@ class Assembly {
     return x;
   }
 
-  /// Closes the gaps that a step leaves open by curvature, as long as the iteration converges. Without this
-  /// correction steps along curved constraints would be short (Maratos 1978).
-  void restore(const Group<double, Eigen::Dynamic>& group) {
-    double before = projection::kWidest / projection::kSlow;
+  /// Closes the gaps that remain after a step because the constraints are curved, while the iteration
+  /// converges. Without this second-order correction, steps along curved constraints are short (Maratos
+  /// 1978).
+  void correct_curvature(const Group<double, Eigen::Dynamic>& group) {
+    double before = projection::kMaxGap / projection::kSlow;
     for (double now = gap(); now <= projection::kSlow * before && !is_closed(); now = gap()) {
       before = now;
       VecX<double> x = VecX<double>::Zero(group.size()), rows = VecX<double>::Zero(island_.rows);
@@ -238,6 +242,7 @@ class Assembly {
       move(group, x, 1);
     }
   }
+  /// Adds the gaps of all acting joints to rows.
   void add_gaps(VecX<double>& rows) const {
     for (const int j : island_.joints) {
       const JointModel& joint = model_.joints()[at(j)];
@@ -246,8 +251,8 @@ class Assembly {
     }
   }
 
-  /// Returns the merit: elastic energy plus a penalty for every gap, larger than all forces. It decreases
-  /// along every step that is short enough.
+  /// Returns the merit: elastic energy plus penalty times gap for every gap. The penalty is larger than all
+  /// joint forces, so that the merit decreases along every step that is short enough.
   double merit() const {
     double sum = 0;
     for_each_gap([&](int, double gap, const JointModel&) { sum += penalty_ * gap; });
@@ -263,7 +268,7 @@ class Assembly {
   VecMax<double> q_s(const PartModel& m) const { return state_.q.segment(m.q0 + 7, m.n_s); }
   VecMax<double> stretch(const PartModel& m) const { return q_s(m) - m.rest_at(state_.time()); }
 
-  /// Returns the step that takes the parameters of a part to rest if no joint acts.
+  /// Returns the step of a part to its rest parameters, without joints.
   VecX<double> relaxation(const PartModel& m, const PartWorkspace<double>& w) const {
     VecX<double> x = VecX<double>::Zero(m.n_x());
     VecX<double> f = -(m.part->K_s() * stretch(m));
@@ -276,6 +281,7 @@ class Assembly {
     return x;
   }
 
+  /// Returns the smallest change of a one-sided row that the limits and strings allow.
   double bound(const Group<double, Eigen::Dynamic>& group, const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_.strings[at(row.k)];
@@ -292,17 +298,18 @@ class Assembly {
     double size = 1e-300;
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);
-      const auto of_part = group.share(x, p);
-      size = std::max(size, of_part.segment<3>(3).norm() / kMaxTurn);
+      const auto x_part = group.share(x, p);
+      size = std::max(size, x_part.segment<3>(3).norm() / kMaxRotation);
       for (int k = 0; k < m.n_s; ++k) {
         const bool is_length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
         const double scale = is_length ? std::abs(state_.q[m.q0 + 7 + k]) : 1.0;
-        size = std::max(size, std::abs(of_part[6 + k]) / (kMaxChange * scale));
+        size = std::max(size, std::abs(x_part[6 + k]) / (kMaxChange * scale));
       }
     }
     return size;
   }
 
+  /// Moves the parts by a share of a step, and their parameters within their limits.
   void move(const Group<double, Eigen::Dynamic>& group, const VecX<double>& x, double share) {
     for (int p = 0; p < group.parts(); ++p) {
       const PartModel& m = group.model(p);
@@ -315,18 +322,19 @@ class Assembly {
     }
   }
 
+  /// Throws the failure of the joint with the largest gap.
   [[noreturn]] void fail(int iterations) const {
     int open = -1;
-    double widest = -1;
+    double largest = -1;
     for_each_gap([&](int j, double gap, const JointModel& joint) {
-      if (gap / joint.length <= widest) return;
-      widest = gap / joint.length;
+      if (gap / joint.length <= largest) return;
+      largest = gap / joint.length;
       open = j;
     });
     const Joint& joint = *model_.joints()[at(open)].joint;
     std::ostringstream message;
     message << "assembly: " << joint.type() << " '" << joint.name() << "' cannot close: after " << iterations
-            << " iterations it is still open by " << widest * model_.joints()[at(open)].length << " m";
+            << " iterations it is still open by " << largest * model_.joints()[at(open)].length << " m";
     int others = 0;
     for_each_gap([&](int j, double gap, const JointModel& other) {
       if (j == open || gap <= kClosedGap * other.length || ++others > kMaxNamed) return;
@@ -342,11 +350,11 @@ class Assembly {
   const Island& island_;
   State& state_;
   Workspace<double>& work_;
-  std::vector<JointMode> modes_;    ///< modes with every acting joint closed
-  double eps_ = 1, least_eps_ = 1;  ///< cost of rigid motion, 1/s^2
-  double penalty_ = 0;              ///< penalty of a gap, N
-  bool stiff_ = false;              ///< whether any parameter has a stiffness
-  bool converged_ = true;           ///< see converged()
+  std::vector<JointMode> modes_;  ///< modes of the joints: every acting joint is closed
+  double eps_ = 1, min_eps_ = 1;  ///< cost of rigid motion, 1/s^2
+  double penalty_ = 0;            ///< penalty of a gap, N
+  bool stiff_ = false;            ///< whether any parameter has a stiffness
+  bool converged_ = true;         ///< see converged()
 };
 
 }  // namespace assembly
@@ -357,11 +365,11 @@ PLIANT_INLINE AssemblyReport assemble(const Dynamics& dynamics, State& state) {
   for (const Island& island : dynamics.model().islands()) {
     assembly::Assembly assembly(dynamics, island, state, work);
     const bool open = assembly.gap() > kClosedGap;
-    report.gap_before = std::max(report.gap_before, assembly.metres());
+    report.gap_before = std::max(report.gap_before, assembly.gap_in_metres());
     if (open) report.iterations = std::max(report.iterations, assembly.run());
     report.converged = report.converged && assembly.converged();
     assembly.gap();
-    report.gap = std::max(report.gap, assembly.metres());
+    report.gap = std::max(report.gap, assembly.gap_in_metres());
   }
   dynamics.model().note_limits(state);
   return report;

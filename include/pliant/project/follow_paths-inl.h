@@ -1,5 +1,7 @@
-// Impulses where the rates of prescribed paths jump.
+// The function follow_paths() of project.h: impulses at kinks of prescribed paths, where their rates jump.
 #pragma once
+
+#include <pliant/project/project.h>
 
 #include <pliant/math/header_only.h>
 #include <pliant/project/projection.h>
@@ -10,7 +12,7 @@ PLIANT_INLINE void follow_paths(StepContext& step, const Island& island, VecX<do
   State& state = step.state;
   step.dynamics.factor_joints(step.t, state.q, state.v, state.joints, island, step.work);
   const Group<double, Eigen::Dynamic> group(step.model(), step.work, island, true);
-  projection::Projection<Eigen::Dynamic> projection(step, group, projection::kept_vectors(group, step.work));
+  projection::Projection<Eigen::Dynamic> projection(step, group, projection::group_vectors(group, step.work));
   projection.add_impulses_to(impulses);
   double joints = 0, rows = 0;
   step.counters.limit_impulses += projection.velocities(joints, rows);

@@ -1,4 +1,4 @@
-// Joints that begin or cease to act during a run, and joints whose ends follow prescribed paths with kinks.
+// Joints that begin or stop acting during a run, and joints whose ends follow prescribed paths with kinks.
 #pragma once
 
 #include <cstddef>
@@ -26,19 +26,21 @@ class JointSwitching {
   /// The dynamics must outlive it.
   explicit JointSwitching(const Dynamics& dynamics) : dynamics_(dynamics) {}
 
-  /// Returns t (s), or the time just after a kink of a path that is within `near` of t.
-  double after_kink(double t, double near) const;
-  /// Engages and releases joints as their times say at step.t; times nearer than `near` (s) count as equal.
-  void switch_at(StepContext& step, double near);
+  /// Returns t (s), or the time just after a kink of a path if one is within the tolerance (s) of t.
+  double after_kink(double t, double tolerance) const;
+  /// Engages and releases the joints that begin or stop acting at step.t. Times within the tolerance (s) are
+  /// equal.
+  void switch_at(StepContext& step, double tolerance);
   /// Engages the joints of the islands that are marked.
   void engage(StepContext& step, const std::vector<bool>& islands);
-  /// Applies the impulses at a kink (s) of prescribed paths, or at kinks within `near` (s) of it; step.t: a
-  /// time just after the kink. Throws UnsatisfiableModel if the path of a closed joint jumps in place.
-  void follow_paths(StepContext& step, double kink, double near);
+  /// Applies the impulses at a kink (s) of prescribed paths and at kinks within the tolerance (s) of it.
+  /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed
+  /// joint jumps.
+  void follow_paths(StepContext& step, double kink, double tolerance);
   /// Returns the impulses in the order of time, without those that are rounding.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
-  /// undo_step() removes the impulses since begin_step(); forget_after() removes those after a time, s.
-  void begin_step() { at_begin_ = impulses_.size(); }
+  /// undo_step() removes the impulses since begin_step(), forget_after() those after a time, s.
+  void begin_step() { count_at_begin_ = impulses_.size(); }
   void undo_step();
   void forget_after(double t);
 
@@ -48,7 +50,7 @@ class JointSwitching {
 
   const Dynamics& dynamics_;
   std::vector<ImpulseOnEngage> impulses_;
-  std::size_t at_begin_ = 0;
+  std::size_t count_at_begin_ = 0;
 };
 
 }  // namespace pliant

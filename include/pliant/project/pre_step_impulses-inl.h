@@ -1,6 +1,8 @@
-// Impulses before the coordinates move by h v, so that limits, strings and joints are met at the end of the
-// step.
+// The function pre_step_impulses() of project.h: impulses at the start of a step of semi-implicit Euler, so
+// that limits, strings and joints are satisfied at its end.
 #pragma once
+
+#include <pliant/project/project.h>
 
 #include <algorithm>
 #include <limits>
@@ -15,13 +17,13 @@ namespace pliant {
 
 namespace projection {
 
-/// The iteration ends at rounding: when the gaps shrink by less than this factor.
-inline constexpr double kIdle = 0.9;
+/// The iteration ends if it leaves more than this share of the gaps: they are rounding then.
+inline constexpr double kStalledAhead = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
-inline constexpr double kMaxTurnClosing = 0.2;
+inline constexpr double kMaxRotationClosing = 0.2;
 
-/// Closes an island whose last evaluation was that of a rigid island. If that fails, evaluates the island the
-/// general way and returns false.
+/// Closes the gaps of an island whose last evaluation was that of a rigid island. If that fails, evaluates
+/// the island by the general solver and returns false.
 inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island, VecX<double>& q_end) {
   RigidWorkspace* rigid = rigid_workspace(island, step.work);
   if (rigid == nullptr) return false;
@@ -35,7 +37,7 @@ inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island,
     }
     return q_end;
   };
-  const BlockFactor<double>& W_c = step.work.joints.W_c[number_of(model, island)].blocks();
+  const BlockFactor<double>& W_c = step.work.joints.W_c[island_index(model, island)].blocks();
   if (model.rigid_islands()[at(island.rigid)].close_ahead(rounding(model), step.h, W_c, *rigid, state.v,
                                                           advanced))
     return true;
@@ -43,25 +45,28 @@ inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island,
   return false;
 }
 
-inline bool any_closing(const Island& island, const Workspace<double>& work) {
+/// Returns whether a joint of an island is closing.
+inline bool has_closing_joint(const Island& island, const Workspace<double>& work) {
   return std::any_of(island.joints.begin(), island.joints.end(),
                      [&](int j) { return work.joints.modes[at(j)] == JointMode::closing; });
 }
 
-/// Limits the rotation of parts of a closing island to kMaxTurnClosing in the step. The pull of an open joint
-/// may make a part swing about it for long, which gains energy in each step. The centres of mass keep their
-/// velocities. before: velocities at the start of the step. Returns the work of the change.
+/// Limits the rotation of the parts of a closing island to kMaxRotationClosing in the step. The force of an
+/// open joint can make a part oscillate about it, which gains energy in each step. The velocities of the
+/// centres of mass do not change. before: velocities at the start of the step. Returns the work of the
+/// change, J.
 template <int Max>
-double cap_turns(const Group<double, Max>& group, const VecX<double>& before, double h,
-                 VecMax<double, Max>& x, VecMax<double, Max>& capped) {
+double limit_rotations(const Group<double, Max>& group, const VecX<double>& before, double h,
+                       VecMax<double, Max>& x, VecMax<double, Max>& capped) {
   capped = x;
   for (int i = 0; i < group.parts(); ++i) {
     auto v_r = group.share(capped, i);
-    const double turn = h * v_r.template segment<3>(3).norm(),
-                 most = std::max(kMaxTurnClosing, h * before.segment<3>(group.model(i).v0 + 3).norm());
-    if (!(turn > most)) continue;
+    const double rotation = h * v_r.template segment<3>(3).norm(),
+                 max_rotation =
+                     std::max(kMaxRotationClosing, h * before.segment<3>(group.model(i).v0 + 3).norm());
+    if (!(rotation > max_rotation)) continue;
     const Inertia<double>& inertia = group.workspace(i).inertia;
-    const Vec3<double> change = (most / turn - 1) * v_r.template segment<3>(3);
+    const Vec3<double> change = (max_rotation / rotation - 1) * v_r.template segment<3>(3);
     v_r.template head<3>() -= change.cross(Vec3<double>(inertia.moment / inertia.mass));
     v_r.template segment<3>(3) += change;
   }
@@ -81,17 +86,17 @@ bool crosses(const Group<double, Max>& group, double h, const State& state) {
   return false;
 }
 
-/// Sets the limit modes of the parameters of a group at the end of the step.
+/// Sets the limit modes of the parameters of a group to those at the end of the step.
 template <int Max>
-void note_limits(const Group<double, Max>& group, double h, State& state) {
+void update_limit_modes(const Group<double, Max>& group, double h, State& state) {
   for (int i = 0; i < group.parts(); ++i) {
     const PartModel& m = group.model(i);
     for (int k = 0; k < m.n_s; ++k) {
-      const double q = state.q[m.q0 + 7 + k], then = q + h * state.v[m.v0 + 6 + k];
+      const double q = state.q[m.q0 + 7 + k], q_end = q + h * state.v[m.v0 + 6 + k];
       const Range range = m.limits[at(k)];
-      limit_mode(state, m, k) = then <= range.min ? -1 : (then >= range.max ? 1 : 0);
+      limit_mode(state, m, k) = q_end <= range.min ? -1 : (q_end >= range.max ? 1 : 0);
       // A rate too small to leave the limit is rounding of other impulses: it is set to zero.
-      if (limit_mode(state, m, k) != 0 && then == q) state.v[m.v0 + 6 + k] = 0;
+      if (limit_mode(state, m, k) != 0 && q_end == q) state.v[m.v0 + 6 + k] = 0;
     }
   }
 }
@@ -106,56 +111,58 @@ class PreStep {
         island_(group.island()),
         state_(step.state),
         storage_(storage),
-        kept_(kept_vectors(group, step.work)) {}
+        vectors_(group_vectors(group, step.work)) {}
 
   /// v_start: the velocities at the start of the step.
   void apply(const VecX<double>& v_start) {
     if (island_ != nullptr && sleeps(state_, island_->parts.front())) return;
-    if (island_ == nullptr && !crosses(group_, step_.h, state_)) return note_limits(group_, step_.h, state_);
+    if (island_ == nullptr && !crosses(group_, step_.h, state_))
+      return update_limit_modes(group_, step_.h, state_);
     if (island_ != nullptr && close_ahead_on_rigid_island(step_, *island_, storage_.q_end)) return;
-    gather_velocities(group_, state_.v, kept_.x);
-    if (island_ != nullptr && any_closing(*island_, step_.work)) cap_turns_of_closing(v_start);
-    kept_.before = kept_.x;
-    double widest = std::numeric_limits<double>::infinity();
+    gather_velocities(group_, state_.v, vectors_.x);
+    if (island_ != nullptr && has_closing_joint(*island_, step_.work)) limit_closing_rotations(v_start);
+    vectors_.before = vectors_.x;
+    double largest = std::numeric_limits<double>::infinity();
     for (int i = 0; i < kMaxIterations; ++i)
-      if (!correct(widest) || island_ == nullptr) break;
-    note_limits(group_, step_.h, state_);
-    for (const auto& [mode, side] : stopped_) *mode = side;
+      if (!correct(largest) || island_ == nullptr) break;
+    update_limit_modes(group_, step_.h, state_);
+    for (const auto& [mode, side] : stopped_limits_) *mode = side;
   }
 
  private:
-  void cap_turns_of_closing(const VecX<double>& v_start) {
+  void limit_closing_rotations(const VecX<double>& v_start) {
     state_.work[static_cast<int>(Work::baumgarte)] +=
-        cap_turns(group_, v_start, step_.h, kept_.x, kept_.before);
+        limit_rotations(group_, v_start, step_.h, vectors_.x, vectors_.before);
     scatter();
   }
   void scatter() {
     for (int i = 0; i < group_.parts(); ++i)
-      scatter_velocity(group_.model(i), group_.workspace(i), group_.share(kept_.x, i), state_.v);
+      scatter_velocity(group_.model(i), group_.workspace(i), group_.share(vectors_.x, i), state_.v);
   }
 
   /// One iteration. Returns false if no joint is open and no one-sided row pushes.
-  bool correct(double& widest) {
-    const bool open = island_ != nullptr && close_joints_ahead(widest);
+  bool correct(double& largest) {
+    const bool open = island_ != nullptr && close_joints_ahead(largest);
     OneSidedRows<Max> rows(group_);
-    kept_.joined = kept_.x;
-    rows.meet_all(kept_.x, [&](const OneSidedRow& row) { return slowest(row); });
+    vectors_.joined = vectors_.x;
+    rows.meet_all(vectors_.x, [&](const OneSidedRow& row) { return min_velocity(row); });
     if (!rows.empty())
-      state_.work[static_cast<int>(Work::limits)] += kinetic_change(group_, kept_.joined, kept_.x);
+      state_.work[static_cast<int>(Work::limits)] += kinetic_change(group_, vectors_.joined, vectors_.x);
     if (!open && rows.empty()) return false;
     scatter();
     if (!rows.empty())
       step_.counters.limit_impulses += rows.for_each_pushed([&](const OneSidedRow& row, double) {
         if (row.part >= 0)
-          stopped_.emplace_back(&limit_mode(state_, group_.model(row.part), row.k), row.sign > 0 ? -1 : 1);
+          stopped_limits_.emplace_back(&limit_mode(state_, group_.model(row.part), row.k),
+                                       row.sign > 0 ? -1 : 1);
       });
     return true;
   }
 
-  /// Impulses at the start of the step that close the joints at its end: h v is projected, not q alone, which
-  /// keeps the energy of turning parts (the method SHAKE; Ryckaert, Ciccotti & Berendsen 1977). Returns
-  /// whether joints were open.
-  bool close_joints_ahead(double& widest) {
+  /// Applies impulses at the start of the step that close the joints at its end. The displacement h v is
+  /// projected, not q alone, which conserves the energy of rotating parts (the method SHAKE; Ryckaert,
+  /// Ciccotti & Berendsen 1977). Returns whether joints were open.
+  bool close_joints_ahead(double& largest) {
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
       storage_.q_end.segment(m.q0, m.n_q()) = state_.q.segment(m.q0, m.n_q());
@@ -163,31 +170,31 @@ class PreStep {
     }
     step_.dynamics.evaluate_joints(state_.time() + step_.h, storage_.q_end, state_.v, state_.joints, *island_,
                                    storage_.ahead);
-    kept_.before = kept_.x;
-    return step_.joint_policy().projected && close_gaps(widest);
+    vectors_.before = vectors_.x;
+    return step_.joint_policy().projected && close_gaps(largest);
   }
 
   /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false if
-  /// they are closed there to rounding. widest: the widest gap of the last iteration, then of this one.
-  bool close_gaps(double& widest) {
-    VecX<double>& error = kept_.rows;
+  /// they are closed there to rounding. largest: the largest gap of the last iteration, then of this one.
+  bool close_gaps(double& largest) {
+    VecX<double>& error = vectors_.rows;
     error.setZero(island_->rows);
-    const double before = std::exchange(widest, 0);
+    const double before = std::exchange(largest, 0);
     for (const int j : island_->joints) {
       const JointModel& joint = step_.model().joints()[at(j)];
       if (state_.joints[at(j)] != JointMode::closed) continue;
       const auto C = storage_.ahead.joints.C.segment(joint.row, joint.rows);
-      widest = wider(C.norm() / rounding(joint, storage_.ahead), widest);
+      largest = max_or_nan(C.norm() / rounding(joint, storage_.ahead), largest);
       error.segment(joint.island_row, joint.rows) = C / step_.h;
     }
-    if (!(widest > 1) || widest > kIdle * before) return false;
-    group_.correct(error, kept_.x);
+    if (!(largest > 1) || largest > kStalledAhead * before) return false;
+    group_.correct(error, vectors_.x);
     return true;
   }
 
-  /// Returns the smallest velocity of a row: with it the limit, or the length of the string, is just reached
-  /// at the end of the step.
-  double slowest(const OneSidedRow& row) const {
+  /// Returns the smallest velocity of a row that the limits allow: the row is at its limit, or the string at
+  /// its length, at the end of the step.
+  double min_velocity(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
       const JointMode mode = state_.joints[at(j)];
@@ -196,7 +203,7 @@ class PreStep {
       if (mode == JointMode::off || mode == JointMode::closing || row.sign < 0 ||
           C > -rounding(string, storage_.ahead))
         return -std::numeric_limits<double>::infinity();
-      return group_.value(row, kept_.before) - C / step_.h;
+      return group_.value(row, vectors_.before) - C / step_.h;
     }
     const Range range = group_.model(row.part).limits[at(row.k)];
     const double q = state_.q[group_.model(row.part).q0 + 7 + row.k];
@@ -208,9 +215,9 @@ class PreStep {
   const Island* island_;
   State& state_;
   PreStepStorage& storage_;
-  GroupVectors<double, Max>& kept_;
+  GroupVectors<double, Max>& vectors_;
   std::vector<std::pair<std::int8_t*, std::int8_t>>
-      stopped_;  ///< limits that an impulse stopped at, with the side
+      stopped_limits_;  ///< limit modes of parameters that an impulse stopped, and the side
 };
 
 }  // namespace projection

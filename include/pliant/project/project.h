@@ -1,6 +1,6 @@
-// Projection after a step: limits stop parameters, strings go taut, open joints become closed when their gap
-// is small, and closed joints are projected onto C = 0 and C_dot = 0 in the mass metric, which keeps the
-// order of the method (README.md of this folder).
+// Projection after a step. Limits stop parameters, strings become taut, and open joints with a small gap
+// become closed. Closed joints are projected onto C = 0 and C_dot = 0, Eq. (12), in the mass metric, which
+// preserves the order of the method (README.md of this folder).
 #pragma once
 
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace pliant {
 
-/// Largest gap, in lengths of the joint's smaller part, up to which a projection closes an open joint. The
-/// rate of the gap must be at most kClosedRate lengths times the rate of the stabilization.
+/// An open joint becomes closed if its gap is at most kClosedGap, in lengths of its smaller part, and the
+/// rate of the gap at most kClosedRate lengths times the rate of the stabilization.
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
-/// Engages the joints of an island that begin to act: joints with a small gap are closed, and impulses make
-/// the velocities agree with them. On return step.work holds an evaluation of the joints of the island.
-/// scratch: storage kept from island to island; its contents are ignored.
-/// impulses: the impulses on the rows of all joints are added to it, N s.
+/// Engages the joints of an island that begin to act: joints with a small gap become closed, and impulses
+/// make the velocities agree with them. On return step.work is an evaluation of the joints of the island.
+/// scratch: scratch storage; its contents are ignored. impulses: the impulses on the rows of all joints are
+/// added to it, N s.
 void engage_joints(StepContext& step, const Island& island, Workspace<double>& scratch,
                    VecX<double>& impulses);
 
@@ -24,17 +24,17 @@ void engage_joints(StepContext& step, const Island& island, Workspace<double>& s
 /// where these rates jump. The work goes to Work::anchors. impulses: as for engage_joints.
 void follow_paths(StepContext& step, const Island& island, VecX<double>& impulses);
 
-/// Storage of pre_step_impulses, kept from step to step; its contents are ignored.
+/// Scratch storage of pre_step_impulses(); its contents are ignored.
 struct PreStepStorage {
   VecX<double> q_end;       ///< coordinates at the end of the step
-  Workspace<double> ahead;  ///< joints evaluated there
+  Workspace<double> ahead;  ///< evaluation of the joints there
 };
 /// Applies impulses before the coordinates move by h v: at the end of the step every parameter is within its
 /// limits, every string within its length and every closed joint closed. step.work: the evaluation at the
 /// start of the step. v_start: the velocities there.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
-/// Sets parameters that reached a limit to the limit, to the last bit.
+/// Sets parameters that have reached a limit exactly to the limit.
 void clamp_to_limits(const Model& model, State& state);
 
 /// Ends the motion of a step at step.t: velocities without inertia are set to zero, quaternions are
@@ -47,12 +47,12 @@ void project_frames(StepContext& step);
 /// Projects the frames of the parts with these numbers.
 void project_frames(StepContext& step, const std::vector<int>& parts);
 
-/// Projects parameters that passed a limit in the step that ends at step.t back in the mass metric and stops
-/// them by impulses, for parts without joints.
+/// Projects parameters that have passed a limit in the step that ends at step.t back to the limit, in the
+/// mass metric, and stops them by impulses. For parts without joints.
 void project_limits(StepContext& step);
 
-/// Projects all islands at step.t: open joints with a small gap close, closed joints are projected, and
-/// limits and strings of their parts with them. Throws UnsatisfiableModel if joints contradict each other.
+/// Projects all islands at step.t, with the limits and strings of their parts: open joints with a small gap
+/// become closed, and closed joints are projected. Throws UnsatisfiableModel if joints contradict each other.
 void project_joints(StepContext& step);
 
 }  // namespace pliant

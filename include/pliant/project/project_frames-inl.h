@@ -1,7 +1,10 @@
-// Reference conditions W^T d = 0 after a step (include/pliant/part/local/README.md). A change delta of (c,
-// theta, q_s) that leaves every node in place changes d by -G delta, and W^T d by -K^T delta:
+// The functions project_frames() and end_motion() of project.h: reference conditions W^T d = 0 after a step
+// (include/pliant/part/local/README.md). A change delta of (c, theta, q_s) that leaves every node in place
+// changes d by -G delta, and W^T d by -K^T delta:
 //   K^T delta = W^T d,   and for the velocities x_dot of the nodes, body frame, K^T v_r = W^T x_dot.
 #pragma once
+
+#include <pliant/project/project.h>
 
 #include <sstream>
 
@@ -12,7 +15,6 @@
 #include <pliant/math/finite.h>
 #include <pliant/math/header_only.h>
 #include <pliant/part/local/nodal_deformation.h>
-#include <pliant/project/project.h>
 
 namespace pliant {
 
@@ -26,10 +28,10 @@ inline constexpr double kSmallChange = 0.3;
 /// Largest condition number of K, with H0 scaled to a unit diagonal.
 inline constexpr double kMaxCondition = 1e8;
 
-/// Returns whether the conditions of a part without dynamic parameters are met to rounding, now and after
-/// another step with these rates. They are after a step of most methods: W is constant then, and the
+/// Returns whether the conditions of a part without dynamic parameters are satisfied to rounding, now and
+/// after another step with these rates. Most methods satisfy them after a step, because W is constant and the
 /// conditions are linear.
-inline bool conditions_hold(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
+inline bool conditions_met(const PartModel& m, const State& state, const PartWorkspace<double>& work) {
   if (m.n_s > 0 || !(state.h > 0) || !work.local || work.local->H0.rows() == 0 ||
       !(work.local->condition() <= kMaxCondition))
     return false;
@@ -50,6 +52,33 @@ inline bool conditions_hold(const PartModel& m, const State& state, const PartWo
   return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
 }
 
+/// Throws NumericalFailure if the conditions no longer determine the frame of a part.
+inline void check_condition(const PartModel& m, const LocalWorkspace& local, double t) {
+  const double condition = local.condition();
+  if (condition <= kMaxCondition) return;
+  std::ostringstream message;
+  message << "the motion of the nodes of part '" << m.part->name()
+          << "' no longer determines its frame and global parameters (condition number " << condition
+          << ", at most " << kMaxCondition << "); "
+          << (m.n_s > 0 ? "freeze some of the parameters"
+                        : "the nodes are too close to a line, or farther from the shape than its size");
+  throw NumericalFailure(message.str(), t);
+}
+
+/// Throws the failure of a part whose frame does not converge.
+[[noreturn]] inline void fail_to_follow(const PartModel& m, const StepContext& step) {
+  std::ostringstream message;
+  if (step.state.h > 0)
+    message << "a step of " << step.state.h << " s is too long: after it";
+  else
+    message << "at time 0";
+  message << " the nodes of part '" << m.part->name()
+          << "' are too far from the shape of its parameters to determine its frame; "
+          << (step.state.h > 0 ? "use a smaller step" : "choose smaller displacements");
+  throw NumericalFailure(message.str(), step.t);
+}
+
+/// Projects the frame of part i.
 inline void project_frame(StepContext& step, std::size_t i) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;
@@ -59,21 +88,12 @@ inline void project_frame(StepContext& step, std::size_t i) {
   auto q_d = state.q.segment(m.q0 + 7 + m.n_s, m.n_d());
   if (q_d.isZero(0) && state.v.segment(m.v0 + 6 + m.n_s, m.n_d()).isZero(0)) return;
   work.parts.resize(dynamics.model().parts().size());
-  if (m.local->nodal() != nullptr && conditions_hold(m, state, work.parts[i])) return;
+  if (m.local->nodal() != nullptr && conditions_met(m, state, work.parts[i])) return;
   if (!all_finite(state.q) || !all_finite(state.v)) return;
   const int part = static_cast<int>(i);
   dynamics.evaluate_frame(state.q, state.v, part, work);
   PartWorkspace<double>& w = work.parts[i];
-  const double condition = w.local->condition();
-  if (!(condition <= kMaxCondition)) {
-    std::ostringstream message;
-    message << "the motion of the nodes of part '" << m.part->name()
-            << "' no longer determines its frame and global parameters (condition number " << condition
-            << "); "
-            << (m.n_s > 0 ? "freeze some of the parameters"
-                          : "they have come too near to a line, or are as far from the shape as it is large");
-    throw NumericalFailure(message.str(), step.t);
-  }
+  check_condition(m, *w.local, step.t);
   if (m.local->nodal() == nullptr) return;
   const NodalDeformation& local = *m.local->nodal();
   NodalWorkspace& now = NodalDeformation::of(*w.local);
@@ -86,20 +106,14 @@ inline void project_frame(StepContext& step, std::size_t i) {
     const VecMax<double> delta = now.solve_transposed(now.unmet);
     if (!(delta.head<3>().norm() > kFrameRounding * size || delta.tail(3 + m.n_s).norm() > kFrameRounding))
       break;
-    if (iteration == kMaxFrameIterations) {
-      std::ostringstream message;
-      message << (state.h > 0 ? "the step is too long: in it" : "at time 0") << " the nodes of part '"
-              << m.part->name() << "' are so far from the shape of its parameters that its frame does not "
-              << "follow them";
-      throw NumericalFailure(message.str(), step.t);
-    }
+    if (iteration == kMaxFrameIterations) fail_to_follow(m, step);
     if (iteration == 0) p = nodes(now.x, n);
     advance_part(m, state.q, world_velocity(w, delta), 1);
-    const Vec3<double> turning = delta.segment<3>(3);
-    const double angle = turning.norm();
-    const Vec3<double> axis = angle > 0 ? Vec3<double>(turning / angle) : Vec3<double>::UnitX();
+    const Vec3<double> rotation = delta.segment<3>(3);
+    const double angle = rotation.norm();
+    const Vec3<double> axis = angle > 0 ? Vec3<double>(rotation / angle) : Vec3<double>::UnitX();
     local.move_frame(delta.head<3>(), Eigen::AngleAxisd(angle, axis).toRotationMatrix(), p, u);
-    // The reference shape at the new parameters.
+    // Evaluate the reference shape at the new parameters.
     if (m.n_s > 0) dynamics.evaluate_frame(state.q, state.v, part, work);
     Eigen::Map<Nodes>(q_d.data(), n, 3) = p - now.s;
     dynamics.evaluate_frame(state.q, state.v, part, work);

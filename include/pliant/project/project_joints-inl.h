@@ -1,8 +1,8 @@
-// Projection after a step: limits stop parameters, strings go taut, joints close and are projected.
+// The functions project_joints(), project_limits() and engage_joints() of project.h: joints and strings
+// become closed or taut, and groups are projected onto joints and limits.
 #pragma once
 
-#include <pliant/math/header_only.h>
-#include <pliant/project/projection.h>
+#include <pliant/project/project.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,8 @@
 #include <Eigen/Cholesky>
 
 #include <pliant/math/finite.h>
+#include <pliant/math/header_only.h>
+#include <pliant/project/projection.h>
 
 namespace pliant {
 
@@ -21,19 +23,19 @@ template <int Max>
 class Snapshot {
  public:
   Snapshot(const Group<double, Max>& group, State& state, GroupVectors<double, Max>& vectors)
-      : group_(group), kept_(vectors) {
+      : group_(group), vectors_(vectors) {
     int n_q = 0, n_v = 0;
     for (int i = 0; i < group.parts(); ++i) {
       n_q += group.model(i).n_q();
       n_v += group.model(i).n_v();
     }
-    kept_.q.resize(n_q);
-    kept_.v.resize(n_v);
-    exchange(state, [](auto&& kept, auto&& now) { kept = now; });
+    vectors_.q.resize(n_q);
+    vectors_.v.resize(n_v);
+    exchange(state, [](auto&& stored, auto&& now) { stored = now; });
   }
   /// Exchanges the stored values with those of the state.
   void swap(State& state) {
-    exchange(state, [](auto&& kept, auto&& now) { kept.swap(now); });
+    exchange(state, [](auto&& stored, auto&& now) { stored.swap(now); });
   }
 
  private:
@@ -42,17 +44,17 @@ class Snapshot {
     int q = 0, v = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
-      act(kept_.q.segment(q, m.n_q()), state.q.segment(m.q0, m.n_q()));
-      act(kept_.v.segment(v, m.n_v()), state.v.segment(m.v0, m.n_v()));
+      act(vectors_.q.segment(q, m.n_q()), state.q.segment(m.q0, m.n_q()));
+      act(vectors_.v.segment(v, m.n_v()), state.v.segment(m.v0, m.n_v()));
       q += m.n_q();
       v += m.n_v();
     }
   }
   const Group<double, Max>& group_;
-  GroupVectors<double, Max>& kept_;
+  GroupVectors<double, Max>& vectors_;
 };
 
-/// Adds a rigid motion to the velocities of a part that deforms locally, which keeps its P and L.
+/// Adds the rigid motion to the velocities of a part that deforms locally that restores its P and L.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
   const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
@@ -65,9 +67,10 @@ inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& 
   state.v.segment<3>(m.v0 + 3) += rigid.tail<3>();
 }
 
-/// Sets the velocities of parts whose coordinates were set back. The generalised momenta M v stay, and with
-/// them P and L. For a part that deforms locally, whose nodes keep their velocities, P and L alone stay.
-/// before: evaluated at the coordinates before; now: at the new ones.
+/// Sets the velocities of parts whose coordinates the projection has changed, so that their generalised
+/// momenta M v do not change, nor P and L. For a part that deforms locally the velocities of the nodes are
+/// kept and only P and L are restored. before: evaluation at the coordinates before the projection; now:
+/// after it.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {
@@ -97,20 +100,21 @@ inline const std::vector<int>& parts_of(const Group<double, Eigen::Dynamic>& gro
 }
 
 /// Projects a group onto its joints and limits. closed: whether joints have just closed. step.work: evaluated
-/// for the group. scratch: storage. impulses: if given, the impulses that close joints are added to it, N s.
+/// for the group. scratch: scratch storage; its contents are ignored. impulses: if given, the impulses that
+/// close joints are added to it, N s.
 template <int Max>
 void project_group(StepContext& step, const Group<double, Max>& group, bool closed,
                    Workspace<double>& scratch, VecX<double>* impulses = nullptr) {
   const Dynamics& dynamics = step.dynamics;
   State& state = step.state;
   Workspace<double>& work = step.work;
-  GroupVectors<double, Max>& kept = kept_vectors(group, work);
-  Snapshot<Max> before(group, state, kept);
-  Projection<Max> projection(step, group, kept);
+  GroupVectors<double, Max>& vectors = group_vectors(group, work);
+  Snapshot<Max> before(group, state, vectors);
+  Projection<Max> projection(step, group, vectors);
   if (impulses != nullptr) projection.add_impulses_to(*impulses);
   const bool pushed = projection.coordinates();
-  // The impulses that close a joint do work. The work of a correction of the error of a step is an error too,
-  // and appears in the balance.
+  // The impulses that close a joint do work. The correction of the error of a step does no booked work: its
+  // change of energy is an error, which appears in the balance.
   double joints = 0, rows = 0;
   if (!pushed && !closed) {
     step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -125,7 +129,7 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
     dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
-  // The velocities of scratch are those of the state; they have not changed.
+  // The velocities of the state have not changed: those of scratch are valid.
   if (pushed) keep_momenta(group, scratch, work, state);
   projection.forget();
   step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -133,8 +137,8 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
       dynamics.energy(step.t, state.q, state.v, parts, scratch) - energy;
 }
 
-/// Returns whether a parameter has passed a limit, or moves while it is at one.
-inline bool passes(const PartModel& m, State& state) {
+/// Returns whether a parameter has passed a limit, or moves at a limit.
+inline bool passes_limit(const PartModel& m, State& state) {
   for (int k = 0; k < m.n_s; ++k)
     if ((limit_mode(state, m, k) != 0 && state.v[m.v0 + 6 + k] != 0) ||
         !m.limits[at(k)].contains(state.q[m.q0 + 7 + k]))
@@ -142,42 +146,43 @@ inline bool passes(const PartModel& m, State& state) {
   return false;
 }
 
-/// Closes open joints with a small gap and a small rate of the gap (any_rate: with any rate). A method of
-/// first order leaves a gap of h |bias| alpha / beta^2 on a turning joint, which counts as small. Returns
-/// whether any joint closed.
+/// Closes open joints with a small gap and a small rate of the gap. any_rate: whether the rate may be large.
+/// A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint, which is also small
+/// in this sense. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
   const double rate = model.body().stabilization.rate;
   const Gains gains = work.joints.gains;
   const bool first_order = dynamics.joint_policy().first_order;
-  bool any = false;
+  bool any_closed = false;
   for (const int j : island.joints) {
     if (state.joints[at(j)] != JointMode::closing) continue;
     const JointModel& joint = model.joints()[at(j)];
     auto size = [&](const VecX<double>& rows) { return rows.segment(joint.row, joint.rows).norm(); };
-    const double left = first_order && gains.beta > 0
-                            ? 2 * state.h * size(work.joints.bias) * gains.alpha / (gains.beta * gains.beta)
-                            : 0;
-    const double turning = std::sqrt(size(work.joints.bias) / joint.length);
+    const double method_gap = first_order && gains.beta > 0 ? 2 * state.h * size(work.joints.bias) *
+                                                                  gains.alpha / (gains.beta * gains.beta)
+                                                            : 0;
+    const double rotation_rate = std::sqrt(size(work.joints.bias) / joint.length);
     const bool near =
-        size(work.joints.C) <= std::min(kClosedGap * joint.length + left, kWidest * joint.length);
+        size(work.joints.C) <= std::min(kClosedGap * joint.length + method_gap, kMaxGap * joint.length);
     const bool slow =
-        any_rate || size(work.joints.C_dot) <= kClosedRate * joint.length * rate + turning * left;
+        any_rate || size(work.joints.C_dot) <= kClosedRate * joint.length * rate + rotation_rate * method_gap;
     if (!near || !slow) continue;
     state.joints[at(j)] = JointMode::closed;
-    any = true;
+    any_closed = true;
   }
-  return any;
+  return any_closed;
 }
 
-/// Throws for a joint that should have closed by now and cannot: its rows depend on rows of other joints that
-/// contradict them. step.work: the last evaluation of the step that ends at step.t.
-inline void fail_if_stuck(StepContext& step, const Island& island) {
+/// Throws UnsatisfiableModel for a joint that should have closed by now and cannot, because its rows depend
+/// on rows of other joints that contradict them. step.work: the last evaluation of the step that ends at
+/// step.t.
+inline void fail_on_unclosable_joint(StepContext& step, const Island& island) {
   const Model& model = step.model();
   Workspace<double>& work = step.work;
   const double beta = work.joints.gains.beta;
-  auto judge = [&](int j) {
+  auto check_joint = [&](int j) {
     const JointMode mode = work.joints.modes[at(j)];
     if (mode != JointMode::closing && (mode != JointMode::closed || step.joint_policy().projected)) return;
     const JointModel& joint = model.joints()[at(j)];
@@ -185,28 +190,29 @@ inline void fail_if_stuck(StepContext& step, const Island& island) {
     if (!(gap > kStuckGap * joint.length) ||
         !(beta * (step.t - std::max(0.0, joint.joint->on())) > kPatience))
       return;
-    const double asked = wanted(model, work.joints, j).norm();
+    const double requested = wanted(model, work.joints, j).norm();
     auto disagrees = [&](int k) {
-      return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * asked;
+      return acts(work.joints.modes[at(k)]) && disagreement(model, work, k) > 0.5 * requested;
     };
-    auto held = std::find_if(island.joints.begin(), island.joints.end(), disagrees);
-    if (held == island.joints.end()) {
+    auto dependent = std::find_if(island.joints.begin(), island.joints.end(), disagrees);
+    if (dependent == island.joints.end()) {
       if (!joint.joint->one_sided() || !disagrees(j)) return;
-      held = std::find_if(island.strings.begin(), island.strings.end(),
-                          [&](int k) { return k != j && disagrees(k); });
-      if (held == island.strings.end()) held = std::find(island.strings.begin(), island.strings.end(), j);
+      dependent = std::find_if(island.strings.begin(), island.strings.end(),
+                               [&](int k) { return k != j && disagrees(k); });
+      if (dependent == island.strings.end())
+        dependent = std::find(island.strings.begin(), island.strings.end(), j);
     }
     const bool closed = std::any_of(island.joints.begin(), island.joints.end(),
                                     [&](int k) { return work.joints.modes[at(k)] == JointMode::closed; });
     const Group<double, Eigen::Dynamic> group(model, work, island, closed);
     throw Projection<Eigen::Dynamic>(step, group, work.joints.vectors[group.number()])
-        .contradiction(j, gap, *held);
+        .contradiction(j, gap, *dependent);
   };
-  std::for_each(island.joints.begin(), island.joints.end(), judge);
-  std::for_each(island.strings.begin(), island.strings.end(), judge);
+  std::for_each(island.joints.begin(), island.joints.end(), check_joint);
+  std::for_each(island.strings.begin(), island.strings.end(), check_joint);
 }
 
-/// Ends the closing of strings that are short enough now.
+/// Ends the closing of strings whose gap is small.
 inline void close_strings(const Model& model, const Island& island, const Workspace<double>& work,
                           State& state) {
   for (const int j : island.strings) {
@@ -217,8 +223,8 @@ inline void close_strings(const Model& model, const Island& island, const Worksp
 }
 
 /// Sets strings taut or slack.
-inline void note_strings(const Model& model, const Island& island, const Workspace<double>& work,
-                         State& state) {
+inline void update_string_modes(const Model& model, const Island& island, const Workspace<double>& work,
+                                State& state) {
   const double rate = model.body().stabilization.rate;
   for (const int j : island.strings) {
     JointMode& mode = state.joints[at(j)];
@@ -230,17 +236,18 @@ inline void note_strings(const Model& model, const Island& island, const Workspa
   }
 }
 
-/// Projects an island whose last evaluation was that of a rigid island. Returns false if it needs more than
-/// that.
-inline bool closed_by_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
-                                   State& state) {
+/// Projects an island whose last evaluation was that of a rigid island. Returns false if it needs the general
+/// projection.
+inline bool project_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
+                                 State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);
   if (rigid == nullptr) return false;
-  return model.rigid_islands()[at(island.rigid)].close(
-      island, rounding(model), work.joints.W_c[number_of(model, island)].blocks(), *rigid, state.q, state.v);
+  return model.rigid_islands()[at(island.rigid)].close(island, rounding(model),
+                                                       work.joints.W_c[island_index(model, island)].blocks(),
+                                                       *rigid, state.q, state.v);
 }
 
-/// Closes the joints and strings of an island that may close, and projects the island.
+/// Closes the joints and strings of an island with small gaps, and projects the island.
 inline void project_island(StepContext& step, const Island& island, Workspace<double>& scratch) {
   const Model& model = step.model();
   State& state = step.state;
@@ -249,7 +256,7 @@ inline void project_island(StepContext& step, const Island& island, Workspace<do
     step.dynamics.evaluate_joints(step.t, state.q, state.v, state.joints, island, work);
   };
   auto closing = [&](int j) { return state.joints[at(j)] == JointMode::closing; };
-  fail_if_stuck(step, island);
+  fail_on_unclosable_joint(step, island);
   bool closed = false;
   if (std::any_of(island.joints.begin(), island.joints.end(), closing) ||
       std::any_of(island.strings.begin(), island.strings.end(), closing)) {
@@ -262,7 +269,7 @@ inline void project_island(StepContext& step, const Island& island, Workspace<do
   project_group(step, group, closed, scratch);
   if (island.strings.empty()) return;
   evaluate();
-  note_strings(model, island, work, state);
+  update_string_modes(model, island, work, state);
 }
 
 }  // namespace projection
@@ -279,7 +286,7 @@ PLIANT_INLINE void engage_joints(StepContext& step, const Island& island, Worksp
   const Group<double, Eigen::Dynamic> group(step.model(), work, island, true);
   projection::project_group(step, group, true, scratch, &impulses);
   dynamics.evaluate_joints(step.t, state.q, state.v, state.joints, island, work);
-  projection::note_strings(step.model(), island, work, state);
+  projection::update_string_modes(step.model(), island, work, state);
 }
 
 PLIANT_INLINE void project_joints(StepContext& step) {
@@ -288,7 +295,7 @@ PLIANT_INLINE void project_joints(StepContext& step) {
   Workspace<double> scratch;
   for (const Island& island : step.model().islands()) {
     if (sleeps(state, island.parts.front())) continue;
-    if (projection::closed_by_rigid_island(step.model(), island, step.work, step.state)) continue;
+    if (projection::project_rigid_island(step.model(), island, step.work, step.state)) continue;
     projection::project_island(step, island, scratch);
   }
 }
@@ -298,7 +305,7 @@ PLIANT_INLINE void project_limits(StepContext& step) {
   if (!all_finite(state.q) || !all_finite(state.v)) return;
   Workspace<double> scratch;
   projection::for_each_alone(step.model(), step.work, [&](const Group<double, kMaxVelocities>& group) {
-    if (!projection::passes(group.model(0), state)) return;
+    if (!projection::passes_limit(group.model(0), state)) return;
     step.dynamics.evaluate_masses(state.q, state.v, projection::parts_of(group), step.work);
     projection::project_group(step, group, false, scratch);
   });

@@ -1,5 +1,5 @@
-// The projection of a group of parts onto its joints and limits: shared by the projection after a step and by
-// the impulses before it.
+// The projection of a group of parts onto its joints and limits, Eqs. (12) and (13). The projection after a
+// step and the impulses before a step use it.
 #pragma once
 
 #include <algorithm>
@@ -17,31 +17,31 @@
 
 namespace pliant::projection {
 
-/// Residual of a projection, in lengths of the joint, and rounding of coordinates of size 1.
-inline constexpr double kLeft = 1e-13, kRounding = 4e-15;
-/// An iteration that reduces the error by less than kSlow needs a new factor. With a new factor, one that
-/// reduces it by less than kStalled has reached the rounding of the rows.
+/// Residual of a projection, in lengths of the joint, and rounding of coordinates of size 1 m.
+inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
+/// If an iteration leaves more than the share kSlow of the error, the next one uses a new factor. If it
+/// leaves more than kStalled with a new factor, the error is the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
-/// A closed joint whose gap stays above this many residuals cannot close.
-inline constexpr double kOpen = 1e3;
-/// Most joints that a message names.
+/// A closed joint with a gap above this number of residuals after a projection cannot close.
+inline constexpr double kOpenGap = 1e3;
+/// Largest number of joints that a message names.
 inline constexpr int kMaxNamed = 8;
 /// A row depends on another row if the share of the other is at least this.
-inline constexpr double kDepends = 1e-6;
-/// Widest gap, in lengths of the joint's smaller part, that a projection closes.
-inline constexpr double kWidest = 0.1;
-/// A joint that stays open beyond kStuckGap lengths for a time of kPatience / beta never closes.
+inline constexpr double kDependentShare = 1e-6;
+/// Largest gap, in lengths of the smaller part of the joint, that a projection closes.
+inline constexpr double kMaxGap = 0.1;
+/// A joint with a gap above kStuckGap lengths after a time of kPatience / beta never closes.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
-/// A projection with other independent rows than at the start of the step may undo at most this share of its
-/// motion.
-inline constexpr double kFar = 0.25;
+/// A projection whose independent rows differ from those at the start of the step may undo at most this share
+/// of the motion.
+inline constexpr double kMaxUndoneShare = 0.25;
 /// A string is taut within this distance of its length, in lengths of its smaller part.
 inline constexpr double kTaut = 1e-9;
 
-/// Returns the wider of two gaps, or NaN if the first is NaN.
-inline double wider(double gap, double widest) {
-  return gap <= widest ? widest : gap;
+/// Returns the larger of two gaps, or NaN if the first is NaN.
+inline double max_or_nan(double gap, double largest) {
+  return gap <= largest ? largest : gap;
 }
 
 /// Returns the rounding of the gap of a joint, m.
@@ -49,14 +49,15 @@ inline double rounding(const JointModel& joint, const Workspace<double>& work) {
   double size = 0;
   for (const JointSide& side : joint.sides)
     size = std::max(size, work.parts[at(side.part)].c.template lpNorm<Eigen::Infinity>());
-  return kLeft * joint.length + kRounding * size;
+  return kResidual * joint.length + kRounding * size;
 }
 
 /// Returns the rounding of the gaps of rigid islands.
 inline RigidIsland::Rounding rounding(const Model& model) {
-  return {kLeft, kRounding, model.body().stabilization.rate};
+  return {kResidual, kRounding, model.body().stabilization.rate};
 }
-inline std::size_t number_of(const Model& model, const Island& island) {
+/// Returns the index of an island in the model.
+inline std::size_t island_index(const Model& model, const Island& island) {
   return static_cast<std::size_t>(&island - model.islands().data());
 }
 /// Returns the rigid workspace of an island, or nullptr if its last evaluation did not use one.
@@ -65,13 +66,14 @@ inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& 
   return &work.rigid[at(island.rigid)];
 }
 
+/// Returns the limit mode of parameter k of a part: -1 at the lower limit, 1 at the upper, 0 between.
 inline std::int8_t& limit_mode(State& state, const PartModel& m, int k) {
   return state.at_limit[at(m.limit0 + k)];
 }
 
-/// Returns the storage of an island, or of the part without joints.
+/// Returns the storage of an island, or of a part without joints.
 template <int Max>
-GroupVectors<double, Max>& kept_vectors(const Group<double, Max>& group, Workspace<double>& work) {
+GroupVectors<double, Max>& group_vectors(const Group<double, Max>& group, Workspace<double>& work) {
   if constexpr (Max == Eigen::Dynamic)
     return work.joints.vectors[group.number()];
   else
@@ -105,7 +107,8 @@ double kinetic_change(const Group<double, Max>& group, const VecMax<double, Max>
   return sum;
 }
 
-/// Call act(group) for every part without joints that has parameters, and for every island.
+/// for_each_alone() calls act(group) for every part with parameters and without joints, for_each_island() for
+/// every island.
 template <class F>
 void for_each_alone(const Model& model, Workspace<double>& work, F&& act) {
   for (int i = 0; i < static_cast<int>(model.parts().size()); ++i) {
@@ -132,30 +135,32 @@ class Projection {
         island_(group.island()),
         state_(step.state),
         work_(step.work),
-        kept_(vectors) {}
+        vectors_(vectors) {}
 
-  /// Projects the coordinates onto C = 0 and the limits. The storage holds the coordinates before. Returns
-  /// whether a limit, or a string that was slack, pushed.
+  /// Projects the coordinates onto C = 0 and the limits. vectors.q: the coordinates before. Returns whether a
+  /// limit, or a string that was slack, pushed.
   bool coordinates() {
-    // Dependent rows stay dependent, unless the step passes a singular configuration. A joint that could only
-    // close by undoing the step is a contradiction.
+    // Rows that were dependent at the start of the step are dependent now, unless the step passes a singular
+    // configuration. Joints contradict each other if they could only close by undoing the step.
     std::optional<UnsatisfiableModel> failure;
     for (const RankRule rank : {RankRule::keep, RankRule::decide, RankRule::rounding}) {
       rank_ = rank;
-      const bool pushed = approach();
+      const bool pushed = iterate_coordinates();
       if (island_ == nullptr || !step_.joint_policy().projected) return pushed;
       std::optional<UnsatisfiableModel> open = open_joint();
-      if (!open && (rank == RankRule::keep || !moved_far())) return pushed;
+      if (!open && (rank == RankRule::keep || !undoes_motion())) return pushed;
       if (open && rank != RankRule::rounding) failure = std::move(open);
-      for_each_coordinates([](auto&& kept, auto&& now) { now = kept; });
+      for_each_coordinates([](auto&& stored, auto&& now) { now = stored; });
       evaluated_ = false;
     }
-    if (entry_ <= kWidest) throw *failure;
+    if (initial_gap_ <= kMaxGap) throw *failure;
     std::ostringstream message;
     message << "a step of " << state_.h << " s is too long for the motion: it opens "
-            << model_.joints()[at(widest_)].joint->type() << " '"
-            << model_.joints()[at(widest_)].joint->name() << "' by " << entry_ << " of its part's length";
-    if (model_.joints()[at(widest_)].driven) message << ", unless its anchor, which is moved in time, jumps";
+            << model_.joints()[at(widest_joint_)].joint->type() << " '"
+            << model_.joints()[at(widest_joint_)].joint->name() << "' by " << initial_gap_
+            << " of the length of its smaller part; use a smaller step";
+    if (model_.joints()[at(widest_joint_)].driven)
+      message << ", or check that the prescribed path of its end does not jump";
     throw NumericalFailure(message.str(), step_.t);
   }
 
@@ -182,13 +187,13 @@ class Projection {
       }
     }
     for (int i = 0; i < kMaxIterations; ++i) {
-      Vector &before = kept_.before, &joined = kept_.joined, &x = kept_.x;
+      Vector &before = vectors_.before, &joined = vectors_.joined, &x = vectors_.x;
       gather_velocities(group_, state_.v, before);
       x = before;
       const bool open = correct_joints(Rows::velocities, i, x);
       joined = x;
       OneSidedRows<Max> rows(group_);
-      rows.meet_all(x, [&](const OneSidedRow& row) { return slowest(row, before); });
+      rows.meet_all(x, [&](const OneSidedRow& row) { return min_velocity(row, before); });
       if (!open && rows.empty()) break;
       joints += kinetic_change(group_, before, joined);
       one_sided += kinetic_change(group_, joined, x);
@@ -197,8 +202,8 @@ class Projection {
       evaluated_ = false;
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double push) {
-          impulses += stays(row) ? 0 : 1;
-          if (impulses_ != nullptr) add_impulses_of(row, push);
+          impulses += remains_active(row) ? 0 : 1;
+          if (impulses_ != nullptr) add_one_sided_impulse(row, push);
         });
       if (island_ == nullptr) break;
     }
@@ -211,9 +216,9 @@ class Projection {
     return impulses;
   }
 
-  /// Returns the failure of a joint that is open by a gap (m) and cannot close, naming the joints that hold
-  /// it open. held: the joint with the dependent rows, this one or one that contradicts it.
-  UnsatisfiableModel contradiction(int open, double gap, int held) const {
+  /// Returns the failure of a joint that is open by a gap (m) and cannot close, with the names of the joints
+  /// that hold it open. dependent: the joint with the dependent rows, this joint or one that contradicts it.
+  UnsatisfiableModel contradiction(int open, double gap, int dependent) const {
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
     message << "joints contradict each other at t = " << step_.t << " s: " << joint.joint->type() << " '"
@@ -223,9 +228,10 @@ class Projection {
       message << (++named == 1 ? ", held open by " : ", ") << model_.joints()[at(j)].joint->type() << " '"
               << model_.joints()[at(j)].joint->name() << "'";
     };
-    if (held != open && model_.joints()[at(held)].joint->one_sided()) name(held);
+    if (dependent != open && model_.joints()[at(dependent)].joint->one_sided()) name(dependent);
     for (const int j : island_->joints) {
-      if (j == open || (j != held && !depends(model_.joints()[at(held)], model_.joints()[at(j)]))) continue;
+      if (j == open || (j != dependent && !depends(model_.joints()[at(dependent)], model_.joints()[at(j)])))
+        continue;
       if (named == kMaxNamed) {
         message << " and others";
         break;
@@ -238,26 +244,27 @@ class Projection {
  private:
   enum class Rows { coordinates, velocities };
 
-  /// Iterates until the joints are closed to rounding.
-  bool approach() {
-    fresh_ = false;
-    tightened_.clear();
+  /// Iterates until the joints are closed to rounding. Returns whether a limit, or a string that was slack,
+  /// pushed.
+  bool iterate_coordinates() {
+    new_factor_ = false;
+    pulled_strings_.clear();
     bool pushed = false;
     for (int i = 0; i < kMaxIterations; ++i) {
-      Vector& x = kept_.x;
+      Vector& x = vectors_.x;
       x.setZero(group_.size());
       const bool open = correct_joints(Rows::coordinates, i, x);
       OneSidedRows<Max> rows(group_);
-      rows.meet_all(x, [&](const OneSidedRow& row) { return distance(row); });
+      rows.meet_all(x, [&](const OneSidedRow& row) { return min_change(row); });
       if (!open && rows.empty()) return pushed;
       for (int p = 0; p < group_.parts(); ++p)
         advance_with(group_.model(p), group_.workspace(p), group_.share(x, p), 1, state_.q);
       evaluated_ = false;
       if (!rows.empty())
         rows.for_each_pushed([&](const OneSidedRow& row, double) {
-          pushed = pushed || !stays(row);
+          pushed = pushed || !remains_active(row);
           if (row.part < 0) {
-            tighten(row.k);
+            mark_pulled(row.k);
             return;
           }
           const PartModel& m = group_.model(row.part);
@@ -276,36 +283,37 @@ class Projection {
     int first = 0;
     for (int i = 0; i < group_.parts(); ++i) {
       const PartModel& m = group_.model(i);
-      act(kept_.q.segment(first, m.n_q()), state_.q.segment(m.q0, m.n_q()));
+      act(vectors_.q.segment(first, m.n_q()), state_.q.segment(m.q0, m.n_q()));
       first += m.n_q();
     }
   }
-  /// Returns whether the projection moved the parts by a large share of their motion in the step.
-  bool moved_far() const {
-    double way = 0, motion = 0;
+  /// Returns whether the projection moved the parts by more than kMaxUndoneShare of their motion in the step.
+  bool undoes_motion() const {
+    double correction = 0, motion = 0;
     int i = 0;
-    for_each_coordinates([&](const auto& kept, const auto& now) {
+    for_each_coordinates([&](const auto& stored, const auto& now) {
       const PartModel& m = group_.model(i++);
       const double size = m.part->size();
       const auto v = share_of(m, std::as_const(state_.v));
-      way += (kept.template head<3>() - now.template head<3>()).squaredNorm() +
-             4 * size * size * (kept.template segment<4>(3) - now.template segment<4>(3)).squaredNorm();
+      correction +=
+          (stored.template head<3>() - now.template head<3>()).squaredNorm() +
+          4 * size * size * (stored.template segment<4>(3) - now.template segment<4>(3)).squaredNorm();
       motion += v.template head<3>().squaredNorm() + size * size * v.template segment<3>(3).squaredNorm();
     });
-    return way > kFar * kFar * state_.h * state_.h * motion;
+    return correction > kMaxUndoneShare * kMaxUndoneShare * state_.h * state_.h * motion;
   }
 
   /// Returns the rounding of a row of a joint.
-  double left(const JointModel& joint, Rows what) const {
-    if (what == Rows::coordinates) return rounding(joint, work_);
+  double row_rounding(const JointModel& joint, Rows kind) const {
+    if (kind == Rows::coordinates) return rounding(joint, work_);
     double size = 0;
     for (const JointSide& side : joint.sides)
       size = std::max(size, work_.parts[at(side.part)].v_r.template lpNorm<Eigen::Infinity>());
-    return kLeft * model_.body().stabilization.rate * joint.length + kRounding * size;
+    return kResidual * model_.body().stabilization.rate * joint.length + kRounding * size;
   }
 
-  /// Adds the impulse of a one-sided row and the reactions of the joints to the impulses.
-  void add_impulses_of(const OneSidedRow& row, double push) {
+  /// Adds the impulse of a one-sided row, and the reactions of the joints, to the impulses.
+  void add_one_sided_impulse(const OneSidedRow& row, double push) {
     if (row.part < 0) (*impulses_)[model_.joints()[at(island_->strings[at(row.k)])].row] += row.sign * push;
     Vector x = group_.push(row);
     VecX<double> rows;
@@ -322,64 +330,64 @@ class Projection {
 
   /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
   /// they are zero to rounding.
-  bool correct_joints(Rows what, int iteration, Vector& x) {
+  bool correct_joints(Rows kind, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
-    evaluate(what, iteration, x);
+    evaluate(kind, iteration, x);
     if (!step_.joint_policy().projected) return false;
-    const VecX<double>& rows = what == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
+    const VecX<double>& rows = kind == Rows::coordinates ? work_.joints.C : work_.joints.C_dot;
     double now = 0;
-    VecX<double>& error = kept_.rows;
+    VecX<double>& error = vectors_.rows;
     error.setZero(island_->rows);
     for (const int j : island_->joints) {
       const JointModel& joint = model_.joints()[at(j)];
       if (state_.joints[at(j)] != JointMode::closed) continue;
       auto row = error.segment(joint.island_row, joint.rows);
       row = rows.segment(joint.row, joint.rows);
-      if (moved_on_) row += kept_.gained.segment(joint.island_row, joint.rows);
-      if (iteration == 0 && rank_ == RankRule::keep && !(row.norm() <= entry_ * joint.length)) {
-        entry_ = row.norm() / joint.length;
-        widest_ = j;
+      if (linear_update_) row += vectors_.gained.segment(joint.island_row, joint.rows);
+      if (iteration == 0 && rank_ == RankRule::keep && !(row.norm() <= initial_gap_ * joint.length)) {
+        initial_gap_ = row.norm() / joint.length;
+        widest_joint_ = j;
       }
-      now = wider(row.norm() / left(joint, what), now);
+      now = max_or_nan(row.norm() / row_rounding(joint, kind), now);
     }
     if (!(now > 1)) return false;
-    const bool slow = iteration > 0 && now > kSlow * before_;
-    if (slow && fresh_ && now > kStalled * before_) return false;
-    fresh_ = slow || (iteration == 0 && what == Rows::coordinates && rank_ != RankRule::keep);
-    if (fresh_) {
+    const bool slow = iteration > 0 && now > kSlow * last_error_;
+    if (slow && new_factor_ && now > kStalled * last_error_) return false;
+    new_factor_ = slow || (iteration == 0 && kind == Rows::coordinates && rank_ != RankRule::keep);
+    if (new_factor_) {
       step_.dynamics.factor_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_, rank_);
-      kept_.start = x;
+      vectors_.start = x;
     }
-    before_ = now;
+    last_error_ = now;
     const VecX<double>& lambda = group_.correct(error, x);
-    if (impulses_ != nullptr && what == Rows::velocities) add_impulses(lambda, 1);
+    if (impulses_ != nullptr && kind == Rows::velocities) add_impulses(lambda, 1);
     return true;
   }
 
   /// Evaluates the joints at the state. The change of C_dot by new velocities follows from C_q alone.
-  void evaluate(Rows what, int iteration, const Vector& x) {
-    moved_on_ = what == Rows::velocities && iteration > 0 && island_->strings.empty();
-    if (moved_on_) {
-      kept_.gain = x - kept_.start;
-      group_.joint_rows(kept_.gain, kept_.gained);
+  void evaluate(Rows kind, int iteration, const Vector& x) {
+    linear_update_ = kind == Rows::velocities && iteration > 0 && island_->strings.empty();
+    if (linear_update_) {
+      vectors_.gain = x - vectors_.start;
+      group_.joint_rows(vectors_.gain, vectors_.gained);
       return;
     }
     if (!evaluated_)
       step_.dynamics.evaluate_joints(step_.t, state_.q, state_.v, state_.joints, *island_, work_);
     evaluated_ = true;
-    if (what == Rows::velocities) kept_.start = x;
+    if (kind == Rows::velocities) vectors_.start = x;
   }
 
-  /// Returns the failure of a closed joint whose gap is wider than rounding, naming the joints that hold it
-  /// open.
+  /// Returns the failure of a closed joint with a gap above rounding, with the names of the joints that hold
+  /// it open; none if all are closed.
   std::optional<UnsatisfiableModel> open_joint() const {
     int open = -1;
     double widest = 0;
     for (const int j : island_->joints) {
       const JointModel& joint = model_.joints()[at(j)];
       const double gap = work_.joints.C.segment(joint.row, joint.rows).norm();
-      if (state_.joints[at(j)] != JointMode::closed || !(gap > kOpen * left(joint, Rows::coordinates)) ||
-          gap <= widest)
+      if (state_.joints[at(j)] != JointMode::closed ||
+          !(gap > kOpenGap * row_rounding(joint, Rows::coordinates)) || gap <= widest)
         continue;
       open = j;
       widest = gap;
@@ -402,66 +410,66 @@ class Projection {
       VecX<double> rows;
       group_.joint_rows(x, rows);
       const VecX<double>& share = group_.correct(rows, unused);
-      const auto of_other = share.segment(other.island_row, other.rows);
-      if (of_other.norm() > kDepends * share.norm()) return true;
+      const auto other_share = share.segment(other.island_row, other.rows);
+      if (other_share.norm() > kDependentShare * share.norm()) return true;
     }
     return false;
   }
 
-  /// Returns whether the last evaluation pushed on this row or its opposite: then it stays active.
-  bool stays(const OneSidedRow& row) const {
+  /// Returns whether a one-sided row stays active: the last evaluation pushed on this row or its opposite.
+  bool remains_active(const OneSidedRow& row) const {
     if (island_ == nullptr) return false;
     if (row.part < 0 && state_.joints[at(island_->strings[at(row.k)])] != JointMode::closed) return false;
-    const auto& pushed = work_.joints.pushed[number_of(model_, *island_)];
+    const auto& pushed = work_.joints.pushed[island_index(model_, *island_)];
     return std::any_of(pushed.begin(), pushed.end(),
                        [&](const OneSidedRow& p) { return p.part == row.part && p.k == row.k; });
   }
 
-  /// Marks a string that this projection has pushed: it ends exactly at its length.
-  void tighten(int k) {
-    if (!tightened(k)) tightened_.push_back(k);
+  /// Marks a string that this projection has pushed: at the end it has exactly its length.
+  void mark_pulled(int k) {
+    if (!was_pulled(k)) pulled_strings_.push_back(k);
   }
-  bool tightened(int k) const {
-    return std::find(tightened_.begin(), tightened_.end(), k) != tightened_.end();
+  bool was_pulled(int k) const {
+    return std::find(pulled_strings_.begin(), pulled_strings_.end(), k) != pulled_strings_.end();
   }
 
-  static constexpr double kNever = -std::numeric_limits<double>::infinity();
+  static constexpr double kUnbounded = -std::numeric_limits<double>::infinity();
 
   /// Returns the smallest change of a row that the limits allow.
-  double distance(const OneSidedRow& row) const {
+  double min_change(const OneSidedRow& row) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
       const JointMode mode = state_.joints[at(j)];
-      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
+      if (mode == JointMode::off || mode == JointMode::closing) return kUnbounded;
       const JointModel& string = model_.joints()[at(j)];
-      const double C = work_.joints.C[string.row], rounding = left(string, Rows::coordinates);
-      const bool tight = stays(row) || tightened(row.k);
-      if (std::abs(C) <= rounding) return tight ? 0 : (row.sign > 0 ? -rounding : kNever);
-      return row.sign > 0 || tight ? -row.sign * C : kNever;
+      const double C = work_.joints.C[string.row], rounding = row_rounding(string, Rows::coordinates);
+      const bool tight = remains_active(row) || was_pulled(row.k);
+      if (std::abs(C) <= rounding) return tight ? 0 : (row.sign > 0 ? -rounding : kUnbounded);
+      return row.sign > 0 || tight ? -row.sign * C : kUnbounded;
     }
     const PartModel& m = group_.model(row.part);
     const double q = state_.q[m.q0 + 7 + row.k];
     const Range range = m.limits[at(row.k)];
-    if (stays(row) && limit_mode(state_, m, row.k) != 0)
+    if (remains_active(row) && limit_mode(state_, m, row.k) != 0)
       return row.sign * ((limit_mode(state_, m, row.k) < 0 ? range.min : range.max) - q);
     return row.sign * ((row.sign > 0 ? range.min : range.max) - q);
   }
 
   /// Returns the smallest velocity of a row that the limits allow.
-  double slowest(const OneSidedRow& row, const Vector& v) const {
+  double min_velocity(const OneSidedRow& row, const Vector& v) const {
     if (row.part < 0) {
       const int j = island_->strings[at(row.k)];
       const JointModel& string = model_.joints()[at(j)];
       const JointMode mode = state_.joints[at(j)];
-      if (mode == JointMode::off || mode == JointMode::closing) return kNever;
-      if (work_.joints.C[string.row] > kTaut * string.length && !stays(row)) return kNever;
-      if (row.sign < 0 && !stays(row)) return kNever;
+      if (mode == JointMode::off || mode == JointMode::closing) return kUnbounded;
+      if (work_.joints.C[string.row] > kTaut * string.length && !remains_active(row)) return kUnbounded;
+      if (row.sign < 0 && !remains_active(row)) return kUnbounded;
       const double C_dot = work_.joints.C_dot[string.row];
-      if (std::abs(C_dot) <= left(string, Rows::velocities)) return kNever;
+      if (std::abs(C_dot) <= row_rounding(string, Rows::velocities)) return kUnbounded;
       return group_.value(row, v) - row.sign * C_dot;
     }
     const int mode = limit_mode(state_, group_.model(row.part), row.k);
-    return mode != 0 && (mode * row.sign < 0 || stays(row)) ? 0 : kNever;
+    return mode != 0 && (mode * row.sign < 0 || remains_active(row)) ? 0 : kUnbounded;
   }
 
   StepContext& step_;
@@ -470,16 +478,17 @@ class Projection {
   const Island* island_;
   State& state_;
   Workspace<double>& work_;
-  GroupVectors<double, Max>& kept_;
+  GroupVectors<double, Max>& vectors_;
   VecX<double>* impulses_ = nullptr;
-  double before_ = 0;
+  double last_error_ = 0;
   RankRule rank_ = RankRule::keep;
-  double entry_ = 0;  ///< widest gap of the closed joints before the projection, in lengths of the joint
-  int widest_ = -1;   ///< the joint with that gap
-  bool evaluated_ = false;      ///< whether the joints were evaluated at the current state
-  bool moved_on_ = false;       ///< whether they were evaluated at earlier velocities
-  bool fresh_ = false;          ///< whether the factor is that of this iteration
-  std::vector<int> tightened_;  ///< see tighten()
+  double initial_gap_ =
+      0;  ///< largest gap of the closed joints before the projection, in lengths of the joint
+  int widest_joint_ = -1;            ///< the joint with that gap
+  bool evaluated_ = false;           ///< whether the joints were evaluated at the current state
+  bool linear_update_ = false;       ///< whether C_dot follows from an evaluation at earlier velocities
+  bool new_factor_ = false;          ///< whether this iteration computed the factor
+  std::vector<int> pulled_strings_;  ///< see mark_pulled()
 };
 
 }  // namespace pliant::projection

@@ -251,7 +251,7 @@ PLIANT_INLINE StepError Simulation::try_step() {
     result.length = take_step();
     const double error = integrator_->take_error();
     if (state_.q.allFinite() && state_.v.allFinite()) result.error = error;
-    if (contact_ && result.error <= 1 && contact_->any_resting()) step_in_contact(impacts, result);
+    if (contact_ && result.error <= 1 && contact_->has_contact_error()) step_in_contact(impacts, result);
   } catch (const StepFailure&) {
     integrator_->take_error();
     result.error = std::numeric_limits<double>::infinity();
@@ -268,7 +268,7 @@ PLIANT_INLINE StepError Simulation::try_step() {
 
 /// Completes the error of a step in which bodies rested on each other. impacts: their number before the step.
 PLIANT_INLINE void Simulation::step_in_contact(long impacts, StepError& result) {
-  const bool few = contact_->few_resting();
+  const bool few = contact_->may_double();
   // The work of forces on resting bodies is booked for a motion that does not happen: steps stay short for
   // that.
   if (!few || !model_.body().forces().empty()) {

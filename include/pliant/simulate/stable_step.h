@@ -1,4 +1,4 @@
-// The largest stable step and its limit.
+// The largest stable step, and the cause that limits it.
 #pragma once
 
 #include <string>
@@ -8,11 +8,9 @@
 namespace pliant {
 
 struct StableStep {
-  double step;  ///< see largest_stable_step(), s
-  std::string
-      limit;  ///< what limits it: "the local elasticity of part 'jelly'"; empty if nothing does
-  /// Limits that are not counted and may be lower, as text; empty: none.
-  std::string uncounted;
+  double step;            ///< see largest_stable_step(), s
+  std::string limit;      ///< the cause, as "the local elasticity of part 'jelly'"; empty: there is none
+  std::string uncounted;  ///< causes that are not included and may give a smaller step; empty: none
 };
 StableStep stable_step(const Simulation& simulation);
 

@@ -104,22 +104,22 @@ PLIANT_INLINE void MoverSystem::clear() {
 template <int N>
 void MoverSystem::eliminate(const Mover& k) {
   using Numbers = Eigen::Matrix<double, N, N>;
-  using Part = Eigen::Map<Numbers>;
+  using BlockMap = Eigen::Map<Numbers>;
   double* numbers = numbers_.data();
-  const Numbers inverse = Part(numbers + k.numbers, k.size, k.size).inverse();
+  const Numbers inverse = BlockMap(numbers + k.numbers, k.size, k.size).inverse();
   const Eigen::Matrix<double, N, 1> b = inverse * b_.segment<N>(k.row, k.size);
   b_.segment<N>(k.row, k.size) = b;
   const std::size_t* target = targets_.data() + k.targets;
   double *const beside = numbers + k.numbers + at(k.size * k.size), *above = beside;
   for (const int j : k.neighbours) {
     const int columns = movers_[at(j)].size;
-    Part U(above, k.size, columns);
+    BlockMap U(above, k.size, columns);
     U = (inverse * U).eval();
     double* left = beside;
     for (const int i : k.neighbours) {
       const int rows = movers_[at(i)].size;
       left += k.size * rows;
-      Part(numbers + *target, rows, columns).noalias() -= Part(left, rows, k.size).lazyProduct(U);
+      BlockMap(numbers + *target, rows, columns).noalias() -= BlockMap(left, rows, k.size).lazyProduct(U);
       left += k.size * rows;
       ++target;
     }
@@ -129,7 +129,7 @@ void MoverSystem::eliminate(const Mover& k) {
   for (const int i : k.neighbours) {
     const Mover& one = movers_[at(i)];
     left += k.size * one.size;
-    b_.segment<N>(one.row, one.size) -= Part(left, one.size, k.size).lazyProduct(b);
+    b_.segment<N>(one.row, one.size) -= BlockMap(left, one.size, k.size).lazyProduct(b);
     left += k.size * one.size;
   }
 }

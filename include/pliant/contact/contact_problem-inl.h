@@ -1,0 +1,322 @@
+// Bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and their responses with
+// joints.
+#pragma once
+
+#include <pliant/contact/contact_problem.h>
+
+#include <algorithm>
+
+#include <pliant/body/constraint/group.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+#include <pliant/part/local/modal_deformation.h>
+
+namespace pliant {
+
+namespace contact_problem {
+
+/// Joints fix a contact if its response to impulses is below this share of its response without joints. Such
+/// a contact gets no impulse.
+inline constexpr double kFixedShare = 1e-9;
+
+/// Returns the normal and two tangents as columns, world.
+inline Mat3<double> axes(const Contact& contact) {
+  const Vec3<double> t = contact.normal.unitOrthogonal();
+  Mat3<double> axes;
+  axes << contact.normal, t, contact.normal.cross(t);
+  return axes;
+}
+
+}  // namespace contact_problem
+
+PLIANT_INLINE ContactProblem::ContactProblem(const Model& model, const State& state, Workspace<double>& work,
+                                             const std::vector<Contact>& contacts)
+    : model_(model), state_(state), work_(work), contacts_(contacts), movers_(model, work) {
+  for (const Contact& contact : contacts) {
+    system_.add_contact(contact.friction);
+    add_side(contact.a, contact, 1);
+    if (contact.b.part >= 0) add_side(contact.b, contact, -1);
+    complete();
+  }
+  add_limits();
+  add_strings();
+  before_ = movers_.velocities(state, work);
+  after_ = before_;
+  shift_.setZero(movers_.n_x());
+}
+
+PLIANT_INLINE void ContactProblem::add_side(const ContactSide& side, const Contact& contact, double sign) {
+  const PartModel& m = model_.parts()[at(side.part)];
+  if (m.q0 < 0) return;
+  const Mat3<double> to_contact = sign * contact_problem::axes(contact).transpose();
+  const PartWorkspace<double>& w = work_.parts[at(side.part)];
+  if (side.at_nodes() && moves_by_nodes(m, w)) {
+    for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k)
+      sides_.push_back({side.part,
+                        movers_.mover_of_node(side.part, side.node[k]),
+                        0,
+                        side.weight[static_cast<Eigen::Index>(k)] * to_contact,
+                        {}});
+    return;
+  }
+  Side s = make_side(side.part);
+  const Mat3<double> D = to_contact * w.R;
+  s.J.leftCols<3>() = D;
+  s.J.middleCols<3>(3) = -D * skew<double>(w.R.transpose() * (contact.x - w.c));
+  if (m.n_s > 0) {
+    std::vector<Material<double>> points{side.material};
+    for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k) {
+      points.resize(k + 1);
+      points[k] = m.local->mesh().nodes[at(side.node[k])];
+    }
+    Counters counters;
+    m.part->points(points, w.q_s, w.q_s_dot, jets_, counters);
+    for (std::size_t k = 0; k < points.size(); ++k)
+      s.J.rightCols(m.n_s) += side.weight[static_cast<Eigen::Index>(k)] * D * jets_[k].J;
+  }
+  if (m.local != nullptr) add_local(side, D, s);
+  sides_.push_back(std::move(s));
+}
+
+/// Returns a side, zero at first, of a part that moves as a whole.
+PLIANT_INLINE ContactProblem::Side ContactProblem::make_side(int part) {
+  const int mover = movers_.mover_of_part(part);
+  Side side{part, mover, Movers::first_in(movers_[mover], part), {}, {}};
+  side.J.setZero(3, 6 + model_.parts()[at(part)].n_s);
+  return side;
+}
+
+/// Adds the columns of J for local coordinates to a side. D: from the body frame to the axes of the contact.
+PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3<double>& D, Side& to) const {
+  const LocalDeformation& local = *model_.parts()[at(side.part)].local;
+  const int first = movers_.first_local(movers_[to.mover], side.part),
+            n = static_cast<int>(local.mesh().X.rows());
+  for (std::size_t k = 0; k < side.node.size() && side.node[k] >= 0; ++k) {
+    const Mat3<double> share = side.weight[static_cast<Eigen::Index>(k)] * D;
+    if (local.modal() != nullptr) {
+      to.local.push_back({first, share * local.modal()->modes_of_node(side.node[k])});
+      continue;
+    }
+    for (int r = 0; r < 3; ++r) to.local.push_back({first + side.node[k] + r * n, share.col(r)});
+  }
+}
+
+/// Adds a one-sided row for each parameter at a limit, which it must not pass.
+PLIANT_INLINE void ContactProblem::add_limits() {
+  const std::vector<Mover> movers = movers_.all();
+  for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
+    const Mover& mover = movers[at(i)];
+    if (mover.node >= 0) continue;
+    const std::vector<int> alone{mover.part};
+    for (const int part : mover.island == nullptr ? alone : mover.island->parts) {
+      const PartModel& m = model_.parts()[at(part)];
+      for (int k = 0; k < m.n_s; ++k) {
+        const int mode = state_.at_limit[at(m.limit0 + k)];
+        if (moves_by_nodes(m, work_.parts[at(part)]) || mode == 0 || work_.parts[at(part)].held(6 + k))
+          continue;
+        system_.add_row();
+        Side side = make_side(part);
+        side.J(0, 6 + k) = -mode;
+        sides_.push_back(std::move(side));
+        complete();
+      }
+    }
+  }
+}
+
+/// Adds a one-sided row for each taut string at the movers, which must not grow. The projection of joints
+/// treats the strings of parts that deform locally.
+PLIANT_INLINE void ContactProblem::add_strings() {
+  const std::vector<Mover> movers = movers_.all();
+  for (const Mover& mover : movers) {
+    if (mover.island == nullptr) continue;
+    for (const int j : mover.island->strings) {
+      const JointModel& string = model_.joints()[at(j)];
+      if (state_.joints[at(j)] != JointMode::closed ||
+          std::any_of(string.sides.begin(), string.sides.end(),
+                      [&](const JointSide& side) { return model_.parts()[at(side.part)].local != nullptr; }))
+        continue;
+      strings_.push_back({system_.size(), string.row});
+      system_.add_row();
+      for (const JointSide& end : string.sides) {
+        Side side = make_side(end.part);
+        side.J.row(0) = work_.joints.Cq.segment(end.offset, side.J.cols()).transpose();
+        sides_.push_back(std::move(side));
+      }
+      complete();
+    }
+  }
+}
+
+/// Completes the last contact with its sides, and with its responses while joints act.
+PLIANT_INLINE void ContactProblem::complete() {
+  const int contact = system_.size() - 1, rows = system_.rows(contact);
+  while (system_.movers() < static_cast<int>(movers_.all().size()))
+    system_.add_mover(movers_[system_.movers()].size);
+  for (const Side& side : sides_) {
+    system_.add_side(side.mover, side.first, static_cast<int>(side.J.cols())) = side.J;
+    for (const Side::Local& local : side.local)
+      system_.add_side(side.mover, local.first, static_cast<int>(local.J.cols())) = local.J;
+  }
+  bool jointed = false;
+  for (std::size_t i = 0; i < sides_.size(); ++i) {
+    const int number = sides_[i].mover;
+    if (std::any_of(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const Side& side) { return side.mover == number; }))
+      continue;
+    const Mover& mover = movers_[number];
+    jointed = jointed || mover.island != nullptr;
+    CoulombSystem::Push Y = system_.add_push(number);
+    for (std::size_t k = i; k < sides_.size(); ++k)
+      if (sides_[k].mover == number) add_response(mover, sides_[k], rows, Y);
+  }
+  const double free_response = system_.effect(contact, contact).diagonal().maxCoeff();
+  if (jointed) add_joint_responses(contact);
+  if (!(system_.effect(contact, contact).diagonal().maxCoeff() >
+        contact_problem::kFixedShare * free_response)) {
+    system_.drop_pushes();
+    while (!joints_.empty() && joints_.back().contact == contact) joints_.pop_back();
+  }
+  sides_.clear();
+}
+
+/// Adds the change of the velocities of a mover by unit impulses at a side, without joints, to Y.
+PLIANT_INLINE void ContactProblem::add_response(const Mover& mover, const Side& side, int rows,
+                                                CoulombSystem::Push& Y) const {
+  if (mover.node >= 0) {
+    Y += side.J.transpose() / model_.parts()[at(mover.part)].local->mesh().mass[mover.node];
+    return;
+  }
+  const PartModel& m = model_.parts()[at(side.part)];
+  if (const int n = movers_.n_local(side.part); n > 0) {
+    const LocalWorkspace& w = *work_.parts[at(side.part)].local;
+    const int first = movers_.first_local(mover, side.part);
+    for (int r = 0; r < rows; ++r) {
+      VecX<double> frame = side.J.row(r).transpose(), rates = VecX<double>::Zero(n), buffer;
+      for (const Side::Local& local : side.local)
+        rates.segment(local.first - first, local.J.cols()) += local.J.row(r).transpose();
+      if (w.response != nullptr)
+        w.response->respond(frame, rates);
+      else
+        m.local->modal()->respond(frame, rates, w);
+      Y.col(r).segment(side.first, frame.size()) += frame;
+      Y.col(r).segment(side.first + frame.size(), m.n_x() - frame.size()) +=
+          at_points(m.shared, m.local->at_nodes(rates.data(), buffer));
+      Y.col(r).segment(first, n) += rates;
+    }
+    return;
+  }
+  for (int r = 0; r < rows; ++r) {
+    VecX<double> force = VecX<double>::Zero(m.n_x());  // zero at the points of joints
+    force.head(side.J.cols()) = side.J.row(r).transpose();
+    work_.parts[at(side.part)].solve_mass(force);
+    Y.col(r).segment(side.first, m.n_x()) += force;
+  }
+}
+
+/// Adds the reactions of the joints of islands to the responses of a contact.
+PLIANT_INLINE void ContactProblem::add_joint_responses(int contact) {
+  for (int i = 0; i < system_.pushes(contact); ++i) {
+    const Mover& mover = movers_[system_.pushed(contact, i)];
+    const Island* island = mover.island;
+    if (island == nullptr) continue;
+    CoulombSystem::Push Y = system_.push(contact, i);
+    const Group<double, Eigen::Dynamic> group(model_, work_, *island, true);
+    JointResponse response{contact, island, MatX<double>::Zero(island->rows, system_.rows(contact))};
+    for (int r = 0; r < system_.rows(contact); ++r) {
+      const VecX<double> free = Y.col(r).head(island->n_v);
+      VecX<double> x = free, rows;
+      for (int round = 0; round < (group.is_rough() ? 2 : 1); ++round) {
+        group.joint_rows(x, rows);
+        response.lambda.col(r) += group.correct(rows, x);
+      }
+      Y.col(r).head(island->n_v) = x;
+      x -= free;
+      for (std::size_t k = 0; k < island->parts.size(); ++k) {
+        const int part = island->parts[k];
+        const PartModel& m = model_.parts()[at(part)];
+        if (movers_.n_local(part) == 0) continue;
+        const LocalWorkspace& w = *work_.parts[at(part)].local;
+        m.local->push_all(m.shared, w.A_inverse * x.segment(island->first[k], m.n_x()), w,
+                          Y.col(r).segment(movers_.first_local(mover, part), m.n_d()));
+      }
+    }
+    joints_.push_back(std::move(response));
+  }
+}
+
+PLIANT_INLINE std::vector<Vec3<double>> ContactProblem::velocities(const State& state) const {
+  const VecX<double> x = movers_.velocities(state, work_);
+  std::vector<Vec3<double>> all;
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k)
+    all.push_back(contact_problem::axes(contacts_[at(k)]) * (system_.velocity(k, x) - system_.constant(k)) -
+                  contacts_[at(k)].carried);
+  return all;
+}
+
+PLIANT_INLINE ContactSolution ContactProblem::solve(double limit_time) {
+  const int n = static_cast<int>(contacts_.size());
+  for (int k = 0; k < n; ++k) {
+    const Contact& contact = contacts_[at(k)];
+    system_.constant(k) = -contact_problem::axes(contact).transpose() * contact.carried;
+    system_.constant(k)[0] -= contact.rebound;
+  }
+  for (const String& string : strings_) {
+    double& along = system_.constant(string.contact)[0];
+    along = 0;  // the constant is the rate without the velocities of the movers
+    along = work_.joints.C_dot[string.row] - system_.velocity(string.contact, before_)[0];
+  }
+  const CoulombResult result = system_.solve(after_);
+  ContactSolution solution{{}, {}, result.residual, result.sweeps, result.fallbacks};
+  for (int k = 0; k < system_.size(); ++k) {
+    system_.add_change(k, k < n ? contacts_[at(k)].since : limit_time, shift_);
+    if (k >= n) continue;
+    const Mat3<double> to_world = contact_problem::axes(contacts_[at(k)]);
+    Vec3<double> u = system_.velocity(k, after_);
+    u[0] += contacts_[at(k)].rebound;
+    solution.impulse.push_back(to_world * system_.impulse(k));
+    solution.velocity.push_back(to_world * u);
+  }
+  return solution;
+}
+
+PLIANT_INLINE void ContactProblem::warm_start_at(int contact, const Vec3<double>& impulse) {
+  system_.impulse(contact) = contact_problem::axes(contacts_[at(contact)]).transpose() * impulse;
+}
+
+PLIANT_INLINE void ContactProblem::add_joint_impulses(VecX<double>& rows) const {
+  for (const JointResponse& response : joints_) {
+    const VecX<double> lambda =
+        response.lambda * system_.impulse(response.contact).head(response.lambda.cols());
+    for (const int j : response.island->joints) {
+      const JointModel& joint = model_.joints()[at(j)];
+      rows.segment(joint.row, joint.rows) += lambda.segment(joint.island_row, joint.rows);
+    }
+  }
+  for (const String& string : strings_) rows[string.row] += system_.impulse(string.contact)[0];
+}
+
+PLIANT_INLINE void ContactProblem::bound_shifts(double limit_time, double max_time) {
+  for (const Mover& mover : movers_.all()) {
+    auto displacement = shift_.segment(mover.first, mover.size);
+    const auto change = after(mover) - before(mover);
+    if (displacement.norm() > max_time * change.norm()) displacement = limit_time * change;
+  }
+}
+
+PLIANT_INLINE void ContactProblem::separate_bodies(const std::vector<double>& max_separation,
+                                                   double tolerance) {
+  for (int k = 0; k < system_.size(); ++k) {
+    system_.set_friction(k, 0);
+    system_.impulse(k).setZero();
+    system_.constant(k).setZero();
+    if (k < static_cast<int>(contacts_.size()))
+      system_.constant(k)[0] =
+          std::max(contacts_[at(k)].gap + system_.velocity(k, shift_)[0], -max_separation[at(k)]);
+  }
+  VecX<double> separation = VecX<double>::Zero(movers_.n_x());
+  system_.solve(separation, tolerance);
+  shift_ += separation;
+}
+
+}  // namespace pliant

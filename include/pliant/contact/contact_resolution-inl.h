@@ -1,0 +1,427 @@
+// Bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of impacts, and the
+// separation of overlaps.
+#pragma once
+
+#include <pliant/contact/contact_resolution.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include <pliant/contact/contact_pairs.h>
+#include <pliant/contact/load_work.h>
+#include <pliant/contact/touched_parts.h>
+#include <pliant/math/disjoint_sets.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+#include <pliant/project/project.h>
+
+namespace pliant {
+
+namespace contact_resolution {
+
+/// Overlapping bodies are separated at this speed, in sizes of the smaller body per second, or at the speed
+/// of their own travel.
+inline constexpr double kSeparationSpeed = 1;
+inline constexpr int kMaxSeparationRounds = 16;
+/// Largest number of successive impacts in a step of bodies that impulses have pushed into others.
+inline constexpr int kMaxChainLinks = 4;
+/// Overlaps below this share of the gap of resting contacts remain.
+inline constexpr double kAllowedOverlap = 1e-4;
+/// Overlaps of this many units of rounding of the positions remain too.
+inline constexpr double kUlps = 16;
+/// Meshes may overlap by this multiple of the gap of resting contacts.
+inline constexpr double kMeshOverlap = 800;
+/// A contact is one of the last step if their points are nearer than this share of the size of the smaller
+/// body.
+inline constexpr double kSameContact = 0.05;
+/// Largest number of warm-started steps in a row.
+inline constexpr int kMaxWarmStartAge = 10;
+/// Tolerance of a separation, as a share of the overlap that may remain.
+inline constexpr double kSeparationTolerance = 0.03;
+
+/// Returns whether a side of a contact is at nodes of a mesh.
+inline bool is_at_nodes(const Contact& contact) {
+  return contact.a.at_nodes() || contact.b.at_nodes();
+}
+
+/// Returns the index in [first, last) of the position nearest to x, nearer than `within` (m) and not taken;
+/// `last` if there is none. position, is_taken: functions of the index.
+template <class Position, class IsTaken>
+std::size_t nearest(std::size_t first, std::size_t last, const Vec3<double>& x, double within,
+                    Position&& position, IsTaken&& is_taken) {
+  std::size_t found = last;
+  for (std::size_t i = first; i < last; ++i) {
+    const double distance = (position(i) - x).norm();
+    if (!(distance < within) || is_taken(i)) continue;
+    within = distance;
+    found = i;
+  }
+  return found;
+}
+
+}  // namespace contact_resolution
+
+PLIANT_INLINE void ContactRecord::clear() {
+  contacts.clear();
+  impulses.clear();
+  sliding.clear();
+  joint_impulses.setZero();
+}
+
+PLIANT_INLINE ContactResolution::ContactResolution(const Dynamics& dynamics, const ContactFinder& finder,
+                                                   MeshFinder& meshes, RestingContacts& resting,
+                                                   ContactRecord& record)
+    : dynamics_(dynamics), finder_(finder), meshes_(meshes), resting_(resting), record_(record) {}
+
+PLIANT_INLINE void ContactResolution::reconcile(StepContext& step, const std::vector<int>& parts) const {
+  project_frames(step, parts);
+  project_joints(step);
+}
+
+/// Returns the distance (m) by which the rotation of a part moves a point away from its tangent in h seconds.
+/// Such a point may overlap another body within a step and move away from it at the end.
+PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide& side, const Vec3<double>& x,
+                                                               const State& state, double h) const {
+  if (side.part < 0 || side.at_nodes()) return 0;
+  const PartModel& m = dynamics_.model().parts()[at(side.part)];
+  if (m.q0 < 0) return 0;
+  const double turn = h * state.v.segment<3>(m.v0 + 3).norm();
+  return 0.5 * turn * turn * (x - state.q.segment<3>(m.q0)).norm();
+}
+
+/// Returns the distance (m) by which a contact may be opened in a step of h seconds: at kSeparationSpeed, and
+/// by the travel of its bodies.
+PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contact, double h) const {
+  double distance = contact_resolution::kSeparationSpeed * h * smaller_size(dynamics_.model(), contact);
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) distance += travel_[at(side->part)];
+  return distance;
+}
+
+/// Returns the point of a contact in the frame of its part a, m. A resting contact stays there while the
+/// bodies move.
+PLIANT_INLINE Vec3<double> ContactResolution::local_position(const Contact& contact, const State& state,
+                                                             double t) const {
+  const Model& model = dynamics_.model();
+  const int part = contact.a.part;
+  return model.orientation(state, part, t).conjugate() * (contact.x - model.position(state, part, t));
+}
+
+/// Returns the distance (m) within which two contacts of a pair are the same contact.
+PLIANT_INLINE double ContactResolution::match_distance(const Contact& contact) const {
+  return contact_resolution::kSameContact * smaller_size(dynamics_.model(), contact);
+}
+
+PLIANT_INLINE void ContactResolution::begin_step(const State& state) {
+  resolved_.clear();
+  resolutions_ = 0;
+  cold_start_ =
+      state.contact_cache.empty() || state.contact_cache_age >= contact_resolution::kMaxWarmStartAge;
+}
+
+/// Sets the start values of the impulses to those of the cached forces over h seconds.
+PLIANT_INLINE void ContactResolution::warm_start(const State& state, double t, double h,
+                                                 const std::vector<Contact>& contacts,
+                                                 ContactProblem& problem) const {
+  if (cold_start_) return;
+  const std::vector<CachedContact>& cache = state.contact_cache;
+  std::vector<char> taken(cache.size(), 0);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const auto [first, last] = std::equal_range(cache.begin(), cache.end(), contacts[k], ByPair{});
+    if (first == last) continue;
+    const auto end = static_cast<std::size_t>(last - cache.begin());
+    const std::size_t found = contact_resolution::nearest(
+        static_cast<std::size_t>(first - cache.begin()), end, local_position(contacts[k], state, t),
+        match_distance(contacts[k]), [&](std::size_t i) { return cache[i].x; },
+        [&](std::size_t i) { return taken[i] != 0; });
+    if (found == end) continue;
+    taken[found] = 1;
+    problem.warm_start_at(static_cast<int>(k), h * cache[found].force);
+  }
+}
+
+/// Records the impulses of one resolution, for the contact cache.
+PLIANT_INLINE void ContactResolution::record_resolved(const State& state, double t,
+                                                      const std::vector<Contact>& contacts,
+                                                      const ContactProblem& problem,
+                                                      const std::vector<Vec3<double>>& impulses) {
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+    if (problem.may_warm_start(static_cast<int>(k)) && !impulses[k].isZero(0))
+      resolved_.push_back({{key_of(contacts[k]), local_position(contacts[k], state, t), impulses[k]},
+                           match_distance(contacts[k]),
+                           resolutions_});
+  ++resolutions_;
+}
+
+PLIANT_INLINE void ContactResolution::end_step(double h, State& state) const {
+  std::vector<Resolved> sorted = resolved_, merged;
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Resolved& a, const Resolved& b) { return ByPair{}(a.cached, b.cached); });
+  std::size_t first = 0;  // first entry of the pair in `merged`
+  for (const Resolved& next : sorted) {
+    if (merged.empty() || merged.back().cached.between != next.cached.between) first = merged.size();
+    // The nearest contact of an earlier resolution is the same contact.
+    const std::size_t same = contact_resolution::nearest(
+        first, merged.size(), next.cached.x, next.match_distance,
+        [&](std::size_t i) { return merged[i].cached.x; },
+        [&](std::size_t i) { return merged[i].resolution == next.resolution; });
+    if (same == merged.size()) {
+      merged.push_back(next);
+      continue;
+    }
+    merged[same].cached.force += next.cached.force;
+    merged[same].resolution = next.resolution;
+  }
+  state.contact_cache.clear();
+  for (const Resolved& resolved : merged)
+    if (const Vec3<double> force = resolved.cached.force / h; force.allFinite())
+      state.contact_cache.push_back({resolved.cached.between, resolved.cached.x, force});
+  state.contact_cache_age = cold_start_ || state.contact_cache.empty() ? 0 : state.contact_cache_age + 1;
+}
+
+PLIANT_INLINE void ContactResolution::resolve(StepContext& step, const ResolvedMotion& motion,
+                                              std::vector<Contact> contacts) {
+  fully_separated_.clear();
+  resolve_once(step, motion, std::move(contacts), motion.h > 0);
+}
+
+/// Sets the travel of each part towards the bodies that it meets in a motion of h seconds.
+PLIANT_INLINE void ContactResolution::measure_travel(const State& state, double h,
+                                                     const std::vector<Contact>& contacts) {
+  travel_.assign(dynamics_.model().parts().size(), 0);
+  for (const Contact& contact : contacts) {
+    const double opening = finder_.velocity(state, contact).dot(contact.normal);
+    extend_travel(contact, h * std::max(0.0, -opening) +
+                               departure_from_tangent(contact.a, contact.x, state, h) +
+                               departure_from_tangent(contact.b, contact.x, state, h));
+  }
+}
+
+/// Computes the impulses, and adds their work and residual to the state and the counters. The work of an
+/// impulse is that of a constant force over the motion, to second order. warm: whether the impulses start
+/// from the contact cache.
+PLIANT_INLINE ContactSolution ContactResolution::solve(StepContext& step, const ResolvedMotion& motion,
+                                                       const std::vector<Contact>& contacts, bool warm,
+                                                       ContactProblem& problem) {
+  State& state = step.state;
+  const std::vector<Vec3<double>> u_start = problem.velocities(motion.before);
+  if (warm) warm_start(state, step.t, motion.h, contacts, problem);
+  ContactSolution solution = problem.solve(motion.force_time);
+  if (motion.h > 0) record_resolved(state, step.t, contacts, problem, solution.impulse);
+  step.counters.contact_sweeps += solution.sweeps;
+  step.counters.contact_fallbacks += solution.fallbacks;
+  step.counters.contact_residual = std::max(step.counters.contact_residual, solution.residual);
+  state.contact_residual = std::max(state.contact_residual, solution.residual);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Contact& c = contacts[k];
+    const Vec3<double> mean = 0.5 * (u_start[k] + solution.velocity[k]), p = solution.impulse[k];
+    const double along = mean.dot(c.normal), p_n = p.dot(c.normal);
+    state.work[static_cast<int>(Work::friction)] += p.dot(mean) - p_n * along;
+    state.work[static_cast<int>(Work::contact)] += p_n * along + p.dot(c.carried);
+  }
+  problem.add_joint_impulses(record_.joint_impulses);
+  problem.bound_shifts(motion.force_time, motion.h);
+  return solution;
+}
+
+/// Appends contacts and impulses to the record of the step.
+PLIANT_INLINE void ContactResolution::append_to_record(const std::vector<Contact>& contacts,
+                                                       const ContactSolution& solution) {
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Vec3<double>&u = solution.velocity[k], &n = contacts[k].normal;
+    record_.contacts.push_back(contacts[k]);
+    record_.impulses.push_back(solution.impulse[k]);
+    record_.sliding.push_back((u - u.dot(n) * n).norm());
+  }
+}
+
+/// Resolves contacts once. warm: see solve().
+PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const ResolvedMotion& motion,
+                                                   std::vector<Contact> contacts, bool warm) {
+  const State& before = motion.before;
+  const double h = motion.h, t = step.t;
+  State& state = step.state;
+  if (contacts.empty()) return;
+  const std::vector<int> parts = parts_touched(dynamics_.model(), contacts);
+  const double work_before = state.work.sum();
+  evaluate_touched(dynamics_, state, t, contacts, step.work);
+  measure_travel(state, h, contacts);
+  ContactProblem problem(dynamics_.model(), state, step.work, contacts);
+  const ContactSolution solution = solve(step, motion, contacts, warm, problem);
+  // The work of solve() is not exact if a limit or a string has stopped a part within the motion, if a joint
+  // follows a prescribed path, or if the impulse acts at one instant. Then the change of energy is
+  // work_before.
+  const bool driven = are_driven(dynamics_.model(), parts), instant = &before == &state;
+  const bool by_energy =
+      driven || instant || state.at_limit != before.at_limit || state.joints != before.joints;
+  const double energy = by_energy ? dynamics_.energy(t, state.q, state.v, parts, scratch_) : 0;
+  LoadWork loads(dynamics_, state);
+  q_before_ejection_ = state.q;
+  apply_solution(problem, dynamics_.model(), step.work, state);
+  if (h > 0) reconcile(step, parts);
+  if (h > 0) add_ejections(state);
+  // Methods with a reach of 1 book the work of forces at the velocities of the start of the step: it is zero
+  // for resting parts. For other methods the displacement by the impulses changes this work.
+  if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
+  if (h > 0) separate_overlaps(step);
+  project_limits(step);
+  if (by_energy)
+    state.work[static_cast<int>(driven ? Work::anchors : Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
+  append_to_record(contacts, solution);
+}
+
+PLIANT_INLINE void ContactResolution::resolve_chain(StepContext& step, std::vector<Contact> resolved,
+                                                    double min_impact_speed) {
+  State& state = step.state;
+  const double t = step.t;
+  for (int link = 0; link < contact_resolution::kMaxChainLinks && !resolved.empty(); ++link) {
+    const Pairs known(resolved);
+    std::vector<Contact> contacts = resting_.near(state, t);
+    double earliest = 0;  // time since the first of these impacts, s
+    for (Contact& contact : contacts) {
+      const double u = finder_.velocity(state, contact).dot(contact.normal);
+      if (!(contact.gap < -resting_.gap(contact) && u < -min_impact_speed) ||
+          known.has(contact, [&](const Contact& other) { return other.gap <= contact.gap; }))
+        continue;
+      contact.since = std::min(step.h, contact.gap / u);
+      if (-contact.restitution * u > min_impact_speed) contact.rebound = -contact.restitution * u;
+      earliest = std::max(earliest, contact.since);
+    }
+    if (earliest == 0) return;
+    contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                  [&](const Contact& c) { return c.gap > resting_.gap(c); }),
+                   contacts.end());
+    meshes_.find(state, t, contacts);
+    for (Contact& contact : contacts)
+      if (contact.since == 0) contact.since = earliest;
+    resolve_once(step, {state, 0, step.h}, contacts, false);
+    resolved.insert(resolved.end(), contacts.begin(), contacts.end());
+  }
+  if (!resolved.empty()) ++step.counters.contact_cutoffs;
+}
+
+/// Sets the travel of the bodies of a contact to at least this distance, m.
+PLIANT_INLINE void ContactResolution::extend_travel(const Contact& contact, double distance) {
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) travel_[at(side->part)] = std::max(travel_[at(side->part)], distance);
+}
+
+/// Adds to the travel of each part its displacement by the impulses at all contacts and joints.
+PLIANT_INLINE void ContactResolution::add_ejections(const State& state) {
+  for (std::size_t i = 0; i < travel_.size(); ++i) {
+    const PartModel& m = dynamics_.model().parts()[i];
+    if (m.q0 < 0) continue;
+    const auto change = state.q.segment(m.q0, m.n_q()) - q_before_ejection_.segment(m.q0, m.n_q());
+    const double size = m.part->size();
+    travel_[i] += change.head<3>().norm() + 2 * change.segment<4>(3).norm() * size;
+    for (int k = 0; k < m.n_s; ++k) {
+      const bool length = m.part->parameters().moving(k).spec->quantity == Quantity::length;
+      travel_[i] += (length ? 1 : size) * std::abs(change[7 + k]);
+    }
+    if (m.n_d() == 0) continue;
+    const double unit = m.local->oscillators() != nullptr ? 1 / std::sqrt(m.part->total_mass()) : 1;
+    travel_[i] += unit * change.tail(m.n_d()).lpNorm<Eigen::Infinity>();
+  }
+}
+
+/// Returns the depth of a contact that need not be separated, m.
+PLIANT_INLINE double ContactResolution::allowed_overlap(const Contact& contact) const {
+  if (contact_resolution::is_at_nodes(contact))
+    return contact_resolution::kMeshOverlap * resting_.tight_gap(contact);
+  double size = 0;
+  for (const ContactSide* side : {&contact.a, &contact.b})
+    if (side->part >= 0) size = std::max(size, dynamics_.model().parts()[at(side->part)].part->size());
+  const double rounding = std::numeric_limits<double>::epsilon() * (contact.x.norm() + size);
+  return std::max(contact_resolution::kAllowedOverlap * resting_.tight_gap(contact),
+                  contact_resolution::kUlps * rounding);
+}
+
+/// Keeps the contacts that the separation of deep contacts affects. These are the contacts of bodies that
+/// move as a whole and are connected by contacts to a body with a deep contact. Of meshes, they are the
+/// contacts of pairs with a deep contact.
+PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contacts,
+                                                    const Workspace<double>& work) const {
+  const Model& model = dynamics_.model();
+  DisjointSets connected(model.parts().size());
+  auto is_whole = [&](const ContactSide& side) {
+    return side.part >= 0 && model.parts()[at(side.part)].q0 >= 0 &&
+           !(side.at_nodes() && moves_by_nodes(model.parts()[at(side.part)], work.parts[at(side.part)]));
+  };
+  // A body is represented by the first part of its island.
+  auto body_of = [&](int part) {
+    const int island = model.parts()[at(part)].island;
+    return connected.leader(island < 0 ? part : model.islands()[at(island)].parts.front());
+  };
+  for (const Contact& contact : contacts)
+    if (is_whole(contact.a) && is_whole(contact.b))
+      connected.unite(body_of(contact.a.part), body_of(contact.b.part));
+  std::set<std::pair<int, int>> pairs;
+  std::vector<bool> affected(model.parts().size(), false);
+  for (const Contact& contact : contacts) {
+    if (!(contact.gap < -allowed_overlap(contact))) continue;
+    if (contact_resolution::is_at_nodes(contact)) pairs.insert({contact.a.part, contact.b.part});
+    for (const ContactSide* side : {&contact.a, &contact.b})
+      if (is_whole(*side)) affected[at(body_of(side->part))] = true;
+  }
+  auto moves = [&](int part) { return part >= 0 && affected[at(body_of(part))]; };
+  contacts.erase(
+      std::remove_if(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) {
+                       return !moves(c.a.part) && !moves(c.b.part) && pairs.count({c.a.part, c.b.part}) == 0;
+                     }),
+      contacts.end());
+}
+
+/// Stage 6 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
+/// that this pushes into others are separated completely.
+PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
+  State& state = step.state;
+  Workspace<double>& work = step.work;
+  const double h = step.h, t = step.t;
+  for (int i = 0; i < contact_resolution::kMaxSeparationRounds; ++i) {
+    std::vector<Contact> found = resting_.near(state, t);
+    double deepest = 0, largest = 0;
+    for (const Contact& contact : found) {
+      deepest = std::max(deepest, -contact.gap);
+      largest = std::max(largest, largest_separation(contact, h));
+    }
+    // The separation may move bodies into others within this distance.
+    if (deepest > resting_.gap()) found = finder_.find(state, t, std::min(deepest, largest));
+    meshes_.find(state, t, found);
+    std::vector<PairKey> too_deep;
+    bool any_deep = false;
+    for (Contact& contact : found) {
+      // The next steps close the remaining overlap of a pair that was separated by its allowed distance.
+      if (fully_separated_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
+      if (i == 0 && contact.gap < -largest_separation(contact, h)) too_deep.push_back(key_of(contact));
+      any_deep = any_deep || contact.gap < -allowed_overlap(contact);
+    }
+    if (!any_deep) return;
+    fully_separated_.insert(too_deep.begin(), too_deep.end());
+    keep_affected(found, work);
+    double tolerance = std::numeric_limits<double>::infinity();
+    for (const Contact& contact : found)
+      tolerance = std::min(tolerance, contact_resolution::kSeparationTolerance * allowed_overlap(contact));
+    const std::vector<int> parts = parts_touched(dynamics_.model(), found);
+    const double energy = dynamics_.energy(t, state.q, state.v, parts, scratch_),
+                 work_before = state.work.sum();
+    evaluate_touched(dynamics_, state, t, found, work);
+    ContactProblem separation(dynamics_.model(), state, work, found);
+    std::vector<double> max_separation;
+    for (const Contact& contact : found) max_separation.push_back(largest_separation(contact, h));
+    separation.separate_bodies(max_separation, tolerance);
+    LoadWork loads(dynamics_, state);
+    apply_solution(separation, dynamics_.model(), work, state);
+    reconcile(step, parts);
+    state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
+    state.work[static_cast<int>(Work::contact)] +=
+        dynamics_.energy(t, state.q, state.v, parts, scratch_) - energy - (state.work.sum() - work_before);
+  }
+  ++step.counters.contact_cutoffs;
+}
+
+}  // namespace pliant

@@ -1,0 +1,384 @@
+// Bodies of contact_stepping.h: the stages of a step with contact. ContactStepping::step() lists them, and
+// the README.md of this folder describes them.
+#pragma once
+
+#include <pliant/contact/contact_stepping.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include <pliant/body/step_failure.h>
+#include <pliant/contact/contact_pairs.h>
+#include <pliant/contact/impact_timing.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace contact_stepping {
+
+/// Slower impacts do not rebound; in units of the speed that gravity gives a body in a step.
+inline constexpr double kMinImpactSpeed = 1e-3;
+/// Contacts rest at speeds up to this multiple of the residual of the last contact solution, at most up to
+/// the speed that gravity gives a body in a step.
+inline constexpr double kResidualFactor = 8;
+/// Impacts are located if at most this number of pairs meets in a motion, in models with at most this number
+/// of moving parts. To locate an impact, the step of all parts is repeated several times.
+inline constexpr std::size_t kMaxLocatedPairs = 3;
+inline constexpr std::ptrdiff_t kMaxLocatedParts = 8;
+/// Largest number of motions in a step. A motion is so short that no part passes through another.
+inline constexpr double kMaxMotions = 1e4;
+inline constexpr int kMaxLocatedImpacts = 200;
+/// At a located impact, surfaces touch if their gap is below this share of the gap of resting contacts.
+inline constexpr double kTouchingGap = 1e-6;
+
+/// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
+/// m/s. It is a power of two, so that the result of the last search is mostly still valid. gravity_speed:
+/// speed that gravity gives a body in the step.
+inline double residual_speed(double residual, double gravity_speed) {
+  const double speed = std::min(kResidualFactor * residual, gravity_speed);
+  if (!(speed > kMinImpactSpeed * gravity_speed)) return 0;
+  int exponent = 0;
+  std::frexp(speed, &exponent);
+  return std::ldexp(1.0, exponent - 1);
+}
+
+}  // namespace contact_stepping
+
+PLIANT_INLINE ContactStepping::ContactStepping(const Dynamics& dynamics)
+    : dynamics_(dynamics),
+      finder_(dynamics.model()),
+      meshes_(dynamics.model(), finder_.obstacles()),
+      resting_(dynamics.model(), finder_),
+      resolution_(dynamics, finder_, meshes_, resting_, record_),
+      sleeping_(dynamics, resting_, meshes_) {
+  for (ContactRecord* record : {&record_, &record_before_})
+    record->joint_impulses.setZero(dynamics.model().n_rows());
+  few_parts_ =
+      std::count_if(dynamics.model().parts().begin(), dynamics.model().parts().end(),
+                    [](const PartModel& m) { return m.q0 >= 0; }) <= contact_stepping::kMaxLocatedParts;
+}
+
+PLIANT_INLINE void ContactStepping::begin_step() {
+  resting_at_start_.clear();
+  has_unlocated_ = false;
+  std::swap(record_, record_before_);
+  record_.clear();
+}
+
+PLIANT_INLINE void ContactStepping::undo_step() {
+  std::swap(record_, record_before_);
+}
+
+PLIANT_INLINE std::vector<Contact> ContactStepping::overlaps(const State& state, double t) const {
+  std::vector<Contact> found = finder_.find(state, t, 0);
+  meshes_.find(state, t, found);
+  return found;
+}
+
+/// Measures the time of the stages, one after the other.
+class ContactStepping::StageClock {
+ public:
+  void lap(double& stage) {
+    const Clock::time_point now = Clock::now();
+    stage += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+/// The progress of a step, and the length of its next motion.
+struct ContactStepping::Progress {
+  Integrator& method;
+  StepContext& step;
+  double begin, end, now;  ///< s
+  double near;             ///< times closer than this are equal, s
+  double longest;          ///< longest next motion, s: in a longer one, parts moved farther than predicted
+  double min_impact_speed, max_resting_speed;  ///< see FreeMotion, m/s
+  bool soft_nearby;  ///< whether parts that deform locally came near another body without prediction
+  int impacts;       ///< number of impacts located so far
+  StageClock clock;
+
+  bool finished() const { return !(now < end - near); }
+  /// Displacement by gravity in the motion, in units of gravity * h^2.
+  double gravity_reach() const { return method.local_is_implicit() ? 1 : method.reach(); }
+};
+
+/// One motion of the method within a step, and the contacts that it may cause.
+struct ContactStepping::Motion {
+  FreeMotion free;
+  ContactFinder::Neighbourhood predicted, travelled;  ///< before the motion, and for its actual travel
+  std::vector<Contact> resting;                       ///< resting contacts at its start
+  std::vector<Contact> contacts;                      ///< contacts at its end
+
+  /// Whether no bodies come near each other.
+  bool is_free() const { return predicted.empty && travelled.empty; }
+};
+
+PLIANT_INLINE double ContactStepping::step(Integrator& method, StepContext& step, bool to_event) {
+  State& state = step.state;
+  const double start = state.start, h = state.h;
+  const std::int64_t number = state.step;
+  Progress progress = begin(method, step);
+  double length = h;
+  while (!progress.finished()) {
+    Motion motion = advance(progress);                        // 1 predict, 2 advance, 3 detect
+    if (!state.q.allFinite() || !state.v.allFinite()) break;  // the caller reports it
+    if (motion.is_free()) {
+      progress.now = motion.free.end();
+      continue;
+    }
+    record_resting(motion, to_event);
+    const bool impact = locate_and_apply_impact(motion, progress);  // 4 locate the first impact
+    if (!impact) resolve(motion, progress);                         // 5 resolve, 6 correct
+    const bool event =
+        impact ? progress.now > progress.begin : !progress.finished() && few_parts_ && has_contact_error();
+    if (to_event && event) {
+      length = progress.now - progress.begin;
+      break;
+    }
+  }
+  state.start = start;
+  state.step = number;
+  state.h = h;
+  resolution_.end_step(length, state);
+  sleeping_.fall_asleep(record_.contacts, progress.begin, length, state);  // 7 sleep
+  return length;
+}
+
+PLIANT_INLINE ContactStepping::Progress ContactStepping::begin(Integrator& method, StepContext& step) {
+  State& state = step.state;
+  const double h = state.h, begin = state.time(), end = begin + h;
+  const double near = 8 * std::numeric_limits<double>::epsilon() * std::max(std::abs(end), h);
+  const double gravity_speed = dynamics_.model().body().gravity_at(end).norm() * h,
+               residual_speed = contact_stepping::residual_speed(state.contact_residual, gravity_speed),
+               min_impact_speed = contact_stepping::kMinImpactSpeed * gravity_speed,
+               max_resting_speed = std::max(min_impact_speed, residual_speed);
+  state.contact_residual = 0;
+  resolution_.begin_step(state);
+  resting_.widen_gap(residual_speed * h);
+  return {method, step, begin, end, begin, near, h, min_impact_speed, max_resting_speed, false, 0, {}};
+}
+
+/// Advances by one motion, which is as long as the contacts allow: a motion that was too long is repeated
+/// shorter.
+PLIANT_INLINE ContactStepping::Motion ContactStepping::advance(Progress& progress) {
+  State& state = progress.step.state;
+  for (;;) {
+    Motion motion = predict(progress);
+    StepContext step(dynamics_, state, progress.step.work, progress.step.counters);
+    progress.method.step(step);
+    sleeping_.restore(state);
+    progress.clock.lap(times_.motion);
+    if (!state.q.allFinite() || !state.v.allFinite()) return motion;
+    const bool accepted = detect(motion, progress);
+    progress.clock.lap(times_.finding);
+    if (accepted) return motion;
+  }
+}
+
+/// Stage 1: predicts which bodies the next motion brings near each other, and how long it may be. Wakes
+/// sleeping parts whose drive changes.
+PLIANT_INLINE ContactStepping::Motion ContactStepping::predict(Progress& progress) {
+  State& state = progress.step.state;
+  const double now = progress.now, remaining = progress.end - now,
+               length = std::min(remaining, progress.longest);
+  sleeping_.begin_motion(now, remaining, state);
+  Motion motion;
+  motion.predicted = look_ahead(state, now, length, progress.gravity_reach(), progress.soft_nearby);
+  if (!meshes_.empty()) progress.method.expect_touch(motion.predicted.soft);
+  if (!(motion.predicted.h > remaining / contact_stepping::kMaxMotions)) fail_too_fast(progress);
+  FreeMotion& free = motion.free;
+  free.begin = now;
+  free.h = motion.predicted.h >= remaining - progress.near ? remaining : motion.predicted.h;
+  free.reach = progress.method.reach();
+  free.min_impact_speed = progress.min_impact_speed;
+  free.max_resting_speed = progress.max_resting_speed;
+  if (!motion.predicted.empty) motion.resting = resting_.at_rest(state, now, free.max_resting_speed);
+  free.h = resting_.longest(free, motion.resting, dynamics_.model().body().gravity_at(now).norm());
+  if (now != state.time() || free.h != state.h) set_step(state, now, free.h);
+  progress.clock.lap(times_.finding);
+  free.before = state;
+  return motion;
+}
+
+PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) const {
+  const double h = progress.end - progress.begin;
+  std::ostringstream message;
+  message << "parts move so fast past each other that a step of " << h << " s would need more than "
+          << contact_stepping::kMaxMotions << " motions; use a smaller step";
+  throw NumericalFailure(message.str(), progress.now);
+}
+
+/// Stage 3: finds the contacts at the end of the motion. Returns false, and restores the state at its start,
+/// if the motion was too long or woke sleeping parts.
+PLIANT_INLINE bool ContactStepping::detect(Motion& motion, Progress& progress) {
+  State& state = progress.step.state;
+  const FreeMotion& free = motion.free;
+  auto repeat = [&](double longest) {
+    progress.longest = longest;
+    state = free.before;
+    return false;
+  };
+  motion.travelled = finder_.neighbourhood_of(free.before, state, free.begin, free.h,
+                                              progress.gravity_reach(), motion.predicted);
+  if (!meshes_.empty())
+    meshes_.approach(free.before, &state, free.begin, free.h, progress.gravity_reach(), motion.travelled);
+  progress.soft_nearby = motion.travelled.soft && !motion.predicted.soft;
+  if (progress.soft_nearby || motion.travelled.h < free.h - progress.near)
+    return repeat(std::min(motion.travelled.h, free.h));
+  progress.longest = std::max(progress.longest, 2 * free.h);
+  if (motion.is_free()) return true;
+  const double longest = resting_.longest(free, motion.resting, state);
+  if (longest < free.h - progress.near) return repeat(longest);
+  motion.contacts = resting_.contacts_after(free, motion.resting, state);
+  return !wake_touched(motion.contacts, free, state);
+}
+
+/// Returns the neighbourhood of a motion of at most `length` seconds from the time `now`. gravity_reach: see
+/// Progress. soft_nearby: whether parts that deform locally are known to come near another body.
+PLIANT_INLINE ContactFinder::Neighbourhood ContactStepping::look_ahead(const State& state, double now,
+                                                                       double length, double gravity_reach,
+                                                                       bool soft_nearby) {
+  ContactFinder::Neighbourhood around = finder_.neighbourhood(state, now, length, gravity_reach);
+  if (meshes_.empty()) return around;
+  meshes_.approach(state, nullptr, now, length, gravity_reach, around);
+  around.soft = around.soft || soft_nearby;
+  return around;
+}
+
+/// If a sleeping part is at a contact, restores the start of the motion and wakes the part there. Returns
+/// whether it did.
+PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& contacts,
+                                                 const FreeMotion& motion, State& state) {
+  if (!sleeping_.any()) return false;
+  std::vector<Contact> mesh_contacts;
+  meshes_.find(state, motion.end(), mesh_contacts);
+  if (!sleeping_.touches_sleeping(contacts, state) && !sleeping_.touches_sleeping(mesh_contacts, state))
+    return false;
+  state = motion.before;
+  sleeping_.wake_touched(contacts, state);
+  sleeping_.wake_touched(mesh_contacts, state);
+  return true;
+}
+
+/// Records the resting contacts of a motion, for the error estimate of contact.
+PLIANT_INLINE void ContactStepping::record_resting(const Motion& motion, bool to_event) {
+  if (to_event && few_parts_)
+    resting_at_start_.insert(resting_at_start_.end(), motion.resting.begin(), motion.resting.end());
+  else
+    has_unlocated_ = has_unlocated_ || !motion.resting.empty();
+}
+
+/// Returns the impacts of the motion, one for each pair, if they are few enough to be located; otherwise
+/// none.
+PLIANT_INLINE std::vector<Contact> ContactStepping::impacts_to_locate(const Motion& motion) const {
+  std::vector<Contact> impacts;
+  if (!few_parts_) return impacts;
+  const Pairs rest(motion.resting);
+  for (const Contact& contact : motion.contacts) {
+    if (rest.has(contact) || Pairs(impacts).has(contact)) continue;
+    if (impacts.size() == contact_stepping::kMaxLocatedPairs) return {};
+    impacts.push_back(contact);
+  }
+  return impacts;
+}
+
+/// Stage 4: cuts the motion at its first impact, if the impact can be located, and applies the impulses
+/// there. Returns whether it did. locate_impact() is in impact_timing.h.
+PLIANT_INLINE bool ContactStepping::locate_and_apply_impact(Motion& motion, Progress& progress) {
+  StepCounters& counters = progress.step.counters;
+  const std::vector<Contact> impacts = impacts_to_locate(motion);
+  if (impacts.empty()) return false;
+  if (progress.impacts == contact_stepping::kMaxLocatedImpacts) {
+    ++counters.contact_cutoffs;
+    return false;
+  }
+  const std::optional<double> tau =
+      locate_impact(progress.step, finder_, progress.method, motion.free, impacts);
+  sleeping_.restore(progress.step.state);
+  progress.clock.lap(times_.motion);
+  if (!tau) return false;
+  ++progress.impacts;
+  ++counters.impacts;
+  motion.free.h = *tau;
+  progress.now = motion.free.end();
+  const StepResponses responses(progress.method, dynamics_.model(), progress.step.work);
+  apply_impact(motion, impacts, progress);
+  sleeping_.wake_moved(progress.step.state);
+  return true;
+}
+
+/// Resolves the resting contacts at the end of a motion that an impact has cut, with the impulses of this
+/// motion. New contacts of these pairs, and overlaps of meshes, are included.
+PLIANT_INLINE void ContactStepping::resolve_resting(const Motion& motion, StepContext& step,
+                                                    StageClock& clock) {
+  const FreeMotion& free = motion.free;
+  const Pairs rest(motion.resting);
+  std::vector<Contact> contacts = resting_.contacts_after(free, motion.resting, step.state);
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                [&](const Contact& c) { return c.since == 0 && !rest.has(c); }),
+                 contacts.end());
+  meshes_.find(step.state, step.t, contacts);
+  time_impacts(finder_, free, step.state, contacts);
+  clock.lap(times_.finding);
+  resolution_.resolve(step, {free.before, free.force_time(), free.h}, std::move(contacts));
+  clock.lap(times_.resolution);
+}
+
+/// Applies the impulses of an impact at the end of the motion, which was cut there.
+PLIANT_INLINE void ContactStepping::apply_impact(const Motion& motion, const std::vector<Contact>& impacts,
+                                                 Progress& progress) {
+  const FreeMotion& free = motion.free;
+  const Pairs rest(motion.resting), impact_pairs(impacts);
+  State& state = progress.step.state;
+  StepContext step(dynamics_, state, progress.step.work, progress.step.counters, free.end(), free.h);
+  resolve_resting(motion, step, progress.clock);
+  std::vector<Contact> contacts = finder_.find(state, step.t, resting_.gap());
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(),
+                                [&](const Contact& c) {
+                                  const double gap = resting_.gap(c);
+                                  return c.gap > gap || (c.gap > contact_stepping::kTouchingGap * gap &&
+                                                         !rest.has(c) && !impact_pairs.has(c));
+                                }),
+                 contacts.end());
+  for (Contact& contact : contacts) {
+    const double rebound = -contact.restitution * finder_.velocity(state, contact).dot(contact.normal);
+    if (!rest.has(contact) && rebound > free.min_impact_speed) contact.rebound = rebound;
+  }
+  progress.clock.lap(times_.finding);
+  resolution_.resolve(step, {state, 0, 0}, std::move(contacts));
+  progress.clock.lap(times_.resolution);
+}
+
+/// Stages 5 and 6: applies the impulses at the contacts at the end of the motion, and separates the overlaps
+/// that remain.
+PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) {
+  const FreeMotion& free = motion.free;
+  std::vector<Contact>& contacts = motion.contacts;
+  State& state = progress.step.state;
+  progress.now = free.end();
+  StepContext step(dynamics_, state, progress.step.work, progress.step.counters, progress.now, free.h);
+  const StepResponses responses(progress.method, dynamics_.model(), step.work);
+  meshes_.find(state, progress.now, contacts);
+  time_impacts(finder_, free, state, contacts);
+  // Implicit steps of parts that deform locally have one velocity, which moves all of their nodes.
+  if (progress.method.local_is_implicit())
+    for (Contact& contact : contacts)
+      if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = free.force_time();
+  has_unlocated_ = has_unlocated_ || !contacts.empty();
+  progress.clock.lap(times_.finding);
+  resolution_.resolve(step, {free.before, free.force_time(), free.h}, contacts);
+  resolution_.resolve_chain(step, std::move(contacts), free.min_impact_speed);
+  sleeping_.wake_moved(state);
+  progress.clock.lap(times_.resolution);
+}
+
+}  // namespace pliant

@@ -1,0 +1,28 @@
+// The work of external forces and torques during displacements by contact impulses and by the separation of
+// overlapping bodies.
+#pragma once
+
+#include <vector>
+
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+class LoadWork {
+ public:
+  /// from: the state before the displacement.
+  LoadWork(const Dynamics& dynamics, const State& from);
+  /// Returns the work of the loads at time t (s) for the displacement to a state, J.
+  double work_until(double t, const State& to);
+
+ private:
+  void evaluate_frames(const State& state);
+
+  const Dynamics& dynamics_;
+  std::vector<int> loaded_;  // moving parts with forces or torques
+  Workspace<double> work_;
+  std::vector<Vec3<double>> x_;  // point of each force before the displacement
+  std::vector<Mat3<double>> R_;  // rotation of each loaded part before it
+};
+
+}  // namespace pliant

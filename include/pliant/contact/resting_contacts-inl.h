@@ -1,0 +1,168 @@
+// Bodies of resting_contacts.h: which contacts rest, and how long a motion without impulses between them may
+// be.
+#pragma once
+
+#include <pliant/contact/resting_contacts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include <pliant/contact/contact_pairs.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace resting_contacts {
+
+/// Largest gap of a resting contact, in sizes of the smaller part.
+inline constexpr double kRestingGap = 1e-6;
+/// The residual of the contact solution may add at most this multiple of the gap.
+inline constexpr double kMaxWidening = 1000;
+/// If at most this share of the parts has moved, only these parts are searched again.
+inline constexpr double kFewMovedParts = 0.7;
+/// A contact at the end of a motion is one of its start if their points are nearer than this, in sizes.
+inline constexpr double kSamePoint = 0.2;
+/// A motion that was too long is repeated with at most this share of the allowed displacement.
+inline constexpr double kRepeatShare = 0.95;
+
+}  // namespace resting_contacts
+
+PLIANT_INLINE RestingContacts::RestingContacts(const Model& model, const ContactFinder& finder)
+    : model_(model), finder_(finder) {
+  for (const PartModel& m : model.parts())
+    gap_ = std::max(gap_, resting_contacts::kRestingGap * m.part->size());
+}
+
+PLIANT_INLINE void RestingContacts::widen_gap(double extra) {
+  if (extra != extra_gap_) last_q_.resize(0);
+  extra_gap_ = extra;
+}
+
+PLIANT_INLINE double RestingContacts::widened(double tight) const {
+  return tight + std::min(extra_gap_, resting_contacts::kMaxWidening * tight);
+}
+
+PLIANT_INLINE double RestingContacts::tight_gap(const Contact& contact) const {
+  return resting_contacts::kRestingGap * smaller_size(model_, contact);
+}
+
+/// Marks the parts that have moved since the last search; returns whether these are few.
+PLIANT_INLINE bool RestingContacts::few_moved(const State& state) {
+  moved_.assign(model_.parts().size(), false);
+  int count = 0;
+  for (int i = 0; i < static_cast<int>(model_.parts().size()); ++i) {
+    const PartModel& m = model_.parts()[at(i)];
+    if (m.q0 < 0 || state.q.segment(m.q0, m.n_q()) == last_q_.segment(m.q0, m.n_q())) continue;
+    moved_[at(i)] = true;
+    ++count;
+  }
+  return count <= resting_contacts::kFewMovedParts * static_cast<double>(model_.parts().size());
+}
+
+PLIANT_INLINE const std::vector<Contact>& RestingContacts::near(const State& state, double t) {
+  const bool same_time =
+      last_q_.size() == state.q.size() && last_t_ == t && same_sleepers(last_at_rest_, state.at_rest);
+  if (same_time && last_q_ == state.q) return last_;
+  if (same_time && few_moved(state)) {
+    const std::vector<Contact> found = finder_.find(state, t, gap(), &moved_);
+    last_.erase(std::remove_if(last_.begin(), last_.end(),
+                               [&](const Contact& c) {
+                                 return moved_[at(c.a.part)] || (c.b.part >= 0 && moved_[at(c.b.part)]);
+                               }),
+                last_.end());
+    const std::vector<Contact> unmoved = std::move(last_);
+    last_.clear();
+    std::merge(unmoved.begin(), unmoved.end(), found.begin(), found.end(), std::back_inserter(last_),
+               ContactFinder::precedes);
+  } else {
+    last_ = finder_.find(state, t, gap());
+  }
+  last_q_ = state.q;
+  last_at_rest_ = state.at_rest;
+  last_t_ = t;
+  return last_;
+}
+
+/// Returns whether a contact with this gap (m) and this normal velocity (m/s) rests.
+PLIANT_INLINE bool RestingContacts::is_resting(const Contact& contact, double gap, double velocity,
+                                               double max_speed) const {
+  const double max_gap = this->gap(contact);
+  return gap < -max_gap || (gap <= max_gap && std::abs(velocity) <= max_speed);
+}
+
+PLIANT_INLINE std::vector<Contact> RestingContacts::at_rest(const State& state, double t, double max_speed) {
+  std::vector<Contact> resting = near(state, t);
+  resting.erase(std::remove_if(resting.begin(), resting.end(),
+                               [&](const Contact& c) {
+                                 return !is_resting(c, c.gap, finder_.velocity(state, c).dot(c.normal),
+                                                    max_speed);
+                               }),
+                resting.end());
+  return resting;
+}
+
+/// Returns whether a contact at the end of a motion rested at its start, from the motion of its sides: two
+/// faces in contact may touch at new points.
+PLIANT_INLINE bool RestingContacts::was_resting(const Contact& contact, const FreeMotion& motion,
+                                                const State& state) const {
+  const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),
+               u = finder_.velocity(state, contact).dot(contact.normal),
+               opening = motion.h * ((1 - motion.reach) * u_start + motion.reach * u);
+  return is_resting(contact, contact.gap - opening, u_start, motion.max_resting_speed);
+}
+
+PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                              double gravity) const {
+  double longest = motion.h;
+  for (const Contact& contact : resting)
+    longest = std::min(longest, resting_contacts::kRepeatShare *
+                                    std::sqrt(finder_.thin(contact) / (motion.reach * gravity)));
+  return longest;
+}
+
+PLIANT_INLINE double RestingContacts::longest(const FreeMotion& motion, const std::vector<Contact>& resting,
+                                              const State& state) const {
+  double longest = motion.h;
+  for (const Contact& contact : resting) {
+    const Vec3<double> displacement =
+        motion.h * ((1 - motion.reach) * finder_.velocity(motion.before, contact) +
+                    motion.reach * finder_.velocity(state, contact));
+    const double share = std::abs(displacement.dot(contact.normal)) / finder_.thin(contact);
+    if (share > 1) longest = std::min(longest, resting_contacts::kRepeatShare * motion.h / std::sqrt(share));
+  }
+  return longest;
+}
+
+PLIANT_INLINE std::vector<Contact> RestingContacts::contacts_after(const FreeMotion& motion,
+                                                                   const std::vector<Contact>& resting,
+                                                                   const State& state) const {
+  double max_gap = resting.empty() ? 0 : gap();
+  for (const Contact& contact : resting)
+    max_gap =
+        std::max(max_gap, gap() + motion.force_time() * finder_.velocity(state, contact).dot(contact.normal));
+  const Pairs at_start(resting);
+  auto rested = [&](const Contact& contact) {
+    if (!at_start.has(contact)) return false;
+    if (contact.gap > 0 && contact.gap <= gap(contact)) return true;
+    const double same_distance = resting_contacts::kSamePoint * smaller_size(model_, contact);
+    return (contact.gap <= 0 && at_start.has(contact,
+                                             [&](const Contact& other) {
+                                               return (contact.x - other.x).norm() <= same_distance;
+                                             })) ||
+           was_resting(contact, motion, state);
+  };
+  std::vector<Contact> contacts;
+  for (Contact& contact : finder_.find(state, motion.end(), max_gap)) {
+    if (rested(contact))
+      contact.since = motion.force_time();
+    else if (contact.gap > 0)
+      continue;
+    contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+}  // namespace pliant

@@ -1,0 +1,280 @@
+// Bodies of sleeping.h: times at rest, drives that wake sleeping parts, and the sets of parts that fall
+// asleep together.
+#pragma once
+
+#include <pliant/contact/sleeping.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+
+namespace pliant {
+
+namespace sleeping {
+
+/// The end of a step and the start of the next may differ by this share of the length plus this number of
+/// units in the last place. A change between both belongs to both steps.
+inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
+
+/// Returns whether a vector changes within h seconds after t.
+inline bool differs(const TimeVector& x, double t, double h) {
+  const Vec3<double> now = x.value(t);
+  return x.value(t + h) != now || x.value(t + 0.5 * h) != now;
+}
+
+/// Returns whether a point has prescribed motion: a point of the world, or of a part with prescribed motion.
+inline bool is_prescribed(const Point& point) {
+  return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
+}
+/// Returns whether a part, or a point, moves as prescribed within h seconds after t.
+inline bool moves(const Part& part, double t, double h) {
+  const PrescribedMotion* motion = part.motion();
+  if (motion == nullptr) return false;
+  const MovingFrame now = motion->at(t), half = motion->at(t + 0.5 * h), then = motion->at(t + h);
+  return now.c != then.c || now.R != then.R || now.c != half.c || now.R != half.R;
+}
+inline bool moves(const Point& point, double t, double h) {
+  return point.part == nullptr ? differs(point.world, t, h) : moves(*point.part, t, h);
+}
+
+/// Returns whether a torque changes in time, by its value or by the axes of a part with prescribed motion.
+inline bool is_prescribed(const Torque& torque) {
+  return !torque.torque.is_constant() || (torque.frame == Frame::body && torque.part->motion() != nullptr);
+}
+inline bool changes(const Torque& torque, double t, double h) {
+  return differs(torque.torque, t, h) || (torque.frame == Frame::body && moves(*torque.part, t, h));
+}
+
+}  // namespace sleeping
+
+PLIANT_INLINE Sleeping::Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes)
+    : dynamics_(dynamics),
+      model_(dynamics.model()),
+      resting_(resting),
+      meshes_(meshes),
+      settings_(model_.n_resting() > 0 ? &*model_.body().contact.sleep : nullptr) {
+  if (settings_ == nullptr) return;
+  if (!(settings_->speed > 0) || !std::isfinite(settings_->speed) || !(settings_->after > 0) ||
+      !std::isfinite(settings_->after)) {
+    std::ostringstream message;
+    message << "contact: bodies fall asleep below a speed of " << settings_->speed << " m/s after "
+            << settings_->after << " s; expected a finite speed and a finite time above 0";
+    throw std::invalid_argument(message.str());
+  }
+  for (std::size_t i = 0; i < model_.parts().size(); ++i)
+    if (model_.parts()[i].q0 >= 0) moving_.push_back(static_cast<int>(i));
+  find_drives();
+  find_switches();
+}
+
+/// Finds the prescribed motions, forces and rest values that change in time and act on parts.
+PLIANT_INLINE void Sleeping::find_drives() {
+  for (const int i : moving_) {
+    const PartModel& m = model_.parts()[at(i)];
+    if (m.actuated)
+      drives_.push_back({i, [&m](double t, double h) {
+                           const VecMax<double> now = m.rest_at(t);
+                           return m.rest_at(t + h) != now || m.rest_at(t + 0.5 * h) != now;
+                         }});
+  }
+  auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
+  for (const ForceModel& f : model_.forces()) {
+    if (!has(f.at.part)) continue;
+    if (f.force->custom)
+      drives_.push_back({f.at.part, [](double, double) { return true; }});
+    else if (!f.force->force.is_constant())
+      drives_.push_back(
+          {f.at.part, [&f](double t, double h) { return sleeping::differs(f.force->force, t, h); }});
+  }
+  for (const TorqueModel& torque : model_.torques())
+    for (const int end : {torque.part, torque.against})
+      if (has(end) && sleeping::is_prescribed(*torque.torque))
+        drives_.push_back(
+            {end, [&torque](double t, double h) { return sleeping::changes(*torque.torque, t, h); }});
+  for (const SpringModel& s : model_.springs())
+    for (const auto& [end, other] : {std::pair(s.a.part, &s.spring->b), std::pair(s.b.part, &s.spring->a)})
+      if (has(end) && sleeping::is_prescribed(*other))
+        drives_.push_back({end, [far = other](double t, double h) { return sleeping::moves(*far, t, h); }});
+  for (const int j : model_.driven_joints()) {
+    const JointModel& joint = model_.joints()[at(j)];
+    drives_.push_back({joint.sides.front().part, [&joint](double t, double h) {
+                         const std::vector<Point>& points = joint.joint->points();
+                         return std::any_of(points.begin(), points.end(),
+                                            [&](const Point& point) { return sleeping::moves(point, t, h); });
+                       }});
+  }
+  if (model_.body().changing_gravity)
+    drives_.push_back({-1, [this](double t, double h) {
+                         return sleeping::differs(*model_.body().changing_gravity, t, h);
+                       }});
+}
+
+/// Finds the joints, planes and obstacles that act for a limited time.
+PLIANT_INLINE void Sleeping::find_switches() {
+  for (const JointModel& joint : model_.joints())
+    if (joint.joint->on() > 0 || std::isfinite(joint.joint->off()))
+      drives_.push_back({joint.sides.front().part, [switched = joint.joint](double t, double h) {
+                           return switched->acts_at(t) != switched->acts_at(t + h);
+                         }});
+  auto add = [&](const auto& objects) {
+    for (const auto& object : objects)
+      if (object.on > 0 || std::isfinite(object.off))
+        drives_.push_back({-1, [&object](double t, double h) {
+                             return object.acts_before(t) != object.acts_before(t + h);
+                           }});
+  };
+  add(model_.body().contact.planes);
+  add(model_.body().contact.obstacles);
+}
+
+PLIANT_INLINE void Sleeping::begin_motion(double t, double h, State& state) {
+  q_.resize(0);
+  auto any_sleeps = [&] {
+    return std::any_of(state.at_rest.begin(), state.at_rest.end(), [](double rested) { return rested < 0; });
+  };
+  if (settings_ == nullptr || !any_sleeps()) return;
+  for (const int i : moving_) {
+    const PartModel& m = model_.parts()[at(i)];
+    if (sleeps(state, i) && !state.v.segment(m.v0, m.n_v()).isZero(0)) wake(state, i);
+  }
+  const double tolerance = sleeping::kTimeTolerance * h + sleeping::kTimeUlps *
+                                                              std::numeric_limits<double>::epsilon() *
+                                                              std::max(std::abs(t), std::abs(t + h));
+  for (const Drive& drive : drives_) {
+    if (drive.part >= 0 && !sleeps(state, drive.part)) continue;
+    if (!drive.changes(t - tolerance, h + 2 * tolerance)) continue;
+    if (drive.part >= 0)
+      wake(state, drive.part);
+    else
+      for (const int i : moving_) wake(state, i);
+  }
+  if (any_sleeps()) q_ = state.q;
+}
+
+PLIANT_INLINE void Sleeping::restore(State& state) const {
+  if (!any()) return;
+  for (const int i : moving_) {
+    if (!sleeps(state, i)) continue;
+    const PartModel& m = model_.parts()[at(i)];
+    state.q.segment(m.q0, m.n_q()) = q_.segment(m.q0, m.n_q());
+    state.v.segment(m.v0, m.n_v()).setZero();
+  }
+}
+
+PLIANT_INLINE bool Sleeping::touches_sleeping(const std::vector<Contact>& contacts,
+                                              const State& state) const {
+  auto asleep = [&](const ContactSide& side) { return side.part >= 0 && sleeps(state, side.part); };
+  return any() && std::any_of(contacts.begin(), contacts.end(),
+                              [&](const Contact& contact) { return asleep(contact.a) || asleep(contact.b); });
+}
+
+PLIANT_INLINE void Sleeping::wake_touched(const std::vector<Contact>& contacts, State& state) const {
+  for (const Contact& contact : contacts)
+    for (const int part : {contact.a.part, contact.b.part})
+      if (part >= 0) wake(state, part);
+}
+
+PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
+  if (!any()) return;
+  for (const int i : moving_) {
+    const PartModel& m = model_.parts()[at(i)];
+    if (sleeps(state, i) && (state.q.segment(m.q0, m.n_q()) != q_.segment(m.q0, m.n_q()) ||
+                             !state.v.segment(m.v0, m.n_v()).isZero(0)))
+      wake(state, i);
+  }
+}
+
+/// Returns a bound of the speed of all points of a part, m/s. The angular velocity is multiplied by the size
+/// of the part, rates of parameters by the size or 1, whichever is larger.
+PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
+  const PartModel& m = model_.parts()[at(part)];
+  const auto v = state.v.segment(m.v0, m.n_v());
+  const double size = m.part->size();
+  double speed = v.head<3>().norm() + size * v.segment<3>(3).norm() +
+                 std::max(1.0, size) * v.segment(6, m.n_s).lpNorm<1>();
+  if (m.local != nullptr)
+    speed += m.local->displacements(state.v.data() + m.v0 + 6 + m.n_s).rowwise().norm().maxCoeff();
+  return speed;
+}
+
+/// Adds h seconds to the time at rest of each part that is at rest. Returns whether a part has been at rest
+/// for long enough to sleep.
+PLIANT_INLINE bool Sleeping::update_rest_times(double h, State& state) const {
+  bool any = false;
+  for (const int i : moving_) {
+    double& rested = state.at_rest[at(i)];
+    if (rested < 0) continue;
+    rested = speed(state, i) <= settings_->speed ? std::min(rested + h, settings_->after) : 0;
+    any = any || rested >= settings_->after;
+  }
+  return any;
+}
+
+PLIANT_INLINE bool Sleeping::is_kinematic(const ContactSide& side, int plane) const {
+  if (side.part >= 0) return model_.parts()[at(side.part)].motion != nullptr;
+  return plane >= 0 && !model_.body().contact.planes[at(plane)].point.is_constant();
+}
+
+/// Returns the sets of parts that touch each other or are connected by joints, springs or torques.
+PLIANT_INLINE DisjointSets Sleeping::connected_parts(const std::vector<Contact>& contacts) const {
+  auto has = [&](int part) { return part >= 0 && model_.parts()[at(part)].q0 >= 0; };
+  DisjointSets sets(model_.parts().size());
+  for (const Contact& contact : contacts)
+    if (has(contact.a.part) && has(contact.b.part)) sets.unite(contact.a.part, contact.b.part);
+  for (const Island& island : model_.islands())
+    for (const int i : island.parts) sets.unite(i, island.parts.front());
+  for (const SpringModel& s : model_.springs())
+    if (has(s.a.part) && has(s.b.part)) sets.unite(s.a.part, s.b.part);
+  for (const TorqueModel& torque : model_.torques())
+    if (has(torque.part) && has(torque.against)) sets.unite(torque.part, torque.against);
+  return sets;
+}
+
+PLIANT_INLINE void Sleeping::fall_asleep(const std::vector<Contact>& contacts, double t, double h,
+                                         State& state) {
+  if (settings_ == nullptr || !update_rest_times(h, state)) return;
+  std::vector<Contact> touching = contacts;
+  const std::vector<Contact>& near = resting_.near(state, t + h);
+  touching.insert(touching.end(), near.begin(), near.end());
+  meshes_.find(state, t + h, touching);
+  DisjointSets sets = connected_parts(touching);
+  std::vector<bool> awake(model_.parts().size());
+  auto keep_awake = [&](int part) {
+    if (part >= 0) awake[at(sets.leader(part))] = true;
+  };
+  // A part stays awake if a part or plane with prescribed motion touches it.
+  for (const Contact& contact : touching) {
+    if (is_kinematic(contact.b, contact.plane)) keep_awake(contact.a.part);
+    if (is_kinematic(contact.a, -1)) keep_awake(contact.b.part);
+  }
+  for (const Drive& drive : drives_) {
+    if (!drive.changes(t, h)) continue;
+    if (drive.part < 0) return;
+    keep_awake(drive.part);
+  }
+  for (const int i : moving_)
+    if (state.at_rest[at(i)] >= 0 && state.at_rest[at(i)] < settings_->after) keep_awake(i);
+  std::vector<int> falling;
+  for (const int i : moving_) {
+    const int leader = sets.leader(i);
+    if (sleeps(state, i) || awake[at(leader)]) continue;
+    state.at_rest[at(i)] = -1 - leader;
+    falling.push_back(i);
+  }
+  if (falling.empty()) return;
+  Workspace<double> scratch;
+  const double energy = dynamics_.energy(t + h, state.q, state.v, falling, scratch);
+  for (const int i : falling) {
+    const PartModel& m = model_.parts()[at(i)];
+    state.v.segment(m.v0, m.n_v()).setZero();
+  }
+  state.work[static_cast<int>(Work::contact)] +=
+      dynamics_.energy(t + h, state.q, state.v, falling, scratch) - energy;
+}
+
+}  // namespace pliant

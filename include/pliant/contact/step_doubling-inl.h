@@ -1,0 +1,230 @@
+// Step doubling: the error of a step with resting contacts, from two half steps, and the extrapolation of
+// both. Bodies of contact_stepping.h.
+#pragma once
+
+#include <pliant/contact/contact_stepping.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <pliant/body/advance.h>
+#include <pliant/contact/contact_pairs.h>
+#include <pliant/contact/impact_timing.h>
+#include <pliant/contact/longest_contact_step.h>
+#include <pliant/contact/touched_parts.h>
+#include <pliant/math/header_only.h>
+#include <pliant/math/index.h>
+#include <pliant/project/project.h>
+
+namespace pliant {
+
+namespace step_doubling {
+
+/// Bodies in contact that move by less than this in a step, in tolerances, are at rest: the step is exact.
+inline constexpr double kAtRestTolerance = 1e-2;
+
+/// The whole step and its halves resolve an impact, or a change of contact points, at different times. If one
+/// of them has resolved it and the other has not, the velocities differ by a jump, however short the step is.
+/// A difference is a jump if it exceeds this multiple of the speed that gravity gives a body in the step.
+/// Then the error is measured by the displacement that the jump causes in the step, if the step is no longer
+/// than longest_contact_step().
+inline constexpr double kJumpInGravity = 0.6;
+/// In steps up to this length, s, the error is always measured by the displacement.
+inline constexpr double kBriefStep = 2e-5;
+
+/// Returns whether the velocity of a part differs by more than max_speed, m/s. dv: differences.
+inline bool has_jump(const Model& model, const VecX<double>& dv, double max_speed) {
+  return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
+    return m.q0 >= 0 &&
+           std::max(dv.segment<3>(m.v0).norm(), m.part->size() * dv.segment<3>(m.v0 + 3).norm()) > max_speed;
+  });
+}
+
+/// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact; zero for other
+/// parts. before, now: contacts.
+inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
+                                       const std::vector<Contact>& before, std::vector<Contact> now,
+                                       double t) {
+  now.erase(std::remove_if(now.begin(), now.end(), [&](const Contact& c) { return c.gap > resting.gap(c); }),
+            now.end());
+  const Pairs touching(now);
+  VecX<double> gravity = VecX<double>::Zero(model.n_v());
+  for (const Contact& contact : before)
+    for (const ContactSide* side : {&contact.a, &contact.b}) {
+      if (side->part < 0 || touching.has(contact)) continue;
+      const PartModel& m = model.parts()[at(side->part)];
+      if (m.q0 >= 0) gravity.segment<3>(m.v0) = model.body().gravity_at(t);
+    }
+  return gravity;
+}
+
+/// Returns whether a body at a contact, or a joint of such a body, has prescribed motion. Such bodies may
+/// have moved during a step although they are at the same place at both ends.
+inline bool has_prescribed_motion(const Model& model, const std::vector<Contact>& contacts) {
+  auto moves = [&](const ContactSide& side) {
+    return side.part >= 0 && model.parts()[at(side.part)].motion != nullptr;
+  };
+  return std::any_of(contacts.begin(), contacts.end(),
+                     [&](const Contact& c) {
+                       return moves(c.a) || moves(c.b) ||
+                              (c.plane >= 0 && !model.body().contact.planes[at(c.plane)].point.is_constant());
+                     }) ||
+         are_driven(model, parts_touched(model, contacts));
+}
+
+/// Returns whether parts were at rest in a step: it changed them by less than kAtRestTolerance.
+inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts,
+                         const State& begun, const State& state) {
+  VecX<double> dq = VecX<double>::Zero(state.q.size()), dv = VecX<double>::Zero(state.v.size());
+  for (const int i : parts) {
+    const PartModel& m = model.parts()[at(i)];
+    dq.segment(m.q0, m.n_q()) = state.q.segment(m.q0, m.n_q()) - begun.q.segment(m.q0, m.n_q());
+    dv.segment(m.v0, m.n_v()) = state.v.segment(m.v0, m.n_v()) - begun.v.segment(m.v0, m.n_v());
+  }
+  return scale.norm(dq, dv, state.v) <= kAtRestTolerance;
+}
+
+}  // namespace step_doubling
+
+PLIANT_INLINE bool ContactStepping::may_double() const {
+  return few_parts_ && std::none_of(record_.contacts.begin(), record_.contacts.end(),
+                                    [](const Contact& c) { return c.a.at_nodes() || c.b.at_nodes(); });
+}
+
+PLIANT_INLINE StepError ContactStepping::step_by_doubling(Integrator& method, StepContext& step,
+                                                          const ErrorScale& scale, const State& begun,
+                                                          double length, long impacts) {
+  constexpr int order = 1;
+  const Model& model = dynamics_.model();
+  State& state = step.state;
+  std::vector<Contact> touching = resting_at_start_;
+  touching.insert(touching.end(), record_.contacts.begin(), record_.contacts.end());
+  if (!step_doubling::has_prescribed_motion(model, touching) &&
+      step_doubling::were_at_rest(model, scale, parts_touched(model, touching), begun, state))
+    return {0, order, length};
+  const Whole whole{state, length, resting_at_start_, record_.contacts.size(),
+                    step.counters.impacts > impacts};
+  step.counters.impacts = impacts;
+  undo_step();
+  begin_step();
+  state = begun;
+  const Halves halves = step_halves(method, step, whole, begun);
+  const double method_error = method.take_error();
+  if (!halves.finite || !(method_error <= 1))
+    return {std::numeric_limits<double>::infinity(), order, halves.length};
+  const bool has_impact = step.counters.impacts > impacts;
+  const bool agreed = agree(whole, halves, has_impact, state);
+  const double contact_error = difference(whole, halves, agreed, scale, begun.time(), state);
+  const double error = std::max(contact_error, method_error);
+  if (agreed && !whole.has_impact && error <= 1) {
+    StepContext at_end(dynamics_, state, step.work, step.counters, begun.time() + halves.length,
+                       halves.length);
+    extrapolate(at_end, whole.state, halves.first_contacts);
+  }
+  return {error, order, halves.length};
+}
+
+/// Repeats the step from `begun` as two halves, with the state of the step.
+PLIANT_INLINE ContactStepping::Halves ContactStepping::step_halves(Integrator& method, StepContext& step,
+                                                                   const Whole& whole, const State& begun) {
+  State& state = step.state;
+  const double start = begun.time(), half = 0.5 * whole.length;
+  auto advance_by = [&](double into, double h) {
+    set_step(state, start + into, h);
+    StepContext part(dynamics_, state, step.work, step.counters);
+    return this->step(method, part, true);
+  };
+  Halves halves;
+  halves.first = halves.length = advance_by(0, half);
+  halves.first_contacts = record_.contacts.size();
+  halves.gravity_velocities =
+      whole.length *
+      step_doubling::gravity_after_loss(dynamics_.model(), resting_, whole.resting, record_.contacts, start);
+  resting_at_start_.clear();
+  has_unlocated_ = false;
+  auto finite = [&] { return state.q.allFinite() && state.v.allFinite(); };
+  halves.finite = finite();
+  if (halves.finite) {
+    const double end = whole.has_impact && halves.first == half ? begun.h : whole.length;
+    halves.length = halves.first + advance_by(halves.first, end - halves.first);
+    halves.finite = finite();
+  }
+  state.start = begun.start;
+  state.step = begun.step;
+  state.h = begun.h;
+  return halves;
+}
+
+/// Returns whether the whole step and its halves have equal modes and numbers of contacts. has_impact:
+/// whether the halves ended at an impact.
+PLIANT_INLINE bool ContactStepping::agree(const Whole& whole, const Halves& halves, bool has_impact,
+                                          const State& state) const {
+  return halves.first == 0.5 * whole.length && has_impact == whole.has_impact &&
+         (whole.has_impact || halves.length == whole.length) && state.at_limit == whole.state.at_limit &&
+         state.joints == whole.state.joints && same_sleepers(state.at_rest, whole.state.at_rest) &&
+         record_.contacts.size() - halves.first_contacts == whole.contacts &&
+         (whole.has_impact || halves.first_contacts == whole.contacts);
+}
+
+/// Returns the difference between the whole step and its halves, in tolerances.
+PLIANT_INLINE double ContactStepping::difference(const Whole& whole, const Halves& halves, bool agreed,
+                                                 const ErrorScale& scale, double start,
+                                                 const State& state) const {
+  const Model& model = dynamics_.model();
+  const double length = whole.length;
+  const VecX<double> dv = state.v - whole.state.v, none = VecX<double>::Zero(state.q.size());
+  VecX<double> rate;
+  dynamics_.coordinate_rates(whole.state.q, whole.state.v, rate);
+  const VecX<double> dq = state.q - whole.state.q - (halves.length - length) * rate;
+  const double max_speed = step_doubling::kJumpInGravity * length * model.body().gravity_at(start).norm();
+  const bool jumped = !agreed && step_doubling::has_jump(model, dv, max_speed);
+  // Returns the displacement by a difference of velocities in the step.
+  auto displacement = [&](const VecX<double>& v) {
+    dynamics_.coordinate_rates(state.q, v, rate);
+    return scale.norm(length * rate);
+  };
+  const bool brief = length <= step_doubling::kBriefStep,
+             by_displacement =
+                 brief || (jumped && length <= longest_contact_step(ContactSettings{}, scale.tolerance()));
+  const double end_error =
+                   by_displacement ? std::max(scale.norm(dq), displacement(dv)) : scale.norm(dq, dv, state.v),
+               loss_error = brief ? displacement(halves.gravity_velocities)
+                                  : scale.norm(none, halves.gravity_velocities, state.v);
+  return std::max(end_error, loss_error);
+}
+
+/// Extrapolates the state at the end of the two halves by Richardson. whole: the state at the end of the
+/// whole step. second: number of the first contact of the second half in the record.
+PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& whole, std::size_t second) {
+  const Model& model = dynamics_.model();
+  State& state = step.state;
+  const double t = step.t;
+  const std::vector<int> parts = parts_touched(model, record_.contacts);
+  auto energy_of = [&](const State& at_end) {
+    return dynamics_.energy(t, at_end.q, at_end.v, parts, scratch_);
+  };
+  const double energy = 2 * energy_of(state) - energy_of(whole);
+  state.work += state.work - whole.work;
+  const double work_before = state.work.sum();
+  for (const int i : parts) {
+    const PartModel& m = model.parts()[at(i)];
+    state.q.segment(m.q0, m.n_q()) += state.q.segment(m.q0, m.n_q()) - whole.q.segment(m.q0, m.n_q());
+    state.v.segment(m.v0, m.n_v()) += state.v.segment(m.v0, m.n_v()) - whole.v.segment(m.v0, m.n_v());
+  }
+  normalise_rotations(model, state.q);
+  resolution_.reconcile(step, parts);
+  project_limits(step);
+  // Gaps are not linear in the extrapolated coordinates: contacts rest up to this residual.
+  for (std::size_t k = second; k < record_.contacts.size(); ++k) {
+    const Contact& contact = record_.contacts[k];
+    if (!(record_.impulses[k].dot(contact.normal) > 0)) continue;
+    const double opening = finder_.velocity(state, contact).dot(contact.normal),
+                 gap = finder_.least_gap(state, t, contact, smaller_size(model, contact));
+    state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / step.h});
+  }
+  // Energies are not linear in them either.
+  state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - work_before);
+}
+
+}  // namespace pliant

@@ -1,0 +1,18 @@
+// The fastest small oscillation of parts on joints, to which joint forces and gravity give a stiffness.
+#pragma once
+
+#include <pliant/body/dynamics.h>
+
+namespace pliant {
+
+/// Returns the largest angular frequency (rad/s) of small motions that the joints allow, about a state with
+/// all its forces; 0 if nothing oscillates, or if it is unknown. By Lanczos' method on directional
+/// derivatives of the accelerations, so slightly too small. work: the evaluation by Dynamics::accelerations
+/// at the state.
+double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work);
+
+/// Returns whether the fastest oscillation is unknown: with joints and parts that deform locally, whose
+/// accelerations have no derivatives here.
+bool sway_is_unknown(const Model& model);
+
+}  // namespace pliant
