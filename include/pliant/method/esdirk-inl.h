@@ -65,7 +65,7 @@ PLIANT_INLINE void Esdirk::step(StepContext& step) {
   q_rates_.col(0) = q_dot_;
   v_rates_.col(0) = work.v_dot;
   Vec<double, kWorks> power = esdirk::weight(0) * work.power;
-  solver_->begin(step, c, scale() != nullptr ? *scale() : *stage_scale_);
+  solver_->begin_step(step, c, scale() != nullptr ? *scale() : *stage_scale_);
   for (int stage = 1; stage < esdirk::kStages; ++stage) {
     r_q_ = state.q;
     r_v_ = state.v;

@@ -40,7 +40,7 @@ PLIANT_INLINE void ImplicitMidpoint::step(StepContext& step) {
   dynamics.coordinate_rates(state.q, v_, q_dot_);
   q_ = state.q + 0.5 * h * q_dot_;
   v_ += 0.5 * h * work.v_dot;
-  solver_->begin(step, 0.5 * h, *stage_scale_);
+  solver_->begin_step(step, 0.5 * h, *stage_scale_);
   solver_->solve(t + 0.5 * h, state.q, state.v, q_, v_);
   state.q = 2 * q_ - state.q;
   state.v = 2 * v_ - state.v;

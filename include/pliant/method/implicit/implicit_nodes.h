@@ -19,9 +19,8 @@
 #include <Eigen/LU>
 
 #include <pliant/math/sparse_factor.h>
-#include <pliant/part/local/nodal_deformation.h>
-
 #include <pliant/method/implicit/implicit_part.h>
+#include <pliant/part/local/nodal_deformation.h>
 
 namespace pliant {
 

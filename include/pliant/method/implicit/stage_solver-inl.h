@@ -114,7 +114,7 @@ PLIANT_INLINE StageSolver::StageSolver(const Model& model)
         static_cast<int>(stage_solver::kFreeIterations * static_cast<double>(cluster.velocities.size())));
 }
 
-PLIANT_INLINE void StageSolver::begin(StepContext& step, double c, const ErrorScale& scale) {
+PLIANT_INLINE void StageSolver::begin_step(StepContext& step, double c, const ErrorScale& scale) {
   step_ = &step;
   scale_ = &scale;
   c_ = c;

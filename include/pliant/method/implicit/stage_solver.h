@@ -22,7 +22,7 @@ class StageSolver {
 
   /// Prepares the stages of a step from the state of the context. The context and the scale must outlive the
   /// stages. c: gamma h of all stages, s. scale: measures the changes of the iteration.
-  void begin(StepContext& step, double c, const ErrorScale& scale);
+  void begin_step(StepContext& step, double c, const ErrorScale& scale);
   /// Solves the stage at time t (s) for q and v; their values before the call are the first guess. On return
   /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
   /// changes most, if the iteration does not converge.
