@@ -1,5 +1,5 @@
-// The evaluation of a part at given values of its parameters: the reference shape s, its derivatives J =
-// ds/dq_s and Jdot qs_dot (Eqs. (1)-(10)), normals, the inverse map, and the mass matrix M and the inertial
+// The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
+// J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the inverse map, and the mass matrix M and the inertial
 // forces g_q of Eq. (11). It is the second base class of Part (part.h). Bodies: part_evaluation-inl.h
 // (geometry), inertia-inl.h (M and g_q).
 #pragma once

@@ -1,5 +1,6 @@
-// Local deformation at the nodes of a mesh: q_d = d at the nodes, in the body frame of the part. The
-// reference conditions are those of mean axes at the current shape (include/pliant/part/local/README.md):
+// Local deformation at the nodes of a mesh, Eqs. (5) and (6): q_d = d at the nodes, in the body frame of the
+// part. The reference conditions are those of mean axes at the current shape
+// (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
 // Let F be all forces on the nodes, F_d those of them that act on d alone, and f_r the generalised forces on
 // (c, theta, q_s) besides those of the nodes. Then

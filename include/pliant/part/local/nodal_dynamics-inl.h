@@ -1,5 +1,10 @@
 // Bodies of NodalDeformation: the stages of the dynamics with reference conditions (nodal_deformation.h, and
-// include/pliant/part/local/README.md).
+// include/pliant/part/local/README.md):
+//   positions()        p = s + d, Eq. (2), in place_nodes()
+//   masses()           M of Eq. (11) at d = 0, and the reference conditions
+//   forces()           g_q of Eq. (11), gravity and drag; add_elasticity() adds -K q_d and its damping
+//   push()             f_q = L^T f of a force at a material point, Eq. (11)
+//   accelerations()    a_r and d_ddot
 #pragma once
 
 #include <algorithm>
