@@ -1,4 +1,4 @@
-// The bodies of PlacedPoint.
+// Function bodies of PlacedPoint.
 #pragma once
 
 #include <utility>

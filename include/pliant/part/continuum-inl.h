@@ -1,4 +1,4 @@
-// Bodies of ContinuumEnergy: energy, force and stiffness of the strain of the whole map.
+// Function bodies of ContinuumEnergy: energy, force and stiffness of the strain of the whole map.
 #pragma once
 
 #include <algorithm>

@@ -70,13 +70,13 @@ class LocalDeformation {
   virtual Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const = 0;
   /// Returns the displacements of the nodes of mesh(), m.
   virtual Nodes displacements(const double* q_d) const = 0;
-  /// Returns the displacements of some nodes of mesh(), one a column, m.
+  /// Returns the displacements of some nodes of mesh(), m: one column for each node.
   virtual Eigen::Matrix3Xd displacements(const double* q_d, const std::vector<int>& nodes) const = 0;
   /// Returns this object if it is a NodalDeformation, else nullptr.
   virtual const NodalDeformation* nodal() const { return nullptr; }
   /// Returns this object if it is a ModalDeformation, else nullptr.
   virtual const ModalDeformation* modal() const { return nullptr; }
-  /// Returns the oscillators that the local coordinates are if their elasticity is diagonal, else nullptr.
+  /// Returns the oscillators if the elasticity is diagonal in the local coordinates, else nullptr.
   virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, one function a stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
