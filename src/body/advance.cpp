@@ -1,2 +1,2 @@
-// The compiled bodies of advance-inl.h.
+// The compiled function bodies of advance-inl.h.
 #include <pliant/body/advance-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of coordinate_rates-inl.h.
+// The compiled function bodies of coordinate_rates-inl.h.
 #include <pliant/body/coordinate_rates-inl.h>

@@ -1,4 +1,5 @@
-// The compiled bodies of dynamics-inl.h, and the instance of the evaluation for directional derivatives.
+// The compiled function bodies of dynamics-inl.h, and the instances of the evaluation for values and for
+// directional derivatives.
 #include <pliant/body/dynamics-inl.h>
 
 namespace pliant {

@@ -1,2 +1,2 @@
-// The compiled bodies of jvp-inl.h.
+// The compiled function bodies of jvp-inl.h.
 #include <pliant/body/jvp-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of ledger-inl.h.
+// The compiled function bodies of ledger-inl.h.
 #include <pliant/body/ledger-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of material_frame-inl.h.
+// The compiled function bodies of material_frame-inl.h.
 #include <pliant/body/material_frame-inl.h>

@@ -16,7 +16,8 @@ namespace pliant {
 
 namespace {
 
-/// Number of multiplications below which the factorisation by blocks is always the faster one.
+/// Number of multiplications below which the factorisation by blocks is always faster than that of the
+/// augmented matrix.
 constexpr long kCheapBlocks = 10000;
 /// Number of pairs of joints on a part above which the blocks of W_c are not considered.
 constexpr double kMaxJointPairs = 1e7;

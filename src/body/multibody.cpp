@@ -1,2 +1,2 @@
-// The compiled bodies of multibody-inl.h.
+// The compiled function bodies of multibody-inl.h.
 #include <pliant/body/multibody-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of placed_point-inl.h.
+// The compiled function bodies of placed_point-inl.h.
 #include <pliant/body/placed_point-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of state-inl.h.
+// The compiled function bodies of state-inl.h.
 #include <pliant/body/state-inl.h>

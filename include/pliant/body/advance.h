@@ -31,7 +31,8 @@ VecMax<double> body_velocity(const PartWorkspace<double>& w, const Eigen::Ref<co
 VecMax<double> world_velocity(const PartWorkspace<double>& w, const Eigen::Ref<const VecX<double>>& v_r);
 
 /// Sets the entries of a part in v from its velocities x in a group (constraint/group.h). The velocities of
-/// nodes change by the response to the pushes that change the velocities of the points at joints.
+/// the nodes change by the response to the impulses, on v_r and at the points of joints, that give the part
+/// its velocities in x.
 void scatter_velocity(const PartModel& m, const PartWorkspace<double>& w,
                       const Eigen::Ref<const VecX<double>>& x, VecX<double>& v);
 /// q <- q (+) h x for one part, with its velocities x in a group.
@@ -41,7 +42,7 @@ void advance_with(const PartModel& m, const PartWorkspace<double>& w, const Eige
 /// Normalises every quaternion.
 void normalise_rotations(const Model& model, VecX<double>& q);
 
-/// Sets the rates of parameters that had no inertia at the last evaluation to zero.
+/// Sets velocities that had no inertia at the last evaluation, for instance rates of parameters, to zero.
 void stop_inertialess(const Model& model, const Workspace<double>& work, VecX<double>& v);
 
 }  // namespace pliant

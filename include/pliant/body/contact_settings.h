@@ -31,8 +31,8 @@ struct ContactPlane {
 
   bool acts_at(double t) const { return on <= t && t < off; }
   bool acts_before(double t) const { return present_before(t, on, off); }
-  /// Returns the largest height of the plane along its normal, m, in the h seconds after t, sampled at
-  /// kMoments.
+  /// Returns the largest height of the plane along its normal, m, in the h seconds after t, sampled at the
+  /// fractions kMoments of this interval (math/time_function.h).
   double highest(double t, double h) const {
     if (point.is_constant()) return normal.dot(point.value(t));
     double largest = -std::numeric_limits<double>::infinity();
@@ -60,9 +60,9 @@ struct ContactGroup {
   std::vector<std::string> members;
 };
 
-/// Contact settings of two named parts, planes, obstacles or groups. A group paired with itself sets its
-/// members against each other. If several pairs match, the one with the fewest groups applies, and among
-/// these the last.
+/// Contact settings of two named parts, planes, obstacles or groups. A group paired with itself gives the
+/// settings of contacts among its members. If several pairs match, the one with the fewest groups applies,
+/// and among these the last.
 struct ContactPair {
   std::string a, b;
   bool touch = true;                                ///< false: the two pass through each other
@@ -89,9 +89,9 @@ struct ContactSettings {
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
   std::optional<Sleep> sleep{};  ///< not given: no body sleeps
-  /// Longest step, s, above 0, in steps to a tolerance of 5e-4 or less whose error is not controlled because
-  /// of resting contacts: with many bodies, with bodies that deform locally, or with point forces
-  /// (contact/longest_contact_step.h).
+  /// Longest step, s, above 0, in a run to a tolerance of 5e-4 or less, while resting contacts prevent the
+  /// control of the error: with many bodies, with bodies that deform locally, or with point forces. Larger
+  /// tolerances allow longer steps (contact/longest_contact_step.h).
   double longest_step = 2e-3;
 };
 

@@ -47,22 +47,22 @@ class Dynamics {
   void set_joint_policy(const JointPolicy& policy) { joint_policy_ = policy; }
   const JointPolicy& joint_policy() const { return joint_policy_; }
 
-  // The arguments t, q, v and the modes stand side by side: the stages of a method evaluate at coordinates
-  // and velocities that belong to no State.
+  // The time t (s), q, v and the modes are separate arguments, because the stages of a method of integration
+  // evaluate at coordinates and velocities that belong to no State.
 
   /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work. modes: the step length,
   /// the modes of limits and joints, and the sleeping parts, whose accelerations and powers are zero. A
-  /// parameter at a limit with a rate of exactly 0 can only move away from the limit. If it moves there, the
-  /// method of integration has to stop it.
+  /// parameter at a limit with a rate of exactly 0 can only move into its range. A parameter at a limit with
+  /// another rate is free here: the method of integration has to stop it.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// Computes work.v_dot, work.power and the factors of W_c alone, for a stage of a method. Sleeping parts
-  /// are skipped, and their fields in work do not change. For rigid islands with closed joints, the fields of
-  /// their parts and joints do not change, or are zero.
+  /// Computes work.v_dot, work.power and the factors of W_c = C_q M^-1 C_q^T alone, for a stage of a method.
+  /// Sleeping parts are skipped, and their fields in work do not change. For rigid islands with closed
+  /// joints, the fields of their parts and joints do not change, or are zero.
   void rates(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
              Workspace<double>& work, RankRule rank = RankRule::decide) const;
-  /// Computes frames and points of the parts of an island, and C, C_dot and C_q of its joints, at (t, q, v);
-  /// no other field of work changes.
+  /// Computes frames and attachment points of the parts of an island, and C, C_dot, bias and C_q of its
+  /// joints, at (t, q, v); no other field of work changes.
   void evaluate_joints(double t, const VecX<double>& q, const VecX<double>& v,
                        const std::vector<JointMode>& modes, const Island& island,
                        Workspace<double>& work) const;
@@ -77,21 +77,21 @@ class Dynamics {
   /// Returns the action of a joint for other forces, or impulses, lambda of the rows of all joints; work as
   /// evaluate_joints() left it.
   Wrench joint_wrench(double t, int joint, const Workspace<double>& work, const VecX<double>& lambda) const;
-  /// Returns the directional derivative of the accelerations at a state. The set of parameters that their
-  /// limits push, and of strings that pull, is constant. Throws std::logic_error for a part that deforms
+  /// Returns the derivative of v_dot (n_v entries) at a state in a direction. The sets of parameters that
+  /// limits push and of strings that pull are kept constant. Throws std::logic_error for a part that deforms
   /// locally.
   VecX<double> jvp(const State& state, const StateDirection& along) const;
-  /// Returns this derivative from an evaluation that is at hand. work: as accelerations(t, q, v, ...) left
-  /// it; dual_work: scratch storage, kept from call to call; its contents are ignored.
+  /// Returns the same derivative, from an existing evaluation. work: as accelerations(t, q, v, ...) left it;
+  /// dual_work: scratch storage, kept from call to call; its contents are ignored.
   VecX<double> jvp(double t, const VecX<double>& q, const VecX<double>& v, const StateDirection& along,
                    const Workspace<double>& work, Workspace<Dual<1>>& dual_work) const;
   /// Computes q_dot from (q, v): theta_dot = 1/2 theta o (0, omega) for each quaternion; all other
   /// coordinates change with their velocities.
   void coordinate_rates(const VecX<double>& q, const VecX<double>& v, VecX<double>& q_dot) const;
-  /// Computes frames, points, mass matrices and their factors of some parts.
+  /// Computes frames, attachment points, mass matrices and factors of the mass matrices of some parts.
   void evaluate_masses(const VecX<double>& q, const VecX<double>& v, const std::vector<int>& parts,
                        Workspace<double>& work) const;
-  /// Computes frame, points and mass matrix of a part that has coordinates, without the factor.
+  /// Computes frame, attachment points and mass matrix of a part that has coordinates, without the factor.
   void evaluate_frame(const VecX<double>& q, const VecX<double>& v, int part, Workspace<double>& work) const;
   /// Returns the energy of some parts and of the springs at them, J. work: scratch storage; its contents are
   /// ignored.
@@ -111,11 +111,11 @@ class Dynamics {
   /// The stages of one evaluation, see dynamics-inl.h.
   template <class S>
   void evaluate(const Evaluation<S>& e) const;
-  /// Adds the energies of a part, or of a spring, that was evaluated to the ledger.
+  /// Adds the energies of an evaluated part, or of a spring, to the ledger.
   void add_energy(double t, const PartModel& part, const PartWorkspace<double>& work, Ledger& ledger) const;
   void add_energy(double t, const SpringModel& spring, const Workspace<double>& work, Ledger& ledger) const;
-  /// Sets the modes of the joints of an island, and computes frames and points of its parts that are fixed or
-  /// have a prescribed motion.
+  /// Sets the modes of the joints of an island, and computes frames and attachment points of its parts that
+  /// are fixed or have a prescribed motion.
   void place_anchors(double t, const VecX<double>& q, const VecX<double>& v,
                      const std::vector<JointMode>& modes, const Island& island,
                      Workspace<double>& work) const;

@@ -51,7 +51,7 @@ struct MaterialFrame {
     const T along = A.col(0).dot(e_2), inverse_1 = T(1.0) / length(e_1),
             inverse_2 = T(1.0) / A.col(1).dot(e_2);
     for (int k = 0; k < 3; ++k) {
-      Mat3<T> d;  // derivative by x_k+1
+      Mat3<T> d;  // derivative of dphi with respect to x_(k + 1)
       d.row(2) = A.col(1).transpose() * T(inverse_1 * K(k, 0));
       d.row(1) = A.col(2).transpose() * T(-inverse_1 * K(k, 0));
       d.row(0) = (A.col(2).transpose() * T(K(k, 1)) + d.row(1) * along) * inverse_2;

@@ -28,18 +28,19 @@ struct PartModel {
   bool actuated = false;           ///< whether a rest value of a dynamic parameter changes in time
   const LocalDeformation* local;   ///< nullptr for a part without local deformation
   const PrescribedMotion* motion;  ///< nullptr for a part without prescribed motion
-  /// Of a part that deforms locally: the points at which joints act, each once.
+  /// For a part that deforms locally: the points at which joints act, as weights among the nodes. Each point
+  /// appears once.
   std::vector<NodeWeights> shared;
   std::vector<Material<double>> ports;        ///< attachment points: material points at which forces act
   double drag;                                ///< nu, 1/s
   VecX<double> rest;                          ///< rest values of the dynamic parameters at time 0
   VecX<double> inertia_floor;                 ///< smallest inertia of each velocity, see SymmetricFactor
-  std::vector<Range> limits;                  ///< of each dynamic parameter
+  std::vector<Range> limits;                  ///< limits of each dynamic parameter
   std::vector<PointJet<double>> rigid_ports;  ///< constant jets of the ports of a rigid part
   Eigen::Matrix<double, 6, 6> rigid_inverse;  ///< constant M^-1 of a rigid part
   SymmetricFactor<double> rigid_factor;       ///< constant factor of M of a rigid part
-  std::vector<NodeWeights> node_weights;      ///< of each port of a part that deforms locally
-  std::vector<int> port_place;                ///< of each port: its number in `shared`; -1: no joint
+  std::vector<NodeWeights> node_weights;      ///< weights of each port, if the part deforms locally
+  std::vector<int> port_place;                ///< number of each port in `shared`; -1: no joint acts on it
   Eigen::Matrix3d R0;                         ///< orientation of a fixed part
   Part::Use use;                              ///< locks the part against changes
 
@@ -89,11 +90,11 @@ struct JointModel {
   int row;                  ///< first row in the rows of all joints
   std::vector<PortRef> at;  ///< attachment of each of its points
   std::vector<JointSide> sides;
-  int island, node;  ///< its island, and its node in the system of the island; node -1: a string
+  int island, node;  ///< its island; its number among the equations of the island, -1 for a string
   int island_row;    ///< first row in the rows of the island
   double length;     ///< size of the smaller of its parts, m
   bool driven;       ///< whether one of its points has a prescribed motion
-  /// Of a joint between two points of one part: start of C_q^T and M^-1 C_q^T of its first side alone; else
+  /// For a joint between two points of one part: start of C_q^T and M^-1 C_q^T of its first side alone; else
   /// -1.
   int first_offset = -1;
 };
@@ -105,7 +106,7 @@ struct Coupling {
   int row_offset, column_offset;  ///< starts of the sides in the flat arrays
   int rows, columns;
   int row_joint, column_joint;
-  int target;  ///< offset of the block
+  int target;  ///< offset of the block in the values of the factor
 
   int later_joint() const { return std::max(row_joint, column_joint); }
 };
@@ -117,7 +118,7 @@ struct Island {
   std::vector<int> joints;   ///< joints that are equations, C = 0
   std::vector<int> strings;  ///< one-sided joints, C >= 0
   bool loaded = false;       ///< whether springs, forces or torques act on any of its parts
-  std::vector<int> first;    ///< of each part: its first entry in the vector of the velocities of the island
+  std::vector<int> first;    ///< first entry of each part in the vector of the velocities of the island
   int n_v = 0;               ///< length of that vector
   int rows = 0;              ///< number of rows of `joints`
   int rigid = -1;            ///< its number among the rigid islands; -1: none
@@ -152,7 +153,7 @@ class Model {
   /// Numbers of the joints with an end whose motion is prescribed.
   const std::vector<int>& driven_joints() const { return driven_joints_; }
   /// Returns the first time, later than `after` and no later than `until` (s), at which the rate of a
-  /// prescribed end of a joint jumps while the joint acts; of all joints, or of one.
+  /// prescribed end of a joint jumps while the joint acts: over all joints, or for one joint.
   Kink next_kink(double after, double until) const;
   Kink next_kink(const JointModel& joint, double after, double until) const;
   int n_rows() const { return n_rows_; }          ///< number of rows of all joints
@@ -200,7 +201,7 @@ class Model {
   std::string coordinate_name(int i) const;
 
  private:
-  /// A joint, and the number of its side on a part.
+  /// For each part: the joints on it, each with the number of its side on this part.
   using SidesOfParts = std::vector<std::vector<std::pair<int, int>>>;
 
   void add_part(Part& part);
@@ -210,8 +211,9 @@ class Model {
   /// Adds a port for a point and returns its attachment. what: the load or joint of the point, for messages.
   PortRef attach(const Point& point, const std::string& what);
   void note_switch_times();
-  /// Finds the points of parts that deform locally at which joints act, and the places of C_q^T.
+  /// Fills in PartModel::shared and port_place of parts that deform locally.
   void share_joint_points();
+  /// Places C_q^T of all sides in the flat arrays of the workspace.
   void assign_side_offsets();
   void make_islands();
   /// Numbers the joints of all islands; returns the sides on each part.

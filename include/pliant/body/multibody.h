@@ -21,9 +21,9 @@
 
 namespace pliant {
 
-/// A linear spring and damper between two points with difference d. With rest length 0 its force is
-/// -k d - c d_dot. With a rest length > 0 its force is -(k (|d| - length) + c d|d|/dt) along d, and zero
-/// while |d| = 0.
+/// A linear spring and damper between two points; d leads from a to b. With rest length 0 the force on b is
+/// -k d - c d_dot. With a rest length > 0 it is -(k (|d| - length) + c d|d|/dt) along d, and zero while |d| =
+/// 0. The force on a is opposite.
 struct Spring {
   std::string name;
   Point a, b;
@@ -41,8 +41,8 @@ struct PointForce {
   TimeVector force;  ///< N
   Frame frame = Frame::world;
   /// A force by a function of the library user, which replaces `force`: (t, position and velocity in the
-  /// world) -> N in the world. Directional derivatives (jvp) treat it as constant. Within steps, numbers
-  /// below 2e-308 are zero.
+  /// world) -> N in the world. Directional derivatives (Dynamics::jvp) treat the force as constant. Within
+  /// steps, the processor replaces numbers below 2e-308 by zero.
   std::function<Vec3<double>(double t, const Vec3<double>& x, const Vec3<double>& x_dot)> custom;
 };
 
@@ -89,8 +89,8 @@ class MultiBody {
   /// Returns gravity at time t (s), m/s^2, world.
   Vec3<double> gravity_at(double t) const { return changing_gravity ? changing_gravity->value(t) : gravity; }
 
-  /// Adds a joint by its formula (body/joints/*.h) over the points of its first side, then of its second
-  /// side. Throws std::invalid_argument if the points of a side are not on one part.
+  /// Adds a joint by its formula (body/joints/*.h). points: the points of its first side, then those of its
+  /// second side. Throws std::invalid_argument if the points of a side are not on one part.
   template <class F>
   JointOf<F>& join(std::string name, F formula, std::vector<Point> points) {
     auto joint = std::make_unique<JointOf<F>>(std::move(name), std::move(points), std::move(formula));
@@ -104,8 +104,7 @@ class MultiBody {
     return join(std::move(name), Ball{}, {std::move(a), std::move(b)});
   }
   /// Adds a joint by the name of its type, for instance "hinge" (body/joints/joint_registry.h). Rest values
-  /// and placements of its parts must be set before. Throws std::invalid_argument for a setting that makes no
-  /// joint.
+  /// and placements of its parts must be set before. Throws std::invalid_argument for an invalid setting.
   Joint& join(const std::string& type, std::string name, const JointSetting& setting);
   /// Adds a hinge. axis: the direction of its pin in the frame of b's part (or in the world). The direction
   /// in a's part follows from the placement of the undeformed parts.

@@ -11,14 +11,14 @@ struct Point {
   const Part* part = nullptr;  ///< nullptr: a point of the world
   Material<double> material;   ///< the material point of the part
   TimeVector world;            ///< position of a point of the world, m
-  /// Radius of a patch of a part that deforms by nodes, m, at rest. The position of the point is the mean
-  /// over the nodes of the patch, and a force on it is spread over these nodes. 0: the element around the
-  /// point.
+  /// For a part that deforms by nodes: radius (m, at rest) of a patch of nodes around the material point. The
+  /// position of the point is then a weighted mean over these nodes, and a force on the point is spread over
+  /// them. 0: the nodes of the element around the material point.
   double patch = 0;
 };
 
-/// Returns the first kink of the prescribed motion of a point, later than `after` and no later than `until`
-/// (s): of a point of the world, or of a part with prescribed motion.
+/// Returns the first kink (math/time_function.h) of the prescribed motion of a point, later than `after` and
+/// no later than `until` (s). Points of the world and parts with prescribed motion can have kinks.
 inline Kink first_kink(const Point& point, double after, double until) {
   if (point.part == nullptr) return point.world.first_kink(after, until);
   const PrescribedMotion* motion = point.part->motion();

@@ -22,7 +22,7 @@ struct PartWorkspace {
   Mat3<S> R;                                ///< orientation of the frame, body to world
   VecX<S> q_s, q_s_dot;                     ///< dynamic global parameters and their rates, n_s each
   VecX<S> v_r;                              ///< (R^T c_dot, omega, q_s_dot), 6 + n_s
-  std::unique_ptr<LocalWorkspace> local;    ///< only of a part that deforms locally
+  std::unique_ptr<LocalWorkspace> local;    ///< nullptr unless the part deforms locally
   std::vector<PointJet<S>> ports;           ///< p, J and rates of each attachment point, body frame
   std::vector<Vec3<S>> port_x, port_x_dot;  ///< position (m) and velocity (m/s) of each, world
   // Stage 2, mass.
@@ -31,7 +31,7 @@ struct PartWorkspace {
   Inertia<S> inertia;
   // Stage 3, forces.
   VecX<S> f;                        ///< sum of all generalised forces on v_r, body frame, 6 + n_s
-  Vec<S, kWorks> power;             ///< rates of the works that the part does alone, W
+  Vec<S, kWorks> power;             ///< rates (W) of the works of this part: damping, drag, actuation
   std::vector<Vec3<S>> port_force;  ///< force of springs and point forces at each attachment point, N, world
   // Stage 5, accelerations. Stage 4 is in Workspace::joints.
   SymmetricFactor<S> factor;         ///< L D L^T of M
@@ -80,7 +80,7 @@ struct Workspace {
   std::vector<std::uint8_t> held;         ///< of each part: 1 if a velocity of it has no inertia
   ConstraintWorkspace<S> joints;          ///< stage 4
   GroupVectors<S, kMaxVelocities> alone;  ///< vectors of the part whose limits are being projected
-  std::vector<RigidWorkspace> rigid;      ///< of each rigid island
+  std::vector<RigidWorkspace> rigid;      ///< quantities of each rigid island
   VecX<S> v_dot;                          ///< stage 5: c_ddot (world), omega_dot, q_s_ddot, q_d_ddot; n_v
   Vec<S, kWorks> power;                   ///< stages 3 to 5: rates of the works of the ledger, W
 };

@@ -1,2 +1,2 @@
-// The compiled bodies of augmented-inl.h.
+// The compiled function bodies of augmented-inl.h.
 #include <pliant/body/constraint/augmented-inl.h>

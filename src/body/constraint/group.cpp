@@ -1,2 +1,2 @@
-// The compiled bodies of group-inl.h.
+// The compiled function bodies of group-inl.h.
 #include <pliant/body/constraint/group-inl.h>

@@ -1,2 +1,2 @@
-// The compiled bodies of joint_wrench-inl.h.
+// The compiled function bodies of joint_wrench-inl.h.
 #include <pliant/body/constraint/joint_wrench-inl.h>

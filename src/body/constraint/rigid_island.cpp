@@ -1,2 +1,2 @@
-// The compiled bodies of rigid_island-inl.h.
+// The compiled function bodies of rigid_island-inl.h.
 #include <pliant/body/constraint/rigid_island-inl.h>

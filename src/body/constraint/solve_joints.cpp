@@ -1,2 +1,2 @@
-// The compiled bodies of solve_joints-inl.h.
+// The compiled function bodies of solve_joints-inl.h.
 #include <pliant/body/constraint/solve_joints-inl.h>

@@ -92,7 +92,7 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
   const Eigen::Index n_v = island_->n_v, rows = island_->rows;
   VecX<double> b = VecX<double>::Zero(n_v + rows), z = b, left;
   b.tail(rows) = x;
-  if (!sound_ || !x.allFinite()) {  // the finite check of the step reports it
+  if (!sound_ || !x.allFinite()) {  // the finite check of the step reports NaN
     x.setConstant(std::numeric_limits<double>::quiet_NaN());
     return;
   }
@@ -114,7 +114,8 @@ PLIANT_INLINE void AugmentedFactor::solve(VecX<double>& x) const {
     if (stalled > 0 && now <= detail::kRoundingResidual * size) break;
     if (stalled == detail::kMaxStalledRefinements) {
       // The residual is on rows that depend on others but contradict them, for instance while joints are a
-      // little open within a step. Each refinement has added one increment to their forces: remove all of it.
+      // little open within a step. Each refinement has added about the same increment to the forces of these
+      // rows: remove all i + 1 increments.
       z -= (i + 1) * more;
       break;
     }

@@ -22,7 +22,7 @@ using ConstSide = Eigen::Map<const Eigen::Matrix<S, Velocities, Rows>>;
 
 /// Returns the motion of a port of a part. x_ddot is the acceleration for constant generalised velocities,
 ///   R b,   b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + J_dot q_s_dot,
-/// the term that makes gamma of Eq. (13); for a prescribed motion it is the whole acceleration.
+/// which gives gamma of Eq. (13). For a prescribed motion x_ddot is the whole acceleration.
 template <class S>
 PointMotion<S> port_motion(const PartModel& part, double t, const PartWorkspace<S>& w, int port) {
   PointMotion<S> motion{w.port_x[at(port)], w.port_x_dot[at(port)], Vec3<S>::Constant(S(0.0))};
@@ -253,7 +253,8 @@ void JointFactor<S>::factor(const Model& model, const Island& island,
     return;
   }
   blocks_.clear(island.pattern, work.rank);
-  // Joint by joint, while the joint and those that share parts with it are in the cache.
+  // Couplings are added joint by joint, while this joint and the joints that share parts with it are in the
+  // cache.
   auto coupling = island.couplings.begin();
   for (const int j : island.joints) {
     prepare(j);
@@ -373,7 +374,7 @@ Vec<S, kWorks> joint_power(const Model& model, const Workspace<S>& work) {
     if (!acts(joints.modes[j])) continue;
     const auto lambda = joints.lambda.segment(joint.row, joint.rows);
     const S closing = lambda.dot(joints.C_dot.segment(joint.row, joint.rows));
-    // For a joint that projection keeps closed, this is an error of the method and not a work.
+    // For a joint that projection keeps closed, lambda . C_dot is an error of the method and not a work.
     if (joints.modes[j] == JointMode::closing || joints.stabilise_closed)
       power[static_cast<int>(Work::baumgarte)] += closing;
     if (!joint.driven) continue;

@@ -21,8 +21,8 @@ struct PartWorkspace;
 template <class S>
 struct Workspace;
 
-/// A one-sided row of a group of parts: sign * x >= bound for velocity 6 + k of a part, or C_q x >= bound for
-/// a string.
+/// A one-sided row of a group of parts (group.h): sign * x >= bound for velocity 6 + k of a part, or C_q x >=
+/// bound for a string.
 struct OneSidedRow {
   int part;  ///< number of the part in the group; -1: k is the number of a string of the island
   int k;
@@ -37,18 +37,18 @@ struct OneSidedRow {
 template <class S>
 class JointFactor {
  public:
-  /// Factors W_c for the joints that act, or for the closed ones only. Calls prepare(j) for each joint in
-  /// turn, which computes its C_q and M^-1 C_q^T in `work` if they are not there yet.
+  /// Factors W_c for the joints that act, or for the closed ones only. Calls prepare(j) for each joint j in
+  /// turn; prepare(j) computes C_q and M^-1 C_q^T of the joint in `work` unless they are there already.
   template <class F>
   void factor(const Model& model, const Island& island, const std::vector<PartWorkspace<S>>& parts,
               const ConstraintWorkspace<S>& work, bool closed_only, F&& prepare);
   /// The blocks of W_c, for a caller that fills them in and factors them itself.
   BlockFactor<S>& blocks() { return blocks_; }
-  /// Sets the factor of the values, for a derivative with the augmented matrix.
+  /// For a derivative: keeps a reference to the augmented factor of the values, if there is one.
   void refer_to(const JointFactor<double>& values) { values_ = values.augmented_.get(); }
 
   /// x = W_c^-1 x, with zeros for dependent rows. A derivative with the augmented matrix treats W_c as
-  /// constant; it is exact after a second solution for the residual.
+  /// constant. Its result is exact only after a second solution for the residual; exact() is false then.
   void solve(VecX<S>& x) const;
   bool exact() const { return values_ == nullptr; }
   /// Returns which rows depend on others.
@@ -67,21 +67,21 @@ class JointFactor {
   const AugmentedFactor* values_ = nullptr;
 };
 
-/// Vectors of a group, see group.h. Those of islands stay in the workspace, so that a step allocates no
+/// Vectors of a group, see group.h. The vectors of islands stay in the workspace, so that a step allocates no
 /// memory.
 template <class S, int Max>
 struct GroupVectors {
   VecMax<S, Max> before, joined,
-      x;                       ///< accelerations or velocities: without joints, with them, with all rows
+      x;  ///< accelerations or velocities: without joints; with joints; with joints and one-sided rows
   VecX<S> rows, lambda;        ///< rows C_q x of the joints, and their forces
   VecX<S> correction, change;  ///< lambda and change of x of the last Group::correct()
-  VecMax<S, Max> start, gain;  ///< velocities at which the joints were evaluated, and the change since,
-  VecX<S> gained;              ///< and the change of their rows
+  VecMax<S, Max> start, gain;  ///< velocities at which the joints were evaluated; the change since then
+  VecX<S> gained;              ///< C_q gain, the change of C_dot of the joints
   VecX<S> q, v;                ///< coordinates and velocities of a state
 };
 
-/// The quantities of all joints at an evaluation. Rows of all joints are in the order of the joints. In the
-/// order of their computation:
+/// The quantities of all joints at an evaluation. Rows of all joints are in the order of the joints. The
+/// fields are in the order of their computation.
 template <class S>
 struct ConstraintWorkspace {
   std::vector<JointMode> modes;  ///< mode of each joint at this evaluation
@@ -91,9 +91,9 @@ struct ConstraintWorkspace {
   double max_speed = 0;              ///< largest speed at which a gap closes, sizes of the smaller part / s
   VecX<S> C, C_dot, bias;            ///< m, m/s, m/s^2; bias = -gamma, n_rows each
   VecX<S> Cq, Y;                     ///< C_q^T and Y = M^-1 C_q^T of each side, n_x x rows, on v_r
-  std::vector<JointFactor<S>> W_c;   ///< of each island: the joints that act
-  /// Of each island with closing joints: the closed joints only. Impulses keep the closed joints closed and
-  /// may open the others.
+  std::vector<JointFactor<S>> W_c;   ///< for each island: the factor of the joints that act
+  /// For each island with closing joints: the factor of the closed joints only. Impulses keep the closed
+  /// joints closed and may open the others.
   std::vector<JointFactor<S>> W_closed;
   VecX<S> lambda;                                ///< N, n_rows; the force on the parts is C_q^T lambda
   std::vector<std::vector<OneSidedRow>> pushed;  ///< of each island: the one-sided rows with a push > 0
@@ -121,9 +121,9 @@ void evaluate_and_factor_joints(const Model& model, const Island& island, double
                                 const std::vector<PartWorkspace<S>>& parts, ConstraintWorkspace<S>& work,
                                 const PlacePart& place = {});
 
-/// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between points of one part, returns
-/// the sum of the entries of its two sides alone: if the part does not change between the points, the sides
-/// cancel in W_c, and the true entry is rounding relative to this sum.
+/// Returns the diagonal entry of W_c of row `row` of joint j. For a joint between two points of one part,
+/// returns the sum of the entries that each side alone would have. If the motion of the part cannot move one
+/// point relative to the other, the sides cancel in W_c, and the true entry is rounding relative to this sum.
 template <class S>
 double diagonal_of_ends(const Model& model, const ConstraintWorkspace<S>& work, int j, int row);
 

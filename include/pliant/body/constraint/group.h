@@ -37,12 +37,12 @@ class Group {
   int size() const { return size_; }
   int parts() const { return island_ == nullptr ? 1 : static_cast<int>(island_->parts.size()); }
   int part(int i) const { return island_ == nullptr ? alone_ : island_->parts[at(i)]; }
-  /// First entry of its part i in x.
+  /// First entry of part i of the group in x.
   int first(int i) const { return island_ == nullptr ? 0 : island_->first[at(i)]; }
   const PartModel& model(int i) const { return model_->parts()[at(part(i))]; }
   const PartWorkspace<S>& workspace(int i) const { return work_->parts[at(part(i))]; }
   const Island* island() const { return island_; }
-  /// Number of its island.
+  /// Number of the island of the group.
   std::size_t number() const { return static_cast<std::size_t>(island_ - model_->islands().data()); }
 
   /// Sets x from velocities_of(i), the velocities of each part i in the group.

@@ -1,5 +1,5 @@
-// One-sided rows of a group and the pushes that satisfy them: the least change of x in the mass metric by
-// pushes lambda >= 0, each zero unless its row is at its bound, while the joints of the group act.
+// One-sided rows of a group and the pushes that satisfy them: the least change of x in the mass metric. Each
+// push lambda is >= 0, and zero unless its row is at its bound. The joints of the group act meanwhile.
 #pragma once
 
 #include <array>

@@ -69,8 +69,9 @@ class RigidIsland {
   void accelerate(const Model& model, const VecX<double>& q, const VecX<double>& v,
                   const Vec3<double>& gravity, Workspace<double>& work, RigidWorkspace& now) const;
 
-  /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and
-  /// |C_dot| <= per_length * rate * length + per_size * |v|, with the length of the joint.
+  /// The gap that a closed joint may have: |C| <= per_length * length + per_size * |c|, and |C_dot| <=
+  /// per_length * rate * length + per_size * |v|. length: JointModel::length; |c|, |v|: the largest entries
+  /// of c and of the velocities of the parts of the joint.
   struct Rounding {
     double per_length, per_size, rate;
   };
@@ -80,9 +81,9 @@ class RigidIsland {
   bool close(const Island& island, const Rounding& allowed, BlockFactor<double>& W_c, RigidWorkspace& now,
              VecX<double>& q, VecX<double>& v) const;
 
-  /// Adds impulses to v, at the configuration of the last evaluation and with its factor, that close the
-  /// joints at the end of a step of length h (s). q_end() returns the coordinates at the end for the present
-  /// v. Returns false, with v unchanged, if the iteration converges slowly.
+  /// Adds impulses to v that close the joints at the end of a step of length h (s). The impulses act at the
+  /// configuration of the last evaluation and are found with its factor. q_end() returns the coordinates at
+  /// the end for the present v. Returns false, with v unchanged, if the iteration converges slowly.
   bool close_ahead(const Rounding& allowed, double h, const BlockFactor<double>& W_c, RigidWorkspace& now,
                    VecX<double>& v, const std::function<const VecX<double>&()>& q_end) const;
 

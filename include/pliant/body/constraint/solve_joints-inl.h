@@ -21,7 +21,7 @@ namespace detail {
 /// accelerate their parts without bound. The accelerations are limited to this multiple of those that the
 /// gaps ask for.
 inline constexpr double kMaxClosingRatio = 30;
-/// Softness of closing strings beyond that limit; they share the load.
+/// Softness of the rows of closing strings beyond that limit: the strings then share the load.
 inline constexpr double kClosingSoftness = 1e-3;
 
 /// The joints of an island and the accelerations x of its parts. At first x are the accelerations without
@@ -103,7 +103,8 @@ class IslandForces {
     }
   }
 
-  /// Adds the forces of the closing joints, scaled down if they accelerate a part beyond kMaxClosingRatio.
+  /// Adds the forces of the closing joints, scaled down if they accelerate a part by more than
+  /// kMaxClosingRatio times the largest request.
   template <class Closing>
   void add_closing(Closing&& closing) {
     const VecX<S> before = kept_.x, lambda = kept_.lambda;
@@ -154,8 +155,9 @@ class IslandForces {
   Vectors& kept_;
 };
 
-/// Softens the closing strings if one of them pushes more than kMaxClosingRatio times its violation at x,
-/// without pushes. Returns whether it does.
+/// Softens the rows of closing strings if the push on one of them changes its row by more than
+/// kMaxClosingRatio times the largest violation at x, the accelerations without pushes. Returns whether it
+/// softened them.
 inline bool soften_closing(const Island& island, const ConstraintWorkspace<double>& joints,
                            const Group<double, Eigen::Dynamic>& group, const VecX<double>& x,
                            OneSidedRows<Eigen::Dynamic>& rows) {
@@ -183,7 +185,8 @@ inline void add_strings(const Model& model, const Island& island, const Constrai
   }
 }
 
-/// Solves the small dense system of the pushes on the rows `pushed`, as blocks of one row.
+/// Returns the pushes lambda on the rows `pushed`, from their small dense system, which is factored as blocks
+/// of one row.
 inline VecX<Dual<1>> solve_pushes(const Model& model, const Island& island,
                                   const IslandForces<Dual<1>>& forces,
                                   const ConstraintWorkspace<Dual<1>>& joints,

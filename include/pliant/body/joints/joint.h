@@ -38,7 +38,7 @@ struct JointRows {
   VecMax<S, kMaxJointRows> C;      ///< m
   VecMax<S, kMaxJointRows> C_dot;  ///< m/s
   VecMax<S, kMaxJointRows> bias;   ///< m/s^2
-  /// dC/dx, rows x 3 points.
+  /// dC/dx, rows x (3 times the number of points).
   Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxJointRows, 3 * kMaxJointPoints> C_x;
 };
 
@@ -92,7 +92,7 @@ struct IsLinear : std::false_type {};
 template <class F>
 struct IsLinear<F, std::void_t<decltype(F::linear)>> : std::bool_constant<F::linear> {};
 
-/// A formula of points with axes declares
+/// A formula on points with axes (Framed) declares
 ///   static constexpr bool framed = true;
 /// It has MaterialFrames `from` and `to`. A side with axes has four points; a side with one point has no
 /// axes. Its formula is
@@ -112,8 +112,8 @@ template <class F>
 struct HasFault<F, std::void_t<decltype(std::declval<const F&>().fault())>> : std::true_type {};
 
 /// The joint of a formula F. F declares as static constants: `name`; `formula`, a text; `rows`, the number of
-/// rows; `first` and `second`, the numbers of points of its sides (second = 0: the world itself); and
-/// `one_sided`. Its formula is
+/// rows; `first` and `second`, the numbers of points of its sides (second = 0 if the world side needs no
+/// point); and `one_sided`. Its formula is
 /// @code
 ///   template <class T>
 ///   Vec<T, rows> C(const std::array<Vec3<T>, first + second>& x, const T& t) const;
@@ -229,8 +229,9 @@ class JointOf final : public Joint {
       return C_x;
     }
   }
-  /// Returns dC/dx by the chain rule: dC by points and rotations of the axes, and these by the points of the
-  /// frames.
+  /// Returns dC/dx by the chain rule: the derivatives of C with respect to the points x_0 and the rotations
+  /// of the axes, times the derivatives of the rotations with respect to the points of the frames
+  /// (MaterialFrame::turn).
   template <class S>
   Eigen::Matrix<S, kRows, 3 * kPoints> framed_slope(const Points<S>& x) const {
     using D = Dual<12, S>;

@@ -14,7 +14,7 @@ struct JointInfo {
   const char* name;
   const char* formula;
   int rows;
-  JointKeys keys;  ///< members of JointSetting that it uses
+  JointKeys keys;  ///< members of JointSetting that the joint uses
   /// Makes a joint. Parts of the setting must be prepared. Throws std::invalid_argument for an invalid
   /// setting.
   std::unique_ptr<Joint> (*make)(std::string name, const JointSetting& setting);

@@ -16,7 +16,7 @@
 
 namespace pliant::detail {
 
-// Before the stages: sizes, and who is evaluated where.
+// Before the stages: sizes, and which parts and islands each stage evaluates.
 
 /// Marks the rigid islands that this evaluation uses: awake ones whose joints are all closed and projected,
 /// if only rates are wanted.
@@ -35,8 +35,8 @@ void choose_rigid_islands(const Evaluation<S>& e) {
 }
 
 /// Lists the parts that are evaluated before any joint: parts without joints, parts of islands that are not
-/// evaluated with their joints, and parts with loads. Sleeping parts are left out, except those with loads,
-/// whose positions the loads need.
+/// evaluated with their joints, and parts with loads. Sleeping parts are left out, unless loads act on them
+/// or on their island: the loads need their positions.
 template <class S>
 void list_parts_before_joints(const Evaluation<S>& e) {
   const Model& model = e.model();
@@ -74,8 +74,8 @@ void start_evaluation(const Evaluation<S>& e) {
 
 // Stages 1 to 3 of the parts.
 
-/// Stage 1 of a part that is evaluated with its rigid island: positions for its loads, and once the constant
-/// M.
+/// Stage 1 of a part that is evaluated with its rigid island: positions for its loads and, at the first
+/// evaluation, the constant M.
 inline void prepare_rigid_part(const Evaluation<double>& e, int i) {
   const PartModel& m = e.part(i);
   PartWorkspace<double>& w = e.part_work(i);
@@ -208,7 +208,7 @@ inline std::vector<OneSidedRow> limits_at_rest(const Evaluation<double>& e, cons
 }
 
 /// Stage 4 of an island: C, C_dot, bias and C_q, then M^-1 C_q^T and W_c, then lambda and the accelerations
-/// of its parts. place: evaluates a part that was left for its joints.
+/// of its parts. place(i): evaluates part i, if the parts are evaluated together with their joints.
 template <class S>
 void evaluate_island(const Evaluation<S>& e, const Island& island, const PlacePart& place) {
   if (e.uses_rigid(island) || e.skips(island)) return;

@@ -34,7 +34,7 @@ class LoadStage {
     const Vec3<Taylor2<double>> x = point.world.at(e_.t);
     return {Vec3<S>(S(x[0].v), S(x[1].v), S(x[2].v)), Vec3<S>(S(x[0].d), S(x[1].d), S(x[2].d))};
   }
-  /// Adds a force to a port; none to the world.
+  /// Adds a force to a port. A force on the world has no effect.
   void push(const PortRef& ref, const Vec3<S>& force, double sign) {
     if (ref.part < 0) return;
     e_.part_work(ref.part).port_force[static_cast<std::size_t>(ref.port)] += force * S(sign);

@@ -302,7 +302,8 @@ inline void apply_limits(const Model& model, int part, const State& modes, Works
   rows.for_each_pushed([&](const OneSidedRow& row, double) { w.pressed.push_back(row.k); });
 }
 
-/// The limits of a derivative: parameters that their limit pushes have no acceleration.
+/// For a derivative: adds the pushes that keep the acceleration of every pushed parameter at zero. pressed:
+/// the numbers of these parameters.
 template <class S>
 void keep_pushed_limits(const Model& model, int part, const std::vector<int>& pressed, Workspace<S>& work) {
   if (pressed.empty()) return;
