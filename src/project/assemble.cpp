@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/project/assemble-inl.h>.
+// The compiled function bodies of assemble-inl.h.
 #include <pliant/project/assemble-inl.h>

@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/project/follow_paths-inl.h>.
+// The compiled function bodies of follow_paths-inl.h.
 #include <pliant/project/follow_paths-inl.h>

@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/project/joint_switching-inl.h>.
+// The compiled function bodies of joint_switching-inl.h.
 #include <pliant/project/joint_switching-inl.h>

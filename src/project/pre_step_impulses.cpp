@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/project/pre_step_impulses-inl.h>.
+// The compiled function bodies of pre_step_impulses-inl.h.
 #include <pliant/project/pre_step_impulses-inl.h>

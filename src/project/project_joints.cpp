@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/project/project_joints-inl.h>.
+// The compiled function bodies of project_joints-inl.h.
 #include <pliant/project/project_joints-inl.h>

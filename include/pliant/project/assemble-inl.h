@@ -1,4 +1,4 @@
-// Bodies of assemble.h: a sequential quadratic method with a line search on a merit function.
+// Function bodies of assemble.h: a sequential quadratic method with a line search on a merit function.
 #pragma once
 
 #include <pliant/project/assemble.h>

@@ -1,5 +1,5 @@
-// Assembly before time 0: joins parts that are far apart, rotated and deformed. The flow has no inertia. Each
-// step minimises, linearised,
+// Assembly before time 0: joins parts that are far apart, rotated and deformed. Inertial forces play no part.
+// Each step minimises the linearised problem
 //   1/2 (q_s - rest)^T K_s (q_s - rest) + eps/2 |delta|_M^2   subject to   C = 0, Eq. (12).
 // The cost eps of rigid motion is small, so that rigid motion comes first, and the parameters change only by
 // as much as their stiffness allows. Rotation costs more while gaps are wide.
@@ -16,8 +16,8 @@ struct AssemblyReport {
   double gap = 0;         ///< largest gap after, m
 };
 
-/// Assembles the islands in which an acting joint is open. Other islands do not change by a bit. Throws
-/// UnsatisfiableModel with the name of the joint that cannot close.
+/// Assembles the islands in which an acting joint is open. The coordinates of other islands keep all their
+/// bits. Throws UnsatisfiableModel with the name of the joint that cannot close.
 AssemblyReport assemble(const Dynamics& dynamics, State& state);
 
 }  // namespace pliant

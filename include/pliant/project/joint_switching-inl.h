@@ -1,4 +1,5 @@
-// Bodies of joint_switching.h: the impulses when joints begin to act and at kinks of prescribed paths.
+// Function bodies of joint_switching.h: the impulses when joints begin to act and at kinks of prescribed
+// paths.
 #pragma once
 
 #include <pliant/project/joint_switching.h>
@@ -19,11 +20,11 @@ namespace projection {
 /// Distance of just_before() and just_after() from a kink, in units in the last place.
 inline constexpr double kKinkMargin = 2;
 
-/// An impulse below this share of the momentum of the lightest part is rounding.
+/// An impulse below this share of impulse_scale() is rounding.
 inline constexpr double kImpulseRounding = 1e-9;
 
-/// Returns a scale of the impulses of a joint, N s: the mass of its lightest part, times the largest speed of
-/// its parts or the closing speed of the joint.
+/// Returns a scale of the impulses of a joint, N s: the mass of its lightest part, times the larger of the
+/// largest speed of its parts and the closing speed, Stabilization::rate times the length of the joint.
 inline double impulse_scale(const Model& model, const JointModel& joint, const VecX<double>& v) {
   double mass = std::numeric_limits<double>::infinity(),
          speed = model.body().stabilization.rate * joint.length;

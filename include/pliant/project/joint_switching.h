@@ -8,8 +8,9 @@
 
 namespace pliant {
 
-/// The impulse of a joint on its first side (a part, or the world) when this or another joint of its island
-/// begins to act on parts whose velocities do not agree with it, or when the rate of a prescribed path jumps.
+/// The impulse of a joint on its first side (a part, or the world). It arises when this joint, or another
+/// joint of its island, begins to act on parts with other velocities than the joint allows, or when the rate
+/// of a prescribed path jumps.
 struct ImpulseOnEngage {
   double time;           ///< s
   int joint;             ///< number in the model
@@ -37,7 +38,7 @@ class JointSwitching {
   /// step.t: a time just after the kink. Throws UnsatisfiableModel if the position on the path of a closed
   /// joint jumps.
   void follow_paths(StepContext& step, double kink, double tolerance);
-  /// Returns the impulses in the order of time, without those that are rounding.
+  /// Returns the impulses in the order of time. Impulses that are only rounding are left out.
   const std::vector<ImpulseOnEngage>& impulses() const { return impulses_; }
   /// undo_step() removes the impulses since begin_step(), forget_after() those after a time, s.
   void begin_step() { count_at_begin_ = impulses_.size(); }

@@ -17,13 +17,13 @@ namespace pliant {
 
 namespace projection {
 
-/// The iteration ends if it leaves more than this share of the gaps: they are rounding then.
+/// The iteration ends if it leaves more than this share of the gaps: the remaining gaps are rounding.
 inline constexpr double kStalledAhead = 0.9;
 /// Largest rotation of a part in a step while a joint closes, rad.
 inline constexpr double kMaxRotationClosing = 0.2;
 
-/// Closes the gaps of an island whose last evaluation was that of a rigid island. If that fails, evaluates
-/// the island by the general solver and returns false.
+/// Closes the gaps of an island that was last evaluated as a rigid island. If that fails, evaluates the
+/// island by the general solver and returns false.
 inline bool close_ahead_on_rigid_island(StepContext& step, const Island& island, VecX<double>& q_end) {
   RigidWorkspace* rigid = rigid_workspace(island, step.work);
   if (rigid == nullptr) return false;
@@ -52,9 +52,8 @@ inline bool has_closing_joint(const Island& island, const Workspace<double>& wor
 }
 
 /// Limits the rotation of the parts of a closing island to kMaxRotationClosing in the step. The force of an
-/// open joint can make a part oscillate about it, which gains energy in each step. The velocities of the
-/// centres of mass do not change. before: velocities at the start of the step. Returns the work of the
-/// change, J.
+/// open joint can make a part oscillate about the joint with growing energy. The velocities of the centres of
+/// mass do not change. before: velocities at the start of the step. Returns the work of the change, J.
 template <int Max>
 double limit_rotations(const Group<double, Max>& group, const VecX<double>& before, double h,
                        VecMax<double, Max>& x, VecMax<double, Max>& capped) {
@@ -175,7 +174,8 @@ class PreStep {
   }
 
   /// Adds to x the change that removes the gaps of closed joints at the end of the step. Returns false if
-  /// they are closed there to rounding. largest: the largest gap of the last iteration, then of this one.
+  /// these gaps are rounding. largest: on entry the largest gap of the last iteration, on return that of this
+  /// iteration, relative to rounding.
   bool close_gaps(double& largest) {
     VecX<double>& error = vectors_.rows;
     error.setZero(island_->rows);
@@ -217,7 +217,7 @@ class PreStep {
   PreStepStorage& storage_;
   GroupVectors<double, Max>& vectors_;
   std::vector<std::pair<std::int8_t*, std::int8_t>>
-      stopped_limits_;  ///< limit modes of parameters that an impulse stopped, and the side
+      stopped_limits_;  ///< limit modes of parameters that an impulse stopped, and -1 or 1 for the limit
 };
 
 }  // namespace projection

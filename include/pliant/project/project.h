@@ -9,8 +9,8 @@
 
 namespace pliant {
 
-/// An open joint becomes closed if its gap is at most kClosedGap, in lengths of its smaller part, and the
-/// rate of the gap at most kClosedRate lengths times the rate of the stabilization.
+/// An open joint becomes closed if its gap is at most kClosedGap times the size of its smaller part, and the
+/// rate of the gap at most kClosedRate times this size times Stabilization::rate.
 inline constexpr double kClosedGap = 1e-3, kClosedRate = 3e-3;
 
 /// Engages the joints of an island that begin to act: joints with a small gap become closed, and impulses

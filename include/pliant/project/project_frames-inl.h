@@ -23,7 +23,7 @@ namespace projection {
 /// Changes of the frame below this share of the size of the part are rounding.
 inline constexpr double kFrameRounding = 1e-15;
 inline constexpr int kMaxFrameIterations = 8;
-/// K is regular if it differs from H by less than this share of the smallest diagonal entry.
+/// K is regular if it differs from H by less than this share of the smallest moment of inertia.
 inline constexpr double kSmallChange = 0.3;
 /// Largest condition number of K, with H0 scaled to a unit diagonal.
 inline constexpr double kMaxCondition = 1e8;
@@ -47,7 +47,7 @@ inline bool conditions_met(const PartModel& m, const State& state, const PartWor
     return share.head<3>().norm() <= kFrameRounding * size * inertia[0] &&
            (share.tail<3>().array().abs() <= kFrameRounding * inertia.tail<3>().array()).all();
   };
-  // K differs from H by at most sqrt(2) times this, and by the unmet conditions, which are small.
+  // K differs from H by at most sqrt(2) |sum m d s^T|, and by terms of the unmet conditions, which are small.
   const bool regular = unmet.d_s.norm() <= kSmallChange * inertia.tail<3>().minCoeff();
   return regular && small(unmet.of_d) && small(state.h * unmet.of_d_dot);
 }

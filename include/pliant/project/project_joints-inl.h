@@ -54,7 +54,8 @@ class Snapshot {
   GroupVectors<double, Max>& vectors_;
 };
 
-/// Adds the rigid motion to the velocities of a part that deforms locally that restores its P and L.
+/// For a part that deforms locally: adds to its velocities the rigid motion that restores its momenta P and
+/// L. from, to: its evaluations before and after the projection.
 inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& from,
                                const PartWorkspace<double>& to, State& state) {
   const LocalMotion before = m.local->motion(from.v_r, *from.local), now = m.local->motion(to.v_r, *to.local);
@@ -68,9 +69,9 @@ inline void keep_rigid_momenta(const PartModel& m, const PartWorkspace<double>& 
 }
 
 /// Sets the velocities of parts whose coordinates the projection has changed, so that their generalised
-/// momenta M v do not change, nor P and L. For a part that deforms locally the velocities of the nodes are
-/// kept and only P and L are restored. before: evaluation at the coordinates before the projection; now:
-/// after it.
+/// momenta M v, and P and L, do not change. For a part that deforms locally, only P and L are restored; the
+/// velocities of its nodes relative to its frame are kept. before: evaluation at the coordinates before the
+/// projection; now: after it.
 template <int Max>
 void keep_momenta(const Group<double, Max>& group, const Workspace<double>& before,
                   const Workspace<double>& now, State& state) {
@@ -113,8 +114,8 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
   Projection<Max> projection(step, group, vectors);
   if (impulses != nullptr) projection.add_impulses_to(*impulses);
   const bool pushed = projection.coordinates();
-  // The impulses that close a joint do work. The correction of the error of a step does no booked work: its
-  // change of energy is an error, which appears in the balance.
+  // The impulses that close a joint do work. The correction of the error of a step has no entry in the
+  // ledger: its change of energy is an error, which appears in the balance.
   double joints = 0, rows = 0;
   if (!pushed && !closed) {
     step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -129,7 +130,8 @@ void project_group(StepContext& step, const Group<double, Max>& group, bool clos
     dynamics.factor_joints(step.t, state.q, state.v, state.joints, *group.island(), work);
   else
     dynamics.evaluate_masses(state.q, state.v, parts, work);
-  // The velocities of the state have not changed: those of scratch are valid.
+  // The velocities of the state have not changed since the evaluation in scratch, so the velocities in
+  // scratch are valid.
   if (pushed) keep_momenta(group, scratch, work, state);
   projection.forget();
   step.counters.limit_impulses += projection.velocities(joints, rows);
@@ -147,8 +149,8 @@ inline bool passes_limit(const PartModel& m, State& state) {
 }
 
 /// Closes open joints with a small gap and a small rate of the gap. any_rate: whether the rate may be large.
-/// A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint, which is also small
-/// in this sense. Returns whether any joint closed.
+/// A method of first order leaves a gap of h |bias| alpha / beta^2 on a rotating joint; up to twice this gap
+/// is small too. Returns whether any joint closed.
 inline bool close_joints(const Dynamics& dynamics, const Island& island, bool any_rate,
                          const Workspace<double>& work, State& state) {
   const Model& model = dynamics.model();
@@ -236,8 +238,8 @@ inline void update_string_modes(const Model& model, const Island& island, const 
   }
 }
 
-/// Projects an island whose last evaluation was that of a rigid island. Returns false if it needs the general
-/// projection.
+/// Projects an island that was last evaluated as a rigid island. Returns false if the island needs the
+/// general projection.
 inline bool project_rigid_island(const Model& model, const Island& island, Workspace<double>& work,
                                  State& state) {
   RigidWorkspace* rigid = rigid_workspace(island, work);

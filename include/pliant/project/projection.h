@@ -17,7 +17,8 @@
 
 namespace pliant::projection {
 
-/// Residual of a projection, in lengths of the joint, and rounding of coordinates of size 1 m.
+/// Residual of a projection relative to the length of the joint (JointModel::length); and rounding of
+/// coordinates relative to their size.
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
 /// If an iteration leaves more than the share kSlow of the error, the next one uses a new factor. If it
 /// leaves more than kStalled with a new factor, the error is the rounding of the rows.
@@ -27,7 +28,8 @@ inline constexpr int kMaxIterations = 30;
 inline constexpr double kOpenGap = 1e3;
 /// Largest number of joints that a message names.
 inline constexpr int kMaxNamed = 8;
-/// A row depends on another row if the share of the other is at least this.
+/// A row depends on the rows of another joint if a unit force on it causes reactions of that joint above this
+/// share of all reactions.
 inline constexpr double kDependentShare = 1e-6;
 /// Largest gap, in lengths of the smaller part of the joint, that a projection closes.
 inline constexpr double kMaxGap = 0.1;
@@ -60,7 +62,7 @@ inline RigidIsland::Rounding rounding(const Model& model) {
 inline std::size_t island_index(const Model& model, const Island& island) {
   return static_cast<std::size_t>(&island - model.islands().data());
 }
-/// Returns the rigid workspace of an island, or nullptr if its last evaluation did not use one.
+/// Returns the rigid workspace of an island, or nullptr if the last evaluation of the island did not use one.
 inline RigidWorkspace* rigid_workspace(const Island& island, Workspace<double>& work) {
   if (island.rigid < 0 || work.rigid.empty() || !work.rigid[at(island.rigid)].used) return nullptr;
   return &work.rigid[at(island.rigid)];
@@ -169,8 +171,9 @@ class Projection {
   /// Adds the impulses of velocities(), on the rows of all joints, to `impulses` from now on.
   void add_impulses_to(VecX<double>& impulses) { impulses_ = &impulses; }
 
-  /// Projects the velocities onto C_dot = 0; rates at a limit or of a taut string may only lead back. Returns
-  /// the number of impulses on one-sided rows. joints, one_sided: the work of the impulses is added, J.
+  /// Projects the velocities onto C_dot = 0; the rate of a parameter at a limit, or of a taut string, may
+  /// only lead away from the bound. Returns the number of impulses on one-sided rows. joints, one_sided: the
+  /// works (J) of the impulses of the joints and of the one-sided rows are added to them.
   int velocities(double& joints, double& one_sided) {
     rank_ = RankRule::decide;
     int impulses = 0;
@@ -217,7 +220,8 @@ class Projection {
   }
 
   /// Returns the failure of a joint that is open by a gap (m) and cannot close, with the names of the joints
-  /// that hold it open. dependent: the joint with the dependent rows, this joint or one that contradicts it.
+  /// that hold it open. open: number of the joint. dependent: number of the joint with the dependent rows,
+  /// which is this joint or one that contradicts it.
   UnsatisfiableModel contradiction(int open, double gap, int dependent) const {
     const JointModel& joint = model_.joints()[at(open)];
     std::ostringstream message;
@@ -329,7 +333,7 @@ class Projection {
   }
 
   /// Evaluates the joints and adds to x the change that zeroes the rows of closed joints. Returns false if
-  /// they are zero to rounding.
+  /// these rows are zero to rounding.
   bool correct_joints(Rows kind, int iteration, Vector& x) {
     if (island_ == nullptr) return false;
     evaluate(kind, iteration, x);
