@@ -192,8 +192,10 @@ TEST_CASE("a torque between two parts conserves their momenta, and its work is t
     }
 }
 
-TEST_CASE("a torque with its reaction on a fixed part is an external torque; one on a single part is refused",
-          "[dynamics]") {
+TEST_CASE(
+    "a torque with its reaction on a fixed part is an external torque; a reaction on the same part is "
+    "refused",
+    "[dynamics]") {
   for (const Frame frame : {Frame::world, Frame::body}) {
     MultiBody body;
     Part& part = test::add(body, "part", "box", {}, 1000);
@@ -210,7 +212,8 @@ TEST_CASE("a torque with its reaction on a fixed part is an external torque; one
     const auto external = end();
     torque.against = &post;
     CHECK(end() == external);
-    // The torque is also applied the other way round, with components along the axes of the fixed part.
+    // The opposite torque on the fixed part with its reaction on the moving part; with Frame::body its
+    // components are along the axes of the fixed part.
     torque.part = &post;
     torque.against = &part;
     torque.torque = TimeVector(Vec3<double>(-1, -2, -3));
@@ -285,7 +288,7 @@ TEST_CASE("names of coordinates and velocities", "[dynamics]") {
   CHECK_THROWS_AS(model.coordinate_name(model.n_q()), std::out_of_range);
 }
 
-TEST_CASE("invalid models are refused by name", "[dynamics]") {
+TEST_CASE("invalid models are refused, and the message names the part or load", "[dynamics]") {
   using test::has_text;
   MultiBody body;
   Part& part = test::add(body, "p", "box", {}, 1000);
@@ -300,7 +303,7 @@ TEST_CASE("invalid models are refused by name", "[dynamics]") {
   CHECK_THROWS_WITH(Model(loose), has_text("spring 's' ties the world to itself"));
 }
 
-TEST_CASE("a part cannot be changed during a simulation, but afterwards", "[dynamics]") {
+TEST_CASE("a part cannot be changed during a simulation, but can be changed afterwards", "[dynamics]") {
   MultiBody body;
   Part& part = body.add(make_part("ball", "sphere", {}, 1000));
   {

@@ -1,5 +1,5 @@
-// The two solvers of joints, the blocks of W_c and the augmented matrix of Eq. (14), with the factorisations
-// of Eigen and SuiteSparse: equal motion, and the choice between them.
+// The two solvers of joints: the blocks of W_c, and the augmented matrix of Eq. (14) with the factorisations
+// of Eigen and SuiteSparse. They give equal motion, and Model chooses between them.
 #include "catch.h"
 
 #include <algorithm>
@@ -118,8 +118,10 @@ TEST_CASE("both solvers give equal accelerations, forces and derivatives", "[joi
   }
 }
 
-TEST_CASE("both solvers give equal motion, with both methods, through closing joints, strings and limits",
-          "[joints][long]") {
+TEST_CASE(
+    "both solvers give equal motion, by rk4 and by semi-implicit Euler, with closing joints, strings and "
+    "limits",
+    "[joints][long]") {
   for (const Backend& backend : backends)
     for (const char* method : {"rk4", "semi_implicit_euler"}) {
       MultiBody one, two;
@@ -163,13 +165,14 @@ TEST_CASE("extreme mass ratios: the solvers agree after iterative refinement", "
       lightest = body.parts()[0]->total_mass();
     }
     INFO(backend.name);
-    // The bound is eps lambda / m_min.
+    // The bound is 100 eps lambda / m_min, with the rounding eps of a double.
     CHECK((v_dot[0] - v_dot[1]).lpNorm<Eigen::Infinity>() <= 1e-10 + 100 * 2.2e-16 * largest / lightest);
   }
 }
 
-TEST_CASE("the choice: blocks for chains and nets, the augmented matrix where many joints share a part",
-          "[joints]") {
+TEST_CASE(
+    "the choice: blocks for chains and few joints on a part, the augmented matrix for many joints on a part",
+    "[joints]") {
   MultiBody few, many;
   star(few, 8);
   star(many, 400);

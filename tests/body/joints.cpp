@@ -17,7 +17,8 @@ using test::Draws;
 
 namespace {
 
-/// Checks a joint between points that move as x + v t + a t^2 / 2.
+/// Compares C, C_dot, bias and C_x of a joint with finite differences, for points that move as x + v t + a
+/// t^2 / 2.
 template <class F>
 void check_laws(const F& formula, std::uint64_t seed) {
   constexpr int kPoints = F::first + F::second;
@@ -114,7 +115,7 @@ TEST_CASE("accelerations: C_ddot + 2 alpha C_dot + beta^2 C = 0 for every row, i
     Workspace<double> work;
     const double t = 0.3;
     dynamics.accelerations(t, state.q, state.v, state, work);
-    // Reference: rows along the second-order Taylor polynomial of q(t + e) with these accelerations.
+    // Reference: the central difference of C_dot along q + e q_dot, v + e v_dot with these accelerations.
     VecX<double> q_dot;
     auto C_dot = [&](double e) {
       Workspace<double> scratch;
@@ -131,7 +132,7 @@ TEST_CASE("accelerations: C_ddot + 2 alpha C_dot + beta^2 C = 0 for every row, i
       INFO(joint.joint->name());
       CHECK(sum.segment(joint.row, joint.rows).norm() <= 1e-6 * (1 + C_ddot.norm()));
     }
-    // The string is too long, so that it exerts a force.
+    // The ends of the string are farther apart than its length, so that it exerts a force.
     CHECK(work.joints.lambda[simulation.model().joints().back().row] > 0);
   }
 }
@@ -173,7 +174,7 @@ TEST_CASE("directional derivatives of the accelerations with joints agree with f
   }
 }
 
-TEST_CASE("invalid joints are refused by name", "[joints]") {
+TEST_CASE("invalid joints are refused, and the message names them", "[joints]") {
   MultiBody body;
   Part& a = test::add(body, "a", "sphere", {}, 500);
   Part& b = test::add(body, "b", "sphere", {}, 500);
@@ -193,7 +194,7 @@ TEST_CASE("invalid joints are refused by name", "[joints]") {
   CHECK_THROWS_WITH(Model(body), "ball 'dead' ties no part that moves");
 }
 
-TEST_CASE("joints within a rigid part are refused by name, for every type", "[joints]") {
+TEST_CASE("joints within a rigid part are refused for every type, and the message names them", "[joints]") {
   for (const JointInfo& info : all_joints()) {
     MultiBody body;
     Part& a = test::add(body, "a", "ellipsoid", {}, 500);

@@ -34,7 +34,7 @@ TEST_CASE("a placed point is the point of its part, soft or rigid, and of the wo
     CHECK(on_plain.at(state) == model.world_point(state, 1, on_plain.point().material));
     CHECK(in_world.at(state) == Vec3<double>(3 * state.time(), 0, 1));
   }
-  // The nodes have moved, so that the point is not on the shape alone.
+  // The nodes have moved, so that the point differs from the point of the reference shape s.
   const NodeWeights weights = Model::node_weights(in_soft.point());
   CHECK_FALSE(weights.node.empty());
   CHECK((model.world_point(simulation.state(), 0, in_soft.point().material, {}) -

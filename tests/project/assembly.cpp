@@ -22,7 +22,7 @@ using test::widest_gap;
 namespace {
 
 /// Adds a random tree of ellipsoids on ball joints. Its first part is joined to the world; the parts start in
-/// any pose, up to `apart` body lengths away.
+/// random poses, up to `apart` body lengths from each other along each axis.
 void random_tree(MultiBody& body, int joints, double apart, std::uint64_t seed) {
   Draws draws(seed);
   body.stabilization.assemble_first = true;
@@ -150,9 +150,12 @@ TEST_CASE("assembly changes parameters in proportion to their compliance", "[joi
   }
 }
 
-TEST_CASE("scattered beads are joined between posts too far apart for them: all beads stretch equally",
-          "[joints]") {
-  // In a straight taut chain the joints have no transverse force, so gaps close there to second order only.
+TEST_CASE(
+    "scattered beads are joined between posts that are too far apart for unstretched beads: all stretch "
+    "equally",
+    "[joints]") {
+  // Once the chain is straight, rotations of its beads change the gaps to second order only: the beads must
+  // stretch.
   MultiBody body;
   body.stabilization.assemble_first = true;
   Draws draws(7);
@@ -174,7 +177,8 @@ TEST_CASE("scattered beads are joined between posts too far apart for them: all 
     CHECK(simulation.state().q[m.q0 + 9] == Approx(0.32).epsilon(1e-3));
 }
 
-TEST_CASE("assembly releases limits that become inactive, and ends when the shape is at rest", "[joints]") {
+TEST_CASE("assembly releases limits that become inactive, and ends when the shape has converged",
+          "[joints]") {
   MultiBody body;
   body.stabilization.assemble_first = true;
   for (const char* name : {"left", "right"}) {

@@ -316,7 +316,7 @@ TEST_CASE("N48: joints switch on and off at their times, also between steps", "[
     a.velocity({1, 0, 0}, {0, 0, 0});
     b.place({0.3, 0, 0});
     const double m = 1000 * 4. / 3 * kPi * 0.1 * 0.2 * 0.3;
-    body.ball("catch", point(a, 0, 0, 0), point(b, 0, 0, 0)).during(0.3);  // when a passes b
+    body.ball("catch", point(a, 0, 0, 0), point(b, 0, 0, 0)).during(0.3);  // at 0.3 s a passes b
     Simulation simulation(body, "rk4");
     test::run(simulation, 1, 70);
     CHECK(simulation.state().joints[0] == JointMode::closed);
@@ -332,7 +332,7 @@ TEST_CASE("N48: joints switch on and off at their times, also between steps", "[
     CHECK((engaged.impulse.force - Vec3<double>(-m / 2, 0, 0)).norm() <= 1e-12 * m);
   }
   SECTION("a joint that switches on away from the centres of mass: its impulse and its work") {
-    // Two spheres rotate about their own axes; one point of each meets the other at 0.3 s.
+    // Two spheres translate and rotate; at 0.3 s a point of one meets a point of the other.
     const double r = 0.2, on = 0.3, m[] = {1, 0.4};
     const Vec3<double> meet(0.1, 0.2, -0.3), v[] = {{1, 0.2, 0}, {-0.3, 0, 0.1}},
                                              w[] = {{0, 0, 2}, {1, 0, 0}};

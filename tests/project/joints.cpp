@@ -143,8 +143,8 @@ bool decays(const char* method, double x) {
 
 TEST_CASE("N34: the stability limits of Baumgarte's equation, for alpha h from 0.01 to 4 and above",
           "[joints][long]") {
-  // Limits of the explicit methods: |R(-x)| = 1. The linearly implicit method treats joints explicitly. 0: no
-  // limit.
+  // Limits x = alpha h of the explicit methods: |R(-x)| = 1, with the stability function R of the method. The
+  // linearly implicit method treats joints explicitly. 0: no limit.
   const std::map<std::string, double> stability_limits{{"semi_implicit_euler", 2 * (std::sqrt(2.0) - 1)},
                                                        {"rk4", 2.785294},
                                                        {"linearly_implicit", 0.960432},
@@ -161,7 +161,7 @@ TEST_CASE("N34: the stability limits of Baumgarte's equation, for alpha h from 0
     sweep.insert(sweep.end(), {10, 100});
     if (limit > 0) sweep.insert(sweep.end(), {0.99 * limit, 1.01 * limit});
     for (const double x : sweep) {
-      if (limit > 0 && std::abs(x / limit - 1) < 0.0099) continue;  // within 1 %
+      if (limit > 0 && std::abs(x / limit - 1) < 0.0099) continue;  // too close to the limit
       INFO(info.name << " at " << x);
       CHECK(decays(info.name, x) == (limit == 0 || x < limit));
       CHECK((method->growth(K, D, x) <= 1) == (limit == 0 || x < limit));
@@ -278,7 +278,7 @@ TEST_CASE("orders of convergence on a chain of 8 links: coordinates, velocities 
   }
 }
 
-TEST_CASE("implicit methods form no matrix of a long chain where iterations without it cost less",
+TEST_CASE("implicit methods form no matrix for a long chain if iterations without a matrix cost less",
           "[joints]") {
   // 200 links have more velocities than a matrix may have rows.
   constexpr int links = 200;
@@ -309,7 +309,8 @@ TEST_CASE("implicit methods form no matrix of a long chain where iterations with
 
 TEST_CASE("small oscillations of a chain of points: frequencies from the roots of the Laguerre polynomial",
           "[joints]") {
-  // Spheres of negligible size hardly rotate: joints at their centres, rods of 1 m between them.
+  // Rods of 1 m join the centres of spheres. The rods exert no torque, so the spheres move as material
+  // points.
   for (const auto& [n, roots] :
        {std::pair<int, std::vector<double>>{2, {0.585786437627, 3.414213562373}},
         {3, {0.415774556783, 2.294280360279, 6.289945082937}},
@@ -339,7 +340,8 @@ TEST_CASE("small oscillations of a chain of points: frequencies from the roots o
   }
 }
 
-TEST_CASE("hanging supersphere: it stretches by m g / k, and oscillates with k / 1.2 m", "[joints]") {
+TEST_CASE("a hanging ellipsoid: a3 oscillates about its rest value + m g / k, with omega^2 = k / (1.2 m)",
+          "[joints]") {
   const double k = 2000;
   MultiBody body;
   Part& ball = test::add(body, "ball", "ellipsoid", {}, 1);
@@ -404,7 +406,7 @@ TEST_CASE("N38: mass ratios of 1e6 and 1e-6 in a chain of two: gaps and tensions
     body.join("lower", Rod{1}, {centre(a), centre(b)});
     b.velocity({1e-3, 0, 0}, {0, 0, 0});
     Simulation simulation(body, "rk4");
-    // A light bead on a loaded rod is a fast pendulum: omega^2 = 2 g / l m_b / m_a.
+    // A light bead on a loaded rod is a fast pendulum: omega^2 = (2 g / l) (m_b / m_a).
     for (int i = 0; i < 500; ++i) {
       simulation.step(ratio > 1 ? 1e-4 : 1e-3);
       REQUIRE(std::abs(gap(simulation, 0).norm() - 1) <= 1e-12);
@@ -413,7 +415,8 @@ TEST_CASE("N38: mass ratios of 1e6 and 1e-6 in a chain of two: gaps and tensions
     Workspace<double> work;
     const State& s = simulation.state();
     simulation.dynamics().accelerations(s.time(), s.q, s.v, s, work);
-    // The tensions of two point masses on rods of 1 m, whose second derivatives are 0.
+    // The tensions of two point masses on rods of 1 m, from the condition that the lengths of the rods have
+    // no second derivative.
     const double m_a = a.total_mass(), m_b = b.total_mass();
     const Vec3<double> g(0, 0, -9.81), up = s.q.head<3>().normalized(),
                                        down = (s.q.segment<3>(7) - s.q.head<3>()).normalized();
@@ -435,7 +438,7 @@ TEST_CASE("N35: a spinning rod, by Baumgarte terms alone and with projection", "
   struct Case {
     const char* name;
     Stabilization gains;
-    double offset;  // of 1 m/s^2: h alpha / beta^2
+    double offset;  // gap (m) for a bias of 1 m/s^2: h alpha / beta^2
   };
   auto gains = [](BaumgarteRule rule, double rate) {
     Stabilization made;
@@ -455,7 +458,7 @@ TEST_CASE("N35: a spinning rod, by Baumgarte terms alone and with projection", "
       MultiBody body;
       body.gravity.setZero();
       Part& mass = sphere(body, "mass", {1, 0, 0});
-      mass.velocity({0, 2, 0}, {0, 0, 0});  // kappa = 4 m/s^2
+      mass.velocity({0, 2, 0}, {0, 0, 0});  // the bias is v^2 / r = 4 m/s^2
       body.join("rod", Rod{1}, {world(0, 0, 0), centre(mass)});
       body.stabilization = c.gains;
       body.stabilization.projection = projected;
@@ -790,7 +793,7 @@ TEST_CASE("joints to a fixed part act as joints to the world do", "[joints]") {
   }
 }
 
-TEST_CASE("a slack string stays slack at time 0, and when it is taut at rest no impulses are counted",
+TEST_CASE("a slack string stays slack at time 0, and no impulses are counted while it is taut and at rest",
           "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     MultiBody body;
@@ -845,7 +848,7 @@ TEST_CASE("a parameter that closing joints stretch stops at its limit", "[joints
     CHECK(simulation.state().q[7] == Approx(0.55).epsilon(1e-6));
     CHECK(simulation.state().v.norm() <= 1e-3);
     CHECK(simulation.state().joints[0] == JointMode::closing);
-    // 1.25 J are exchanged.
+    // The energy that the parameter stores at its limit is 1.25 J.
     CHECK(std::abs(simulation.ledger().balance) <= (method[0] == 'r' ? 0.005 : 0.5));
   }
 }
@@ -910,7 +913,8 @@ TEST_CASE("N42: joints that contradict each other are named with their gap", "[j
   }
 }
 
-/// Every method with fixed steps, and the methods with error control.
+/// Methods and their tolerances: every method with fixed steps (tolerance 0), and the methods with error
+/// control.
 const std::vector<std::pair<const char*, double>> kMethods = {{"rk4", 0},
                                                               {"semi_implicit_euler", 0},
                                                               {"linearly_implicit", 0},

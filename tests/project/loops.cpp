@@ -26,8 +26,8 @@ namespace {
 
 const Vec3<double> kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);
 
-/// Adds a uniform square rod whose z axis points from one place to another; its y axis is `side`,
-/// perpendicular to it.
+/// Adds a uniform square rod from one position to another (m, world). Its z axis is along the rod, and its y
+/// axis is `side`, a unit vector perpendicular to the rod. half_width: m; mass: kg.
 Part& rod(MultiBody& body, const std::string& name, const Vec3<double>& from, const Vec3<double>& to,
           const Vec3<double>& side, double half_width, double mass = 1) {
   const Vec3<double> along = (to - from).normalized();
@@ -71,8 +71,8 @@ void four_bar(MultiBody& body, double mass_ratio = 1) {
   hinge(body, end_of(rocker), world_at(C), kY);
 }
 
-/// IFToMM A02: windows + 1 upright rods on the ground, 1 m apart, with rods between their upper ends; all
-/// turn at 1 rad/s.
+/// Problem A02 of the IFToMM library of multibody benchmarks: windows + 1 upright rods on the ground, 1 m
+/// apart, with bars between their upper ends. The uprights rotate at 1 rad/s, and the bars translate.
 void windows_in_a_row(MultiBody& body, int windows) {
   std::vector<Part*> upright;
   for (int i = 0; i <= windows; ++i) {
@@ -90,7 +90,7 @@ void windows_in_a_row(MultiBody& body, int windows) {
   }
 }
 
-/// IFToMM A04, Bricard's mechanism: a hexagon of edges of a cube; the first edge is the ground.
+/// IFToMM A04, Bricard's mechanism: six edges of a cube form a hexagon; the first edge is the ground.
 void bricard(MultiBody& body, double mass_ratio = 1) {
   const std::array<Vec3<double>, 6> corners{kX, kX + kY, kY, kY + kZ, kZ, kZ + kX};
   // Each pin is perpendicular to both edges of its corner.

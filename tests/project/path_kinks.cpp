@@ -26,8 +26,8 @@ Part& driven_ellipsoid(MultiBody& body, const TimeVector& path) {
   return part;
 }
 
-/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if that is
-/// positive.
+/// A path along z that starts to move at `start` with `speed`, and stops after `duration` if the duration is
+/// positive (s, m/s, s).
 TimeVector lift(double start, double speed, double duration = 0) {
   if (duration > 0) return {0, 0, TimeFunction::key_frames({start, start + duration}, {0, duration * speed})};
   std::ostringstream text;
@@ -45,7 +45,7 @@ void advance_to(Simulation& simulation, double end, double step) {
 
 }  // namespace
 
-TEST_CASE("an anchor that starts to move at once gives an impulse, and the ledger records its work",
+TEST_CASE("an anchor that starts to move suddenly gives an impulse, and the ledger records its work",
           "[joints]") {
   const double m = 1000 * 4. / 3 * kPi * 0.3 * 0.1 * 0.1, I = m / 5 * (0.09 + 0.01), speed = 0.8;
   const double push = speed / (1 / m + 0.09 / I);
@@ -83,7 +83,8 @@ TEST_CASE("an anchor that starts to move at once gives an impulse, and the ledge
     }
 }
 
-TEST_CASE("anchors that start and stop at once keep the balance to the error of the method", "[joints]") {
+TEST_CASE("anchors that start and stop suddenly: the balance stays within the error of the method",
+          "[joints]") {
   // Gravity acts, so that the parts also move between the kinks.
   auto balance = [](const char* method, double step, double tolerance, auto&& make) {
     MultiBody body;
@@ -142,7 +143,7 @@ TEST_CASE("anchors that start and stop at once keep the balance to the error of 
   }
 }
 
-TEST_CASE("the ledger records the work of an anchor that pulls a taut string at once", "[joints]") {
+TEST_CASE("the ledger records the work of an anchor that suddenly pulls a taut string", "[joints]") {
   MultiBody body;
   Part& bob = test::add(body, "bob", "sphere", {}, 1000);
   bob.rest({{"r", 0.1}}).place({0, 0, -1});

@@ -16,8 +16,8 @@ using test::Draws;
 namespace {
 
 /// Adds n frozen, tapered boxes whose centres of mass are not at their origins. Each hangs from an earlier
-/// one, the first from the world. With loops > 0 a bar closes a loop to the world, and the first joint is
-/// doubled.
+/// one, the first from the world. If n > 1, a bar hangs from the last box. With loops > 0 the bar closes a
+/// loop to the world, and the first joint is doubled.
 void add_hanging_boxes(MultiBody& body, int n, int loops, std::uint64_t seed) {
   Draws draws(seed);
   auto random_point = [&](const Part& part) {
@@ -55,7 +55,7 @@ void add_hanging_boxes(MultiBody& body, int n, int loops, std::uint64_t seed) {
   Part& post = test::add(body, "post", "sphere", {}, 1000);
   post.place({0.2, 0.1, -1}).fix();
   if (n > 1) {
-    // A bar closes the loop; it is placed so that it fits.
+    // The bar is placed so that its joints are closed.
     Part& last = *parts.back();
     const Point end = random_point(last);
     const Vec3<double> x = position(last, end);
@@ -81,7 +81,8 @@ double gap(const Simulation& simulation) {
 
 }  // namespace
 
-TEST_CASE("rigid parts on ball joints move as by the general evaluation", "[rigid_islands]") {
+TEST_CASE("rigid parts on ball joints: the specialised and the general evaluation give equal accelerations",
+          "[rigid_islands]") {
   const int n = GENERATE(1, 2, 3, 4, 5, 9, 18), loops = GENERATE(0, 1);
   MultiBody body;
   add_hanging_boxes(body, n, loops, static_cast<std::uint64_t>(10 * n + loops));
@@ -215,7 +216,8 @@ TEST_CASE("a trial step that is not finite leaves no state behind that stops lat
   }
 }
 
-TEST_CASE("islands with more than rigid parts on ball joints use the general evaluation", "[rigid_islands]") {
+TEST_CASE("islands that contain more than rigid parts on ball joints use the general evaluation",
+          "[rigid_islands]") {
   MultiBody body;
   Part& ball = test::add(body, "ball", "sphere", {}, 1000);
   Part& other = test::add(body, "other", "box", {}, 1000);
