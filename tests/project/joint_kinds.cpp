@@ -90,7 +90,7 @@ TEST_CASE("the force and the torque of a hinge follow from the motion, with no t
   CHECK(std::abs(wrench.torque.dot(pin)) <= 1e-11 * force.norm() * c.norm());
 }
 
-TEST_CASE("weld: two bodies tumble as one composite body", "[joints]") {
+TEST_CASE("weld: two parts tumble as one composite part", "[joints]") {
   MultiBody two;
   two.gravity.setZero();
   Part& a = ellipsoid(two, "a", {0, 0, 0});
@@ -150,7 +150,7 @@ TEST_CASE("slider, line and plane: the free directions fall freely", "[joints]")
 }
 
 TEST_CASE(
-    "lines, planes, hinges, sliders and welds between free bodies conserve momenta and energy, deforming or "
+    "lines, planes, hinges, sliders and welds between free parts conserve momenta and energy, deforming or "
     "not",
     "[joints][long]") {
   for (const bool deforming : {false, true})

@@ -86,7 +86,7 @@ TEST_CASE("a parameter pressed by a force rests at its limit, and leaves it when
   }
 }
 
-TEST_CASE("gravity and a spring press the parameter of a hanging body onto its limit", "[limits]") {
+TEST_CASE("gravity and a spring press the parameter of a hanging part onto its limit", "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     Part& part = test::add(body, "part", "ellipsoid", {}, 1000);
@@ -118,7 +118,8 @@ TEST_CASE("N04: exponents pulled beyond their range stay in it", "[limits][long]
   }
 }
 
-TEST_CASE("N06: an axis pushed through zero stops at its limit, and the body is never inverted", "[limits]") {
+TEST_CASE("N06: an axis pushed through zero stops at its limit, and the part is never turned inside out",
+          "[limits]") {
   for (const char* method : kMethods) {
     MultiBody body;
     body.gravity.setZero();
@@ -169,7 +170,7 @@ TEST_CASE("several limits at once, coupled by the mass matrix", "[limits]") {
     CHECK(std::abs(ledger.balance) <=
           (std::string(method) == "rk4" ? 1e-9 : 5e-3) * ledger.work.cwiseAbs().sum());
     CHECK(simulation.step_counters().limit_impulses < 400);  // the parameters come to rest at their limits
-    // Limits act inside the body: the two forces cancel, so P is conserved.
+    // Limits act inside the part, and the two forces cancel, so P is conserved.
     CHECK((ledger.momentum - P).norm() <= (std::string(method) == "rk4" ? 1e-6 : 2e-2) * P.norm());
   }
 }
@@ -242,7 +243,7 @@ TEST_CASE("jvp keeps parameters at active limits fixed", "[limits]") {
   REQUIRE(work.v_dot[7] == Approx(0).margin(1e-12));
   const VecX<double> dq = VecX<double>::Constant(state.q.size(), 0.01);
   VecX<double> dv = VecX<double>::Constant(state.v.size(), 0.1);
-  dv[7] = 0;  // zero, as the parameter would otherwise leave its limit
+  dv[7] = 0;  // zero, because the parameter would otherwise leave its limit
   const VecX<double> d = simulation.dynamics().jvp(state, {dq, dv});
   CHECK(std::abs(d[7]) <= 1e-12 * d.norm());
   Workspace<double> more;

@@ -6,7 +6,7 @@
 
 namespace pliant {
 
-/// q <- q (+) h v for all parts: c, q_s and q_d add, theta <- theta o exp(h omega / 2).
+/// q <- q (+) h v for all parts; h: s. c, q_s and q_d add, theta <- theta o exp(h omega / 2).
 void advance_coordinates(const Model& model, VecX<double>& q, const VecX<double>& v, double h);
 
 /// q <- q (+) h v for the frame and the global parameters of one part; v: (c_dot, omega, q_s_dot) of the

@@ -41,7 +41,7 @@ struct ContactPlane {
   }
 };
 
-/// An immobile body whose surface is a triangle mesh; an open mesh is one-sided
+/// An immobile solid whose surface is a triangle mesh; an open mesh is one-sided
 /// (collision/mesh/obstacle_mesh.h).
 struct ContactObstacle {
   std::string name;
@@ -69,13 +69,13 @@ struct ContactPair {
   std::optional<double> friction{}, restitution{};  ///< default: the values of ContactSettings
 };
 
-/// Sleeping. A body falls asleep when it, and all bodies that it touches or is joined to, have been at rest
-/// for some time. Sleeping bodies are not evaluated, and contacts between them are not searched. They wake
-/// when an awake body meets them, or when their drive changes: a joint switches, or the end of a spring or
-/// joint, a force, a rest value, a plane or gravity changes.
+/// Sleeping. A part falls asleep when this part, and all parts that it touches or is joined to, have been at
+/// rest for some time. Sleeping parts are not evaluated, and contacts between sleeping parts are not
+/// searched. A sleeping part wakes when an awake part touches it, or when its drive changes: a joint
+/// switches, or the end of a spring or joint, a force, a rest value, a plane or gravity changes.
 struct Sleep {
-  double speed = 0;    ///< a body is at rest while its fastest point is slower, m/s; above 0
-  double after = 0.5;  ///< time at rest after which a body falls asleep, s; above 0
+  double speed = 0;    ///< a part is at rest while its fastest point is slower, m/s; above 0
+  double after = 0.5;  ///< time at rest after which a part falls asleep, s; above 0
 };
 
 struct ContactSettings {
@@ -88,9 +88,9 @@ struct ContactSettings {
   std::vector<ContactGroup> groups;
   std::deque<ContactPlane> planes;
   std::deque<ContactObstacle> obstacles;
-  std::optional<Sleep> sleep{};  ///< not given: no body sleeps
+  std::optional<Sleep> sleep{};  ///< not given: no part sleeps
   /// Longest step, s, above 0, in a run to a tolerance of 5e-4 or less, while resting contacts prevent the
-  /// control of the error: with many bodies, with bodies that deform locally, or with point forces. Larger
+  /// control of the error: with many parts, with parts that deform locally, or with point forces. Larger
   /// tolerances allow longer steps (contact/longest_contact_step.h).
   double longest_step = 2e-3;
 };

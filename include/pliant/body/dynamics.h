@@ -51,9 +51,10 @@ class Dynamics {
   // evaluate at coordinates and velocities that belong to no State.
 
   /// Computes work.v_dot and work.power at (t, q, v), and all other fields of work. modes: the step length,
-  /// the modes of limits and joints, and the sleeping parts, whose accelerations and powers are zero. A
-  /// parameter at a limit with a rate of exactly 0 can only move into its range. A parameter at a limit with
-  /// another rate is free here: the method of integration has to stop it.
+  /// the modes of limits and joints, and the sleeping parts, whose accelerations and powers are zero. rank:
+  /// the rule that decides which rows of joints are dependent (solve/pivots.h). A parameter at a limit with a
+  /// rate of exactly 0 can only move into its range. A parameter at a limit with another rate is free here:
+  /// the method of integration has to stop it.
   void accelerations(double t, const VecX<double>& q, const VecX<double>& v, const State& modes,
                      Workspace<double>& work, RankRule rank = RankRule::decide) const;
   /// Computes work.v_dot, work.power and the factors of W_c = C_q M^-1 C_q^T alone, for a stage of a method.

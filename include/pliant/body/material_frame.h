@@ -24,7 +24,7 @@ struct MaterialFrame {
   Mat3<double> K = Mat3<double>::Identity();
   Mat3<double> world_axes = Mat3<double>::Zero();  ///< axes of a frame of the world; zero on a part
 
-  /// Returns the axes in the world, as columns. x: the four points.
+  /// Returns the axes in the world, as columns. x: positions of x_0 ... x_3, m, world.
   template <class T>
   Mat3<T> at(const Vec3<T>* x) const {
     if (!world_axes.isZero(0)) return world_axes.cast<T>();

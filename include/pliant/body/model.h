@@ -125,13 +125,13 @@ struct Island {
   bool augmented = false;    ///< whether the augmented matrix of Eq. (14) is factored, not the blocks of W_c
   bool uneven = false;       ///< whether masses differ so much that solutions are refined
   BlockPattern pattern;      ///< pattern of the blocks of W_c, if they are factored
-  std::vector<Coupling> couplings;  ///< sorted by their later joints
+  std::vector<Coupling> couplings;  ///< sorted by later_joint()
   long factor_values = 0;           ///< number of values in the factor
 };
 
 class Model {
  public:
-  /// Prepares all parts. Throws std::invalid_argument, naming the part, joint or load at fault. The body must
+  /// Prepares all parts. Throws std::invalid_argument, naming the part, joint or load at fault. `body` must
   /// outlive the model.
   explicit Model(MultiBody& body);
 
@@ -161,7 +161,7 @@ class Model {
   int n_q() const { return n_q_; }
   int n_v() const { return n_v_; }
   int n_limits() const { return n_limits_; }
-  /// Size of State::at_rest: the number of parts if bodies may sleep, else 0.
+  /// Size of State::at_rest: the number of parts if parts may sleep, else 0.
   std::size_t n_resting() const { return body_->contact.active && body_->contact.sleep ? parts_.size() : 0; }
 
   /// Returns the state at time 0.

@@ -126,7 +126,7 @@ PLIANT_INLINE Part* MultiBody::find(const std::string& name) const {
 PLIANT_INLINE int MultiBody::index(const Part& part) const {
   const auto found = number_of_.find(part.name());
   if (found == number_of_.end() || parts_[static_cast<std::size_t>(found->second)].get() != &part)
-    throw std::invalid_argument("part '" + part.name() + "' does not belong to this body");
+    throw std::invalid_argument("part '" + part.name() + "' does not belong to this MultiBody");
   return found->second;
 }
 

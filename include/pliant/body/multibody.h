@@ -78,12 +78,12 @@ class MultiBody {
   /// std::invalid_argument if one of these is negative or not finite.
   Spring& spring(std::string name, Point a, Point b, double stiffness, double damping = 0,
                  double rest_length = 0);
-  /// Adds a force (N) at a material point.
+  /// Adds a force (N) at a material point. frame: the frame of its components.
   PointForce& force(std::string name, Point at, TimeVector force, Frame frame = Frame::world);
   /// Adds a force at a material point by a function, see PointForce::custom.
   PointForce& force(std::string name, Point at,
                     std::function<Vec3<double>(double, const Vec3<double>&, const Vec3<double>&)> custom);
-  /// Adds a torque (N m) on a part.
+  /// Adds a torque (N m) on a part. frame: the frame of its components.
   Torque& torque(std::string name, const Part& part, TimeVector torque, Frame frame = Frame::world);
 
   /// Returns gravity at time t (s), m/s^2, world.
@@ -112,16 +112,16 @@ class MultiBody {
   /// Adds a weld, which keeps the relative placement of the undeformed parts.
   Joint& weld(std::string name, Point a, Point b);
 
-  /// Adds an impenetrable plane through a point (m, world) and activates contact. Throws
-  /// std::invalid_argument if the normal has no direction or the name is in use.
+  /// Adds an impenetrable plane through a point (m, world) with a normal (world, of any length > 0), and
+  /// activates contact. Throws std::invalid_argument if the normal has no direction or the name is in use.
   ContactPlane& plane(std::string name, TimeVector point, const Vec3<double>& normal);
   /// Adds an immobile triangle mesh (vertices: m, world; triangles: counter-clockwise seen from the free
   /// side) and activates contact. Throws std::invalid_argument if the name is in use; Simulation
   /// checks the mesh.
   ContactObstacle& obstacle(std::string name, Eigen::Matrix3Xd vertices, Eigen::Matrix3Xi triangles);
-  /// Adds a rectangle without thickness that is solid from both sides. The x and y axes of its frame run
-  /// along its edges; half_x and half_y are its half extents (m). Throws std::invalid_argument if a half
-  /// extent is not positive.
+  /// Adds a rectangle without thickness that is solid from both sides. middle: m, world; orientation: of its
+  /// frame, to world. The x and y axes of this frame are along the edges; half_x and half_y are its half
+  /// extents (m). Throws std::invalid_argument if a half extent is not positive.
   ContactObstacle& plate(std::string name, const Vec3<double>& middle, const Eigen::Quaterniond& orientation,
                          double half_x, double half_y);
 
@@ -133,7 +133,7 @@ class MultiBody {
   /// Returns the part with a name; nullptr if there is none.
   Part* find(const std::string& name) const;
   bool has_joint(const std::string& name) const { return joint_names_.count(name) > 0; }
-  /// Returns the number of a part of this body. Throws std::invalid_argument for a part of another body.
+  /// Returns the number of a part of this MultiBody. Throws std::invalid_argument for a part of another one.
   int index(const Part& part) const;
 
  private:

@@ -1,5 +1,5 @@
-// State: all quantities that are integrated, and every discrete mode. A step is a function of Model and State
-// only. A state can be copied, stored and resumed to the last bit.
+// State: all quantities that are integrated, and every discrete mode (of limits, joints and sleep). A step is
+// a function of Model and State only. A state can be copied, stored and resumed to the last bit.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ enum class Work {
   actuation,       ///< rest values and gravity that change in time
   forces,          ///< forces at points, and torques
   limits,          ///< limits of parameters, and taut strings
-  contact,         ///< normal impulses of contacts, and separation of overlapping bodies
+  contact,         ///< normal impulses of contacts, and separation of overlapping parts
   friction,        ///< friction at contacts
-  baumgarte,       ///< Baumgarte's terms of closing joints
+  baumgarte,       ///< Baumgarte's terms of closing joints, and of closed joints that are not projected
   projection       ///< projection of joints
 };
 inline constexpr int kWorks = 11;
@@ -61,17 +61,17 @@ struct State {
   std::vector<std::int8_t> at_limit;
   std::vector<JointMode> joints;  ///< mode of each joint
   /// Of each part: time at rest, s. A negative number means that the part sleeps; parts with equal numbers
-  /// fell asleep together. Empty if bodies cannot sleep. Code that moves a sleeping part must wake it.
+  /// fell asleep together. Empty if parts cannot sleep. Code that moves a sleeping part must wake it.
   std::vector<double> at_rest;
   std::vector<CachedContact> contact_cache;  ///< sorted by `between`
   /// Number of warm-started steps in a row. After a fixed number the search starts cold, so that forces
-  /// without a cause, for instance of a body wedged between two walls, do not persist.
+  /// without a cause, for instance of a part wedged between two walls, do not persist.
   int contact_cache_age = 0;
 
   double time() const { return start + static_cast<double>(step) * h; }
 };
 
-/// Whether a part sleeps. A sleeping part is at rest, and its coordinates do not change by a bit.
+/// Whether a part sleeps. A sleeping part is at rest, and its coordinates keep all their bits.
 inline bool sleeps(const State& state, int part) {
   return !state.at_rest.empty() && state.at_rest[static_cast<std::size_t>(part)] < 0;
 }

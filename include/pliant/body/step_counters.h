@@ -9,12 +9,14 @@ struct StepCounters {
   long rejected = 0;     ///< steps that were rejected for their error and repeated with a shorter length
   long uncontrolled =
       0;  ///< accepted steps without error control in a run to a tolerance, because of resting contacts
-  long limit_impulses = 0;      ///< impulses at limits of parameters and on strings
-  long factorisations = 0;      ///< factorisations of the stiffness of nodes
-  long impacts = 0;             ///< impacts whose time within the step was located
-  long contact_sweeps = 0;      ///< sweeps of the contact solver over all contacts
-  long contact_fallbacks = 0;   ///< see CoulombResult (solve/coulomb_system.h)
-  long contact_cutoffs = 0;     ///< rounds of contact resolution, or impacts, skipped at their limit per step
+  long limit_impulses = 0;  ///< impulses at limits of parameters and on strings
+  long factorisations = 0;  ///< factorisations of the matrices of implicit methods
+  long impacts = 0;         ///< impacts whose time within the step was located
+  long contact_sweeps = 0;  ///< sweeps of the contact solver over all contacts
+  long contact_fallbacks =
+      0;  ///< clusters of contacts without a solution, see CoulombResult::fallbacks (solve/coulomb_system.h)
+  long contact_cutoffs =
+      0;  ///< how often a step reached its limit of rounds of contact resolution or of located impacts
   double contact_residual = 0;  ///< largest residual of a contact solution, m/s
 };
 

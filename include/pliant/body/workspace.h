@@ -77,7 +77,7 @@ template <class S>
 struct Workspace {
   std::vector<PartWorkspace<S>> parts;
   std::vector<int> before_joints;         ///< numbers of the parts that are evaluated before any joint
-  std::vector<std::uint8_t> held;         ///< of each part: 1 if a velocity of it has no inertia
+  std::vector<std::uint8_t> held;         ///< of each part: 1 if one of its velocities has no inertia
   ConstraintWorkspace<S> joints;          ///< stage 4
   GroupVectors<S, kMaxVelocities> alone;  ///< vectors of the part whose limits are being projected
   std::vector<RigidWorkspace> rigid;      ///< quantities of each rigid island

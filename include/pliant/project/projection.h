@@ -20,8 +20,8 @@ namespace pliant::projection {
 /// Residual of a projection relative to the length of the joint (JointModel::length); and rounding of
 /// coordinates relative to their size.
 inline constexpr double kResidual = 1e-13, kRounding = 4e-15;
-/// If an iteration leaves more than the share kSlow of the error, the next one uses a new factor. If it
-/// leaves more than kStalled with a new factor, the error is the rounding of the rows.
+/// If an iteration leaves more than the share kSlow of the error, the next one uses a new factor. If an
+/// iteration with a new factor leaves more than the share kStalled, the error is the rounding of the rows.
 inline constexpr double kSlow = 0.1, kStalled = 0.5;
 inline constexpr int kMaxIterations = 30;
 /// A closed joint with a gap above this number of residuals after a projection cannot close.
@@ -160,7 +160,7 @@ class Projection {
     message << "a step of " << state_.h << " s is too long for the motion: it opens "
             << model_.joints()[at(widest_joint_)].joint->type() << " '"
             << model_.joints()[at(widest_joint_)].joint->name() << "' by " << initial_gap_
-            << " of the length of its smaller part; use a smaller step";
+            << " times the size of its smaller part; use a smaller step";
     if (model_.joints()[at(widest_joint_)].driven)
       message << ", or check that the prescribed path of its end does not jump";
     throw NumericalFailure(message.str(), step_.t);

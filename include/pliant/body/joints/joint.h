@@ -69,13 +69,14 @@ class Joint {
   /// The points of the first side, then the points of the second side. All points of a side are on one part,
   /// or all are points of the world.
   const std::vector<Point>& points() const { return points_; }
+  /// Number of points of the first side.
   int n_first() const { return n_first_; }
   int n_points() const { return n_points_; }
 
   /// Computes the rows of the joint at time t (s). x: the motion of each point. out is resized.
   virtual void evaluate(double t, const PointMotion<double>* x, JointRows<double>& out) const = 0;
   virtual void evaluate(double t, const PointMotion<Dual<1>>* x, JointRows<Dual<1>>& out) const = 0;
-  /// Returns C at positions x of the points.
+  /// Returns C (m) at time t (s) for positions x (m, world) of the points.
   virtual VecMax<double, kMaxJointRows> gap(double t, const Vec3<double>* x) const = 0;
 
  private:

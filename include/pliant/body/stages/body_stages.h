@@ -196,7 +196,7 @@ void start_joints(const Evaluation<S>& e) {
   joints.stabilise_closed = !e.dynamics.joint_policy().projected;
 }
 
-/// Rows of the parameters of an island that are at a limit and do not move.
+/// Returns the rows of the parameters of an island that are at a limit and do not move.
 inline std::vector<OneSidedRow> limits_at_rest(const Evaluation<double>& e, const Island& island) {
   std::vector<OneSidedRow> limits;
   for (std::size_t k = 0; k < island.parts.size() && e.modes != nullptr; ++k) {

@@ -34,11 +34,11 @@ struct Evaluation {
   bool skips(const Island& island) const { return skips(island.parts.front()); }
   /// Whether an island is evaluated as a rigid island (constraint/rigid_island.h).
   bool uses_rigid(const Island& island) const { return uses_rigid(island.rigid); }
-  /// Whether a part is evaluated with its rigid island; the stages evaluate its loads alone.
+  /// Whether a part is evaluated with its rigid island; the general stages evaluate only its loads then.
   bool uses_rigid(const PartModel& m) const { return uses_rigid(m.rigid_island); }
   /// Whether the parts of an island are evaluated together with its joints, each just before the first joint
-  /// that needs it, while both are in the cache. Loads would need the positions of all parts first, and
-  /// threads would share the parts.
+  /// that needs it, while both are in the cache. This is impossible with loads, which need the positions of
+  /// all parts first, and with threads, which share the parts.
   bool with_joints(const Island& island) const {
     return dynamics.pool() == nullptr && !island.loaded && !uses_rigid(island);
   }

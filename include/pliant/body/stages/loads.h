@@ -6,7 +6,7 @@
 
 namespace pliant::detail {
 
-/// Evaluates the loads of a body in a fixed order. The positions of all parts with loads must be in the
+/// Evaluates the loads of a model in a fixed order. The positions of all parts with loads must be in the
 /// workspace.
 template <class S>
 class LoadStage {

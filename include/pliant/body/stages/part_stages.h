@@ -285,8 +285,9 @@ void for_each_limit_at_rest(const PartModel& m, const std::int8_t* at_limit, con
       act(OneSidedRow{i, k, at_limit[k] < 0 ? 1.0 : -1.0, 0});
 }
 
-/// Keeps parameters that are at a limit, and do not move, from passing it, by forces >= 0, which do no work.
-/// A parameter that moves at its limit is left to the method of integration, which stops it by an impulse.
+/// Adds forces, directed into the range, that keep parameters at a limit with zero rate from passing this
+/// limit. The forces do no work. A parameter that moves at its limit is stopped by an impulse of the method
+/// of integration.
 inline void apply_limits(const Model& model, int part, const State& modes, Workspace<double>& work) {
   const PartModel& m = model.parts()[static_cast<std::size_t>(part)];
   PartWorkspace<double>& w = work.parts[static_cast<std::size_t>(part)];
