@@ -212,8 +212,8 @@ TEST_CASE(
     const auto external = end();
     torque.against = &post;
     CHECK(end() == external);
-    // The opposite torque on the fixed part with its reaction on the moving part; with Frame::body its
-    // components are along the axes of the fixed part.
+    // Now the opposite torque acts on the fixed part, and its reaction on the moving part. With Frame::body
+    // its components are along the axes of the fixed part.
     torque.part = &post;
     torque.against = &part;
     torque.torque = TimeVector(Vec3<double>(-1, -2, -3));

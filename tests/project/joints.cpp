@@ -550,7 +550,8 @@ TEST_CASE("a string is slack in free fall, goes taut without rebound, and swings
   CHECK((q[0] - q[1]).norm() <= 1e-9);
 }
 
-TEST_CASE("N60: strings that go taut at once, and one whose ends start at one point", "[joints]") {
+TEST_CASE("N60: two strings that go taut at the same time, and a string whose ends coincide at the start",
+          "[joints]") {
   for (const char* method : {"rk4", "semi_implicit_euler"}) {
     INFO(method);
     // Both strings are taut 0.8 m below the line of their anchors.

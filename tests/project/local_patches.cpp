@@ -63,7 +63,7 @@ TEST_CASE(
   CAPTURE(coarse, middle, fine, point_coarse, point_middle, point_fine);
   CHECK(std::abs(middle - coarse) < 0.02 * fine);
   CHECK(std::abs(fine - middle) < 0.02 * fine);
-  // The growth is like 1 / h.
+  // The displacement grows like 1 / (edge length of the mesh).
   CHECK(point_middle / point_coarse > 1.3);
   CHECK(point_fine / point_middle > 1.3);
 }

@@ -392,7 +392,9 @@ TEST_CASE("N44: in the singular position the rank falls by one, and either motio
   }
 }
 
-TEST_CASE("N44: a straight arm between two walls: finite forces, and the stop names its joints", "[loops]") {
+TEST_CASE(
+    "N44: a straight arm between two walls: finite forces, and the run stops with the names of its joints",
+    "[loops]") {
   // The weight pulls in the one direction in which the arm can exert no force.
   MultiBody body;
   arm(body, 2, 2);

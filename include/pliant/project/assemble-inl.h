@@ -32,7 +32,8 @@ inline constexpr double kEqualMerit = 1e-12;
 /// Gap, in lengths of the joint, that the projection at the start of the run closes without loss of accuracy.
 inline constexpr double kProjectedGap = 1e-9;
 inline constexpr int kMaxIterations = 400;
-/// An island cannot close if its gap does not decrease below kProgress of its value in kPatience iterations.
+/// An island cannot close if its gap does not decrease below kProgress of its value in kPatience iterations
+/// and, if any parameter has a stiffness, the merit does not decrease either.
 inline constexpr double kProgress = 0.9;
 inline constexpr int kPatience = 40, kMaxHalvings = 5, kMaxAttempts = 10;
 /// Largest number of joints that a message names, without the one with the largest gap.

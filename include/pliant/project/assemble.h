@@ -1,5 +1,5 @@
 // Assembly before time 0: joins parts that are far apart, rotated and deformed. Inertial forces play no part.
-// Each step minimises the linearised problem
+// Each step solves this problem, linearised: minimise
 //   1/2 (q_s - rest)^T K_s (q_s - rest) + eps/2 |delta|_M^2   subject to   C = 0, Eq. (12).
 // The cost eps of rigid motion is small, so that rigid motion comes first, and the parameters change only by
 // as much as their stiffness allows. Rotation costs more while gaps are wide.

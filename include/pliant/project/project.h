@@ -27,14 +27,14 @@ void follow_paths(StepContext& step, const Island& island, VecX<double>& impulse
 /// Scratch storage of pre_step_impulses(); its contents are ignored.
 struct PreStepStorage {
   VecX<double> q_end;       ///< coordinates at the end of the step
-  Workspace<double> ahead;  ///< evaluation of the joints there
+  Workspace<double> ahead;  ///< evaluation of the joints at q_end
 };
 /// Applies impulses before the coordinates move by h v: at the end of the step every parameter is within its
 /// limits, every string within its length and every closed joint closed. step.work: the evaluation at the
-/// start of the step. v_start: the velocities there.
+/// start of the step. v_start: the velocities at the start of the step.
 void pre_step_impulses(StepContext& step, const VecX<double>& v_start, PreStepStorage& storage);
 
-/// Sets parameters that have reached a limit exactly to the limit.
+/// Sets parameters that are at a limit according to State::at_limit exactly to the value of this limit.
 void clamp_to_limits(const Model& model, State& state);
 
 /// Ends the motion of a step at step.t: velocities without inertia are set to zero, quaternions are

@@ -31,7 +31,8 @@ inline constexpr int kMaxNamed = 8;
 /// A row depends on the rows of another joint if a unit force on it causes reactions of that joint above this
 /// share of all reactions.
 inline constexpr double kDependentShare = 1e-6;
-/// Largest gap, in lengths of the smaller part of the joint, that a projection closes.
+/// Largest gap, in sizes of the smaller part of the joint, at which a joint can become closed. If a
+/// projection fails from a larger gap, the step is reported as too long.
 inline constexpr double kMaxGap = 0.1;
 /// A joint with a gap above kStuckGap lengths after a time of kPatience / beta never closes.
 inline constexpr double kStuckGap = 1e-5, kPatience = 10;
