@@ -125,7 +125,8 @@ class JointOf final : public Joint {
  public:
   static constexpr int kRows = F::rows, kPoints = F::first + F::second;
   static_assert(kRows >= 1 && kRows <= kMaxJointRows, "a joint has one to six rows");
-  static_assert(F::first >= 1 && kPoints <= kMaxJointPoints, "a joint ties up to four points a side");
+  static_assert(F::first >= 1 && kPoints <= kMaxJointPoints,
+                "a joint ties one to eight points, at least one on its first side");
 
   JointOf(std::string name, std::vector<Point> points, F formula = {})
       : Joint(std::move(name), std::move(points), F::first, kPoints), formula_(std::move(formula)) {
