@@ -9,7 +9,7 @@ namespace pliant {
 
 /// Returns the moving parts at some contacts, with all parts of their islands, sorted.
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts);
-/// Returns whether a joint of some parts follows a prescribed path.
+/// Returns whether a joint in the islands of some parts follows a prescribed path.
 bool are_driven(const Model& model, const std::vector<int>& parts);
 /// Evaluates the quantities that ContactProblem needs: masses and joint factors of the touched parts, except
 /// of parts that are moved node by node.
