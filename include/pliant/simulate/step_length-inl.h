@@ -1,4 +1,4 @@
-// Bodies of step_length.h: the controller of the step length, and the first step.
+// Function bodies of step_length.h: the controller of the step length, and the first step.
 #pragma once
 
 #include <pliant/simulate/step_length.h>
