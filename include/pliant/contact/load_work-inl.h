@@ -1,5 +1,5 @@
-// Function bodies of load_work.h: the work of forces and torques, as they are at its end, during a
-// displacement.
+// Function bodies of load_work.h: the work of forces and torques during a displacement. Both are evaluated at
+// its end.
 #pragma once
 
 #include <pliant/contact/load_work.h>

@@ -42,7 +42,7 @@ class Sleeping {
   /// A cause that may move a sleeping part without contact.
   struct Drive {
     int part;                                         ///< -1: all parts
-    std::function<bool(double t, double h)> changes;  ///< whether it changes within h seconds after t
+    std::function<bool(double t, double h)> changes;  ///< whether the cause changes within h seconds after t
   };
 
   void find_drives();

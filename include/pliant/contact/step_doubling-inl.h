@@ -44,7 +44,8 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
 }
 
 /// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact, and zero for
-/// other parts; n_v numbers. before: the resting contacts before; now: the present contacts.
+/// other parts; n_v numbers. before: the resting contacts before; now: the present contacts. t:
+/// time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
                                        double t) {

@@ -1,6 +1,7 @@
 // Exact integration of local coordinates that are free oscillators: q_ddot = -omega^2 q - D q_dot + n with a
 // constant load n, the acceleration by all other forces. The modes of a part with joints or strings are not
-// free, because these couple them to stiff motion; the method of integration advances such modes.
+// free: rows of joints and strings couple them to stiff motion. The method of integration advances such
+// modes.
 #pragma once
 
 #include <pliant/body/model.h>

@@ -22,7 +22,7 @@ class Integrator {
   /// step. The caller increments State::step.
   virtual void step(StepContext& step) = 0;
   /// Returns the largest growth in a step, |eigenvalue| of the step map, for x'' + D x' + K x = 0 with unit
-  /// masses. The step is stable while it is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
+  /// masses. A step of h is stable if the growth is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
   /// Returns the displacement that a constant force causes in a step, divided by h times the change of
   /// velocity that it causes.
@@ -68,7 +68,7 @@ class Integrator {
   double error_ = 0;
 };
 
-/// While the object lives, impulses on parts act by their response over a step (set_responses).
+/// While the object lives, parts respond to impulses as over a whole step (set_responses).
 class StepResponses {
  public:
   StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)

@@ -37,7 +37,7 @@ inline constexpr double kSolves = 0.1;
 /// For tolerances of this value or more, most of the cost of a model with contact is that of the steps with
 /// contact, which are of second order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Largest number of velocities for dense implicit stages.
+/// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
 
 /// Returns the simulated time (s) per evaluation of the accelerations, where factorisations and solves count

@@ -177,8 +177,8 @@ void Simulation::with_rollback(double h, Advance&& step) {
     reject_step();
     if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
     std::ostringstream message;
-    message << "a step of " << h << " s is too long for the motion: " << failure.what()
-            << ", but not after steps of " << h / simulation::kShorterSteps << " s";
+    message << "a step of " << h << " s is too long for the motion: " << failure.what() << "; steps of "
+            << h / simulation::kShorterSteps << " s do not fail in this way";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     reject_step();

@@ -51,7 +51,8 @@ class Simulation {
   /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
-  /// Continues from another state of the same model. Throws std::invalid_argument if it does not fit.
+  /// Continues from another state of the same model. Throws std::invalid_argument if the state does not fit
+  /// the model.
   void set_state(State state);
   double time() const { return state_.time(); }
 
@@ -71,7 +72,8 @@ class Simulation {
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
   /// Returns the counters of the kernels, summed over parts.
   Counters counters() const;
-  /// Returns the parameters that had no inertia at some step, and were fixed in it, as "part.parameter".
+  /// Returns the names of the parameters ("part.parameter") that had no inertia at some step and were fixed
+  /// in that step, and of such velocities of frames ("part.omega.x").
   std::set<std::string> held() const;
 
  private:

@@ -23,7 +23,7 @@ class ImplicitModes final : public ImplicitPart {
 
  private:
   const Oscillators* oscillators_;
-  MatX<double> P_;  ///< one column for each mode: its displacement at the attachment points of joints
+  MatX<double> P_;  ///< one column for each mode: displacements of the attachment points of joints
   double c_ = 0;
   VecX<double> sigma_;        ///< 1 + c D + c^2 omega^2
   MatX<double> D_s_;          ///< damping of the global parameters

@@ -1,5 +1,5 @@
 // Function bodies of stage_solver.h: clusters, the Newton iteration of a stage, and the matrices by
-// differences.
+// difference quotients.
 #pragma once
 
 #include <pliant/method/implicit/stage_solver.h>
@@ -23,10 +23,10 @@ namespace stage_solver {
 
 /// The iteration is slow if each change is more than this fraction of the last one.
 inline constexpr double kSlowContraction = 0.9;
-/// Largest number of iterations of a stage with the matrix.
+/// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
-/// Without the matrix a stage may use kFreeIterations iterations for each velocity of the largest cluster,
-/// because the matrix costs two evaluations for each of these velocities.
+/// Without the matrix a stage may use kMaxIterations iterations, or kFreeIterations for each velocity of the
+/// largest cluster if that is more, because the matrix costs two evaluations for each of these velocities.
 inline constexpr double kFreeIterations = 0.5;
 /// Largest number of matrices that are computed for one stage, besides that at the start of the step.
 inline constexpr int kMaxMatrices = 4;
@@ -215,8 +215,8 @@ PLIANT_INLINE void StageSolver::allocate_matrices(double t) {
     const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
     if (n > stage_solver::kMaxClusterVelocities) {
       std::ostringstream message;
-      message << "the parts that act on each other, from part '"
-              << model_.parts()[at(cluster.parts.front())].part->name() << "' on, have stiff motion and " << n
+      message << "part '" << model_.parts()[at(cluster.parts.front())].part->name()
+              << "' and the parts that joints, springs or torques connect to it have stiff motion and " << n
               << " velocities; expected at most " << stage_solver::kMaxClusterVelocities
               << " for this method: use linearly_implicit or smaller steps";
       throw NumericalFailure(message.str(), t);
