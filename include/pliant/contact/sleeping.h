@@ -18,8 +18,8 @@ class Sleeping {
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
   /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or whose drive
-  /// changes in the motion, with all parts that sleep with them. Stores the coordinates of parts that sleep
-  /// on.
+  /// changes in the motion, with all parts that sleep with them. Stores the coordinates if any part
+  /// still sleeps.
   void begin_motion(double t, double h, State& state);
   /// Ends the motion: restores the coordinates of sleeping parts.
   void restore(State& state) const;

@@ -278,7 +278,7 @@ class StableStepSearch {
     system.D.block(row, row, n_v, n_v) += part.drag() * M;
   }
   /// Adds a spring that resists every change of x_b - x_a, the vector between its ends. It is at least as
-  /// stiff as the actual spring, which acts along its axis only.
+  /// stiff as an axial spring in every direction.
   void add_spring(const SpringModel& s, double open_weight, LinearSystem& system) const {
     const auto is_outside = [&](int part) {
       return moves(model_, part) && first_[static_cast<std::size_t>(part)] < 0;
