@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/method/error_scale-inl.h>.
+// The library's instance of the function bodies in <pliant/method/error_scale-inl.h>.
 #include <pliant/method/error_scale-inl.h>

@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/method/linearly_implicit-inl.h>.
+// The library's instance of the function bodies in <pliant/method/linearly_implicit-inl.h>.
 #include <pliant/method/linearly_implicit-inl.h>

@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/method/rk4-inl.h>.
+// The library's instance of the function bodies in <pliant/method/rk4-inl.h>.
 #include <pliant/method/rk4-inl.h>

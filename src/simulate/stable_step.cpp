@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/simulate/stable_step-inl.h>.
+// The library's instance of the function bodies in <pliant/simulate/stable_step-inl.h>.
 #include <pliant/simulate/stable_step-inl.h>

@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/simulate/step_length-inl.h>.
+// The library's instance of the function bodies in <pliant/simulate/step_length-inl.h>.
 #include <pliant/simulate/step_length-inl.h>

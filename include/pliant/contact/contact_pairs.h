@@ -39,12 +39,12 @@ class Pairs {
     for (const Contact& contact : contacts) sorted_.emplace_back(key_of(contact), &contact);
     std::sort(sorted_.begin(), sorted_.end());
   }
-  /// Returns whether a contact of the same pair is among them.
+  /// Returns whether one of the contacts belongs to the pair of this contact.
   bool has(const Contact& contact) const {
     const auto [first, last] = range(contact);
     return first != last;
   }
-  /// Returns whether a contact of the same pair is among them for which condition(contact) is true.
+  /// Returns whether one of the contacts belongs to the pair of this contact and condition(it) is true.
   template <class F>
   bool has(const Contact& contact, F&& condition) const {
     const auto [first, last] = range(contact);

@@ -1,5 +1,5 @@
-// Bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and their responses with
-// joints.
+// Function bodies of contact_problem.h: the contacts, limits and strings of a CoulombSystem, and their
+// responses with joints.
 #pragma once
 
 #include <pliant/contact/contact_problem.h>
@@ -101,7 +101,7 @@ PLIANT_INLINE void ContactProblem::add_local(const ContactSide& side, const Mat3
   }
 }
 
-/// Adds a one-sided row for each parameter at a limit, which it must not pass.
+/// Adds a one-sided row for each parameter at a limit: the parameter must not pass the limit.
 PLIANT_INLINE void ContactProblem::add_limits() {
   const std::vector<Mover> movers = movers_.all();
   for (int i = 0; i < static_cast<int>(movers.size()); ++i) {
@@ -124,8 +124,8 @@ PLIANT_INLINE void ContactProblem::add_limits() {
   }
 }
 
-/// Adds a one-sided row for each taut string at the movers, which must not grow. The projection of joints
-/// treats the strings of parts that deform locally.
+/// Adds a one-sided row for each taut string at the movers: the string must not become longer. Strings of
+/// parts that deform locally get no row; the projection of joints treats them.
 PLIANT_INLINE void ContactProblem::add_strings() {
   const std::vector<Mover> movers = movers_.all();
   for (const Mover& mover : movers) {
@@ -148,7 +148,8 @@ PLIANT_INLINE void ContactProblem::add_strings() {
   }
 }
 
-/// Completes the last contact with its sides, and with its responses while joints act.
+/// Completes the last contact with its sides, and with the responses of the movers, including the reactions
+/// of joints.
 PLIANT_INLINE void ContactProblem::complete() {
   const int contact = system_.size() - 1, rows = system_.rows(contact);
   while (system_.movers() < static_cast<int>(movers_.all().size()))

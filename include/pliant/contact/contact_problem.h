@@ -1,6 +1,6 @@
 // The problem of simultaneous contacts at velocity level: each contact has a relative velocity u of its sides
 // and an impulse p that satisfy Coulomb's law (solve/coulomb_system.h), while closed joints stay closed,
-// parameters stay within their limits and taut strings do not grow.
+// parameters stay within their limits and taut strings do not become longer.
 #pragma once
 
 #include <vector>
@@ -26,8 +26,8 @@ class ContactProblem {
   ContactProblem(const Model& model, const State& state, Workspace<double>& work,
                  const std::vector<Contact>& contacts);
 
-  /// Computes the impulses of the contacts, with the rebound of each, and of limits and strings. limit_time:
-  /// the time `since` of all limits and strings, see Contact::since.
+  /// Computes the impulses of contacts, limits and strings. Each contact rebounds with Contact::rebound.
+  /// limit_time: the time Contact::since of the impulses on limits and strings, s.
   ContactSolution solve(double limit_time);
   /// Sets the start value of the impulse of a contact, N s, on side a, world. A value near the solution
   /// saves all sweeps, as in a pile at rest; a value far from it saves none.
@@ -37,25 +37,27 @@ class ContactProblem {
   /// Returns the velocity of side a relative to side b at each contact, m/s, world, with the velocities of
   /// another state.
   std::vector<Vec3<double>> velocities(const State& state) const;
-  /// Bounds the displacements of movers. Large impulses with different `since` (on a light part between heavy
-  /// ones) may nearly cancel in velocity, but not in displacement. If a displacement exceeds max_time (s)
-  /// times the change of velocity, it becomes limit_time (s) times this change.
+  /// Bounds the displacements of movers by the impulses. Large impulses with different `since` (on a light
+  /// part between heavy ones) may nearly cancel in velocity, but not in displacement. If a displacement
+  /// exceeds max_time (s) times the change of velocity, it becomes limit_time (s) times this change.
   void bound_shifts(double limit_time, double max_time);
-  /// Adds displacements, without friction, that close the remaining overlaps: each contact opens by at most
+  /// Adds displacements, without friction, that remove the remaining overlaps: each contact opens by at most
   /// its max_separation (m), and overlaps up to `tolerance` (m) may remain.
   void separate_bodies(const std::vector<double>& max_separation, double tolerance = 0);
 
   const Movers& movers() const { return movers_; }
-  /// Return the velocities of a mover before and after the impulses, and its displacement by them.
+  /// Return the velocities of a mover before and after the impulses, and its displacement by the impulses:
+  /// mover.size numbers each.
   auto before(const Mover& mover) const { return before_.segment(mover.first, mover.size); }
   auto after(const Mover& mover) const { return after_.segment(mover.first, mover.size); }
   auto shift(const Mover& mover) const { return shift_.segment(mover.first, mover.size); }
-  /// Adds the impulses lambda of the joints against the contact impulses, N s; C_q^T lambda acts on the
-  /// parts. rows: of all joints.
+  /// Adds the reactions of the joints to the contact impulses: lambda, N s; C_q^T lambda acts on the parts.
+  /// rows: one entry for each row of all joints.
   void add_joint_impulses(VecX<double>& rows) const;
 
  private:
-  /// Impulses of the joints of an island by unit impulses at a contact.
+  /// Reactions of the joints of an island to unit impulses at a contact: one column of lambda for each row of
+  /// the contact.
   struct JointResponse {
     int contact;
     const Island* island;
@@ -69,7 +71,7 @@ class ContactProblem {
   struct Side {
     int part, mover, first;  ///< first: index of the velocities of the part in those of the mover
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, kMaxVelocities> J;
-    /// J of some local coordinates; first: index of their rates in the velocities of the mover.
+    /// Columns of J for some local coordinates; first: index of their rates in the velocities of the mover.
     struct Local {
       int first;
       Eigen::Matrix3Xd J;

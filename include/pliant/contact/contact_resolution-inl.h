@@ -1,5 +1,5 @@
-// Bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of impacts, and the
-// separation of overlaps.
+// Function bodies of contact_resolution.h: the contact cache, one resolution with its work, chains of
+// impacts, and the separation of overlaps.
 #pragma once
 
 #include <pliant/contact/contact_resolution.h>
@@ -26,23 +26,23 @@ namespace contact_resolution {
 /// of their own travel.
 inline constexpr double kSeparationSpeed = 1;
 inline constexpr int kMaxSeparationRounds = 16;
-/// Largest number of successive impacts in a step of bodies that impulses have pushed into others.
+/// Largest number of successive resolutions in a step when impulses push bodies into others (resolve_chain).
 inline constexpr int kMaxChainLinks = 4;
-/// Overlaps below this share of the gap of resting contacts remain.
+/// Overlaps below this share of the gap of resting contacts are not separated.
 inline constexpr double kAllowedOverlap = 1e-4;
-/// Overlaps of this many units in the last place of the positions remain too.
+/// Overlaps of this many units in the last place of the positions are not separated either.
 inline constexpr double kRoundingUlps = 16;
 /// Meshes may overlap by this multiple of the gap of resting contacts.
 inline constexpr double kMeshOverlap = 800;
-/// A contact is one of the last step if their points are nearer than this share of the size of the smaller
-/// body.
+/// A contact is the same as one of the last step if their contact points are nearer than this share of the
+/// size of the smaller body.
 inline constexpr double kSameContact = 0.05;
 /// Largest number of warm-started steps in a row.
 inline constexpr int kMaxWarmStartAge = 10;
 /// Tolerance of a separation, as a share of the overlap that may remain.
 inline constexpr double kSeparationTolerance = 0.03;
 
-/// Returns whether a side of a contact is at nodes of a mesh.
+/// Returns whether one of the sides of a contact is at nodes of a mesh.
 inline bool is_at_nodes(const Contact& contact) {
   return contact.a.at_nodes() || contact.b.at_nodes();
 }
@@ -81,8 +81,9 @@ PLIANT_INLINE void ContactResolution::reconcile(StepContext& step, const std::ve
   project_joints(step);
 }
 
-/// Returns the distance (m) by which the rotation of a part moves a point away from its tangent in h seconds.
-/// Such a point may overlap another body within a step and move away from it at the end.
+/// Returns the distance (m) by which the rotation of a part moves a material point at x away from the tangent
+/// of its path in h seconds. Such a point may overlap another body within a step and move away from that body
+/// at the end of the step.
 PLIANT_INLINE double ContactResolution::departure_from_tangent(const ContactSide& side, const Vec3<double>& x,
                                                                const State& state, double h) const {
   if (side.part < 0 || side.at_nodes()) return 0;
@@ -101,8 +102,8 @@ PLIANT_INLINE double ContactResolution::largest_separation(const Contact& contac
   return distance;
 }
 
-/// Returns the point of a contact in the frame of its part a, m. A resting contact stays there while the
-/// bodies move.
+/// Returns the contact point in the frame of part a, m. There the point of a resting contact stays the same
+/// while the bodies move.
 PLIANT_INLINE Vec3<double> ContactResolution::local_position(const Contact& contact, const State& state,
                                                              double t) const {
   const Model& model = dynamics_.model();
@@ -263,8 +264,9 @@ PLIANT_INLINE void ContactResolution::resolve_once(StepContext& step, const Reso
   apply_solution(problem, dynamics_.model(), step.work, state);
   if (h > 0) reconcile(step, parts);
   if (h > 0) add_ejections(state);
-  // Methods with a reach of 1 book the work of forces at the velocities of the start of the step: it is zero
-  // for resting parts. For other methods the displacement by the impulses changes this work.
+  // Methods with a reach of 1 compute the work of forces from the velocities at the start of the step; this
+  // work is zero for resting parts. For other methods the displacement by the impulses changes the work of
+  // forces.
   if (motion.force_time < h) state.work[static_cast<int>(Work::forces)] += loads.work_until(t, state);
   if (h > 0) separate_overlaps(step);
   project_limits(step);
@@ -310,7 +312,8 @@ PLIANT_INLINE void ContactResolution::extend_travel(const Contact& contact, doub
     if (side->part >= 0) travel_[at(side->part)] = std::max(travel_[at(side->part)], distance);
 }
 
-/// Adds to the travel of each part its displacement by the impulses at all contacts and joints.
+/// Adds ejections to the travel of each part: displacements of the part by the impulses at all contacts and
+/// joints.
 PLIANT_INLINE void ContactResolution::add_ejections(const State& state) {
   for (std::size_t i = 0; i < travel_.size(); ++i) {
     const PartModel& m = dynamics_.model().parts()[i];
@@ -377,7 +380,7 @@ PLIANT_INLINE void ContactResolution::keep_affected(std::vector<Contact>& contac
 }
 
 /// Stage 6 of a step: separates bodies that overlap, by the distance that a step of h seconds allows. Bodies
-/// that this pushes into others are separated completely.
+/// that this separation pushes into others are separated completely.
 PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
   State& state = step.state;
   Workspace<double>& work = step.work;
@@ -395,7 +398,7 @@ PLIANT_INLINE void ContactResolution::separate_overlaps(StepContext& step) {
     std::vector<PairKey> too_deep;
     bool any_deep = false;
     for (Contact& contact : found) {
-      // The next steps close the remaining overlap of a pair that was separated by its allowed distance.
+      // The next steps remove the remaining overlap of a pair that was separated by its allowed distance.
       if (fully_separated_.count(key_of(contact)) > 0) contact.gap = std::max(contact.gap, 0.0);
       if (i == 0 && contact.gap < -largest_separation(contact, h)) too_deep.push_back(key_of(contact));
       any_deep = any_deep || contact.gap < -allowed_overlap(contact);

@@ -18,8 +18,9 @@ namespace pliant {
 struct ContactRecord {
   std::vector<Contact> contacts;
   std::vector<Vec3<double>> impulses;  ///< on the sides a, N s, world
-  std::vector<double> sliding;         ///< tangential speeds afterwards, m/s
-  VecX<double> joint_impulses;  ///< lambda of the joints against them, N s; C_q^T lambda acts on the parts
+  std::vector<double> sliding;         ///< tangential speeds after the impulses, m/s
+  /// Reactions of all joints to these impulses: lambda, N s; C_q^T lambda acts on the parts.
+  VecX<double> joint_impulses;
 
   void clear();
 };
@@ -27,7 +28,7 @@ struct ContactRecord {
 /// The motion at whose end contacts are resolved.
 struct ResolvedMotion {
   const State& before;  ///< state at its start; the state of the step itself for an impulse at one instant
-  double force_time;    ///< `since` of impulses on limits, s (FreeMotion::force_time)
+  double force_time;    ///< Contact::since of impulses on limits and strings, s (FreeMotion::force_time)
   double h;             ///< length, s; 0 for an impulse at one instant
 };
 
@@ -46,17 +47,17 @@ class ContactResolution {
   /// Applies the impulses at the contacts at step.t, the end of a motion, with the displacements by them
   /// (Contact::since), and then separates bodies that still overlap.
   void resolve(StepContext& step, const ResolvedMotion& motion, std::vector<Contact> contacts);
-  /// Resolves the impacts of bodies that the impulses at these contacts have pushed into others during the
-  /// motion of step.h seconds, and the impacts that follow. Impacts slower than min_impact_speed (m/s) do not
-  /// rebound.
+  /// Resolves the impacts of bodies that the impulses at the contacts `resolved` have pushed into others
+  /// during the motion of step.h seconds, and the impacts that follow. Impacts slower than min_impact_speed
+  /// (m/s) do not rebound.
   void resolve_chain(StepContext& step, std::vector<Contact> resolved, double min_impact_speed);
 
   /// Projects frames and joints after a change of velocities and coordinates of some parts.
   void reconcile(StepContext& step, const std::vector<int>& parts) const;
 
  private:
-  /// A resolved contact with its impulse (N s, in place of the force), the distance within which another
-  /// contact is equal to it (m), and the number of the resolution in the step.
+  /// A resolved contact; CachedContact::force contains its impulse, N s. match_distance: another contact of
+  /// the pair nearer than this (m) is the same contact. resolution: number of the resolution in the step.
   struct Resolved {
     CachedContact cached;
     double match_distance;
@@ -93,7 +94,9 @@ class ContactResolution {
   std::vector<Resolved> resolved_;  // of this step
   int resolutions_ = 0;
   bool cold_start_ = false;
-  std::vector<double> travel_;  // travel of each part towards the bodies it meets, and by ejections, m
+  // Travel of each part, m: towards the bodies that it meets, and by ejections, the displacements by
+  // impulses.
+  std::vector<double> travel_;
   VecX<double> q_before_ejection_;
   // Pairs whose overlap was too deep to be separated in one step, and that have been separated by the allowed
   // distance.

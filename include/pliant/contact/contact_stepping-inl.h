@@ -1,5 +1,5 @@
-// Bodies of contact_stepping.h: the stages of a step with contact. ContactStepping::step() lists them, and
-// the README.md of this folder describes them.
+// Function bodies of contact_stepping.h: the stages of a step with contact. ContactStepping::step() lists
+// them, and the README.md of this folder describes them.
 #pragma once
 
 #include <pliant/contact/contact_stepping.h>
@@ -37,8 +37,8 @@ inline constexpr int kMaxLocatedImpacts = 200;
 inline constexpr double kTouchingGap = 1e-6;
 
 /// Returns the normal speed of resting contacts that the residual of the last contact solution (m/s) causes,
-/// m/s. It is a power of two, so that the result of the last search is mostly still valid. gravity_speed:
-/// speed that gravity gives a body in the step.
+/// m/s. It is rounded down to a power of two, so that it rarely changes and the result of the last contact
+/// search stays valid. gravity_speed: speed that gravity gives a body in the step, m/s.
 inline double residual_speed(double residual, double gravity_speed) {
   const double speed = std::min(kResidualFactor * residual, gravity_speed);
   if (!(speed > kMinImpactSpeed * gravity_speed)) return 0;
@@ -102,19 +102,20 @@ struct ContactStepping::Progress {
   double time_tolerance;   ///< times closer than this are equal, s
   double longest;          ///< longest next motion, s: in a longer one, parts moved farther than predicted
   double min_impact_speed, max_resting_speed;  ///< see FreeMotion, m/s
-  bool soft_nearby;  ///< whether parts that deform locally came near another body without prediction
-  int impacts;       ///< number of impacts located so far
+  /// Whether a part that deforms locally came near another body although this was not predicted.
+  bool soft_nearby;
+  int impacts;  ///< number of impacts located so far
   StageClock clock;
 
   bool finished() const { return !(now < end - time_tolerance); }
-  /// Displacement by gravity in the motion, in units of gravity * h^2.
+  /// Returns the displacement by gravity in a motion of h seconds, in units of gravity * h^2.
   double gravity_reach() const { return method.local_is_implicit() ? 1 : method.reach(); }
 };
 
 /// One motion of the method within a step, and the contacts that it may cause.
 struct ContactStepping::Motion {
   FreeMotion free;
-  ContactFinder::Neighbourhood predicted, travelled;  ///< before the motion, and for its actual travel
+  ContactFinder::Neighbourhood predicted, travelled;  ///< predicted; from the actual travel
   std::vector<Contact> resting;                       ///< resting contacts at its start
   std::vector<Contact> contacts;                      ///< contacts at its end
 
@@ -214,7 +215,8 @@ PLIANT_INLINE void ContactStepping::fail_too_fast(const Progress& progress) cons
   const double h = progress.end - progress.begin;
   std::ostringstream message;
   message << "parts move so fast past each other that a step of " << h << " s would need more than "
-          << contact_stepping::kMaxMotions << " motions; use a smaller step";
+          << contact_stepping::kMaxMotions
+          << " pieces in which no part passes through another; use a smaller step";
   throw NumericalFailure(message.str(), progress.now);
 }
 
@@ -255,8 +257,8 @@ PLIANT_INLINE ContactFinder::Neighbourhood ContactStepping::look_ahead(const Sta
   return around;
 }
 
-/// If a sleeping part is at a contact, restores the start of the motion and wakes the part there. Returns
-/// whether it did.
+/// If a sleeping part is at a contact, restores the state at the start of the motion and wakes the part.
+/// Returns whether a part was woken.
 PLIANT_INLINE bool ContactStepping::wake_touched(const std::vector<Contact>& contacts,
                                                  const FreeMotion& motion, State& state) {
   if (!sleeping_.any_asleep()) return false;
@@ -293,7 +295,7 @@ PLIANT_INLINE std::vector<Contact> ContactStepping::impacts_to_locate(const Moti
 }
 
 /// Stage 4: cuts the motion at its first impact, if the impact can be located, and applies the impulses
-/// there. Returns whether it did. locate_impact() is in impact_timing.h.
+/// there. Returns whether the motion was cut. locate_impact() is in impact_timing.h.
 PLIANT_INLINE bool ContactStepping::locate_and_apply_impact(Motion& motion, Progress& progress) {
   StepCounters& counters = progress.step.counters;
   const std::vector<Contact> impacts = impacts_to_locate(motion);
@@ -317,8 +319,8 @@ PLIANT_INLINE bool ContactStepping::locate_and_apply_impact(Motion& motion, Prog
   return true;
 }
 
-/// Resolves the resting contacts at the end of a motion that an impact has cut, with the impulses of this
-/// motion. New contacts of these pairs, and overlaps of meshes, are included.
+/// Resolves the resting contacts at the end of a motion that an impact has cut. The impulses stand for forces
+/// during this motion. New contacts of the pairs that rested, and overlaps of meshes, are included.
 PLIANT_INLINE void ContactStepping::resolve_resting(const Motion& motion, StepContext& step,
                                                     StageClock& clock) {
   const FreeMotion& free = motion.free;
@@ -370,7 +372,8 @@ PLIANT_INLINE void ContactStepping::resolve(Motion& motion, Progress& progress) 
   const StepResponses responses(progress.method, dynamics_.model(), step.work);
   meshes_.find(state, progress.now, contacts);
   time_impacts(finder_, free, state, contacts);
-  // Implicit steps of parts that deform locally have one velocity, which moves all of their nodes.
+  // An implicit step moves a node by h times the velocity at its end. A change of this velocity by an impulse
+  // therefore moves the node by h times the change.
   if (progress.method.local_is_implicit())
     for (Contact& contact : contacts)
       if (contact.a.at_nodes() || contact.b.at_nodes()) contact.since = free.force_time();

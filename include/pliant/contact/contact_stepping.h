@@ -1,7 +1,8 @@
 // Steps of bodies that touch, around any method of integration. A step without contact is the step of the
-// method. An impact is located in time, and its impulses act there. At resting contacts, impulses stand for
-// forces that are constant over the step, so that resting and sticking bodies keep their coordinates to the
-// last bit. If many impacts happen in one step, they are resolved at its end (README.md of this folder).
+// method. An impact is located in time, and its impulses act at that time. At resting contacts, impulses
+// stand for forces that are constant over the step, so that resting and sticking bodies keep their
+// coordinates to the last bit. If many impacts happen in one step, they are resolved at its end (README.md of
+// this folder).
 #pragma once
 
 #include <vector>
@@ -21,19 +22,22 @@ class ContactStepping {
   /// The dynamics must outlive this object. Throws std::invalid_argument, see ContactFinder.
   explicit ContactStepping(const Dynamics& dynamics);
 
-  /// Begins a step, for which step() may be called several times; undo_step() removes its record.
+  /// Begins a step, for which step() may be called several times, with an empty record. undo_step() replaces
+  /// the record by that of the step before.
   void begin_step();
   void undo_step();
-  /// Advances q, v and work by state.h and returns the length of the step, s; the caller counts the step.
-  /// to_event: the step ends at the first located impact, or after the longest motion that resting contacts
-  /// allow.
+  /// Advances q, v and work of step.state by state.h seconds, or less with to_event. Returns the length of
+  /// the step, s. The caller increments State::step. to_event: the step ends at the first located impact. In
+  /// models with few moving parts it also ends after a motion with resting contacts, or with contacts whose
+  /// time was not located.
   double step(Integrator& method, StepContext& step, bool to_event = false);
-  /// Repeats a step with resting contacts as two half steps, and extrapolates from both (Richardson):
-  /// impulses that stand for forces over a step have an error of O(h^2), which the difference estimates; the
-  /// error of the extrapolation is O(h^3). If the step ended at an impact, the halves locate the impact
-  /// themselves and are not extrapolated. initial: the state at the start, with the length of the step;
-  /// length: the length of the step that is repeated, s; impacts: their number before the step. step.state:
-  /// the end of the step, then that of the halves.
+  /// Repeats a step with resting contacts as two half steps, and extrapolates from both results (Richardson).
+  /// Impulses that stand for forces over a step have an error of O(h^2), which the difference of both results
+  /// estimates; the error of the extrapolation is O(h^3). If the step ended at an impact, the halves locate
+  /// the impact themselves and are not extrapolated. initial: the state at the start, with the length of the
+  /// step before any impact shortened it. length: the actual length of the step, s. impacts: the count of
+  /// impacts before the step. step.state: on input the state at the end of the step, on output that of the
+  /// halves.
   StepError step_by_doubling(Integrator& method, StepContext& step, const ErrorScale& scale,
                              const State& initial, double length, long impacts);
 
@@ -51,8 +55,8 @@ class ContactStepping {
   /// Returns whether the last step had resting contacts, or contacts whose time was not located: then the
   /// error estimate of the method does not include the error of contact.
   bool has_contact_error() const { return has_unlocated_ || !resting_at_start_.empty(); }
-  /// Returns whether step_by_doubling() is worth its cost: the model has few parts, and no contact is at a
-  /// node.
+  /// Returns whether step_by_doubling() is worth its cost: the model has few moving parts, and no contact is
+  /// at nodes of a mesh.
   bool may_double() const;
   /// Return the contacts and impulses of the last whole step; empty if nothing touched.
   const ContactRecord& record() const { return record_; }
@@ -80,16 +84,16 @@ class ContactStepping {
 
   /// A whole step that is compared with its two halves.
   struct Whole {
-    const State state;                   ///< state at its end
+    const State state;                   ///< state at the end of the step
     const double length;                 ///< s
-    const std::vector<Contact> resting;  ///< resting contacts in it
-    const std::size_t contacts;          ///< number of contacts that it resolved
-    const bool has_impact;               ///< whether it ended at an impact
+    const std::vector<Contact> resting;  ///< resting contacts in the step
+    const std::size_t contacts;          ///< number of contacts that the step resolved
+    const bool has_impact;               ///< whether the step ended at an impact
   };
   struct Halves {
     double first = 0, length = 0;     ///< lengths of the first half and of both, s
     std::size_t first_contacts = 0;   ///< number of contacts that the first half resolved
-    VecX<double> gravity_velocities;  ///< velocities that gravity gives parts which lost their contacts
+    VecX<double> gravity_velocities;  ///< n_v: velocities that gravity gives to parts that lost a contact
     bool finite = false;
   };
   Halves step_halves(Integrator& method, StepContext& step, const Whole& whole, const State& initial);

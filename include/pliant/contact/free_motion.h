@@ -9,16 +9,16 @@ struct FreeMotion {
   State before;      ///< state at the start
   double begin = 0;  ///< time of the start, s
   double h = 0;      ///< length, s
-  double reach = 0;  ///< displacement by a constant acceleration, in units of h^2 (Integrator::reach)
-  /// Slower impacts do not rebound, m/s. Rounding and gravity within a part of a step cause such speeds.
+  double reach = 0;  ///< a constant acceleration a displaces by reach * a * h^2 (Integrator::reach)
+  /// Slower impacts do not rebound, m/s. Rounding and gravity within a fraction of a step cause such speeds.
   double min_impact_speed = 0;
   /// Largest normal speed of a resting contact, m/s. It includes the residual of the last impulses
   /// (State::contact_residual).
   double max_resting_speed = 0;
 
   double end() const { return begin + h; }
-  /// Returns the time (s) that multiplies the change of velocity by impulses at the end of the motion, if
-  /// these stand for forces that are constant during the motion: the product is the displacement.
+  /// Returns a time, s. Impulses at the end of the motion that stand for forces constant during the motion
+  /// displace bodies by this time multiplied by the change of velocity.
   double force_time() const { return reach * h; }
 };
 

@@ -1,5 +1,6 @@
-// Bodies of impact_timing.h: the time at which the first impact within a motion happens. The dense output of
-// the method gives an approximate time; steps of the method to this time and near it give the exact one.
+// Function bodies of impact_timing.h: the time at which the first impact within a motion happens. The dense
+// output of the method gives an approximate time; steps of the method to this time and near it give the exact
+// one.
 #pragma once
 
 #include <pliant/contact/impact_timing.h>
@@ -16,24 +17,24 @@ namespace pliant {
 
 namespace impact_timing {
 
-/// The time of an impact is exact if the gap is at most kGapTolerance sizes, or if the time is known to
-/// kTimeTolerance of the motion.
+/// The time of an impact is exact if the gap is at most kGapTolerance sizes of the smallest part, or if the
+/// time is known to kTimeTolerance of the motion.
 inline constexpr double kGapTolerance = 1e-13, kTimeTolerance = 1e-15;
 inline constexpr int kMaxTrials = 60;
-/// Sides are apart if their gap is larger than this, in sizes.
+/// Sides are apart if their gap is larger than this, in sizes of the smallest part.
 inline constexpr double kClearGap = 100 * kGapTolerance;
 /// Sides that touch at the start, and are not apart after 2^-kMaxHalvings of the motion, touch all the time.
 inline constexpr int kMaxHalvings = 20;
 /// Accuracy of the time on the dense output, as a share of the motion.
 inline constexpr double kPathTolerance = 1e-9;
-/// The rate of a gap is computed from times at least this far apart, as a share of the motion. For nearer
-/// times the difference is rounding.
+/// The rate of a gap is computed from times that differ by more than this, as a share of the motion. For
+/// nearer times the difference of the gaps is rounding.
 inline constexpr double kMinRateInterval = 1e-6;
 /// After this number of secant steps the search uses the bracket only.
 inline constexpr int kMaxSecants = 8;
 
-/// An interval of time that contains the impact, with the gaps at its ends: positive at the lower end, zero
-/// or negative at the upper end.
+/// An interval of times, s, that contains the impact, with the gaps at its ends, m: positive at the lower
+/// end, zero or negative at the upper end.
 struct Bracket {
   double low, f_low, high, f_high;
   int last_end = 0;  ///< end that the last trial replaced: 1 lower, -1 upper
@@ -64,7 +65,8 @@ struct TimeAndRate {
   double tau, rate;
 };
 
-/// Returns the time of impact on a path and the rate of the gap. h: length of the motion.
+/// Returns the time of impact on the dense output and the rate of the gap there. h: length of the motion, s.
+/// gap: function that returns the gap (m) at a time into the motion (s).
 template <class Gap>
 TimeAndRate locate_on_path(Bracket bracket, double h, Gap&& gap) {
   double tau = bracket.guess(), rate = (bracket.f_high - bracket.f_low) / (bracket.high - bracket.low);
@@ -134,7 +136,8 @@ class ImpactGap {
   double size_ = std::numeric_limits<double>::infinity(), largest_ = 0;
 };
 
-/// Returns a bracket of the first impact. Its lower gap is not positive if the sides touch all the time.
+/// Returns a bracket of the first impact. Its lower gap f_low is not positive if the sides touch all the
+/// time.
 inline Bracket bracket_impact(ImpactGap& gap, double gap_at_start, double h) {
   Bracket bracket{0, gap_at_start, h, gap.at_time(h)};
   // Sides that touch at the start may separate and meet again: then they are apart after a share of the
@@ -154,7 +157,7 @@ inline Bracket bracket_impact(ImpactGap& gap, double gap_at_start, double h) {
 }
 
 /// Returns the exact time of impact by the secant method with steps of the method of integration, within a
-/// bracket; the state is at this time afterwards. [tau, rate]: approximate values.
+/// bracket; the state is at this time afterwards. approximate: the time and rate on the dense output.
 inline double refine_impact(ImpactGap& gap, Bracket bracket, double h, TimeAndRate approximate) {
   auto [tau, rate] = approximate;
   double last = 0, f_last = 0;

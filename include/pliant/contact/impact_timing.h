@@ -1,6 +1,6 @@
 // The times at which impacts happen within a motion. locate_impact() finds the first zero of the smallest
 // gap: a bracket, regula falsi on the dense output of the method (Illinois variant, Dowell and Jarratt 1971),
-// then secants with steps of the method. The paper has no such search.
+// then the secant method on steps of the method of integration. The paper has no such search.
 #pragma once
 
 #include <optional>
@@ -19,13 +19,14 @@ inline void set_step(State& state, double t, double h) {
   state.h = h;
 }
 
-/// Returns the time into the motion at which the first of the impacts happens, s, and sets the state to that
-/// time. Returns none if their sides were not apart before.
+/// Returns the time from the start of the motion to the first of the impacts, s, and sets step.state to that
+/// time. Returns none if the sides of the impacts touch during the whole motion.
 std::optional<double> locate_impact(StepContext& step, const ContactFinder& finder, Integrator& method,
                                     const FreeMotion& motion, const std::vector<Contact>& impacts);
 
-/// Sets the `since` of contacts at the end of a motion: the time since their sides met, s, at their present
-/// normal velocity. Sets their `rebound` too. Does not change resting contacts, which have a `since`.
+/// Sets Contact::since of contacts at the end of a motion: the time since their sides met, s, at their
+/// present normal velocity, or force_time() of the motion if the sides do not overlap or do not approach.
+/// Sets Contact::rebound too. Contacts whose `since` is positive, the resting contacts, do not change.
 void time_impacts(const ContactFinder& finder, const FreeMotion& motion, const State& state,
                   std::vector<Contact>& contacts);
 

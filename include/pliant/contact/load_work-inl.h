@@ -1,4 +1,5 @@
-// Bodies of load_work.h: the work of constant forces and torques during a displacement.
+// Function bodies of load_work.h: the work of forces and torques during a displacement. Both are evaluated at
+// its end.
 #pragma once
 
 #include <pliant/contact/load_work.h>

@@ -21,8 +21,9 @@ class LoadWork {
   const Dynamics& dynamics_;
   std::vector<int> loaded_;  // moving parts with forces or torques
   Workspace<double> work_;
-  std::vector<Vec3<double>> x_;  // point of each force before the displacement
-  std::vector<Mat3<double>> R_;  // rotation of each loaded part before it
+  // Before the displacement:
+  std::vector<Vec3<double>> x_;  // attachment point of each force, m, world
+  std::vector<Mat3<double>> R_;  // orientation of each loaded part, body to world
 };
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// Bodies of movers.h: numbers of movers, and their velocities.
+// Function bodies of movers.h: numbers of movers, and their velocities.
 #pragma once
 
 #include <pliant/contact/movers.h>

@@ -16,7 +16,7 @@ struct Mover {
   int part = -1;                   ///< number of the part without joints, or of the part of the node
   int node = -1;                   ///< number of the node; -1: not a node
   const Island* island = nullptr;  ///< the island; nullptr: not an island
-  int first = 0, size = 0;         ///< its velocities in the vector of all movers
+  int first = 0, size = 0;         ///< index and number of its velocities in the vector of all movers
 };
 
 /// Returns whether an impulse on a part moves all of its local coordinates.
@@ -40,12 +40,12 @@ class Movers {
   const Mover& operator[](int i) const { return all_[static_cast<std::size_t>(i)]; }
   /// Returns the index of the first velocity of a part in its mover.
   static int first_in(const Mover& mover, int part);
-  /// Returns the index of the first rate of the local coordinates of a part in its mover, if they belong to
-  /// it; n_local() is their number.
+  /// Returns the index of the first rate of the local coordinates of a part in its mover. Valid if n_local(),
+  /// the number of local coordinates that belong to the mover, is not zero.
   int first_local(const Mover& mover, int part) const;
   int n_local(int part) const { return n_local_[static_cast<std::size_t>(part)]; }
-  /// Returns the velocities of all movers. The coordinates of the state may be those of an earlier time than
-  /// those of work.
+  /// Returns the velocities of all movers, n_x() numbers. The state may be earlier than the evaluation
+  /// `work`.
   VecX<double> velocities(const State& state, const Workspace<double>& work) const;
 
  private:

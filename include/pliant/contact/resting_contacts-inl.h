@@ -1,5 +1,5 @@
-// Bodies of resting_contacts.h: which contacts rest, and how long a motion without impulses between them may
-// be.
+// Function bodies of resting_contacts.h: which contacts rest, and how long a motion without impulses between
+// them may be.
 #pragma once
 
 #include <pliant/contact/resting_contacts.h>
@@ -23,9 +23,10 @@ inline constexpr double kRestingGap = 1e-6;
 inline constexpr double kMaxWidening = 1000;
 /// If at most this share of the parts has moved, only these parts are searched again.
 inline constexpr double kFewMovedParts = 0.7;
-/// A contact at the end of a motion is one of its start if their points are nearer than this, in sizes.
+/// A contact at the end of a motion and one at its start are the same if their contact points are nearer than
+/// this, in sizes of the smaller part.
 inline constexpr double kSamePoint = 0.2;
-/// A motion that was too long is repeated with at most this share of the allowed displacement.
+/// A motion has at most this share of the length in which a resting contact sinks by the allowed distance.
 inline constexpr double kRepeatShare = 0.95;
 
 }  // namespace resting_contacts
@@ -49,7 +50,7 @@ PLIANT_INLINE double RestingContacts::tight_gap(const Contact& contact) const {
   return resting_contacts::kRestingGap * smaller_size(model_, contact);
 }
 
-/// Marks the parts that have moved since the last search; returns whether these are few.
+/// Marks the parts that have moved since the last search. Returns whether only few parts have moved.
 PLIANT_INLINE bool RestingContacts::few_moved(const State& state) {
   moved_.assign(model_.parts().size(), false);
   int count = 0;
@@ -104,8 +105,9 @@ PLIANT_INLINE std::vector<Contact> RestingContacts::at_rest(const State& state, 
   return resting;
 }
 
-/// Returns whether a contact at the end of a motion rested at its start, from the motion of its sides: two
-/// faces in contact may touch at new points.
+/// Returns whether a contact at the end of a motion rested at its start, from the velocities of its sides.
+/// Two flat surfaces in contact may touch at a new contact point, so that no contact point at the start is
+/// near.
 PLIANT_INLINE bool RestingContacts::was_resting(const Contact& contact, const FreeMotion& motion,
                                                 const State& state) const {
   const double u_start = finder_.velocity(motion.before, contact).dot(contact.normal),

@@ -16,24 +16,25 @@ class RestingContacts {
   /// Widens the largest gap of resting contacts by `extra` (m), the opening that the residual of the last
   /// impulses may have caused.
   void widen_gap(double extra);
-  /// Returns the largest gap of a resting contact, m: for the pair of a contact, and for the largest part.
+  /// Return the largest gap of a resting contact, m: for the pair of a contact, and for any pair.
   double gap(const Contact& contact) const { return widened(tight_gap(contact)); }
   double gap() const { return widened(gap_); }
-  /// Returns the largest gap for the pair without the residual of the last impulses, m.
+  /// Returns gap(contact) without the extra gap, m.
   double tight_gap(const Contact& contact) const;
   /// Returns the contacts with a gap of at most gap() at a time t (s). Searches again only near parts that
   /// have moved since the last call.
   const std::vector<Contact>& near(const State& state, double t);
-  /// Returns the resting contacts among them: those whose normal speed is at most max_speed (m/s).
+  /// Returns the resting contacts among near(): those that overlap by more than gap(contact), or whose normal
+  /// speed is at most max_speed (m/s).
   std::vector<Contact> at_rest(const State& state, double t, double max_speed);
   /// Returns the longest motion (s) in which contacts that rest at the start sink by at most
   /// ContactFinder::thin, if no impulse acts. state: the end of the motion.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, const State& state) const;
-  /// Predicts this length before the motion, for gravity (m/s^2) alone.
+  /// Predicts the length of the longest motion (s) before the motion, for gravity (m/s^2) alone.
   double longest(const FreeMotion& motion, const std::vector<Contact>& resting, double gravity) const;
-  /// Returns the contacts at the end of a motion, which has led to `state`: the sides that overlap, and the
-  /// contacts that rested at the start and are still near, which rounding or the motion may have opened. The
-  /// `since` of resting contacts is that of a force during the whole motion.
+  /// Returns the contacts at `state`, the end of a motion: those that overlap, and those that rested at the
+  /// start and are still near, because rounding or the motion may have opened them. Contact::since of resting
+  /// contacts is motion.force_time(): their impulses stand for forces during the whole motion.
   std::vector<Contact> contacts_after(const FreeMotion& motion, const std::vector<Contact>& resting,
                                       const State& state) const;
 
@@ -51,7 +52,7 @@ class RestingContacts {
   std::vector<double> last_at_rest_;
   double last_t_ = 0;
   std::vector<Contact> last_;
-  std::vector<bool> moved_;  // parts that have moved since
+  std::vector<bool> moved_;  // parts that have moved since the last search
 };
 
 }  // namespace pliant

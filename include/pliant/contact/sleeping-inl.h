@@ -1,5 +1,5 @@
-// Bodies of sleeping.h: times at rest, drives that wake sleeping parts, and the sets of parts that fall
-// asleep together.
+// Function bodies of sleeping.h: times at rest, drives that wake sleeping parts, and the sets of parts that
+// fall asleep together.
 #pragma once
 
 #include <pliant/contact/sleeping.h>
@@ -17,8 +17,8 @@ namespace pliant {
 
 namespace sleeping {
 
-/// The end of a step and the start of the next may differ by this share of the length plus this number of
-/// units in the last place. A change between both belongs to both steps.
+/// The end of a step and the start of the next may differ by kTimeTolerance of the length plus kTimeUlps
+/// units in the last place of the time. A change of a drive between both times belongs to both steps.
 inline constexpr double kTimeTolerance = 1e-9, kTimeUlps = 16;
 
 /// Returns whether a vector changes within h seconds after t.
@@ -27,11 +27,13 @@ inline bool differs(const TimeVector& x, double t, double h) {
   return x.value(t + h) != now || x.value(t + 0.5 * h) != now;
 }
 
-/// Returns whether a point has prescribed motion: a point of the world, or of a part with prescribed motion.
+/// Returns whether a point has prescribed motion: a moving point of the world, or a point of a part with
+/// prescribed motion.
 inline bool is_prescribed(const Point& point) {
   return point.part == nullptr ? !point.world.is_constant() : point.part->motion() != nullptr;
 }
-/// Returns whether a part, or a point, moves as prescribed within h seconds after t.
+/// Returns whether the prescribed motion of a part, or of a point, changes its position within h seconds
+/// after t.
 inline bool moves(const Part& part, double t, double h) {
   const PrescribedMotion* motion = part.motion();
   if (motion == nullptr) return false;
@@ -190,8 +192,8 @@ PLIANT_INLINE void Sleeping::wake_moved(State& state) const {
   }
 }
 
-/// Returns a bound of the speed of all points of a part, m/s. The angular velocity is multiplied by the size
-/// of the part, rates of parameters by the size or 1, whichever is larger.
+/// Returns an upper bound of the speed of all material points of a part, m/s. The angular velocity is
+/// multiplied by the size of the part, rates of parameters by the size or 1, whichever is larger.
 PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   const PartModel& m = model_.parts()[at(part)];
   const auto v = state.v.segment(m.v0, m.n_v());
@@ -203,8 +205,8 @@ PLIANT_INLINE double Sleeping::speed(const State& state, int part) const {
   return speed;
 }
 
-/// Adds h seconds to the time at rest of each part that is at rest. Returns whether a part has been at rest
-/// for long enough to sleep.
+/// Adds h seconds to the time at rest of each part that is at rest, and sets that of moving parts to zero.
+/// Returns whether a part has been at rest for long enough to sleep.
 PLIANT_INLINE bool Sleeping::update_rest_times(double h, State& state) const {
   bool any = false;
   for (const int i : moving_) {

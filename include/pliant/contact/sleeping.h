@@ -17,21 +17,22 @@ class Sleeping {
   /// All arguments must outlive this object. Throws std::invalid_argument for settings out of range.
   Sleeping(const Dynamics& dynamics, RestingContacts& resting, const MeshFinder& meshes);
 
-  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or whose
-  /// drive changes in the motion, with all parts that sleep with them. Stores the coordinates of the others.
+  /// Begins a motion of h seconds from time t (s): wakes sleeping parts that have a velocity, or whose drive
+  /// changes in the motion, with all parts that sleep with them. Stores the coordinates if any part
+  /// still sleeps.
   void begin_motion(double t, double h, State& state);
   /// Ends the motion: restores the coordinates of sleeping parts.
   void restore(State& state) const;
-  /// Returns whether another body has met a sleeping part at one of these contacts. Contacts of sleeping
-  /// parts with each other are not searched.
+  /// Returns whether a sleeping part is at one of these contacts: another body has met it, because contacts
+  /// between sleeping parts are not searched.
   bool touches_sleeping(const std::vector<Contact>& contacts, const State& state) const;
   /// Wakes the parts at the contacts, with all parts that sleep with them.
   void wake_touched(const std::vector<Contact>& contacts, State& state) const;
   /// Wakes parts that impulses have moved since begin_motion().
   void wake_moved(State& state) const;
-  /// Lets bodies fall asleep after h seconds with these contacts from time t (s) on, if they, and all parts
-  /// that they touch or are connected to, have been at rest for long enough. Their kinetic energy is lost in
-  /// contact.
+  /// Ends a step of h seconds from time t (s) with these contacts: lets parts fall asleep if they, and all
+  /// parts that they touch or are connected to, have been at rest for long enough. Their kinetic energy goes
+  /// to Work::contact.
   void fall_asleep(const std::vector<Contact>& contacts, double t, double h, State& state);
 
   /// Returns whether any part sleeps in this motion.
@@ -41,7 +42,7 @@ class Sleeping {
   /// A cause that may move a sleeping part without contact.
   struct Drive {
     int part;                                         ///< -1: all parts
-    std::function<bool(double t, double h)> changes;  ///< whether it changes within h seconds after t
+    std::function<bool(double t, double h)> changes;  ///< whether the cause changes within h seconds after t
   };
 
   void find_drives();

@@ -1,5 +1,5 @@
 // Step doubling: the error of a step with resting contacts, from two half steps, and the extrapolation of
-// both. Bodies of contact_stepping.h.
+// both. Function bodies of contact_stepping.h.
 #pragma once
 
 #include <pliant/contact/contact_stepping.h>
@@ -21,7 +21,8 @@ namespace pliant {
 
 namespace step_doubling {
 
-/// Bodies in contact that move by less than this in a step, in tolerances, are at rest: the step is exact.
+/// Bodies in contact whose state changes by at most this in a step, in tolerances, are at rest: the error of
+/// the step is zero.
 inline constexpr double kAtRestTolerance = 1e-2;
 
 /// The whole step and its halves resolve an impact, or a change of contact points, at different times. If one
@@ -33,7 +34,8 @@ inline constexpr double kJumpInGravity = 0.6;
 /// In steps up to this length, s, the error is always measured by the displacement.
 inline constexpr double kBriefStep = 2e-5;
 
-/// Returns whether the velocity of a part differs by more than max_speed, m/s. dv: differences.
+/// Returns whether the velocity of a part differs by more than max_speed, m/s. dv: differences of the
+/// velocities of all parts.
 inline bool has_jump(const Model& model, const VecX<double>& dv, double max_speed) {
   return std::any_of(model.parts().begin(), model.parts().end(), [&](const PartModel& m) {
     return m.q0 >= 0 &&
@@ -41,8 +43,9 @@ inline bool has_jump(const Model& model, const VecX<double>& dv, double max_spee
   });
 }
 
-/// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact; zero for other
-/// parts. before, now: contacts.
+/// Returns the acceleration by gravity, m/s^2, of the parts that have lost a resting contact, and zero for
+/// other parts; n_v numbers. before: the resting contacts before; now: the present contacts. t:
+/// time, s.
 inline VecX<double> gravity_after_loss(const Model& model, const RestingContacts& resting,
                                        const std::vector<Contact>& before, std::vector<Contact> now,
                                        double t) {
@@ -73,7 +76,8 @@ inline bool has_prescribed_motion(const Model& model, const std::vector<Contact>
          are_driven(model, parts_touched(model, contacts));
 }
 
-/// Returns whether parts were at rest in a step: it changed them by less than kAtRestTolerance.
+/// Returns whether parts were at rest in a step: their states at its start (initial) and at its end (state)
+/// differ by at most kAtRestTolerance.
 inline bool were_at_rest(const Model& model, const ErrorScale& scale, const std::vector<int>& parts,
                          const State& initial, const State& state) {
   VecX<double> dq = VecX<double>::Zero(state.q.size()), dv = VecX<double>::Zero(state.v.size());
@@ -215,7 +219,8 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
   normalise_rotations(model, state.q);
   resolution_.reconcile(step, parts);
   project_limits(step);
-  // Gaps are not linear in the extrapolated coordinates: contacts rest up to this residual.
+  // Gaps are not linear in the coordinates. Extrapolation therefore leaves gaps and normal speeds at resting
+  // contacts, which the residual must include.
   for (std::size_t k = second; k < record_.contacts.size(); ++k) {
     const Contact& contact = record_.contacts[k];
     if (!(record_.impulses[k].dot(contact.normal) > 0)) continue;
@@ -223,7 +228,7 @@ PLIANT_INLINE void ContactStepping::extrapolate(StepContext& step, const State& 
                  gap = finder_.least_gap(state, t, contact, smaller_size(model, contact));
     state.contact_residual = std::max({state.contact_residual, std::abs(opening), gap / step.h});
   }
-  // Energies are not linear in them either.
+  // Energies are not linear in the coordinates and velocities either. Work::contact gets the difference.
   state.work[static_cast<int>(Work::contact)] += energy_of(state) - energy - (state.work.sum() - work_before);
 }
 

@@ -1,5 +1,5 @@
-// Bodies of touched_parts.h: the evaluation of touched parts before the contact problem, and the application
-// of its solution.
+// Function bodies of touched_parts.h: the evaluation of touched parts before the contact problem, and the
+// application of its solution.
 #pragma once
 
 #include <pliant/contact/touched_parts.h>
@@ -20,8 +20,8 @@ inline void sort_unique(std::vector<int>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// Calls act(mover, part, index of its first velocity in the mover) for each part of each mover, and then for
-/// each node.
+/// Calls act(mover, part, index of the first velocity of the part in the mover) for each part of each mover,
+/// and then for each node.
 template <class F>
 void for_each_part(const std::vector<Mover>& movers, F&& act) {
   for (const Mover& mover : movers) {
@@ -44,7 +44,7 @@ inline void add_to_node(const Model& model, const Mover& mover, const Vec3<doubl
   for (Eigen::Index r = 0; r < 3; ++r) q_d[mover.node + r * n] += d[r];
 }
 
-/// A part of a mover, and the index of its first velocity there.
+/// A part of a mover, and the index of the first velocity of the part in the mover.
 struct PartOfMover {
   const Mover& mover;
   int part, first;

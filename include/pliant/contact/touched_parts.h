@@ -9,13 +9,14 @@ namespace pliant {
 
 /// Returns the moving parts at some contacts, with all parts of their islands, sorted.
 std::vector<int> parts_touched(const Model& model, const std::vector<Contact>& contacts);
-/// Returns whether a joint of some parts follows a prescribed path.
+/// Returns whether a joint in the islands of some parts follows a prescribed path.
 bool are_driven(const Model& model, const std::vector<int>& parts);
-/// Evaluates the quantities that ContactProblem needs: masses and joint factors of the touched parts, except
-/// of parts that are moved node by node.
+/// Evaluates the quantities that ContactProblem needs at a state and a time t (s), and stores them in work:
+/// masses and joint factors of the touched parts, except of parts that are moved node by node.
 void evaluate_touched(const Dynamics& dynamics, const State& state, double t,
                       const std::vector<Contact>& contacts, Workspace<double>& work);
-/// Applies a solution to a state: sets the velocities after the impulses, and adds the displacements.
+/// Applies a solution to a state: sets the velocities after the impulses, and adds the displacements. work:
+/// as evaluate_touched() left it.
 void apply_solution(const ContactProblem& problem, const Model& model, const Workspace<double>& work,
                     State& state);
 

@@ -6,8 +6,9 @@ namespace pliant {
 /// Dense output of a Runge-Kutta method: a polynomial in the fraction x of the step, from 0 to 1 (Hairer,
 /// Norsett & Wanner, Solving Ordinary Differential Equations I, section II.6):
 ///   u(x) = u_0 + x (u_1 - u_0 + y (a + x (b + y (h d_0 k + x (h d_1 k + y (...))))))),   y = 1 - x,
-/// with a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h k_end - a, as in cubic Hermite interpolation. k are the
-/// rates of all stages, k_end those at the end of the step, and d_j k = sum_i d_ji k_i.
+/// with a = h k_0 - (u_1 - u_0) and b = u_1 - u_0 - h k_end - a, as in cubic Hermite interpolation. k_i are
+/// the rates of all stages, of the end of the step and of the additional stages, in this order; k_end are
+/// those at the end of the step. d_j k = sum_i d_ji k_i.
 struct ContinuousExtension {
   int stages;       ///< additional stages, after the rates at the end of the step
   const double* a;  ///< row by row, one row for each additional stage: weights of all k before it
@@ -19,7 +20,8 @@ struct ContinuousExtension {
 struct ButcherTableau {
   const char* name;
   int order, stages;
-  const double *a, *b, *c;  ///< a: row by row the entries below the diagonal, from the second row on
+  /// a: row by row the entries below the diagonal, from the second row on; b: weights; c: nodes.
+  const double *a, *b, *c;
   /// h sum error_i k_i is the difference from a method of lower order. second_error: the difference from a
   /// method of still lower order; nullptr if there is none. If rates_at_end is true, both have one more
   /// entry.

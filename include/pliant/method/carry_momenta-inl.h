@@ -1,5 +1,6 @@
 // Function body of carry_momenta.h. In the body frame the angular momentum L of each part about its centre of
-// mass obeys L_dot = torque - omega x L; after the step it is the rotation by -h omega of L + h torque.
+// mass obeys L_dot = torque - omega x L. L after the step is L + h torque from before the step, rotated by -h
+// omega.
 #pragma once
 
 #include <pliant/method/carry_momenta.h>

@@ -28,7 +28,8 @@ PLIANT_INLINE ErrorScale::ErrorScale(const Model& model, double tolerance)
   }
 }
 
-/// Calls visit(error, part, name) for each block of coordinates. Errors are not divided by the tolerance.
+/// Calls visit(error, part, name of the block) for each block of coordinates. Errors are not divided by the
+/// tolerance.
 template <class Visit>
 void ErrorScale::visit_coordinates(const VecX<double>& q_error, Visit&& visit) const {
   for (const PartModel& m : model_->parts()) {
@@ -43,7 +44,8 @@ void ErrorScale::visit_coordinates(const VecX<double>& q_error, Visit&& visit) c
   }
 }
 
-/// Calls visit(error, part, name) for each block of velocities. Errors are not divided by the tolerance.
+/// Calls visit(error, part, name of the block) for each block of velocities. Errors are not divided by the
+/// tolerance.
 template <class Visit>
 void ErrorScale::visit_velocities(const VecX<double>& v_error, const VecX<double>& v, Visit&& visit) const {
   for (const PartModel& m : model_->parts()) {

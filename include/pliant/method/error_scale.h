@@ -1,8 +1,8 @@
 // The norm of the error of a step, in units of the tolerance (README.md of this folder, Error of a step).
-// Each block of the coordinates of a part has its own scale: the position and parameters that are lengths in
-// sizes of the part, the rotation in radians, other parameters in their own unit, and the root mean square of
-// the local displacement in sizes of the part. Rates have these scales per second. If the part moves fast,
-// its rates are measured per the time in which the fastest one changes its coordinate by one unit.
+// Each block of the coordinates of a part has its own unit. It is the size of the part for the position, for
+// parameters that are lengths, and for the root mean square of the local displacement. It is the radian for
+// the rotation, and their own unit for other parameters. Errors of rates are measured in these units per time
+// T, with T = 1 s / (1 + r), where r is the fastest rate of the part in these units per second.
 #pragma once
 
 #include <string>
@@ -20,8 +20,8 @@ class ErrorScale {
   ErrorScale(const Model& model, double tolerance);
   double tolerance() const { return tolerance_; }
 
-  /// Returns the largest error of a block, in tolerances. q_error, v_error:
-  /// errors of the coordinates (of quaternions their components) and of the velocities. v: the velocities.
+  /// Returns the largest error of all blocks, in tolerances. q_error, v_error: errors of the coordinates q
+  /// (of quaternions their components) and of the velocities. v: the velocities, which scale v_error.
   double norm(const VecX<double>& q_error, const VecX<double>& v_error, const VecX<double>& v) const;
   /// Returns the largest error of the coordinates alone, in tolerances.
   double norm(const VecX<double>& q_error) const;
@@ -36,7 +36,9 @@ class ErrorScale {
 
   const Model* model_;
   double tolerance_;
-  VecX<double> parameter_;  ///< scale of each velocity, 1/m or 1
+  /// For each velocity, the factor that scales the error of the parameter or local coordinate: 1/m or 1, for
+  /// modes 1/(kg^(1/2) m). The entries of c and theta are not used.
+  VecX<double> parameter_;
 };
 
 }  // namespace pliant

@@ -26,7 +26,7 @@ class Esdirk final : public Integrator {
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> stage_scale_;  ///< for the iteration if there is no tolerance
+  std::unique_ptr<ErrorScale> stage_scale_;  ///< scale of the iteration if there is no tolerance
   MatX<double> q_rates_, v_rates_;           ///< one column for each stage
   VecX<double> q_, v_, r_q_, r_v_, q_dot_;
 };

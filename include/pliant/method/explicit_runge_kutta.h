@@ -1,7 +1,7 @@
 // Explicit Runge-Kutta methods with an error estimate (Hairer, Norsett & Wanner, Solving Ordinary
 // Differential Equations I, chapter II), on (q, v, work). Quaternions are integrated as four numbers by
 // theta_dot = 1/2 theta o (0, omega) and normalised after the step; closed joints are projected. Both keep
-// the order. Free oscillators are integrated exactly.
+// the order. Free oscillators (free_oscillation.h) are integrated exactly.
 #pragma once
 
 #include <vector>
@@ -21,13 +21,14 @@ class ExplicitRungeKutta : public Integrator {
   int error_order() const override { return tableau_->error_order; }
   void step(StepContext& step) override;
   double growth(const MatX<double>& K, const MatX<double>& D, double h) const override;
-  /// Returns the dense output of the method. With free oscillators, and if an additional stage fails, it is
-  /// cubic Hermite interpolation.
+  /// Returns the dense output of the method, or cubic Hermite interpolation if the model has free oscillators
+  /// or if an additional stage fails.
   StepPath path(const Dynamics& dynamics, const State& low, double h, const State& high,
                 StepCounters& counters) override;
 
  private:
-  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, into the columns of a stage.
+  /// Evaluates the rates at (t, q_, v_), with the discrete modes of step.state, and stores them in the
+  /// columns of a stage.
   void evaluate_stage(StepContext& step, double t, int stage, RankRule rank);
   /// Returns the dense output by the continuous extension of the tableau. Throws StepFailure or
   /// InvertedElement if an additional stage leaves the range of the model.
@@ -40,8 +41,8 @@ class ExplicitRungeKutta : public Integrator {
 
   const ButcherTableau* tableau_;
   FreeStages free_;
-  // Kept between steps, so that a step allocates no memory.
-  // One column for each stage, one for the rates at the end of the step, and one for each additional stage.
+  // Kept between steps, so that a step allocates no memory. The matrices have one column for each stage, one
+  // for the end of the step, and one for each additional stage of the dense output.
   MatX<double> q_rates_, v_rates_, powers_;
   VecX<double> q_, v_, q_dot_, v_start_, q_error_, v_error_;
   // State and time of the rates at the end of the last step, which are the first stage of the next step.

@@ -1,12 +1,15 @@
-// Exact integration of local coordinates that are free oscillators, q_ddot = -omega^2 q - D q_dot + n with a
-// constant load n. Joints and other rows couple oscillators to stiff motion: the method integrates those.
+// Exact integration of local coordinates that are free oscillators: q_ddot = -omega^2 q - D q_dot + n with a
+// constant load n, the acceleration by all other forces. The modes of a part with joints or strings are not
+// free: rows of joints and strings couple them to stiff motion. The method of integration advances such
+// modes.
 #pragma once
 
 #include <pliant/body/model.h>
 
 namespace pliant {
 
-/// Returns whether the local coordinates of a part are free oscillators: it has modes and no joints.
+/// Returns whether the local coordinates of a part are free oscillators: the part has modes and no joints or
+/// strings.
 bool oscillates_freely(const PartModel& part);
 
 /// The exact motion of free oscillators over a time t, one entry for each oscillator:
@@ -16,7 +19,7 @@ struct OscillatorPropagator {
 };
 /// Returns the propagator over t (s).
 OscillatorPropagator propagator(const Oscillators& oscillators, double t);
-/// The entries qv and vv alone: the effect of a change of q_dot after a time t.
+/// The entries qv and vv alone: q and q_dot after a time t, for q = 0 and q_dot = 1 at its start.
 struct VelocityResponse {
   VecX<double> qv, vv;
 };

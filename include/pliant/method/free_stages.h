@@ -1,10 +1,12 @@
 // Stages of an explicit Runge-Kutta method for free oscillators (free_oscillation.h): an exponential
-// integrator (Lawson 1967, Krogstad 2005). With u = (q, v), u_dot = A u + (0, n) and the load n_j at stage j,
+// integrator (Lawson 1967, Krogstad 2005). With u = (q, v), u_dot = A u + (0, n), A = [0, I; -omega^2, -D]
+// and the load n_j at stage j,
 //   u_i = exp(A c_i h) u_0 + int_0^(c_i h) exp(A t) (0, n_0) dt
 //         + h sum_j a_ij exp(A (c_i - c_j) h) (0, n_j - n_0)
-// The end of the step and the error estimate have their weights in place of a. The motion under a constant
-// load is exact. If the nodes c_i decrease from one stage to the next, as in dop853, decays grow there: such
-// methods do not suit strong damping.
+// For the end of the step the weights b replace a_ij, and for the error estimate those of the estimate. The
+// motion under a constant load is exact. If the nodes c_i decrease from one stage to the next, as in dop853,
+// exp(A (c_i - c_j) h) runs backwards in time, and damped motion grows: such methods do not suit strong
+// damping.
 #pragma once
 
 #include <vector>
@@ -21,8 +23,8 @@ class FreeStages {
   void prepare(const Model& model, const ButcherTableau& tableau, double h);
   /// Returns whether the model has free oscillators. Without them all functions return at once.
   bool has_oscillators() const { return !parts_.empty(); }
-  /// Stores the loads n of a stage, evaluated at (q, v) with the accelerations v_dot. Sets v_dot of the free
-  /// oscillators to zero.
+  /// Stores the loads n = v_dot - A u of a stage, where v_dot are the accelerations at (q, v). Sets v_dot of
+  /// the free oscillators to zero.
   void store_loads(int stage, const VecX<double>& q, const VecX<double>& v, VecX<double>& v_dot);
   /// Sets q_dot of the free oscillators to zero.
   void clear_rates(VecX<double>& q_dot) const;
@@ -33,8 +35,8 @@ class FreeStages {
   void advance(int stage, const VecX<double>& q_start, const VecX<double>& v_start, VecX<double>& q,
                VecX<double>& v) const;
   /// Computes the error estimate h sum_j weights_j exp(A (1 - c_j) h) (0, n_j - n_0) of the free oscillators.
-  /// weights: `count` numbers, one more than stages if the estimate uses the rates at the end of the
-  /// step.
+  /// weights: `count` numbers, one for each stage, and one more if the estimate uses the rates at the end of
+  /// the step.
   void estimate_error(const double* weights, int count, VecX<double>& q_error, VecX<double>& v_error) const;
 
  private:

@@ -1,7 +1,7 @@
 // The implicit midpoint rule on (q, v, work), of second order: y+ = y + h f((y + y+) / 2). It conserves
-// quadratic invariants of (q, v): for a free rigid body the energy and the angular momentum in the body
-// frame, for any number of steps. Quaternions keep unit length. It is A-stable and does not damp fast
-// oscillations.
+// quadratic invariants of (q, v). For a free rigid body these are the energy and the magnitude of the angular
+// momentum, for any number of steps. Quaternions keep unit length. The method is A-stable and does not damp
+// fast oscillations.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class ImplicitMidpoint final : public Integrator {
 
  private:
   std::unique_ptr<StageSolver> solver_;
-  std::unique_ptr<ErrorScale> stage_scale_;  ///< for the iteration
+  std::unique_ptr<ErrorScale> stage_scale_;  ///< scale of the changes of the iteration
   VecX<double> q_, v_, q_dot_;
 };
 

@@ -18,20 +18,20 @@ class Integrator {
   virtual ~Integrator() = default;
   virtual const char* name() const = 0;
   virtual int order() const = 0;
-  /// Advances q, v and work of the state by step.h (> 0, s) from step.t on; step.t becomes the end of the
-  /// step. The caller counts the step.
+  /// Advances q, v and work of step.state by its step length h (> 0, s), and sets step.t to the end of the
+  /// step. The caller increments State::step.
   virtual void step(StepContext& step) = 0;
   /// Returns the largest growth in a step, |eigenvalue| of the step map, for x'' + D x' + K x = 0 with unit
-  /// masses. The step is stable while it is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
+  /// masses. A step of h is stable if the growth is at most 1. K: 1/s^2, D: 1/s, n x n each; h: s.
   virtual double growth(const MatX<double>& K, const MatX<double>& D, double h) const = 0;
-  /// Returns the displacement by a force that is constant over a step, divided by h times the change of
-  /// velocity.
+  /// Returns the displacement that a constant force causes in a step, divided by h times the change of
+  /// velocity that it causes.
   virtual double reach() const { return 0.5; }
   /// Sets whether parts that deform locally may touch something in the next steps.
   virtual void expect_touch(bool) {}
-  /// Replaces M^-1 by the response of parts to impulses over the last step, for parts where both differ
-  /// (LocalResponse), or restores M^-1, which an evaluation needs. work: the evaluation at the end of the
-  /// step.
+  /// If the flag is true, replaces M^-1 of each implicit part in work by the response of the part to impulses
+  /// over the last step (LocalResponse). If it is false, restores M^-1, which an evaluation needs. work: the
+  /// evaluation at the end of the step.
   virtual void set_responses(const Model&, bool, Workspace<double>&) const {}
   /// Returns whether elasticity and damping of parts that deform locally do not limit the step.
   virtual bool local_is_implicit() const { return false; }
@@ -68,7 +68,7 @@ class Integrator {
   double error_ = 0;
 };
 
-/// While the object lives, impulses on parts act by their response over a step (set_responses).
+/// While the object lives, parts respond to impulses as over a whole step (set_responses).
 class StepResponses {
  public:
   StepResponses(const Integrator& method, const Model& model, Workspace<double>& work)

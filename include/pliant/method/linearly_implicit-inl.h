@@ -85,8 +85,8 @@ PLIANT_INLINE void LinearlyImplicit::set_responses(const Model& model, bool on,
     if (has_implicit(island, parts)) factor_joints<double>(model, island, work.parts, work.joints);
 }
 
-/// Records whether a closed string pulls on no implicit part at this evaluation. Such a string may still pull
-/// later in the step, and the elasticity at one moment cannot decide this.
+/// Records whether a closed string of an island with an implicit part does not pull at this evaluation. Such
+/// a string may still pull later in the step, and the elasticity at one moment cannot decide this.
 PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, const State& state,
                                                           const Workspace<double>& work) {
   for (std::size_t i = 0; i < model.islands().size(); ++i) {
@@ -102,8 +102,8 @@ PLIANT_INLINE void LinearlyImplicit::record_slack_strings(const Model& model, co
   }
 }
 
-/// Returns whether the step must be repeated: the mode of a string or limit of an implicit part changed in
-/// it, or a string was slack.
+/// Returns whether the step must be repeated with first order: in the step the mode of a string or limit of
+/// an implicit part changed, or a closed string did not pull.
 PLIANT_INLINE bool LinearlyImplicit::was_stopped(const Model& model, const State& now) const {
   if (string_is_slack_) return true;
   for (const Island& island : model.islands())
@@ -197,8 +197,9 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   if (scale() != nullptr) {
     q_dot_ = 0.5 * h * (q_rate1_ + q_rate2_);
     v_ = 0.5 * h * (v_rate1_ + v_rate2_);
-    // Rates of implicit parts are weighted by the displacement in the step: oscillations faster than the step
-    // are damped, not followed, and they shake the frames of their parts.
+    // The errors of rates of implicit parts are multiplied by h (s), so that they measure displacements in
+    // the step. The step damps oscillations faster than h instead of following them, and these oscillations
+    // also move the frames of their parts.
     for (std::size_t i = 0; i < second_order_parts_.size(); ++i) {
       const PartModel& m = model.parts()[i];
       if (second_order_parts_[i] != nullptr) v_.segment(m.v0, m.n_v()) *= std::min(1.0, h);
@@ -212,8 +213,9 @@ PLIANT_INLINE void LinearlyImplicit::advance_second_order(StepContext& step) {
   end_step(step);
 }
 
-/// Ends the motion and projects with the response of implicit parts over a step. With the response at one
-/// moment, a projection onto a string or limit would move only the pushed node, and add energy without bound.
+/// Ends the motion and projects strings, limits and joints with the response of implicit parts over a step.
+/// With the response M^-1 at one moment, the projection onto a string or limit would move only the pushed
+/// node, and add energy without bound.
 PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
   end_motion(step);
   const StepResponses responses(*this, step.model(), step.work);
@@ -221,7 +223,7 @@ PLIANT_INLINE void LinearlyImplicit::end_step(StepContext& step) {
 }
 
 PLIANT_INLINE double LinearlyImplicit::growth(const MatX<double>& K, const MatX<double>& D, double h) const {
-  // u = (x, v). Of the explicit part of the motion, A contains only x_dot = v.
+  // u = (x, v). This motion is explicit: A contains only x_dot = v.
   const Eigen::Index n = K.rows();
   const MatX<double> I = MatX<double>::Identity(2 * n, 2 * n);
   MatX<double> F = MatX<double>::Zero(2 * n, 2 * n), filter = I;

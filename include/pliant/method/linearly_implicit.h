@@ -1,16 +1,16 @@
 // The two-stage Rosenbrock method ROS2 (Verwer, Spee, Blom & Hundsdorfer 1999) on (q, v, work):
 //   (I - gamma h A) k1 = F(u),   (I - gamma h A) k2 = F(u + h k1) - 2 k1,   u+ = u + 3/2 h k1 + 1/2 h k2
 // It is of second order for every A, and L-stable if A is the Jacobian, with gamma = 1 - 1/sqrt(2). A
-// contains q_dot = v for all coordinates, which makes free oscillations neither grow nor decay for h omega
-// < 2.26. For parts that deform locally A also contains the elasticity and damping of their nodes or modes
-// and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. The
-// first-order solution u + h k1 estimates the error.
+// contains q_dot = v for all coordinates. With this term alone undamped oscillations neither grow nor decay
+// for h omega < 2.26. For parts that deform locally A also contains the elasticity and damping of their nodes
+// or modes and of their global parameters (method/implicit/implicit_part.h). Everything else is explicit. The
+// difference from the first-order solution u + h k1 estimates the error.
 //
-// An impact on a stiff part needs the velocities of its actual motion, which the stiff velocities of ROS2 are
-// not. If parts that deform locally may touch, or if a string or a limit stops one of them, the step is one
-// of linearly implicit Euler: gamma = 1 and u+ = u + h k1, of first order. In such a step x+ = x + h v+.
-// Impulses change v+ by (I - h A)^-1 M^-1 and x+ by h times this change; their work is that of an inelastic
-// impact.
+// An impact on a stiff part needs velocities with which the part really moves, but in ROS2 a displacement is
+// not h times a stiff velocity. If a part that deforms locally may touch something, or if a string or a limit
+// stops it, a step of linearly implicit Euler replaces that of ROS2: gamma = 1 and u+ = u + h k1, of first
+// order. In such a step q+ = q + h q_dot(v+). Impulses on a part change v+ by (I - h A)^-1 M^-1 times the
+// impulse, and q+ by h times this change; their work is that of an inelastic impact.
 #pragma once
 
 #include <memory>
@@ -46,9 +46,10 @@ class LinearlyImplicit final : public Integrator {
   const ImplicitParts& implicit_parts() const {
     return first_order_ ? first_order_parts_ : second_order_parts_;
   }
-  /// Prepares the implicit parts for a stage with this c = gamma h, s.
+  /// Prepares the implicit parts for the filters of a step. c: gamma h, s.
   void prepare_implicit_parts(StepContext& step, double c);
-  /// Replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot) and projects it onto the rows of joints.
+  /// Filters rates: replaces v_dot by k_v of (I - c A) k = (q_dot, v_dot), and then projects k_v so that the
+  /// rows of joints keep their values (implicit/project_rates.h).
   void filter(const Model& model, const Workspace<double>& work, const VecX<double>& q_dot,
               VecX<double>& v_dot);
   /// Advances one step of ROS2, from the evaluation to the projection.
@@ -59,13 +60,14 @@ class LinearlyImplicit final : public Integrator {
   void record_slack_strings(const Model& model, const State& state, const Workspace<double>& work);
   bool was_stopped(const Model& model, const State& now) const;
 
-  bool touching_ = false;         ///< whether parts that deform locally may touch something
-  bool first_order_ = false;      ///< whether the current or last step is one of linearly implicit Euler
-  bool string_is_slack_ = false;  ///< whether a closed string pulled on no implicit part in this step
+  bool touching_ = false;     ///< whether parts that deform locally may touch something
+  bool first_order_ = false;  ///< whether the current or last step is one of linearly implicit Euler
+  /// Whether a closed string of an island with an implicit part did not pull at an evaluation of this step.
+  bool string_is_slack_ = false;
   // Kept between steps, so that a step allocates no memory. Factors depend on model, step and state only.
   ImplicitParts second_order_parts_, first_order_parts_;  ///< for steps of second and of first order
   State before_;                                          ///< state from which the step can be repeated
-  Workspace<double> filtered_;                            ///< parts with the metric of the filter
+  Workspace<double> filtered_;                            ///< for project_rates: the metric of the filter
   VecX<double> q_, v_, q_dot_, q_rate1_, v_rate1_, q_rate2_, v_rate2_;
 };
 

@@ -1,6 +1,6 @@
 // The classical Runge-Kutta method of fourth order (Kutta 1901) on (q, v, work). Quaternions are integrated
 // as four numbers by theta_dot = 1/2 theta o (0, omega) and normalised after the step, which keeps the order.
-// Free oscillators are integrated exactly.
+// Free oscillators (free_oscillation.h) are integrated exactly.
 #pragma once
 
 #include <pliant/method/free_stages.h>

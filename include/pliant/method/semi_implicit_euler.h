@@ -1,8 +1,8 @@
 // Semi-implicit Euler, the method of the paper (section 4, after Eq. (14)), of first order:
 //   v <- v + h v_dot(t, q, v),   q <- q (+) h v
-// Rotations turn by the exponential map. Free oscillators are integrated exactly. Angular momenta rotate with
-// their parts (carry_momenta.h): with the gyroscopic term of first order tumbling parts would gain energy
-// without bound.
+// (+) adds positions and parameters, and turns rotations by the exponential map. Free oscillators
+// (free_oscillation.h) are integrated exactly. The gyroscopic term acts as an exact rotation of angular
+// momenta (carry_momenta.h): to first order in h, it would let tumbling parts gain energy without bound.
 #pragma once
 
 #include <pliant/method/free_stages.h>

@@ -6,8 +6,8 @@
 
 namespace pliant {
 
-/// u(x) = u_0 + x (t_1 + y (t_2 + x (t_3 + y (...)))), y = 1 - x, x from 0 to 1: a polynomial of degree m
-/// with m terms, u(0) = u_0 and u(1) = u_0 + t_1.
+/// The polynomial u(x) = u_0 + x (t_1 + y (t_2 + x (t_3 + y (...)))), y = 1 - x, x from 0 to 1. With m terms
+/// its degree is m. u(0) = u_0 and u(1) = u_0 + t_1.
 struct StepPolynomial {
   VecX<double> start;  ///< u_0
   MatX<double> terms;  ///< t_1, t_2, ..., one column each
@@ -18,8 +18,8 @@ struct StepPolynomial {
 
 class StepPath {
  public:
-  /// Cubic Hermite interpolation, O(h^4), without an evaluation of accelerations. low, high: the states at
-  /// the ends; h: the time between them, s. The model must outlive the path.
+  /// Cubic Hermite interpolation, with an error O(h^4), without an evaluation of accelerations. low, high:
+  /// the states at the ends; h: the time between low and high, s. The model must outlive the path.
   StepPath(const Dynamics& dynamics, const State& low, double h, const State& high);
   /// The dense output of a method (Integrator::path).
   StepPath(const Model& model, StepPolynomial q);

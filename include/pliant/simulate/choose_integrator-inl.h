@@ -1,4 +1,4 @@
-// Bodies of choose_integrator.h: trials of the candidates, and the cost model of factorisations.
+// Function bodies of choose_integrator.h: trials of the candidates, and the cost model of factorisations.
 #pragma once
 
 #include <pliant/simulate/choose_integrator.h>
@@ -19,28 +19,30 @@ namespace pliant {
 
 namespace integrator_choice {
 
-/// Number of steps of a trial, more for methods that reuse factors, whose steps grow for longer. The first of
-/// kShares equal shares of the trial is not timed: the steps grow there, and transients of the start decay.
+/// Number of steps of a trial. Methods that reuse factors take kStepsWithFactors steps, because their steps
+/// grow for longer. The first of kShares equal shares of the trial is not counted: the steps grow there, and
+/// transients of the start decay.
 inline constexpr int kSteps = 48, kStepsWithFactors = 96, kShares = 3;
 /// Longest trial, s.
 inline constexpr double kLongestTrial = 1e3;
-/// Cost of a factorisation of the matrix of n velocities: this times n^2 evaluations. An evaluation takes
-/// about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
+/// Cost of a factorisation of a dense matrix for n velocities: this times n^2 evaluations. An evaluation
+/// takes about 70 ns a velocity, a factorisation n^3 / 3 ns (bench/step_bench, on one core).
 inline constexpr double kFactorisation = 0.005;
-/// Cost of a sparse factorisation of the stiffness of nodes: this times the cube root of their coordinates,
-/// in evaluations. Measured: 110 evaluations for 654 coordinates of a shell (bench/work_precision, ringing),
-/// some 200 for 14 739 of a solid (bench/implicit_bench).
+/// Cost of a sparse factorisation of the stiffness of nodes, in evaluations: this times the cube root of the
+/// number of nodal coordinates. Measured: 110 evaluations for 654 coordinates of a shell
+/// (bench/work_precision, ringing), some 200 for 14 739 of a solid (bench/implicit_bench).
 inline constexpr double kSparseFactorisation = 13;
 /// Cost of the solves of a step, in factorisations: 0.13 for that shell, 0.1 for that solid.
 inline constexpr double kSolves = 0.1;
-/// For tolerances from this value on, most of the cost in contact is that of the steps with contact, which
-/// are of second order for every method.
+/// For tolerances of this value or more, most of the cost of a model with contact is that of the steps with
+/// contact, which are of second order for every method.
 inline constexpr double kCoarse = 1e-6;
-/// Largest number of velocities for dense implicit stages.
+/// Largest number of velocities for which esdirk, whose stages need a dense matrix, is a candidate.
 inline constexpr int kMaxDenseVelocities = 300;
 
-/// Returns the simulated time (s) per evaluation of the accelerations, or work of equal cost; 0 if the method
-/// fails. factorisation: cost of a factorisation, in evaluations.
+/// Returns the simulated time (s) per evaluation of the accelerations, where factorisations and solves count
+/// as evaluations of equal cost; 0 if the method fails. factorisation: cost of a factorisation, in
+/// evaluations.
 inline double pace(Integrator& method, const Dynamics& dynamics, const ErrorScale& scale, const State& start,
                    double factorisation) {
   State state = start;

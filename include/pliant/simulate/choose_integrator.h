@@ -1,7 +1,7 @@
-// The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped, it is
-// an explicit method of high order. Otherwise each candidate integrates some steps from the start, and the
-// one that advances farthest at equal cost is chosen. The cost is counted in evaluations of the accelerations
-// by a fixed model, never by a clock.
+// The choice of the method of integration for a model and a tolerance. If nothing is elastic or damped, the
+// choice is an explicit method of high order. Otherwise each candidate integrates some steps from the start,
+// and the one that advances farthest at equal cost is chosen. The cost is counted in evaluations of the
+// accelerations by a fixed model, never by a clock.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace pliant {
 
-/// The name of a method that requests this choice.
+/// The name of a method that stands for this choice.
 inline constexpr const char* kAutomatic = "auto";
 /// Tolerance with this choice if none is given.
 inline constexpr double kStandardTolerance = 1e-6;

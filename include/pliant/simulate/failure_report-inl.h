@@ -1,4 +1,4 @@
-// Bodies of failure_report.h: the parts of the messages of failed steps.
+// Function bodies of failure_report.h: the parts of the messages of failed steps.
 #pragma once
 
 #include <pliant/simulate/failure_report.h>
@@ -11,7 +11,7 @@
 
 namespace pliant::failure_report {
 
-/// A part has burst if a node is farther from rest than this multiple of its size.
+/// A part has burst if a node is displaced by more than this multiple of the size of the part.
 inline constexpr double kBurst = 2;
 
 PLIANT_INLINE std::string burst_parts(const Model& model, const State& state) {
@@ -56,7 +56,7 @@ PLIANT_INLINE std::string cause(const Dynamics& dynamics, const State& before) {
   Workspace<double> scratch;
   std::string term = dynamics.diagnose(before.time(), before.q, before.v, before, scratch);
   if (term.empty()) term = dynamics.diagnose(before.time() + before.h, before.q, before.v, before, scratch);
-  if (!term.empty()) return "the first such term is " + term;
+  if (!term.empty()) return "the first term that is not finite is " + term;
   std::ostringstream message;
   message << "the motion has grown without bound; use a smaller step than " << before.h << " s";
   return message.str();

@@ -7,7 +7,8 @@
 
 namespace pliant::failure_report {
 
-/// Returns the beginning of a message, which names the parts that have burst at a state; empty if none has.
+/// Returns the beginning of a message, which names the parts that have burst at a state; empty if none has. A
+/// part has burst if a node is displaced by more than twice the size of the part.
 std::string burst_parts(const Model& model, const State& state);
 /// Returns the name of the coordinate, velocity, gap or work that is not finite after a step; empty if all
 /// are finite. work: the last evaluation of the step.

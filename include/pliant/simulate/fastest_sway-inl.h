@@ -1,5 +1,5 @@
-// Bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x on the velocities that the joints
-// allow.
+// Function bodies of fastest_sway.h: the largest eigenvalue of the map x -> -da/dq x on the velocities that
+// the joints allow.
 #pragma once
 
 #include <pliant/simulate/fastest_sway.h>
@@ -19,7 +19,7 @@ namespace pliant {
 namespace sway {
 
 inline constexpr std::size_t kMaxVectors = 30;
-/// A vector below this share of the image of the map is rounding.
+/// The iteration ends if the next vector is below this share of the largest image of the map: it is rounding.
 inline constexpr double kVanished = 1e-9;
 
 /// The map x -> -da/dq x on the velocities that the joints allow. It is symmetric in the mass metric for
@@ -67,7 +67,8 @@ class Sway {
     return dynamics_.jvp(state_.time(), state_.q, state_.v, along_, work_, dual_work_);
   }
 
-  /// Projects a change of velocities onto the joints, C_q x = 0, for parts with joints; zero for others.
+  /// Projects changes of the velocities of all parts so that C_q x = 0. Sets those of parts without joints to
+  /// zero.
   void project_onto_joints(VecX<double>& all) {
     VecX<double> allowed = VecX<double>::Zero(all.size()), x, rows;
     for (const Island& island : model_.islands()) {

@@ -6,13 +6,13 @@
 namespace pliant {
 
 /// Returns the largest angular frequency (rad/s) of small motions that the joints allow, about a state with
-/// all its forces; 0 if nothing oscillates, or if it is unknown. By Lanczos' method on directional
-/// derivatives of the accelerations, so slightly too small. work: the evaluation by Dynamics::accelerations
-/// at the state.
+/// all its forces; 0 if nothing oscillates, or if the frequency is unknown. Lanczos' method on directional
+/// derivatives of the accelerations computes it, and the result is slightly too small. work: the evaluation
+/// by Dynamics::accelerations at the state.
 double fastest_sway(const Dynamics& dynamics, const State& state, Workspace<double>& work);
 
-/// Returns whether the fastest oscillation is unknown: with joints and parts that deform locally, whose
-/// accelerations have no derivatives here.
+/// Returns whether the fastest oscillation is unknown: the model has joints, and it has parts that deform
+/// locally, for whose accelerations Dynamics::jvp has no derivatives.
 bool sway_is_unknown(const Model& model);
 
 }  // namespace pliant

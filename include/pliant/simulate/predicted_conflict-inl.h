@@ -1,4 +1,4 @@
-// Bodies of predicted_conflict.h: projections of the state at predicted times.
+// Function bodies of predicted_conflict.h: projections of the state at predicted times.
 #pragma once
 
 #include <pliant/simulate/predicted_conflict.h>

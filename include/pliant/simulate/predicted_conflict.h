@@ -6,8 +6,9 @@
 
 namespace pliant {
 
-/// Throws UnsatisfiableModel if the closed joints cannot close at a time h (s) after the state, or somewhat
-/// later. Returns otherwise, or if this cannot be decided.
+/// Throws UnsatisfiableModel if the projection of joints finds a contradiction h seconds after the state, or
+/// somewhat later. Only the time is advanced, and with it prescribed paths. Returns otherwise, or if a
+/// contradiction can be neither found nor excluded.
 void fail_on_predicted_conflict(const Dynamics& dynamics, const State& state, double h);
 
 }  // namespace pliant

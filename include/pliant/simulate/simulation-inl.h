@@ -102,7 +102,8 @@ PLIANT_INLINE Simulation::Simulation(MultiBody& body, const std::string& integra
   if (!automatic) set_method(make_integrator(integrator));
   const bool projected = body.stabilization.projection.value_or(true);
   const bool first_order = !automatic && integrator_->order() == 1;
-  // Steps of this method with contact are of first order. With a tolerance they are short enough.
+  // In contact, the steps of a method with implicit local elasticity are of first order. With a tolerance the
+  // steps are short enough.
   const bool first_order_in_contact = !automatic && integrator_->local_is_implicit() && !scale_;
   dynamics_.set_joint_policy({first_order, projected, first_order || first_order_in_contact});
   simulation::at_time(0, [&] {
@@ -147,7 +148,7 @@ PLIANT_INLINE void Simulation::step(double h) {
     for (const double end = time() + h; time() < end;) step_up_to(end);
     return;
   }
-  if (h != state_.h) {  // a new step length starts a new count: time is count * step
+  if (h != state_.h) {  // restart the count of steps: time is start + step * h
     state_.start = state_.time();
     state_.step = 0;
     state_.h = h;
@@ -176,8 +177,8 @@ void Simulation::with_rollback(double h, Advance&& step) {
     reject_step();
     if (!shorter) throw UnsatisfiableModel(failure.what(), state_.time());
     std::ostringstream message;
-    message << "a step of " << h << " s is too long for the motion: " << failure.what()
-            << ", but not after steps of " << h / simulation::kShorterSteps << " s";
+    message << "a step of " << h << " s is too long for the motion: " << failure.what() << "; steps of "
+            << h / simulation::kShorterSteps << " s do not fail in this way";
     throw NumericalFailure(message.str(), state_.time());
   } catch (const InvertedElement& failure) {
     reject_step();
@@ -238,7 +239,7 @@ PLIANT_INLINE void Simulation::reject_step() {
   if (contact_) contact_->undo_step();
 }
 
-/// Attempts a step of the length in the state and returns its error: the error of the method, which includes
+/// Attempts a step of the length in the state and returns its error. The error of the method includes that of
 /// located impacts. If few bodies rest on each other, or if impacts were not located, step doubling estimates
 /// the error of contact. With many bodies, or with contacts at nodes, this error is not estimated, and the
 /// length of the step is limited instead.
@@ -270,11 +271,11 @@ PLIANT_INLINE StepError Simulation::try_step() {
   return result;
 }
 
-/// Adds the error of contact to the result of a step with resting contacts. impacts: their number before the
-/// step.
+/// Includes the error of contact in the result of a step with resting contacts, or with impacts that were not
+/// located. impacts: the count of impacts before the step.
 PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& result) {
   const bool may_double = contact_->may_double();
-  // The booked work of forces on resting bodies belongs to a motion that the contacts prevent. Short steps
+  // The work of forces on resting bodies is computed for a motion that the contacts prevent. Short steps
   // limit this error.
   if (!may_double || !model_.body().forces().empty()) {
     const double share = result.length / longest_contact_step(model_.body().contact, scale_->tolerance());
@@ -292,7 +293,8 @@ PLIANT_INLINE void Simulation::estimate_contact_error(long impacts, StepError& r
   result.length = halves.length;
 }
 
-/// Throws the failure of a step that cannot be shorter: that of the method, or else of the tolerance.
+/// Throws the failure of a step that cannot be shorter: the failure of the method, or else a
+/// NumericalFailure, because the error exceeds the tolerance.
 PLIANT_INLINE void Simulation::fail_to_meet_tolerance() {
   integrate();
   std::ostringstream message;
@@ -329,7 +331,7 @@ PLIANT_INLINE double Simulation::integrate() {
 }
 
 /// Stages 2 to 4 and 6 of a step of fixed length: advances the state by h, with stops where joints switch and
-/// paths have kinks. The caller counts the step.
+/// paths have kinks. The caller increments State::step.
 PLIANT_INLINE void Simulation::advance(double h) {
   const std::vector<double>& times = model_.switch_times();
   if (times.empty() && model_.driven_joints().empty()) {
@@ -376,7 +378,8 @@ PLIANT_INLINE void Simulation::switch_joints(double t, double tolerance) {
   switching_.switch_at(at, tolerance);
 }
 
-/// Stage 6: applies the impulses at a kink (s) of the prescribed paths.
+/// Stage 6: applies the impulses at a kink, a time (s) at which the velocity of a prescribed path jumps.
+/// Times within the tolerance (s) are equal.
 PLIANT_INLINE void Simulation::follow_paths(double kink, double tolerance) {
   StepContext after(dynamics_, state_, work_, step_counters_, just_after(kink), state_.h);
   switching_.follow_paths(after, kink, tolerance);

@@ -24,9 +24,10 @@ class Simulation {
  public:
   /// Prepares the body, which must outlive the simulation, and starts at time 0: joints with a small gap
   /// become closed, and impulses make the velocities agree with them. integrator: the name of a method, or
-  /// kAutomatic. tolerance: of the error of a step (method/error_scale.h), which then determines the length
-  /// of the steps; 0: steps have the length that the caller gives, or with kAutomatic the tolerance is
-  /// kStandardTolerance. Throws std::invalid_argument and UnsatisfiableModel.
+  /// kAutomatic. threads: number of threads. tolerance: largest error of a step (method/error_scale.h), which
+  /// then determines the length of the steps. With tolerance 0 steps have the length that the caller gives,
+  /// or with kAutomatic the tolerance is kStandardTolerance. Throws std::invalid_argument and
+  /// UnsatisfiableModel.
   explicit Simulation(MultiBody& body, const std::string& integrator = "semi_implicit_euler", int threads = 1,
                       double tolerance = 0);
   ~Simulation();
@@ -38,8 +39,8 @@ class Simulation {
   /// NumericalFailure, UnsatisfiableModel and std::invalid_argument; the state is then that before the failed
   /// step.
   void step(double h);
-  /// Advances by one step of the length that the tolerance allows. It ends at the time `until` (s, later than
-  /// now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
+  /// Advances by one step of the length that the tolerance allows. The step ends at the time `until` (s,
+  /// later than now) at the latest. Throws as step() does, and std::logic_error without a tolerance.
   void step_up_to(double until);
 
   const Model& model() const { return model_; }
@@ -50,7 +51,8 @@ class Simulation {
   /// Returns the tolerance of the error of a step; 0 if the error is not controlled.
   double tolerance() const { return scale_ ? scale_->tolerance() : 0; }
   const State& state() const { return state_; }
-  /// Continues from another state of the same model. Throws std::invalid_argument if it does not fit.
+  /// Continues from another state of the same model. Throws std::invalid_argument if the state does not fit
+  /// the model.
   void set_state(State state);
   double time() const { return state_.time(); }
 
@@ -65,12 +67,13 @@ class Simulation {
   /// Returns the contacts (contact/contact_stepping.h); nullptr if nothing can touch.
   const ContactStepping* contact() const { return contact_.get(); }
   const StepCounters& step_counters() const { return step_counters_; }
-  /// Returns the impulses of joints when they or other joints engaged, and at kinks of prescribed paths, in
-  /// the order of time, except rounding.
+  /// Returns the impulses of joints at the times when joints engaged and at kinks of prescribed paths, in the
+  /// order of time and without those that are rounding.
   const std::vector<ImpulseOnEngage>& engage_impulses() const { return switching_.impulses(); }
   /// Returns the counters of the kernels, summed over parts.
   Counters counters() const;
-  /// Returns the parameters that had no inertia at some step, and were fixed in it, as "part.parameter".
+  /// Returns the names of the parameters ("part.parameter") that had no inertia at some step and were fixed
+  /// in that step, and of such velocities of frames ("part.omega.x").
   std::set<std::string> held() const;
 
  private:
@@ -110,11 +113,12 @@ class Simulation {
 
 /// Returns the largest step (s) for which the method keeps the motion about the state bounded; infinite if
 /// nothing limits it. The bounds are: linearised elasticity and damping of global parameters and springs,
-/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open, and
-/// a rotation of half a radian per step. Parts that springs connect are bounded together; in large groups
-/// they are bounded separately, with twice the stiffness of each spring. Joints are ignored, because they
-/// only reduce the frequencies of elasticity. Both are conservative. For a method that integrates local
-/// elasticity implicitly, only the springs at nodes of such parts are included.
+/// local elasticity, the fastest oscillation of parts on joints, Baumgarte's terms while a joint is open, a
+/// rotation of half a radian per step, and one radian of phase of modes if contact is active. Parts that
+/// springs connect are bounded together; in large groups they are bounded separately, with twice the
+/// stiffness of each spring. The bounds of elasticity ignore joints, which only reduce its frequencies. Both
+/// simplifications can only make the result smaller. If the method integrates local elasticity implicitly,
+/// only springs and drag bound the parts that deform locally.
 double largest_stable_step(const Simulation& simulation);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
-// Bodies of stable_step.h: M, K and D of each group of parts that springs connect, in mass-normalised
-// coordinates, and the largest step for which the growth of the method is at most 1.
+// Function bodies of stable_step.h: M, K and D of each group of parts that springs connect, in
+// mass-normalised coordinates, and the largest step for which the growth of the method is at most 1.
 #pragma once
 
 #include <pliant/simulate/stable_step.h>
@@ -21,14 +21,16 @@ namespace pliant {
 
 namespace stability {
 
-/// In groups with more velocities, each part is bounded separately.
+/// In groups of parts with more velocities than this, the step is bounded for each part separately.
 inline constexpr int kMaxGroupVelocities = 120;
 /// Largest rotation of a part in a step, rad.
 inline constexpr double kMaxRotation = 0.5;
-/// Largest phase of a mode in a step, rad. Beyond it, impacts move the mode like a free body and add energy.
+/// Largest change of phase of a mode in a step, rad. In longer steps, impacts move the mode like a free body
+/// and add energy.
 inline constexpr double kMaxPhase = 1;
 
-/// Returns L of Eq. (9) of a port on v_r of its part: 3 x n_v, world.
+/// Returns L of Eq. (9) at a port, an attachment point: the world velocity (m/s) of the point is L v_r. 3 x
+/// (6 + n_s).
 inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double>& w, int port) {
   const PointJet<double>& jet = w.ports[static_cast<std::size_t>(port)];
   MatX<double> L(3, 6 + m.n_s);
@@ -38,12 +40,12 @@ inline MatX<double> port_jacobian(const PartModel& m, const PartWorkspace<double
   return w.R * L;
 }
 
-/// M x_ddot + D x_dot + K x = 0.
+/// The system M x_ddot + D x_dot + K x = 0.
 struct LinearSystem {
   MatX<double> M, K, D;
 };
 
-/// Returns some columns of a matrix.
+/// Returns the columns of a matrix with the numbers `which`.
 inline MatX<double> columns_of(const MatX<double>& A, const std::vector<Eigen::Index>& which) {
   MatX<double> columns(A.rows(), static_cast<Eigen::Index>(which.size()));
   for (std::size_t i = 0; i < which.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
@@ -90,9 +92,10 @@ inline double stable_step_of(const Integrator& method, const LinearSystem& syste
   return low;
 }
 
-/// Returns bounds of K and D of a part that deforms locally, in mass-normalised coordinates: the sum of the
-/// bounds of its local elasticity, its global parameters and the springs at its points. implicit: springs
-/// only.
+/// Returns bounds of K (1/s^2) and D (1/s) of a part that deforms locally, in mass-normalised coordinates:
+/// the sum of the bounds of its local elasticity, its global parameters, its drag and the springs at its
+/// attachment points. implicit: the method integrates elasticity implicitly, and only drag and springs are
+/// included.
 inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
                                              const PartWorkspace<double>& w, bool implicit) {
   const PartModel& m = model.parts()[i];
@@ -123,7 +126,7 @@ inline LocalDeformation::Bound bound_locally(const Model& model, std::size_t i,
   return bound;
 }
 
-/// Returns the cause of the limit of a group: its springs and parameters.
+/// Returns the text that names the springs and parameters of a group as the cause of a limit.
 inline std::string limit_of_group(const Model& model, const std::vector<std::size_t>& group) {
   const std::string name = "'" + model.parts()[group.front()].part->name() + "'";
   if (group.size() == 1) return "the springs and parameters of part " + name;
@@ -239,8 +242,8 @@ class StableStepSearch {
       limit_by(stable_step_of(simulation_.integrator(), system_of({i}, 2)), limit_of_group(model_, {i}));
   }
 
-  /// Assembles the system of some parts and their springs. open_weight: weight of springs with one end on
-  /// another part.
+  /// Assembles the system of some parts and their springs. open_weight: factor of springs with one end on a
+  /// moving part outside these parts.
   LinearSystem system_of(const std::vector<std::size_t>& parts, double open_weight) {
     int size = 0;
     for (const std::size_t i : parts) {
@@ -274,7 +277,8 @@ class StableStepSearch {
     }
     system.D.block(row, row, n_v, n_v) += part.drag() * M;
   }
-  /// d = x_b - x_a. An axial spring is bounded by the isotropic spring of its stiffness.
+  /// Adds a spring that resists every change of x_b - x_a, the vector between its ends. It is at least as
+  /// stiff as an axial spring in every direction.
   void add_spring(const SpringModel& s, double open_weight, LinearSystem& system) const {
     const auto is_outside = [&](int part) {
       return moves(model_, part) && first_[static_cast<std::size_t>(part)] < 0;

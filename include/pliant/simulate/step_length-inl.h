@@ -1,4 +1,4 @@
-// Bodies of step_length.h: the controller of the step length, and the first step.
+// Function bodies of step_length.h: the controller of the step length, and the first step.
 #pragma once
 
 #include <pliant/simulate/step_length.h>
@@ -48,14 +48,14 @@ PLIANT_INLINE double first_step(StepContext& step, const ErrorScale& scale, int 
   const Dynamics& dynamics = step.dynamics;
   const State& state = step.state;
   Workspace<double>& work = step.work;
-  // The length of a step of Euler's method that moves by a hundredth of the scale ...
+  // Length of a step of Euler's method that moves by 0.01 in the units of the scale.
   dynamics.accelerations(state.time(), state.q, state.v, state, work);
   VecX<double> q_dot, q_dot_end;
   dynamics.coordinate_rates(state.q, state.v, q_dot);
   const VecX<double> v_dot = work.v_dot;
   const double tolerance = scale.tolerance(), rate = tolerance * scale.norm(q_dot, v_dot, state.v);
   double h = rate > 0 ? 0.01 / rate : 1e-3;
-  // ... and the change of the rates over it.
+  // Change of the rates during this step.
   dynamics.accelerations(state.time() + h, state.q + h * q_dot, state.v + h * v_dot, state, work);
   dynamics.coordinate_rates(state.q + h * q_dot, state.v + h * v_dot, q_dot_end);
   step.counters.evaluations += 2;

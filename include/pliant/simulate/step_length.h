@@ -13,7 +13,7 @@ namespace pliant {
 
 /// Limits of the growth from one step to the next.
 struct StepGrowth {
-  bool rarely = false;  ///< grow only by kMinRareGrowth or more
+  bool rarely = false;  ///< the length grows by a factor of kMinRareGrowth or more, or not at all
   double max_growth = 6;
 };
 /// Smallest growth that is worth a new factorisation, for methods whose factors depend on the step length.
@@ -21,8 +21,8 @@ inline constexpr double kMinRareGrowth = 2;
 StepGrowth growth_of(const Integrator& method, const Model& model);
 
 /// Returns the length (s) of the step after a step of length h (s) with this error, in tolerances. order: of
-/// the error estimate. last_error: of the step before, 0 if there was none. rejected: whether this step is or
-/// was repeated. max_growth: largest growth factor.
+/// the error estimate. last_error: of the step before, 0 if there was none. rejected: whether this step is
+/// rejected, or repeats a rejected one. max_growth: largest growth factor.
 double next_step(double h, double error, double last_error, int order, bool rejected, double max_growth);
 
 /// Returns the length of a first step at the state, s. order: of the error estimate of the method. step.work
@@ -36,7 +36,7 @@ double first_step(StepContext& step, const ErrorScale& scale, int order);
 template <class Attempt>
 bool take_controlled_step(State& state, double end, double min_length, StepGrowth growth,
                           StepCounters& counters, Attempt&& attempt) {
-  constexpr double kNearEnd = 0.99;  // a step that ends this near to `end` is extended to it
+  constexpr double kNearEnd = 0.99;  // a step longer than this share of the time left until `end` ends there
   const State start = state;
   const double now = start.time();
   bool rejected = false;
@@ -57,7 +57,9 @@ bool take_controlled_step(State& state, double end, double min_length, StepGrowt
     if (accepted) {
       const bool cut = length < tried;
       state.start = reaches_end && !cut ? end : now + length;
-      state.h = cut ? h : reaches_end ? std::max(h, next) : next;  // a step cut by an event keeps its length
+      state.h = cut           ? h
+                : reaches_end ? std::max(h, next)
+                              : next;  // an event that cut the step does not change h
       state.error = error;
       return true;
     }

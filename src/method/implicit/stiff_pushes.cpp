@@ -1,2 +1,2 @@
-// The library's instance of the bodies in <pliant/method/implicit/stiff_pushes-inl.h>.
+// The library's instance of the function bodies in <pliant/method/implicit/stiff_pushes-inl.h>.
 #include <pliant/method/implicit/stiff_pushes-inl.h>

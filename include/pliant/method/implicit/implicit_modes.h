@@ -1,6 +1,6 @@
-// The implicit part for a part that deforms by modes, with diagonal mass and stiffness. A omits the coupling
-// of the modes to (c, theta, q_s), which vanishes at rest. For the rates r = (r_q, r_v) the changes x of the
-// modes j and of v_r are
+// The matrix A of a part that deforms by modes, with diagonal mass and stiffness. A omits the coupling of the
+// modes to (c, theta, q_s), which vanishes at rest. For the rates r = (r_q, r_v), the changes are x_j for
+// mode j and x_r for v_r = (R^T c_dot, omega, q_s_dot):
 //   x_j = -c (omega_j^2 (r_q + c r_v) + D_j r_v) / (1 + c D_j + c^2 omega_j^2)
 //   (H0 + c D_r + c^2 K_r) x_r = -c D_r r_v - K_r (c^2 r_v + c r_q)
 #pragma once
@@ -23,7 +23,7 @@ class ImplicitModes final : public ImplicitPart {
 
  private:
   const Oscillators* oscillators_;
-  MatX<double> P_;  ///< displacement of the points of joints by each mode
+  MatX<double> P_;  ///< one column for each mode: displacements of the attachment points of joints
   double c_ = 0;
   VecX<double> sigma_;        ///< 1 + c D + c^2 omega^2
   MatX<double> D_s_;          ///< damping of the global parameters

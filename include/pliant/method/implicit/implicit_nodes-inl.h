@@ -20,18 +20,19 @@ namespace pliant {
 
 namespace implicit_nodes {
 
-/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet. S then
-/// gets additional mass: first kFirstExtraMass times M, then kExtraMassGrowth times more in each attempt, at
-/// most kMaxExtraMass times M.
+/// A pivot of S below kMinPivot times the mass indicates negative stiffness, as in a buckling sheet.
+/// Additional mass is then added to S: first kFirstExtraMass times M, and kExtraMassGrowth times more in each
+/// attempt, at most kMaxExtraMass times M.
 inline constexpr double kMinPivot = 0.5, kFirstExtraMass = 1, kMaxExtraMass = 1e12, kExtraMassGrowth = 4;
-/// Perturbation of the rest shape, in sizes of the part, so that no entry of K is zero by chance.
+/// Perturbation of the rest shape, in sizes of the part, for the sparsity pattern: no entry of K is zero by
+/// chance.
 inline constexpr double kPerturbation = 1e-7;
 
 using Of = NodalEnergy::Of;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Calls add(row, column, value) for the entries of the lower triangle of K by energies of one kind. entries:
-/// scratch storage; its contents are ignored.
+/// Calls add(row, column, value) for each contribution to the lower triangle of K by the energies of one
+/// kind, at x. entries: scratch storage; its contents are ignored.
 template <class Add>
 void for_each_entry(const NodalDeformation& local, Of of, const VecX<double>& x, Entries& entries,
                     Add&& add) {
@@ -176,7 +177,7 @@ PLIANT_INLINE void ImplicitNodes::make_border(const NodalWorkspace& w, double c)
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
     B_.col(i).segment(i * n, n) = m;
-    // e_i x s: along j it is -s_k, along k s_j.
+    // Column i of -[s]x is e_i x s, with component -s_k along j and s_j along k.
     B_.col(3 + i).segment(j * n, n) = -m.cwiseProduct(w.s.col(k));
     B_.col(3 + i).segment(k * n, n) = m.cwiseProduct(w.s.col(j));
   }
@@ -216,7 +217,7 @@ PLIANT_INLINE void ImplicitNodes::make_core(const LocalWorkspace& w) {
     S_r += w.H0;
     S_r.bottomRightCorner(n_s, n_s) += c_ * D_s_ + c_ * c_ * K_s_;
     for (int k = 0; k < n_s; ++k)
-      if (w.held.test(static_cast<std::size_t>(6 + k))) {  // W has no row for this parameter either
+      if (w.held.test(static_cast<std::size_t>(6 + k))) {  // the column of W for this parameter is zero
         core(6 + k, 6 + k) -= 1;
         S_r(6 + k, 6 + k) += 1;
       }
@@ -239,8 +240,8 @@ PLIANT_INLINE void ImplicitNodes::filter(const VecX<double>& q_dot, const Mat3<d
   const VecX<double>& M = local().inertia();
   const auto r_q = q_dot.segment(part_->q0 + 7 + n_s, n_d);
   auto k_v = v_dot.segment(part_->v0 + 6 + n_s, n_d);
-  // With e = r_v + s r_q, s = c / (c^2 + c beta), and y = x_d + e the first row becomes
-  // (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P w_r, without a product with K.
+  // With s = 1 / (c + beta), e = r_v + s r_q and y = x_d + e, the first row of the system in implicit_nodes.h
+  // is (S + c^2 w w^T) y + W kappa + c^2 P x_r = M (e + s c alpha r_q) - P e_r, without a product with K.
   const double s = 1 / (local().beta() + c_);
   e_ = k_v + s * r_q;
   y_ = M.cwiseProduct(e_);

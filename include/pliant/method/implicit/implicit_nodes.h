@@ -1,16 +1,18 @@
-// The implicit part for a part with nodes: its linearised elasticity and damping under the reference
-// conditions W^T d = 0 (include/pliant/part/local/README.md). K is the stiffness over the local coordinates
-// without its dense term w w^T (NodalEnergy::rank_one). K_p is the stiffness of energies of the position.
-// G = [I, -[s]x, J], W = M G. With k_q = r_q + c k_v, the change x = k_v - r_v of the rates of (v_r, d_dot)
-// solves
-//   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - (K + w w^T) w_d - P w_r ]
-//   [ W^T      0             ] [ kappa ] = [ 0                                        ]
-//   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r w_r - P^T w_d           ]
-//   [ c w^T             -1   ] [ zeta  ]   [ 0                                        ]
-// with S = (1 + c alpha) M + (c beta + c^2) K sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0, J]
-// and w_. = (c^2 + c beta) r_v + c r_q. S is factored once while K is constant. The few columns beside S, the
-// border, are solved with its factor, and again at each step if global parameters change W. A stage then
-// costs one sparse solve.
+// The matrix A of a part with nodes: linearised elasticity and damping under the reference conditions
+// W^T d = 0 (include/pliant/part/local/README.md), G = [I, -[s]x, J], W = M G. K is the stiffness over the
+// local coordinates without its dense term w w^T (NodalEnergy::rank_one). K_p is the share of K of energies
+// that depend on positions (NodalEnergy::Of::position). Let r_q, r_v be the given rates, k_q = r_q + c k_v,
+// and v_r = (R^T c_dot, omega, q_s_dot). The changes k_v - r_v are x_d for the local coordinates and x_r for
+// v_r:
+//   [ S        W  c^2 P  c w ] [ x_d   ]   [ -c alpha M r_v - ((c^2 + c beta) K + c^2 w w^T) e - P e_r ]
+//   [ W^T      0             ] [ kappa ] = [ 0                                                         ]
+//   [ c^2 P^T     S_r        ] [ x_r   ]   [ -c D_r r_v - K_r e_r - c^2 P^T e                          ]
+//   [ c w^T             -1   ] [ zeta  ]   [ 0                                                         ]
+// with S = (1 + c alpha) M + (c beta + c^2) K sparse, S_r = H0 + c D_r + c^2 K_r, P = (K_p + w w^T) [0, 0,
+// J], e = r_v + r_q / (c + beta) of the local coordinates, and e_r = c^2 r_v + c r_q of the parameters. kappa
+// and zeta are auxiliary. For beta > 0 the terms with w and P are not the exact derivatives; ROS2 does not
+// need them. S is factored once while K is constant. The border, the few columns beside S, is solved with the
+// factor of S, and again at each step if global parameters change W. A stage then costs one sparse solve.
 #pragma once
 
 #include <memory>
@@ -28,8 +30,9 @@ class ImplicitNodes final : public ImplicitPart {
  public:
   ImplicitNodes(const PartModel& part, std::unique_ptr<SparseFactor> factor);
 
-  /// Factors S if c has changed, and at every call if there are energies of the position. With only their
-  /// stiffness at rest, steps of 10 times the explicit limit fail for parts that are bent or stretched far.
+  /// Factors S if c has changed, and at every call if an energy depends on positions. If S kept the stiffness
+  /// at rest of such energies, steps of 10 times the explicit limit would fail for parts that are bent or
+  /// stretched far.
   int prepare(const PartWorkspace<double>& w, double c, double t) override;
   void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) override;
   MatX<double> compliance() const override;
@@ -38,30 +41,33 @@ class ImplicitNodes final : public ImplicitPart {
 
  private:
   const NodalDeformation& local() const { return *part_->local->nodal(); }
-  /// Returns whether the border contains x_r: only if there are global parameters.
+  /// Returns whether the border contains x_r. It does only if there are global parameters.
   bool frame_in_border() const { return part_->n_s > 0; }
-  /// Computes K_ of the energies of displacement, with the pattern of all energies.
+  /// Computes K_: the stiffness of the energies of displacements, in the sparsity pattern of all energies.
   void make_pattern();
-  /// Computes S_ and its factor at positions x and time t (s). Returns the number of factorisations.
+  /// Computes S_ and its factor at positions x (m) and time t (s), and Z_. Returns the number of
+  /// factorisations.
   int factor(double c, const VecX<double>& x, double t);
-  /// Adds `factor` times the masses to the stiffness in S_ and factors S_, with additional mass if S_ is not
-  /// definite. Returns the number of factorisations. Throws NumericalFailure if no mass suffices.
+  /// Adds `factor` times the masses to S_, which must contain the stiffness term, and factors S_. Adds more
+  /// mass if S_ is not definite. Returns the number of factorisations. Throws NumericalFailure if no mass
+  /// suffices.
   int factor_definite(double factor, double t);
   /// Computes the border B_, S^-1 B_ and the constant part of the Schur complement.
   void make_border(const NodalWorkspace& w, double c);
   /// Computes and factors the Schur complement of S.
   void make_core(const LocalWorkspace& w);
-  /// Returns each column, a vector over the local coordinates, interpolated at the points of joints.
+  /// Returns the values of fields at the attachment points of joints, three rows a point. nodal: one field
+  /// over the local coordinates in each column.
   MatX<double> at_joints(const MatX<double>& nodal) const;
 
   std::unique_ptr<SparseFactor> factor_;
   VecX<double> zeros_;         ///< n_d zeros
   NodalWorkspace rest_;        ///< the part at rest
-  bool stiffness_changes_;     ///< whether the part has energies of the position
+  bool stiffness_changes_;     ///< whether an energy depends on positions
   double c_ = 0;               ///< c of the factor, s; 0: none
   Eigen::Index analysed_ = 0;  ///< number of entries of the analysed pattern
   std::vector<Eigen::Triplet<double>> entries_;
-  SparseMatrix K_, S_;       ///< lower triangles of one pattern: stiffness of the energies of displacement, S
+  SparseMatrix K_, S_;       ///< lower triangles of one pattern: K of the energies of displacements, and S
   MatX<double> B_, T_;       ///< border, S^-1 border
   MatX<double> Z_;           ///< S^-1 N^T with the interpolation N of at_joints()
   MatX<double> B_Z_, N_T_;   ///< B^T Z, N T

@@ -1,6 +1,7 @@
-// The part of the matrix A that belongs to one part that deforms locally, in (I - c A) k = r with c = gamma h
-// (linearly_implicit.h): its implicit elasticity and damping. implicit_nodes.h and implicit_modes.h are the
-// two kinds.
+// The block of the matrix A for one part that deforms locally, in (I - c A) k = r with c = gamma h
+// (linearly_implicit.h): the elasticity and damping of the part. Such a part is called implicit, all others
+// explicit. The filter is the solution k of this equation. implicit_nodes.h and implicit_modes.h are the two
+// kinds.
 #pragma once
 
 #include <memory>
@@ -12,14 +13,14 @@ namespace pliant {
 
 class ImplicitPart : public LocalResponse {
  public:
-  /// Prepares A for this c (s), at an evaluation w of the part at time t (s). Returns the number of
+  /// Prepares the filter for c (s). w: an evaluation of the part at time t (s). Returns the number of
   /// factorisations. Throws NumericalFailure or OutOfMemory if the stiffness cannot be factored.
   virtual int prepare(const PartWorkspace<double>& w, double c, double t) = 0;
-  /// Replaces v_dot of the part by k_v, for the rates r = (q_dot, v_dot) of all parts. R: orientation of the
-  /// frame of the part.
+  /// Replaces the entries of this part in v_dot by k_v. q_dot, v_dot: the rates r of all parts. R:
+  /// orientation of the frame of this part, body to world.
   virtual void filter(const VecX<double>& q_dot, const Mat3<double>& R, VecX<double>& v_dot) = 0;
-  /// Returns the change x = k_v - r_v of the last filter(), of v_r and of d_dot at the points of joints
-  /// (body/constraint/group.h).
+  /// Returns the change x = k_v - r_v by the last filter(): first of the rates of v_r = (R^T c_dot, omega,
+  /// q_s_dot), then of d_dot at each attachment point of joints (body/constraint/group.h).
   const VecX<double>& change() const { return change_; }
 
  protected:

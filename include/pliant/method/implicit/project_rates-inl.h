@@ -33,8 +33,8 @@ inline void copy_metric(const ImplicitPart* implicit, const PartWorkspace<double
   filtered.inertia.M = w.inertia.M;
 }
 
-/// Projects x, so that the rows of joints and the pushed rows have zero rate. If the factor of the joints is
-/// not accurate, three passes refine x.
+/// Projects x, the changes by the filter, so that the rows of joints and the pushed rows have zero value.
+/// Three passes refine x if the factor of the joints is not accurate.
 template <int Max>
 void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
              VecMax<double, Max>& x) {
@@ -59,7 +59,7 @@ void project(const Group<double, Max>& group, const std::vector<OneSidedRow>& pu
   x += responses * W.completeOrthogonalDecomposition().solve(b);
 }
 
-/// Projects the changes of the rates of a group and adds the difference to v_dot.
+/// Projects the changes of the rates of a group by the filter, and adds the corrections to v_dot.
 template <int Max>
 void project_group_rates(const Group<double, Max>& group, const std::vector<OneSidedRow>& pushed,
                          const ImplicitParts& parts, const Workspace<double>& work, VecX<double>& v_dot) {

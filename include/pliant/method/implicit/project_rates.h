@@ -1,6 +1,6 @@
-// Projection of filtered rates onto the rows of joints, strings and limits that push: these rows keep the
-// values that they had before the filter. The forces act in the metric of the filter: the inverse of the
-// compliance of implicit parts (implicit_part.h), and M of other parts.
+// Projection of filtered rates (implicit_part.h): the rows of joints, of strings that pull and of limits that
+// push get the values back that they had before the filter. The forces act in the metric of the filter: the
+// inverse of the compliance of implicit parts, and M of other parts.
 #pragma once
 
 #include <pliant/method/implicit/implicit_part.h>
@@ -10,8 +10,9 @@ namespace pliant {
 /// Returns whether an island has an implicit part.
 bool has_implicit(const Island& island, const ImplicitParts& parts);
 
-/// Projects v_dot after the filter. parts: after filter() of each. work: the evaluation that gave the rates.
-/// filtered: scratch storage, kept from call to call; its contents are ignored.
+/// Projects v_dot, the filtered rates of all parts. parts: after filter() of each implicit part. work: the
+/// evaluation that gave the rates. filtered: scratch storage, kept from call to call; its contents are
+/// ignored.
 void project_rates(const Model& model, const ImplicitParts& parts, const Workspace<double>& work,
                    Workspace<double>& filtered, VecX<double>& v_dot);
 

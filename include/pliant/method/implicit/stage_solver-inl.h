@@ -1,5 +1,5 @@
 // Function bodies of stage_solver.h: clusters, the Newton iteration of a stage, and the matrices by
-// differences.
+// difference quotients.
 #pragma once
 
 #include <pliant/method/implicit/stage_solver.h>
@@ -23,20 +23,21 @@ namespace stage_solver {
 
 /// The iteration is slow if each change is more than this fraction of the last one.
 inline constexpr double kSlowContraction = 0.9;
-/// Largest number of iterations of a stage with the matrix.
+/// Largest number of iterations of a stage with one matrix.
 inline constexpr int kMaxIterations = 20;
-/// A stage may use this many iterations for each velocity without the matrix, because the matrix costs two
-/// evaluations for each velocity.
+/// Without the matrix a stage may use kMaxIterations iterations, or kFreeIterations for each velocity of the
+/// largest cluster if that is more, because the matrix costs two evaluations for each of these velocities.
 inline constexpr double kFreeIterations = 0.5;
-/// Largest number of matrices that are computed for one stage.
+/// Largest number of matrices that are computed for one stage, besides that at the start of the step.
 inline constexpr int kMaxMatrices = 4;
-/// Changes that do not shrink and are below this, in sizes of the part and radians, are rounding.
+/// Changes that do not shrink and are at most this, in sizes of the part and radians, are rounding.
 inline constexpr double kRounding = 1e-12;
 /// Size of the differences, relative to the scale of the coordinate.
 inline constexpr double kDifference = 1e-7;
 /// Largest number of velocities of a cluster, whose matrix is dense.
 inline constexpr Eigen::Index kMaxClusterVelocities = 1000;
-/// The iteration has converged if the change is below this, in tolerances.
+/// The iteration has converged if the last change and the expected remaining change are at most this, in
+/// tolerances.
 inline constexpr double kConverged = 0.02;
 
 /// Converts changes of quaternions to rotations (rad, body frame); other coordinates do not change.
@@ -54,8 +55,8 @@ inline void to_tangent(const Model& model, const VecX<double>& q, const VecX<dou
   }
 }
 
-/// Rotates the linear velocity in x of each part from its frame into the world, or back. Stiff directions,
-/// and with them the matrix, turn with the parts.
+/// Rotates the linear velocity of each part in x (n_v) from the frame of the part into the world, or back.
+/// Stiff directions turn with the parts, and the matrix stays valid in the frames of the parts.
 enum class Frame { world, body };
 inline void rotate_velocities(const Model& model, const VecX<double>& q, Frame into, VecX<double>& x) {
   for (const PartModel& m : model.parts()) {
@@ -126,7 +127,8 @@ PLIANT_INLINE void StageSolver::solve(double t, const VecX<double>& r_q, const V
   q_guess_ = q;
   v_guess_ = v;
   if (iterate(t, r_q, r_v, q, v)) return;
-  // The matrices are tried in this order: at the start of the step, at the guess, at the last iterates.
+  // The matrix is evaluated first at the start of the step (i = 0), then at the guess, then at the last
+  // iterate.
   for (int i = has_matrix_ ? 1 : 0; i <= stage_solver::kMaxMatrices; ++i) {
     if (i <= 1) {
       q = q_guess_;
@@ -213,8 +215,8 @@ PLIANT_INLINE void StageSolver::allocate_matrices(double t) {
     const auto n = static_cast<Eigen::Index>(cluster.velocities.size());
     if (n > stage_solver::kMaxClusterVelocities) {
       std::ostringstream message;
-      message << "the parts that act on each other, from part '"
-              << model_.parts()[at(cluster.parts.front())].part->name() << "' on, have stiff motion and " << n
+      message << "part '" << model_.parts()[at(cluster.parts.front())].part->name()
+              << "' and the parts that joints, springs or torques connect to it have stiff motion and " << n
               << " velocities; expected at most " << stage_solver::kMaxClusterVelocities
               << " for this method: use linearly_implicit or smaller steps";
       throw NumericalFailure(message.str(), t);

@@ -1,10 +1,11 @@
 // The solver of implicit stages,
 //   Q = r_q + c q_dot(Q, V),   V = r_v + c v_dot(t, Q, V),
 // by simplified Newton iteration (Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.8).
-// The matrix I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot, is computed by differences, once
-// in a step, and only if the iteration without it would cost more. It is computed again if stiff parts turn
-// so far that it no longer helps. Clusters of parts that joints, springs or mutual torques connect have one
-// matrix each, in the frames of the parts, because stiff directions turn with the parts.
+// The matrix is I - c A_v - c^2 A_q, with the derivatives A_q and A_v of v_dot by q and v. A_q and A_v are
+// computed by difference quotients, once in a step, and only if the iteration without the matrix would cost
+// more. They are computed again if stiff parts turn so far that the matrix no longer helps. Each cluster of
+// parts that joints, springs or mutual torques connect has one matrix, in the frames of the parts, because
+// stiff directions turn with the parts.
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@ class StageSolver {
   explicit StageSolver(const Model& model);
 
   /// Prepares the stages of a step from the state of the context. The context and the scale must outlive the
-  /// stages. c: gamma h of all stages, s. scale: measures the changes of the iteration.
+  /// stages. c: gamma h of all stages, s. scale: the norm of the changes of the iteration.
   void begin_step(StepContext& step, double c, const ErrorScale& scale);
   /// Solves the stage at time t (s) for q and v; their values before the call are the first guess. On return
   /// the workspace of the step contains the last evaluation. Throws NumericalFailure, with the unknown that
@@ -39,15 +40,16 @@ class StageSolver {
     MatX<double> A_q, A_v;
     Eigen::PartialPivLU<MatX<double>> factor;
   };
-  /// Iterates while further iterations can be cheaper than a new matrix. Returns whether the iteration
-  /// converged.
+  /// Iterates until q and v have converged, or until a new matrix is expected to be cheaper. Returns whether
+  /// the iteration converged.
   bool iterate(double t, const VecX<double>& r_q, const VecX<double>& r_v, VecX<double>& q, VecX<double>& v);
-  /// Evaluates the matrices A_q and A_v at (t, q, v) by differences and factors the clusters.
+  /// Evaluates A_q and A_v of each cluster at (t, q, v) by difference quotients, and factors its matrix.
   void linearise(double t, const VecX<double>& q, const VecX<double>& v);
-  /// Sets one column of A_q or A_v of each cluster to the difference quotient of the accelerations in the
-  /// workspace. difference: differences(column).
+  /// Sets one column of A_q or A_v of each cluster to a difference quotient: the change of the accelerations
+  /// in the workspace from v_dot_, divided by the difference. difference: differences(column).
   void set_column(Eigen::Index column, const VecX<double>& difference, MatX<double> Cluster::*A);
-  /// Returns the changes of the coordinates for this column of the matrix of each cluster.
+  /// Returns the differences for one column of the matrices of all clusters: n_v numbers, one nonzero number
+  /// for each cluster.
   VecX<double> differences(Eigen::Index column) const;
   /// Allocates the matrices. Throws NumericalFailure, with the time t (s), if a cluster is too large.
   void allocate_matrices(double t);
@@ -56,7 +58,7 @@ class StageSolver {
 
   const Model& model_;
   std::vector<Cluster> clusters_;
-  VecX<double> difference_;  ///< size of the differences, for each velocity, m or rad or 1
+  VecX<double> difference_;  ///< n_v: size of the difference in each coordinate, m, rad or 1
   int max_free_iterations_;  ///< largest number of iterations of a stage without the matrix
   // The current step.
   StepContext* step_ = nullptr;

@@ -1,4 +1,4 @@
-// Function bodies of stiff_pushes.h: set and reset of the stiffening factor of each part.
+// Function bodies of stiff_pushes.h: setting and resetting the stiffening factor of each part.
 #pragma once
 
 #include <pliant/method/implicit/stiff_pushes.h>

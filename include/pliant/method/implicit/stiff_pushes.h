@@ -1,8 +1,8 @@
 // The metric of the projection after an implicit step. In the mass metric a projection would move stiff
-// parameters as easily as others, and their stiffness would turn this error of the step into unbounded
-// forces. For parts without local deformation the metric is therefore M + (c beta + c^2) K_s over q_s, with c
-// of the stages: stiff parameters respond as in a step. The added term acts on q_s alone, so that the linear
-// and the angular momentum do not change.
+// parameters as easily as others, and this small displacement would cause unbounded elastic forces. For parts
+// without local deformation the metric is therefore M plus (c beta + c^2) K_s over q_s, with c = gamma h of
+// the stages: stiff parameters respond to impulses as in a step. The added term acts on q_s alone, so that
+// the linear and the angular momentum do not change.
 #pragma once
 
 #include <pliant/body/dynamics.h>
@@ -12,7 +12,7 @@ namespace pliant {
 /// While the object lives, impulses on parts act in this metric.
 class StiffPushes {
  public:
-  /// work: the evaluation of the last stage. state: at time t (s). c: of the stages, s.
+  /// work: the evaluation of the last stage. state: the state at time t (s). c: gamma h of the stages, s.
   StiffPushes(const Dynamics& dynamics, double t, double c, const State& state, Workspace<double>& work);
   ~StiffPushes() { end(); }
   StiffPushes(const StiffPushes&) = delete;
