@@ -24,7 +24,7 @@ struct Parameter {
   double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
   Range limits;                                      ///< one-sided limits of a dynamic parameter
-  bool initial_given = false, limits_given = false;  ///< whether the user set them
+  bool initial_given = false, limits_given = false;  ///< whether the user set initial and limits
 
   /// The rest value at time 0.
   double rest_value() const { return rest.value(0); }
@@ -66,8 +66,8 @@ class Parameters {
   const std::vector<int>& dynamic() const { return dynamic_; }
   /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
-  /// Brings the lists of dynamic parameters, acting links and frozen values up to date. To be called after
-  /// `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
+  /// Updates the lists of dynamic parameters, acting links and frozen values. To be called after `dynamic` or
+  /// `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
   /// parameters.
   void update();
 

@@ -36,7 +36,7 @@ class Primitive final : public Part {
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  /// Evaluates them with their derivatives along the direction of the dual parts.
+  /// Evaluates these jets with their derivatives along the direction of the dual parts.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);
@@ -52,18 +52,18 @@ class Primitive final : public Part {
       chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
 
-  /// Applies T alone to seeded jets, with all parameters constant.
+  /// Applies T alone to jets that contain undeformed positions and columns J. All parameters are constant.
   void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const override {
     static constexpr bool none[kMaxParameters] = {};
     const LinkParameters<double> constant{values.b.data(), values.b_dot.data(), none};
     chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
-  /// Applies the inverse of T to a point.
+  /// Applies the inverse of T to a position.
   Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
   }
 
-  /// The parameters b of the chain, which follow the parameters a of the shape.
+  /// Returns the parameters b of the chain, which are stored after the parameters a of the shape.
   template <class P>
   static LinkParameters<P> chain_part(const LinkParameters<P>& all) {
     constexpr int n = shape_size<Shape>;
