@@ -1,5 +1,5 @@
-// Continuum elasticity of the global parameters: the strain energy of the map from the rest shape to the
-// present shape,
+// Continuum elasticity of the global parameters. The strain energy is that of the map from the rest shape to
+// the present shape,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
 // Damping adds beta P_v to P, with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants

@@ -47,8 +47,8 @@ class ShapeFace {
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
   /// Whether the strain stays bounded when an exponent changes. For the trigonometric map of superquadrics
-  /// the strain is unbounded: if eps changes from eps_0 to p eps_0, the deformation gradient grows as |x|^(p
-  /// - 1) at the coordinate planes.
+  /// the strain is unbounded: if eps changes from eps_0 to p eps_0, the deformation gradient grows as
+  /// |x|^(p - 1) at the coordinate planes.
   virtual bool bounded_exponents() const = 0;
   /// Whether e is linear in all parameters that are lengths.
   virtual bool linear_lengths() const = 0;
