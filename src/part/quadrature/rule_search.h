@@ -252,7 +252,7 @@ class RingSearch {
   }
 
   // Nodes of one direction at random places of the other directions. If the points of a ring do not move
-  // independently, v is no such direction: each node then has its whole ring.
+  // independently, a place has no node of v, and each column has whole rings.
 
   Columns along_v(const std::vector<AngleNode>& nodes) const {
     Columns line;
