@@ -37,14 +37,14 @@ struct ContinuumLawInfo {
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
 };
-/// Returns the laws. They have the names of the corresponding laws of local deformation.
+/// Returns the laws. A law has the name of the corresponding law of local deformation.
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
 /// Quadrature points of the rest body with derivatives along directions X: x, y, z of a solid, two tangents
 /// of a shell.
 struct StrainPoints {
   std::array<std::vector<Material<Dual<1, Pack>>>, 3>
-      at;                    ///< for each direction all points, in packs of four
+      at;                    ///< for each direction X all points, in packs of four
   std::vector<Pack> weight;  ///< m^3 of a solid, m^2 of a shell; 0 in unused lanes
   int n_points = 0;
   int directions = 3;
@@ -140,8 +140,8 @@ class ContinuumEnergy {
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
   /// Returns the exact d2E/dq_s2, n_s x n_s.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
-  /// Returns the contribution to stiffness() without the geometric stiffness, n_s x n_s. This matrix is
-  /// positive semidefinite, and beta multiplies it.
+  /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
+  /// positive semidefinite. For a quadratic W of the strain it is stiffness() without geometric stiffness.
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:

@@ -151,7 +151,7 @@ void write_mass_matrix(const MassPointSums<S>& sums, Inertia<P>& out) {
   const Vec3<P>& s = out.moment;
   const P zero(0.0), xx = total(sums.xx), yy = total(sums.yy), zz = total(sums.zz), xy = total(sums.xy),
                      yz = total(sums.yz), zx = total(sums.zx);
-  // M_comega = -[sum m p]x
+  // The block of (c, omega) is -[sum m p]x.
   const P M_cw[3][3] = {{zero, s[2], -s[1]}, {-s[2], zero, s[0]}, {s[1], -s[0], zero}};
   const P M_ww[3][3] = {{yy + zz, -xy, -zx}, {-xy, xx + zz, -yz}, {-zx, -yz, xx + yy}};
   for (int i = 0; i < 3; ++i)

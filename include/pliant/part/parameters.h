@@ -46,8 +46,8 @@ class Parameters {
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }
   int n_dynamic() const { return static_cast<int>(dynamic_.size()); }
-  /// The links of the chain that act, in order: links with a dynamic parameter, and links that are not frozen
-  /// as the identity. The kernels skip the other links.
+  /// The links of the chain that act, in order. A link acts if it has a dynamic parameter or is not the
+  /// identity. The kernels skip the other links.
   const std::vector<LinkInfo>& links() const { return acting_; }
   /// Every link of the chain, in order.
   const std::vector<LinkInfo>& all_links() const { return links_; }

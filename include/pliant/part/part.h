@@ -44,13 +44,13 @@ class Part : public PartEvaluation {
 
   /// The stiffness K_s over the dynamic parameters.
   const MatX<double>& K_s() const { return constants_.K_s; }
-  /// The strain energy of the elastic material; nullptr if there is none, or if no dynamic parameter strains
-  /// it.
+  /// The strain energy of the elastic material; nullptr if the part has no elastic material or no dynamic
+  /// parameter.
   const ContinuumEnergy* continuum() const { return constants_.continuum.get(); }
   /// Returns d2E/dq_s2 at q_s (n_s x n_s), with the elastic energy E of K_s and of the material.
   MatX<double> elastic_stiffness(const VecMax<double>& q_s) const;
-  /// Returns elastic_stiffness() without the geometric stiffness, which comes from the stress of the
-  /// material. The result is positive semidefinite, and beta multiplies it.
+  /// Returns the matrix that beta multiplies, n_s x n_s: K_s plus ContinuumEnergy::strain_stiffness(). It is
+  /// positive semidefinite.
   MatX<double> strain_stiffness(const VecMax<double>& q_s) const;
   /// The local deformation; nullptr if the part does not deform locally.
   const LocalDeformation* local() const { return constants_.local.get(); }

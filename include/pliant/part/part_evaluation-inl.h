@@ -1,4 +1,4 @@
-// Function bodies of PartEvaluation, geometry: reference shape s, Eq. (3), gradients, normals, and the
+// Function bodies of PartEvaluation for geometry: reference shape s, Eq. (3), gradients, normals, and the
 // inverse map from positions to material points.
 #pragma once
 

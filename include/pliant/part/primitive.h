@@ -1,10 +1,10 @@
 // Primitive<Shape, GlobalDeform>: the class of a part, Eq. (3),
 //   s = T(e(u; a); b)
 // Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
-// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; their
-// derivatives come from dual numbers: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot qs_dot, a term of
+// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; dual
+// numbers give the derivatives: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot qs_dot, a term of
 // g_q in Eq. (11). Primitive evaluates s, J and the rates for batches of material points. Everything else is
-// in Part, which does not depend on the types.
+// in Part, which does not depend on the types Shape and GlobalDeform.
 //
 //   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
 //   body.place({0, 0, 1}).rest({{"a3", 2.0}}).stiffness({{"bend.angle", 50.0}});

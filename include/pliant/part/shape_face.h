@@ -35,8 +35,8 @@ class ShapeFace {
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point at x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point of the surface for a mesh vertex. g: its direction, or for a torus its two
-  /// angles (u, v, 0).
+  /// Returns the material point of the surface for a mesh vertex. g: direction of the vertex, or for a
+  /// torus (angle around the tube, angle around z, 0), rad.
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
   /// Returns the semi-axes if the shape is an ellipsoid, m; else nullopt.
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;

@@ -14,7 +14,7 @@
 //                     overflows
 //   label(x, a)       material point at the position x, the inverse of e; requires gauge
 //   mesh_label(g, a)  material point of the surface for a mesh vertex; g: direction of the vertex in the mesh
-//                     pattern, or (u, v, 0) for MeshPattern::torus
+//                     pattern, or for MeshPattern::torus (angle around the tube, angle around z, 0), rad
 //   profile(a, moving), ring(a, moving)  quadrature panels along u and along v; e is smooth on each panel.
 //                     moving: whether an exponent is a degree of freedom
 //   ring_exponent(a)  exponent of the superellipse that a ring (u, w) = const follows

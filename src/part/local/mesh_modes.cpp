@@ -1,5 +1,5 @@
-// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0,
-// they are the eigenvectors of largest eigenvalue nu = 1/(omega^2 + sigma) of
+// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0, the
+// lowest modes x are the eigenvectors with the largest eigenvalues nu = 1/(omega^2 + sigma) of
 //   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
 // Curved elements use the consistent M: the error of omega is positive and of fourth order in the edge
 // length. Straight elements and shells use the lumped M, whose error has the opposite sign to that of their
@@ -153,7 +153,7 @@ MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>&
   return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
 }
 
-/// A part, its mesh and its elasticity.
+/// A part, the settings of its local deformation, and its mesh.
 struct MeshProblem {
   const Part& part;
   const LocalSettings& settings;
