@@ -1,4 +1,4 @@
-// Material points and gauge gradients of shapes that have no functions for them (shape_face.h).
+// Material points and gauge gradients of shapes that have no label function (shape_face.h).
 #include <cmath>
 #include <stdexcept>
 
@@ -10,7 +10,7 @@ namespace pliant {
 
 namespace {
 
-/// Computes e and returns [e_u e_v e_w] at the angles (u, v) and radius w.
+/// Writes e and returns [e_u e_v e_w], both at uvw = (u, v, w).
 Mat3<double> tangents_at(const ShapeFace& shape, const Vec3<double>& uvw, ShapeParameters a,
                          Vec3<double>& e) {
   const Vec3<Dual<3>> at = shape.tangents(material_with_tangents(uvw[0], uvw[1], uvw[2]), a);

@@ -33,7 +33,8 @@ Parameters::Parameters(const ShapeFace& shape, const std::vector<LinkInfo>& link
   }
   if (size() > kMaxParameters)
     throw std::invalid_argument("a part may have at most " + std::to_string(kMaxParameters) +
-                                " parameters; this chain of deformations needs " + std::to_string(size()));
+                                " parameters; this shape with its chain of deformations has " +
+                                std::to_string(size()));
   update();
 }
 

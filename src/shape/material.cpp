@@ -1,2 +1,2 @@
-// The library compiles the bodies of this header here.
+// The library compiles the function bodies of this header here.
 #include <pliant/shape/material-inl.h>

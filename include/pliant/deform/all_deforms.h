@@ -1,6 +1,6 @@
 // The list of global deformations. A new deformation needs its own file, included here, and an entry in
 // PLIANT_ALL_DEFORMS. The registry, the explicit instances, the schema, `pliant list` and the law tests
-// follow from it.
+// follow from this list.
 #pragma once
 
 #include <tuple>

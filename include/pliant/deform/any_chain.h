@@ -11,7 +11,8 @@
 
 namespace pliant {
 
-/// The interface of one link. One virtual call handles all points of a batch. See link.h for the functions.
+/// The interface of one link. One virtual call handles all jets of a batch. The functions have the arguments
+/// and results of link_info and link_inverse (chain.h), link_acts and apply_link (link.h).
 class AnyLink {
  public:
   virtual ~AnyLink() = default;
@@ -24,7 +25,7 @@ class AnyLink {
   virtual Vec3<double> inverse(const Vec3<double>& p, double h, const double* b) const = 0;
 };
 
-/// A link of type Deform behind this interface.
+/// Implements AnyLink for the deformation Deform.
 template <class Deform>
 class AnyLinkOf final : public AnyLink {
  public:

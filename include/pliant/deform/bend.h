@@ -16,7 +16,8 @@ struct Bend {
   static constexpr std::array<ParameterSpec, 2> parameters{{
       angle("angle", {-kPi, kPi}, {-3.1, 3.1}, "turn of the axis between zeta = 0 and zeta = 1",
             Follows::section),
-      angle("direction", {-6.3, 6.3}, {-6.3, 6.3}, "azimuth towards which it bends", Follows::section),
+      angle("direction", {-6.3, 6.3}, {-6.3, 6.3}, "azimuth towards which the axis bends, from x to y",
+            Follows::section),
   }};
   static constexpr Sections sections = Sections::tilt;
   static constexpr int amplitudes = 1;
@@ -47,14 +48,14 @@ struct Bend {
     const auto [s, c] = math::sin_cos(b[1]);
     const T k = b[0] / h;
     const T r_bent = c * p[0] + s * p[1];
-    // The centre of curvature is at r = 1/k. With q = k z' and d = 1 - k r', g = atan2(q, d) and
-    // rho = sqrt(q^2 + d^2) = 1 - k r.
+    // The centre of curvature is at r = 1/k. Let q = k z' and d = 1 - k r'. Then g = atan2(q, d), and
+    // rho = sqrt(q^2 + d^2) is 1 - k r (for k r < 1).
     const T q = k * p[2], d = -(k * r_bent) + 1.0;
     const T rho = math::sqrt(T(q * q + d * d));
     const T gap = k * (r_bent * r_bent + p[2] * p[2]) - r_bent * 2.0;  // (rho^2 - 1) / k
     const T r = -gap / (rho + 1.0);                                    // (1 - rho) / k
-    // tan(g/2) = q / (rho + d). Beyond a quarter turn, where d < 0, the code computes the difference of g
-    // from pi.
+    // g = 2 atan(q / (rho + d)). Beyond a quarter turn (d < 0) the code uses the equal expression
+    // g = +-pi - 2 atan(q / (rho - d)), with the sign of q.
     const T reach = rho + math::abs(d) + 1e-300;
     const T half_tan = q / reach, half_angle = atan_over(half_tan);
     const T turned = math::where_positive(q, T(kPi), T(-kPi));

@@ -11,9 +11,10 @@ struct BendOffset {
   static constexpr const char* name = "bend_offset";
   static constexpr const char* formula = "(x + b1 cos(pi b3 (zeta + b2)), y, z)";
   static constexpr std::array<ParameterSpec, 3> parameters{{
-      displacement("b1", "size of the offset", Follows::section),
-      ratio("b2", 0, {-1, 1}, {-1, 1}, "where along z the offset is largest", Follows::section),
-      ratio("b3", 1, {1e-3, 1}, {1e-3, 1}, "how much of the axis it spans", Follows::section),
+      displacement("b1", "largest offset", Follows::section),
+      ratio("b2", 0, {-1, 1}, {-1, 1}, "the offset is largest at zeta = -b2", Follows::section),
+      ratio("b3", 1, {1e-3, 1}, {1e-3, 1}, "periods of the cosine over the length of the axis",
+            Follows::section),
   }};
   static constexpr Sections sections = Sections::stay_plane;
   static constexpr int amplitudes = 1;

@@ -1,5 +1,5 @@
-// Chain<Taper, Bend>: a chain of global deformations T, Eq. (3), whose order is part of its type, for library
-// users.
+// Chain<Taper, Bend>: a chain of global deformations T, Eq. (3), for library users. Its type fixes the order
+// of the links.
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ struct LinkInfo {
   const char* type;
   const ParameterSpec* parameters;
   int n_parameters;
-  int amplitudes;  ///< the link is the identity while its first parameters, this many, have their defaults
+  int amplitudes;  ///< while the first `amplitudes` parameters have their defaults, the link is the identity
   Sections sections;
 };
 
@@ -26,7 +26,8 @@ LinkInfo link_info() {
           Deform::sections};
 }
 
-/// Returns the point that one link maps to p (m). h: half height (m); b: parameters of the link.
+/// Returns the position that one link maps to p (m, body frame). h: half height (m); b: parameters of the
+/// link.
 template <class Deform>
 Vec3<double> link_inverse(const Vec3<double>& p, double h, const double* b) {
   if (is_identity<Deform>(b)) return p;
@@ -41,20 +42,21 @@ class Chain {
   /// Returns the properties of the links, in order.
   std::vector<LinkInfo> links() const { return {link_info<Links>()...}; }
 
-  /// Returns whether any link acts (link_acts).
+  /// Returns whether any link acts: it is not the identity, or one of its parameters is dynamic.
   template <class P>
   bool acts([[maybe_unused]] LinkParameters<P> all) const {
     return (one_acts<Links>(all) || ...);
   }
-  /// Applies all links in order to a batch of jets. all: the parameters of all links, one link after the
-  /// other.
+  /// Applies all links in order to a batch of jets. half: half height of the shape; all: the parameters of
+  /// all links, one link after the other.
   template <class P, class S>
   void apply([[maybe_unused]] const HalfHeight<P>& half, [[maybe_unused]] LinkParameters<P> all,
              [[maybe_unused]] JetBatch<S>& batch) const {
     (apply_one<Links>(half, all, batch), ...);
   }
 
-  /// Returns the point e that the chain maps to p (m). h: half height (m); b: the parameters of all links.
+  /// Returns the position e that the chain maps to p (m, body frame). h: half height (m); b: the parameters
+  /// of all links.
   Vec3<double> inverse(Vec3<double> p, double h, const double* b) const {
     const double* end = b + (0 + ... + deform_size<Links>);
     invert<Links...>(p, h, end);

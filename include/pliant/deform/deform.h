@@ -1,14 +1,14 @@
-// The interface of a global deformation: one struct with its names, its parameters and its formula T(p, h;
-// b), Eq. (3), templated on its scalar. p is the incoming point (m), h the half height of the shape (m), and
-// zeta = p_z / h.
+// The interface of a global deformation T, Eq. (3). A deformation is one struct with a name, parameters b and
+// a formula T(p, h; b), which is a template on its scalar. p is the incoming position (m, body frame), h the
+// half height of the shape (m), and zeta = p_z / h.
 //
 //   name, formula      texts for scene files, messages and `pliant list`
 //   parameters         std::array<ParameterSpec, n>
 //   sections           image of the planes z = const, which decides the quadrature of the mass
 //   apply(p, h, b)     T(p, h; b); the identity if all parameters have their defaults
-//   inverse(p, h, b)   the point that apply maps to p
+//   inverse(p, h, b)   the position that apply maps to p
 //   prepare(b)         optional: returns terms of T that depend on b alone; apply(p, h, b, terms) is then
-//                      required too and returns T(p, h; b)
+//                      required too; it returns T(p, h; b)
 //   amplitudes         optional: a number n <= number of parameters. While the first n parameters have their
 //                      defaults, T is the identity for all values of the others. Default: all parameters
 #pragma once
@@ -29,7 +29,7 @@ enum class Sections {
   stay_affine,  ///< the map is affine in (x, y, z); quadratic functions of the position remain quadratic
   stay_plane,   ///< each plane z = const is mapped affinely into itself
   tilt,         ///< each plane z = const is mapped affinely to a tilted plane; a later link that depends on
-                ///< z does not keep it plane
+                ///< z may curve this tilted plane
 };
 
 /// Number of parameters of a deformation.
@@ -60,7 +60,7 @@ struct Prepared<
 };
 }  // namespace detail
 
-/// The function T(.; b) of a deformation for given h and b, applied to many points.
+/// The function p -> T(p, h; b) of a deformation for fixed h and b. It is applied to many positions.
 template <class Deform, class T>
 class DeformBy {
  public:

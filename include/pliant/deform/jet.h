@@ -1,8 +1,9 @@
 // Jets: the values and derivatives that the chain of deformations computes for each material point. S is the
 // scalar of a point: Pack (four points at once), Dual<1, Pack> for directional derivatives, or any other
 // scalar.
-//   s               reference shape, body frame, Eq. (3)
-//   s1 = J qs_dot   its rate, Eq. (7)   s2 = Jdot qs_dot   its quadratic velocity term
+//   s                position on the reference shape (m, body frame), Eq. (3)
+//   s1 = J qs_dot    rate of s (m/s), Eq. (7)
+//   s2 = Jdot qs_dot second time derivative of s for constant qs_dot (m/s^2)
 //   J               columns ds/dq_s of the dynamic parameters, in the order of q_s, Eq. (9)
 #pragma once
 
@@ -19,7 +20,7 @@ struct Jet {
   std::array<Vec3<S>, kMaxGlobal> J;
 };
 
-/// The quantities to compute: s; J too; s1 and s2 too.
+/// The quantities to compute. position: s. jacobian: s and J. rates: s, J, s1 and s2.
 enum class Level { position, jacobian, rates };
 
 /// An array of jets that a chain processes together.

@@ -1,5 +1,5 @@
-// One link of a chain, T(p, h; b), applied to a batch of jets. Dual numbers in the few variables of the link
-// give its derivatives F = dT/dp, T_h = dT/dh and G_T = dT/db. chain_columns() multiplies them into J, the
+// One link of a chain, T(p, h; b), applied to a batch of jets. Dual numbers in the variables p, h and b
+// give the derivatives F = dT/dp, T_h = dT/dh and G_T = dT/db. chain_columns() uses them to update J, the
 // Jacobian of the reference shape s in Eq. (9) (README.md of this folder):
 //   J <- [F J + T_h dh/da, G_T]
 #pragma once
@@ -16,8 +16,8 @@ namespace pliant {
 /// The half height of the shape, input of every link. P is the scalar of the parameters.
 template <class P>
 struct HalfHeight {
-  Taylor2<P> h;                 ///< value and time derivatives
-  VecMax<P, kMaxGlobal> slope;  ///< dh/dq_s for the columns of the shape
+  Taylor2<P> h;                 ///< value (m) and first two time derivatives
+  VecMax<P, kMaxGlobal> slope;  ///< dh/da for each dynamic parameter of the shape (first columns of J)
 };
 
 /// The parameters of one link.
@@ -25,11 +25,11 @@ template <class P>
 struct LinkParameters {
   const P* b;           ///< values
   const P* b_dot;       ///< rates
-  const bool* dynamic;  ///< whether each is a degree of freedom
+  const bool* dynamic;  ///< whether each parameter is a degree of freedom
 };
 
-/// Returns whether a link acts: it is not the identity, or one of its parameters is dynamic. Others are
-/// skipped.
+/// Returns whether a link acts: it is not the identity, or one of its parameters is dynamic. A link
+/// that does not act is skipped.
 template <class Deform, class P>
 bool link_acts(const LinkParameters<P>& parameters) {
   for (int k = 0; k < deform_size<Deform>; ++k)
@@ -37,8 +37,9 @@ bool link_acts(const LinkParameters<P>& parameters) {
   return !is_identity<Deform>(parameters.b);
 }
 
-/// Applies a link whose parameter number k is its only dynamic one, if the shape and all links before it are
-/// frozen. The incoming points are constant, so one Taylor number in this parameter gives s, J and the rates.
+/// Applies a link whose parameter number k is its only dynamic one. The shape and all links before it must be
+/// frozen: the incoming positions are then constant. One Taylor2 number in this parameter gives s, J and the
+/// rates; at Level::jacobian a dual number gives s and J.
 template <class Deform, class P, class S>
 [[gnu::flatten]] void apply_link_alone(int k, const HalfHeight<P>& half, const LinkParameters<P>& parameters,
                                        JetBatch<S>& batch) {
@@ -70,8 +71,8 @@ template <class Deform, class P, class S>
   batch.n_columns = 1;
 }
 
-/// Multiplies the partial derivatives of one link into the columns of J of one point, Eq. (9). moved: T with
-/// derivatives along p (0 to 2), h (3) and b (from 4 on); n_columns: columns before the link.
+/// Updates the columns of J of one material point by the partial derivatives of one link, Eq. (9). moved: T
+/// with derivatives by p (0 to 2), h (3) and b (from 4 on); n_columns: number of columns before the link.
 template <int N, class P, class S>
 void chain_columns(const Vec3<Dual<N, S>>& moved, const HalfHeight<P>& half,
                    const LinkParameters<P>& parameters, int n_columns, Jet<S>& jet) {
@@ -130,7 +131,7 @@ template <class Deform, class P, class S>
   }
   const DeformBy<Deform, T> deform_t(h_t, b_t);
   const DeformBy<Deform, D> deform_d(h_d, b_d);
-  // One pass for time and partial derivatives: the compiler shares their common terms.
+  // One loop computes time and partial derivatives, so that the compiler shares their common terms.
   auto each = [&](auto rates) {
     for (int i = 0; i < batch.count; ++i) {
       Jet<S>& jet = batch.jet[i];

@@ -1,4 +1,4 @@
-// Function bodies of ContinuumEnergy: energy, force and stiffness of the strain of the whole map.
+// Function bodies of ContinuumEnergy: strain energy, force and stiffness.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,8 @@ inline Dual<1> sum_of_lanes(const DualPack& x) {
   return r;
 }
 
-/// Throws InvertedElement if a point of the rest body is turned inside out. A sheet cannot be.
+/// Throws InvertedElement if the material at a quadrature point is turned inside out. A sheet cannot be
+/// turned inside out, so it is not checked.
 template <class Law>
 void throw_if_inverted(const Law&, const Mat3<Pack>& F) {
   if constexpr (!std::is_same_v<Law, SheetStrain>)
@@ -47,7 +48,7 @@ void throw_if_inverted(const Law&, const Mat3<Pack>& F) {
           "material or limits (min, max) of its parameters");
 }
 
-/// All parameters at q_s, with zero rates.
+/// Returns the values of all parameters at q_s, with zero rates.
 inline strain::DualValues values_at(const Part& part, const VecMax<double>& q_s) {
   return part.parameters().expand<Dual<1>>(q_s, VecMax<double>(VecMax<double>::Zero(q_s.size())));
 }
@@ -60,7 +61,8 @@ void for_each_strain_block(const StrainPoints& points, F&& act) {
     act(first, std::min(strain::kBlock, packs - first));
 }
 
-/// Second derivatives of F along pairs of directions, from those along single directions, Q(v) = d2F[v, v]:
+/// Second derivatives of F along pairs of directions v, w, from those along single directions,
+/// Q(v) = d2F[v, v]:
 ///   4 d2F[v, w] = Q(v + w) - Q(v - w)
 class SecondStrainDerivatives {
  public:
@@ -95,7 +97,7 @@ class SecondStrainDerivatives {
 /// q_s and q_s_dot with their derivatives along a direction, split into values and derivatives.
 struct SplitMotion {
   VecMax<double> q, dq, rate, d_rate;
-  double length;             ///< largest component of dq in the units of the parameters
+  double length;             ///< largest component of dq, in multiples of the scales of the parameters
   VecMax<double> direction;  ///< dq / length
 
   SplitMotion(const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, const VecMax<double>& unit) {
@@ -133,8 +135,8 @@ struct DualStrain {
   }
 };
 
-/// The first Piola-Kirchhoff stress of a law, with beta times its viscous stress. Adds the power of the
-/// viscous stress times the weight.
+/// Returns the first Piola-Kirchhoff stress of a law plus beta times its viscous stress. Adds weight times
+/// the power density of the viscous stress to `power`.
 template <class Law>
 Mat3<DualPack> damped_stress(const Law& law, const DualStrain& at, double beta, const Pack& weight,
                              DualPack& power) {

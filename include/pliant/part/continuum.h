@@ -1,9 +1,10 @@
-// Continuum elasticity of the global parameters: the strain energy of the whole map from rest to now,
+// Continuum elasticity of the global parameters. The strain energy is that of the map from the rest shape to
+// the present shape,
 //   E(q_s) = integral over the rest body of W(F),   F = ds/du(q_s) [ds/du(rest)]^-1
 //   f_s = -integral of P : dF/dq_s,   P = dW/dF
-// Damping adds P_v = beta F S(Gdot) to P (local/solid/hooke.h). The user gives material constants instead of
-// a table of stiffnesses. F and its derivatives come from dual numbers: the material points carry a direction
-// of the rest body. The rest map is that of time 0.
+// Damping adds beta P_v to P, with P_v = F S(Gdot) (local/solid/hooke.h). The user gives material constants
+// instead of a matrix K_s. F and its derivatives come from dual numbers: the dual part of a material point is
+// a direction in the rest body. The rest shape is that of time 0.
 #pragma once
 
 #include <array>
@@ -36,26 +37,28 @@ struct ContinuumLawInfo {
   const char* meaning;
   bool shell;  ///< whether the law is for shells; else it is for solids
 };
-/// Returns the laws. They have the names of the corresponding laws of local deformation.
+/// Returns the laws. A law has the name of the corresponding law of local deformation.
 const std::vector<ContinuumLawInfo>& all_continuum_laws();
 
 /// Quadrature points of the rest body with derivatives along directions X: x, y, z of a solid, two tangents
 /// of a shell.
 struct StrainPoints {
   std::array<std::vector<Material<Dual<1, Pack>>>, 3>
-      at;                    ///< for each direction all points, in packs of four
+      at;                    ///< for each direction X all points, in packs of four
   std::vector<Pack> weight;  ///< m^3 of a solid, m^2 of a shell; 0 in unused lanes
   int n_points = 0;
   int directions = 3;
   std::string rule;  ///< "affine": one point, since all strains are equal; "rings": rings of material points
-  /// Relative change of the integrals when the points are doubled once more.
+  /// Upper bound of the relative change of the integrals when the points are doubled once more; 0 for
+  /// "affine".
   double settled = 0;
 };
 
-/// A rule is fine enough if doubling it changes energy, force and stiffness by no more than this, relative.
+/// A rule is fine enough if doubling its points changes energy, force and stiffness by at most this relative
+/// amount.
 inline constexpr double kStrainSettled = 1e-6;
 
-/// Linear elasticity of the whole map, with the small strain eps = sym(F - I).
+/// Linear elasticity with the small strain eps = sym(F - I).
 struct SmallStrain {
   LinearLaw law;
   explicit SmallStrain(const Elasticity& material) : law(material) {}
@@ -80,7 +83,7 @@ struct SmallStrain {
   }
 };
 
-/// A law of F, with its damping.
+/// Adds the viscous stress P_v to an elastic law of F.
 template <class Law>
 struct Damped : Law {
   using Law::Law;
@@ -90,7 +93,7 @@ struct Damped : Law {
   }
 };
 
-/// St. Venant-Kirchhoff's law of a sheet. Its F has two columns, and W is per area.
+/// St. Venant-Kirchhoff's law of a sheet. Only the first two columns of F are used, and W is per area.
 struct SheetStrain {
   double lambda, mu;  ///< constants of plane stress times the thickness, N/m
   explicit SheetStrain(const Sheet& sheet)
@@ -118,8 +121,8 @@ ContinuumLaw continuum_law(const ContinuumSettings& settings);
 /// The strain energy of a part.
 class ContinuumEnergy {
  public:
-  /// volume: volume of the part at rest, m^3. Throws std::invalid_argument, which names the parameters, if
-  /// the search for quadrature points does not converge.
+  /// volume: volume of a solid (m^3) or area of a shell (m^2) at rest. Throws std::invalid_argument if the
+  /// search for quadrature points does not converge; the message names the parameters.
   ContinuumEnergy(const Part& part, const ContinuumSettings& settings, double volume);
 
   const ContinuumSettings& settings() const { return settings_; }
@@ -127,24 +130,25 @@ class ContinuumEnergy {
 
   /// Returns the energy, J.
   double energy(const Part& part, const VecMax<double>& q_s) const;
-  /// Subtracts dE/dq_s and beta times the viscous force from f. Returns the power of the viscous force, W.
-  /// Throws InvertedElement if the body is turned inside out at a quadrature point.
+  /// Adds the elastic force -dE/dq_s and the viscous force to f. Returns the power of the viscous force (W,
+  /// at most 0). Throws InvertedElement if the material at a quadrature point is turned inside out.
   double add_force(const Part& part, const VecMax<double>& q_s, const VecMax<double>& q_s_dot, double beta,
                    Eigen::Ref<VecX<double>> f, Counters& counters) const;
   /// Computes force and power with their derivatives along the direction of the dual parts of q_s and
   /// q_s_dot.
   Dual<1> add_force(const Part& part, const VecMax<Dual<1>>& q_s, const VecMax<Dual<1>>& q_s_dot, double beta,
                     Eigen::Ref<VecX<Dual<1>>> f, Counters& counters) const;
-  /// Returns d2E/dq_s2, exact.
+  /// Returns the exact d2E/dq_s2, n_s x n_s.
   MatX<double> stiffness(const Part& part, const VecMax<double>& q_s) const;
-  /// Returns the contribution to stiffness() without the stress, which is never negative. beta multiplies it.
+  /// Returns the matrix that beta multiplies, n_s x n_s: the integral of P_v(F, dF/dq_j) : dF/dq_k. It is
+  /// positive semidefinite. For a quadratic W of the strain it is stiffness() without geometric stiffness.
   MatX<double> strain_stiffness(const Part& part, const VecMax<double>& q_s) const;
 
  private:
   ContinuumSettings settings_;
   ContinuumLaw law_;
   StrainPoints points_;
-  VecMax<double> unit_;  // scales of the dynamic parameters, for second derivatives
+  VecMax<double> unit_;  // scale of each dynamic parameter, for second derivatives
 };
 
 }  // namespace pliant

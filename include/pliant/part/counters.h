@@ -1,17 +1,17 @@
-// Counters of the work that the kernels of parts did. Tests and run.json show with them which work a scene
-// did not need.
+// Counters of the work that the kernels of parts did. With these numbers, tests and run.json show which work
+// was skipped.
 #pragma once
 
 namespace pliant {
 
 struct Counters {
-  long jacobian_points = 0;  ///< mass points whose J was evaluated
-  long rate_points = 0;      ///< mass points whose Jdot qs_dot was evaluated
-  long mass_matrices = 0;    ///< mass matrices summed
+  long jacobian_points = 0;  ///< mass points or nodes whose J was evaluated
+  long rate_points = 0;      ///< mass points or nodes whose Jdot qs_dot was evaluated
+  long mass_matrices = 0;    ///< mass matrices computed
   long inertial_forces = 0;  ///< inertial forces g_q evaluated
-  long point_jets = 0;       ///< material points evaluated for forces
+  long point_jets = 0;       ///< material points evaluated for forces, joints and tracks
   long surfaces = 0;         ///< surfaces evaluated for output
-  long strain_points = 0;    ///< points of the body whose strain was evaluated
+  long strain_points = 0;    ///< quadrature points whose strain was evaluated
 
   Counters& operator+=(const Counters& o) {
     jacobian_points += o.jacobian_points;

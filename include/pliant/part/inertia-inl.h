@@ -59,12 +59,12 @@ bool all_exactly_zero(const V& x) {
   return true;
 }
 
-/// The level of jets that M and g_q need.
+/// Returns the level of jets that M and g_q need. rates: whether q_s_dot is not zero.
 inline Level inertia_level(int n_s, bool rates) {
   return rates ? Level::rates : (n_s > 0 ? Level::jacobian : Level::position);
 }
 
-/// Sums over mass points, four lanes wide, for n_s dynamic parameters.
+/// Sums over mass points for n_s dynamic parameters. Each sum has four lanes.
 template <class S>
 struct MassPointSums {
   int n_s;
@@ -93,7 +93,7 @@ struct MassPointSums {
     }
   }
 
-  /// M of Eq. (11): adds m G^T G.
+  /// Adds m G^T G to the sums of M, Eq. (11).
   void add_mass(const Jet<S>& jet, const Pack& m) {
     mass += m;
     const Vec3<S>& s = jet.s;
@@ -119,8 +119,8 @@ struct MassPointSums {
     }
   }
 
-  /// g_q of Eq. (11): adds m G^T b, where b is the acceleration of the point without vdot. rates: whether
-  /// qs_dot is not zero.
+  /// Adds m G^T b to the sums of -g_q, Eq. (11). b: acceleration of the mass point for zero accelerations of
+  /// the part. rates: whether qs_dot is not zero.
   void add_inertial_force(const Jet<S>& jet, const Pack& m, const Vec3<S>& omega, bool rates) {
     Vec3<S> acceleration = omega.cross(omega.cross(jet.s));
     if (rates) {
@@ -151,7 +151,7 @@ void write_mass_matrix(const MassPointSums<S>& sums, Inertia<P>& out) {
   const Vec3<P>& s = out.moment;
   const P zero(0.0), xx = total(sums.xx), yy = total(sums.yy), zz = total(sums.zz), xy = total(sums.xy),
                      yz = total(sums.yz), zx = total(sums.zx);
-  // M_comega = -[sum m p]x
+  // The block of (c, omega) is -[sum m p]x.
   const P M_cw[3][3] = {{zero, s[2], -s[1]}, {-s[2], zero, s[0]}, {s[1], -s[0], zero}};
   const P M_ww[3][3] = {{yy + zz, -xy, -zx}, {-xy, xx + zz, -yz}, {-zx, -yz, xx + yy}};
   for (int i = 0; i < 3; ++i)
@@ -260,7 +260,7 @@ void evaluate_rigid_inertia(const Inertia<double>& rest, const Vec3<P>& omega, I
   gyroscopic_force(omega, out, counters);
 }
 
-/// Copies one lane of a jet.
+/// Copies the point in one lane of a jet.
 template <class P, class S>
 void read_lane(const Jet<S>& jet, int lane, int n_s, bool rates, PointJet<P>& point) {
   using Batch = BatchScalar<P>;
@@ -273,7 +273,7 @@ void read_lane(const Jet<S>& jet, int lane, int n_s, bool rates, PointJet<P>& po
   }
 }
 
-/// Computes the jets of material points that are no mass points.
+/// Computes the jets of any material points, for forces, joints and tracks.
 template <class P>
 void evaluate_points(const PartEvaluation& part, const std::vector<Material<double>>& at,
                      const VecMax<P>& q_s, const VecMax<P>& q_s_dot, std::vector<PointJet<P>>& out,

@@ -13,7 +13,7 @@ class LinearInertia {
  public:
   /// n: number of dynamic parameters.
   explicit LinearInertia(int n);
-  /// Adds a mass point of mass m (kg). The columns of s are s_0, s_1 ... s_n there: 3 x (1 + n).
+  /// Adds a mass point of mass m (kg). The columns of s (3 x (1 + n)) are s_0, s_1 ... s_n at this point.
   void add(const Eigen::Matrix3Xd& s, double m);
 
   /// Returns M at q_s.

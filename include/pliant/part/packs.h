@@ -1,4 +1,4 @@
-// Material points in packs of four, the batches of the kernels.
+// Material points in packs of four, the input of the kernels.
 #pragma once
 
 #include <algorithm>

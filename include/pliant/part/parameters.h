@@ -24,7 +24,7 @@ struct Parameter {
   double initial_rate = 0;    ///< rate at time 0, per second
   bool dynamic = false;
   Range limits;                                      ///< one-sided limits of a dynamic parameter
-  bool initial_given = false, limits_given = false;  ///< whether the user set them
+  bool initial_given = false, limits_given = false;  ///< whether the user set initial and limits
 
   /// The rest value at time 0.
   double rest_value() const { return rest.value(0); }
@@ -46,8 +46,8 @@ class Parameters {
   int size() const { return static_cast<int>(all_.size()); }
   int n_shape() const { return n_shape_; }
   int n_dynamic() const { return static_cast<int>(dynamic_.size()); }
-  /// The links of the chain that act, in order: links with a dynamic parameter, and links that are not frozen
-  /// as the identity. The kernels skip the other links.
+  /// The links of the chain that act, in order. A link acts if it has a dynamic parameter or is not the
+  /// identity. The kernels skip the other links.
   const std::vector<LinkInfo>& links() const { return acting_; }
   /// Every link of the chain, in order.
   const std::vector<LinkInfo>& all_links() const { return links_; }
@@ -66,8 +66,8 @@ class Parameters {
   const std::vector<int>& dynamic() const { return dynamic_; }
   /// Whether each parameter is dynamic.
   const bool* dynamic_flags() const { return flags_.data(); }
-  /// Brings the lists of dynamic parameters, acting links and frozen values up to date. To be called after
-  /// `dynamic` or `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
+  /// Updates the lists of dynamic parameters, acting links and frozen values. To be called after `dynamic` or
+  /// `rest` of a parameter has changed. Throws std::invalid_argument beyond kMaxGlobal dynamic
   /// parameters.
   void update();
 

@@ -38,19 +38,19 @@ class Part : public PartEvaluation {
   const Inertia<double>& rest_inertia() const { return constants_.rest_inertia; }
   /// The largest half extent of the body at rest, m.
   double size() const { return constants_.size; }
-  /// Returns the smallest entry of the diagonal of M that gives the k-th dynamic parameter inertia. Smaller
-  /// entries are rounding noise for a body of this mass and size.
+  /// Returns the smallest diagonal entry of M that counts as inertia of the k-th dynamic parameter (kg for a
+  /// length, else kg m^2). Smaller entries are rounding errors for a body of this mass and size.
   double inertia_floor(int k) const;
 
   /// The stiffness K_s over the dynamic parameters.
   const MatX<double>& K_s() const { return constants_.K_s; }
-  /// The strain energy of the elastic material; nullptr if there is none, or if no dynamic parameter strains
-  /// it.
+  /// The strain energy of the elastic material; nullptr if the part has no elastic material or no dynamic
+  /// parameter.
   const ContinuumEnergy* continuum() const { return constants_.continuum.get(); }
-  /// Returns d2E/dq_s2 of the elastic energy of K_s and of the material at q_s.
+  /// Returns d2E/dq_s2 at q_s (n_s x n_s), with the elastic energy E of K_s and of the material.
   MatX<double> elastic_stiffness(const VecMax<double>& q_s) const;
-  /// Returns the contribution to elastic_stiffness() without the stress of the material. It is never
-  /// negative, and beta multiplies it.
+  /// Returns the matrix that beta multiplies, n_s x n_s: K_s plus ContinuumEnergy::strain_stiffness(). It is
+  /// positive semidefinite.
   MatX<double> strain_stiffness(const VecMax<double>& q_s) const;
   /// The local deformation; nullptr if the part does not deform locally.
   const LocalDeformation* local() const { return constants_.local.get(); }

@@ -20,7 +20,7 @@ struct PartConstants {
   Inertia<double> rest_inertia;  ///< at rest; the inertia of a rigid part at all times
   std::optional<LinearInertia> linear_inertia;  ///< replaces the sums over mass points if s is linear in q_s
   std::unique_ptr<LocalDeformation> local;      ///< nullptr if the part does not deform locally
-  std::unique_ptr<ContinuumEnergy> continuum;   ///< nullptr if there is no elastic material that q_s strains
+  std::unique_ptr<ContinuumEnergy> continuum;   ///< nullptr without elastic material or dynamic parameters
 };
 
 }  // namespace pliant

@@ -15,7 +15,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns a number with 6 digits if they read back exactly, else with 17.
+/// Returns x as text: with 6 digits if that text reads back as exactly x, else with 17 digits.
 inline std::string part_text(double x) {
   std::ostringstream out;
   out.precision(17);
@@ -28,7 +28,7 @@ inline std::string part_text(const Range& r) {
   return "[" + part_text(r.min) + ", " + part_text(r.max) + "]";
 }
 
-/// The mass matrix of a rigid part, and zero inertial forces.
+/// Returns the mass matrix of a rigid part, with zero inertial forces.
 inline Inertia<double> rigid_part_inertia(double mass, const Mat3<double>& about_origin,
                                           const Vec3<double>& centre) {
   Inertia<double> inertia;
@@ -310,9 +310,8 @@ PLIANT_INLINE void PartDescription::check_elasticity() const {
            (law->shell ? "shells, not for solids" : "solids, not for shells"));
   if (local_settings_)
     refuse(
-        "it deforms locally, so its elasticity must be a law of its local deformation, which covers the "
-        "whole "
-        "map");
+        "it deforms locally, so its elasticity must be a law of its local deformation, which covers its "
+        "global deformation too");
   for (const int i : parameters_.dynamic()) check_elastic_parameter(i);
 }
 

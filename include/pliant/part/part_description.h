@@ -36,7 +36,7 @@ class PartDescription {
   Part& place(const Vec3<double>& c, const Eigen::Quaterniond& R = Eigen::Quaterniond::Identity());
   /// Sets the initial velocity of the frame (m/s, world) and its angular velocity (rad/s, body frame).
   Part& velocity(const Vec3<double>& c_dot, const Vec3<double>& omega);
-  /// Sets rest values. A frozen parameter keeps its rest value.
+  /// Sets rest values (m, rad or 1). A frozen parameter keeps its rest value.
   Part& rest(const Named& values);
   /// Sets a rest value that is a function of time.
   Part& rest(const std::string& parameter, TimeFunction of_time);
@@ -51,22 +51,23 @@ class PartDescription {
   /// Sets one-sided limits of a dynamic parameter. prepare() checks them against the range that its rest
   /// value allows.
   Part& limits(const std::string& parameter, Range range);
-  /// Makes the part elastic: adds the strain energy of the whole map from rest to now to the energy of K_s. A
-  /// part that deforms locally gets its elasticity from the laws of its local deformation instead.
+  /// Makes the part elastic: adds the strain energy of the map from the rest shape to the present shape to
+  /// the energy of K_s. A part that deforms locally gets its elasticity from the laws of its local
+  /// deformation instead.
   Part& elasticity(ContinuumSettings settings);
   /// Makes parameters degrees of freedom.
   Part& make_dynamic(const std::vector<std::string>& parameters);
   /// Makes parameters constants.
   Part& freeze(const std::vector<std::string>& parameters);
-  /// Sets the damping D = alpha M_ss + beta K_s of the global parameters (1/s, s), where beta also multiplies
-  /// the rate of strain of elastic material, and the drag nu M on all motion (1/s).
+  /// Sets the damping D = alpha M_ss + beta K_s of the global parameters (alpha in 1/s, beta in s) and the
+  /// drag nu M on all motion (nu in 1/s). beta also multiplies the rate of strain of elastic material.
   Part& damping(double alpha, double beta, double nu = 0);
   /// Puts the mass on the surface. The density is then per area (kg/m^2).
   Part& make_shell();
   /// Sets the total mass (kg), which replaces the density.
   Part& mass(double total);
   /// Sets the mass (kg), the inertia tensor about the origin of the frame (kg m^2, body frame) and the centre
-  /// of mass (m, body frame) of a rigid part. They replace the density.
+  /// of mass (m, body frame) of a rigid part. These values replace the density.
   Part& inertia(double mass, const Mat3<double>& about_origin,
                 const Vec3<double>& centre = Vec3<double>::Zero());
   /// Makes the part deform locally: a shell at the nodes of a mesh of its surface, a solid at the nodes of a
@@ -117,10 +118,10 @@ class PartDescription {
                   const std::vector<LinkInfo>& links);
   ~PartDescription() = default;
 
-  /// Throws std::invalid_argument if the description contradicts itself. To be called before prepare()
-  /// computes.
+  /// Throws std::invalid_argument if the description contradicts itself. prepare() calls it before it
+  /// computes constants.
   void check() const;
-  /// The part of which this is a base.
+  /// Returns the Part of which this object is the base class.
   const Part& part() const;
   Part& part();
   [[noreturn]] void refuse(const std::string& what) const;
@@ -148,7 +149,7 @@ class PartDescription {
   void check_limits(const Parameter& p) const;
   /// Throws if the strain energy of the material is not defined while parameter number i changes.
   void check_elastic_parameter(int i) const;
-  /// Number of a parameter. Throws if there is no parameter of this name.
+  /// Returns the number of the named parameter. Throws if there is no parameter of this name.
   int require(const std::string& parameter) const;
 
   Use use_ = std::make_shared<const int>(0);

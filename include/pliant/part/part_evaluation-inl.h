@@ -1,5 +1,5 @@
-// Function bodies of PartEvaluation, geometry: reference shape s, Eq. (3), gradients, normals, and the
-// inverse map from points to material points.
+// Function bodies of PartEvaluation for geometry: reference shape s, Eq. (3), gradients, normals, and the
+// inverse map from positions to material points.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +18,11 @@ namespace pliant {
 
 namespace detail {
 
-/// Limits along z towards a tip are evaluated this far below the tip, relative to the height.
+/// Distance below a tip, relative to its z, at which limits along z towards the tip are evaluated.
 inline constexpr double kBelowTip = 1e-9;
 
-/// Evaluates the positions of material points: store(i, jet, lane) receives point number i as a lane of a
-/// jet. S is the scalar of the jet.
+/// Evaluates the positions of material points. Calls store(i, jet, lane) for each point number i, which is in
+/// this lane of the jet. S is the scalar of the jet.
 template <class S, class P, class Store>
 void evaluate_positions(const PartEvaluation& part, const std::vector<Material<double>>& at,
                         const ParameterValues<P>& values, Store&& store) {
@@ -36,7 +36,7 @@ void evaluate_positions(const PartEvaluation& part, const std::vector<Material<d
   }
 }
 
-/// det(F) F^-T. It is finite where F is singular.
+/// Returns the cofactor matrix det(F) F^-T, which is finite where F is singular.
 inline Mat3<double> part_cofactors(const Mat3<double>& F) {
   Mat3<double> C;
   C << F.col(1).cross(F.col(2)), F.col(2).cross(F.col(0)), F.col(0).cross(F.col(1));
@@ -121,8 +121,8 @@ PLIANT_INLINE Vec3<double> PartEvaluation::preimage(const Vec3<double>& p,
   const double* a = values.b.data();
   const double h = shape().half_height(a);
   if (parameters().all_links().empty() || std::abs(e[2]) < (1 - detail::kBelowTip) * h) return e;
-  // p is at an end of the body. If the chain maps the whole section there to p, return its point on the
-  // surface.
+  // p is at an end of the body. If the chain maps the whole end section to p (a tip), return the pole of the
+  // shape.
   const Vec3<double> end = shape().e(material_at(std::copysign(kPi / 2, e[2]), 0), a);
   Jet<Pack> jet;
   for (int r = 0; r < 3; ++r) jet.s[r] = Pack(end[r]);

@@ -1,7 +1,7 @@
 // The evaluation of a part at given values of its parameters: the reference shape s, Eq. (3), its derivatives
 // J = ds/dq_s, Eq. (9), and Jdot qs_dot, normals, the inverse map, and the mass matrix M and the inertial
-// forces g_q of Eq. (11). It is the second base class of Part (part.h). Bodies: part_evaluation-inl.h
-// (geometry), inertia-inl.h (M and g_q).
+// forces g_q of Eq. (11). It is the second base class of Part (part.h). The function bodies are in
+// part_evaluation-inl.h (geometry) and inertia-inl.h (M and g_q).
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ class PartEvaluation : public PartDescription {
                         const Vec3<Dual<1>>& omega, Inertia<Dual<1>>& out, Counters& counters) const;
   /// Computes g_q alone, of a rigid part. The other fields of out stay as evaluate_inertia() left them.
   static void rigid_force(const Vec3<double>& omega, Inertia<double>& out, Counters& counters);
-  /// Computes position, J and rates of material points in the body frame.
+  /// Computes position, J and rates of material points in the body frame. out: one PointJet for each point.
   void points(const std::vector<Material<double>>& at, const VecMax<double>& q_s,
               const VecMax<double>& q_s_dot, std::vector<PointJet<double>>& out, Counters& counters) const;
   void points(const std::vector<Material<double>>& at, const VecMax<Dual<1>>& q_s,
@@ -42,26 +42,26 @@ class PartEvaluation : public PartDescription {
   /// Returns the derivative of s along the direction of the dual parts of the values: 3 x n.
   Eigen::Matrix3Xd s_along(const std::vector<Material<double>>& at,
                            const ParameterValues<Dual<1>>& values) const;
-  /// Returns the derivative of the chain of deformations at undeformed points e (3 x n), one 3 x 3 matrix
-  /// each.
+  /// Returns the derivative dT/de of the chain of deformations at undeformed positions e (3 x n): one 3 x 3
+  /// matrix for each position.
   std::vector<Mat3<double>> chain_gradient(const Eigen::Matrix3Xd& e,
                                            const ParameterValues<double>& values) const;
-  /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where those of the trigonometric
-  /// map are (exponents below 1).
+  /// Returns ds/d(u, v, w) at a material point, 3 x 3. Entries are infinite where the derivatives of the
+  /// trigonometric map are infinite (exponents below 1).
   Mat3<double> material_gradient(double u, double v, double w, const ParameterValues<double>& values) const;
-  /// Returns the inside-outside function at a point p: w - 1 of its material point, found by the inverse
-  /// deformations. It is zero on the surface and negative inside.
+  /// Returns the inside-outside function at a position p: w - 1, with w of the material point at p, which the
+  /// inverse deformations give. The result is zero on the surface and negative inside.
   double inside_outside(const Vec3<double>& p, const ParameterValues<double>& values) const;
-  /// Returns its gradient, 1/m; at the tip of a full taper the limit along z.
+  /// Returns the gradient of the inside-outside function (1/m); at the tip of a full taper the limit along z.
   Vec3<double> inside_outside_gradient(const Vec3<double>& p, const ParameterValues<double>& values) const;
   /// Returns the unit outward normal at a material point of the surface. Where the deformation maps a whole
-  /// section to one point (the tip of a full taper), it is the limit along z.
+  /// section to one point (the tip of a full taper), the result is the limit along z.
   Vec3<double> normal(const Material<double>& m, const ParameterValues<double>& values) const;
   std::vector<Vec3<double>> normals(const std::vector<Material<double>>& at,
                                     const ParameterValues<double>& values) const;
-  /// Returns whether some of the surface is turned inside out at these values of the dynamic parameters.
+  /// Returns whether a piece of the surface is turned inside out at these values of the dynamic parameters.
   bool folded(const VecMax<double>& q_s) const;
-  /// Returns the material point at a point p of the part.
+  /// Returns the material point at the position p.
   Material<double> label(const Vec3<double>& p, const ParameterValues<double>& values) const;
 
   // The kernels, for batches of material points. Primitive implements them.
@@ -69,20 +69,21 @@ class PartEvaluation : public PartDescription {
   /// Computes position, J and rates of material points, up to the level of the batch.
   virtual void jets(const ParameterValues<double>& values, const Material<Pack>* at,
                     JetBatch<Pack>& batch) const = 0;
-  /// Computes them with their derivatives along the dual parts of the values and of the material points.
+  /// Computes these jets with their derivatives along the dual parts of the values and of the material
+  /// points.
   virtual void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
                     JetBatch<Dual<1, Pack>>& batch) const = 0;
-  /// Computes them with their derivatives along the dual parts of the values.
+  /// Computes these jets with their derivatives along the dual parts of the values.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Pack>* at,
             JetBatch<Dual<1, Pack>>& batch) const;
 
  protected:
   using PartDescription::PartDescription;
 
-  /// Applies the chain of deformations alone: propagates seeded jets through all links at constant
-  /// parameters.
+  /// Applies the chain of deformations alone. On entry the jets have undeformed positions s and columns J;
+  /// all parameters are constant.
   virtual void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const = 0;
-  /// Applies the inverse of the chain to a point.
+  /// Applies the inverse of the chain to a position.
   virtual Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const = 0;
 
   PartConstants constants_;
@@ -91,7 +92,7 @@ class PartEvaluation : public PartDescription {
   template <class P>
   void evaluate_inertia_of(const VecMax<P>& q_s, const VecMax<P>& q_s_dot, const Vec3<P>& omega,
                            Inertia<P>& out, Counters& counters) const;
-  /// Returns the undeformed point that the chain maps to p.
+  /// Returns the undeformed position that the chain maps to p.
   Vec3<double> preimage(const Vec3<double>& p, const ParameterValues<double>& values) const;
 };
 

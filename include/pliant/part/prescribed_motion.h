@@ -15,7 +15,7 @@ struct MovingFrame {
 
   /// Returns the velocity (m/s) of the point of the frame at c + r.
   Vec3<double> velocity(const Vec3<double>& r) const { return c_dot + omega.cross(r); }
-  /// Returns the acceleration (m/s^2) of that point.
+  /// Returns the acceleration (m/s^2) of the point of the frame at c + r.
   Vec3<double> acceleration(const Vec3<double>& r) const {
     return c_ddot + omega_dot.cross(r) + omega.cross(omega.cross(r));
   }
@@ -37,8 +37,8 @@ struct PrescribedMotion {
   /// Returns the orientation at time t, body to world.
   Eigen::Quaterniond orientation_at(double t) const;
 
-  /// Returns the mean velocity of the origin from t to t + h (s), and the largest deviation from it of points
-  /// at most `reach` (m) away from the origin, both in m/s.
+  /// Returns the mean velocity of the origin from t to t + h (s), and an upper estimate of the difference
+  /// between it and the velocities of points at most `reach` (m) away from the origin, both in m/s.
   TimeVector::Passage over(double t, double h, double reach) const;
 };
 

@@ -1,10 +1,10 @@
 // Primitive<Shape, GlobalDeform>: the class of a part, Eq. (3),
 //   s = T(e(u; a); b)
 // Shape gives e, a solid primitive with parameters a (include/pliant/shape); GlobalDeform gives T, a chain of
-// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; their
-// derivatives come from dual numbers: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot qs_dot, a term of
+// taper, twist, bend, shear, ... with parameters b (include/pliant/deform). Both are formulas; dual
+// numbers give the derivatives: J = ds/dq_s of Eq. (9), J qs_dot of Eq. (7), and Jdot qs_dot, a term of
 // g_q in Eq. (11). Primitive evaluates s, J and the rates for batches of material points. Everything else is
-// in Part, which does not depend on the types.
+// in Part, which does not depend on the types Shape and GlobalDeform.
 //
 //   Primitive<Superellipsoid, Chain<Taper, Bend>> body("body", 1000);   // 1000 kg/m^3
 //   body.place({0, 0, 1}).rest({{"a3", 2.0}}).stiffness({{"bend.angle", 50.0}});
@@ -36,7 +36,7 @@ class Primitive final : public Part {
             JetBatch<Pack>& batch) const override {
     evaluate(values, at, batch);
   }
-  /// Evaluates them with their derivatives along the direction of the dual parts.
+  /// Evaluates these jets with their derivatives along the direction of the dual parts.
   void jets(const ParameterValues<Dual<1>>& values, const Material<Dual<1, Pack>>* at,
             JetBatch<Dual<1, Pack>>& batch) const override {
     evaluate(values, at, batch);
@@ -52,18 +52,18 @@ class Primitive final : public Part {
       chain_.apply(half_height_jet<Shape>(all), chain_part(all), batch);
   }
 
-  /// Applies T alone to seeded jets, with all parameters constant.
+  /// Applies T alone to jets that contain undeformed positions and columns J. All parameters are constant.
   void deform(const ParameterValues<double>& values, JetBatch<Pack>& batch) const override {
     static constexpr bool none[kMaxParameters] = {};
     const LinkParameters<double> constant{values.b.data(), values.b_dot.data(), none};
     chain_.apply(half_height_jet<Shape>(constant), chain_part(constant), batch);
   }
-  /// Applies the inverse of T to a point.
+  /// Applies the inverse of T to a position.
   Vec3<double> undeform(const Vec3<double>& p, const ParameterValues<double>& values) const override {
     return chain_.inverse(p, shape().half_height(values.b.data()), values.b.data() + shape_size<Shape>);
   }
 
-  /// The parameters b of the chain, which follow the parameters a of the shape.
+  /// Returns the parameters b of the chain, which are stored after the parameters a of the shape.
   template <class P>
   static LinkParameters<P> chain_part(const LinkParameters<P>& all) {
     constexpr int n = shape_size<Shape>;

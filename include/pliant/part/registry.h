@@ -11,7 +11,7 @@
 
 namespace pliant {
 
-/// Returns every shape, in the order of the list.
+/// Returns every shape, in the order of AllShapes.
 const std::vector<std::unique_ptr<ShapeFace>>& all_shapes();
 
 struct DeformationInfo {
@@ -19,12 +19,12 @@ struct DeformationInfo {
   const char* formula;
   std::vector<ParameterSpec> parameters;
 };
-/// Returns every deformation, in the order of the list.
+/// Returns every deformation, in the order of AllDeforms.
 const std::vector<DeformationInfo>& all_deformations();
 
 /// Makes a part of the named shape with the named chain of deformations, in that order. density: kg/m^3 of a
 /// solid, kg/m^2 of a shell. Throws std::invalid_argument for an unknown name; the message lists the known
-/// ones.
+/// names.
 std::unique_ptr<Part> make_part(const std::string& name, const std::string& shape,
                                 const std::vector<std::string>& deformations, double density);
 

@@ -25,7 +25,7 @@ class ShapeFace {
   virtual int n_parameters() const = 0;
   virtual MeshPattern mesh() const = 0;
 
-  /// Returns e(u; a), m, Eq. (3).
+  /// Returns the position e(u; a) (m, body frame), Eq. (3).
   virtual Vec3<double> e(const Material<double>& m, ShapeParameters a) const = 0;
   /// Returns h, half the extent along z, m. Global deformations use zeta = z / h.
   virtual double half_height(ShapeParameters a) const = 0;
@@ -35,8 +35,8 @@ class ShapeFace {
   virtual Vec3<double> gauge_gradient(const Vec3<double>& x, ShapeParameters a) const = 0;
   /// Returns the material point at x.
   virtual Material<double> label(const Vec3<double>& x, ShapeParameters a) const = 0;
-  /// Returns the material point of the surface for a mesh vertex. g: its direction, or for a torus its two
-  /// angles (u, v, 0).
+  /// Returns the material point of the surface for a mesh vertex. g: direction of the vertex, or for a
+  /// torus (angle around the tube, angle around z, 0), rad.
   virtual Material<double> mesh_label(const Vec3<double>& g, ShapeParameters a) const = 0;
   /// Returns the semi-axes if the shape is an ellipsoid, m; else nullopt.
   virtual std::optional<Vec3<double>> semi_axes(ShapeParameters a) const = 0;
@@ -47,8 +47,8 @@ class ShapeFace {
   virtual Vec3<Dual<3>> tangents(const Material<Dual<3>>& m, ShapeParameters a) const = 0;
 
   /// Whether the strain stays bounded when an exponent changes. For the trigonometric map of superquadrics
-  /// it does not: if eps changes from eps_0 to p eps_0, the deformation gradient grows as |x|^(p - 1) at the
-  /// coordinate planes.
+  /// the strain is unbounded: if eps changes from eps_0 to p eps_0, the deformation gradient grows as
+  /// |x|^(p - 1) at the coordinate planes.
   virtual bool bounded_exponents() const = 0;
   /// Whether e is linear in all parameters that are lengths.
   virtual bool linear_lengths() const = 0;

@@ -1,4 +1,4 @@
-// Body of store_jets().
+// Function body of store_jets().
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The sums of Eq. (11) over given mass points. They serve to choose and to check mass points, and to sum
-// constants once.
+// The sums of Eq. (11) over given mass points, for the choice and the check of mass points and for the
+// inertia at rest.
 #pragma once
 
 #include <pliant/part/part.h>
@@ -11,7 +11,7 @@ namespace pliant {
 void sum_inertia(const Part& part, const MassPoints& points, const VecMax<double>& q_s,
                  const VecMax<double>& q_s_dot, const Vec3<double>& omega, Inertia<double>& out,
                  Counters& counters);
-/// Returns the moments of a part whose s is linear in q_s (Part::linear()).
+/// Returns the moments over the given points of a part whose s is linear in q_s (Part::linear()).
 LinearInertia make_linear_inertia(const Part& part, const MassPoints& points);
 
 }  // namespace pliant

@@ -1,5 +1,5 @@
 // Cone and frustum: a cylinder whose section scales along z by the factor 1 + t z / a3. With t = -1 it is a
-// cone with its tip at z = a3. With k on the surface of the unit cylinder,
+// cone with its tip at z = a3. With the surface point k of the unit cylinder (cylinder.h),
 //   e = w (a1 k_x (1 + t k_z), a2 k_y (1 + t k_z), a3 k_z)
 #pragma once
 
@@ -17,7 +17,7 @@ struct Cone {
       length("a1", 1, "semi-axis along x at mid height"),
       length("a2", 1, "semi-axis along y at mid height"),
       length("a3", 1, "half height along z"),
-      ratio("t", -1, {-1, 1}, {-1, 1}, "slope of the side: -1 a cone with its tip up, 0 a cylinder",
+      ratio("t", -1, {-1, 1}, {-1, 1}, "slope of the side: -1 is a cone with its tip up, 0 is a cylinder",
             Follows::ring),
   }};
   static constexpr MeshPattern mesh = MeshPattern::ball;
@@ -41,7 +41,8 @@ struct Cone {
     return math::max(T(ring - a[3] * zeta), T(math::abs(zeta)));
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 4>& a);
-  /// If the cone has a tip (|t| = 1), the grid of its missing end face covers the side too.
+  /// Returns the surface point for direction g of the mesh pattern. A cone with a tip (|t| = 1) has only one
+  /// end face; the vertices of the other end face are spread over the side.
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 4>& a);
   static std::vector<Panel> profile(const Vec<double, 4>& a, bool);
   static std::vector<Panel> ring(const Vec<double, 4>& a, bool);

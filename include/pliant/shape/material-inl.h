@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns x, or 0 or +-1 if x is within rounding of them.
+/// Returns x, or 0, 1 or -1 if x differs from this number by rounding only.
 inline double snap_to_axis(double x) {
   return std::abs(x) < 4e-16 ? 0.0 : (std::abs(x) > 1 - 1e-16 ? std::copysign(1.0, x) : x);
 }
@@ -44,8 +44,8 @@ PLIANT_INLINE Material<Dual<3>> material_with_tangents(double u, double v, doubl
 
 PLIANT_INLINE Material<Dual<3>> material_with_tangents(const Material<double>& m) {
   Material<Dual<3>> r;
-  // The derivatives are along d/du. Next to a corner, where the derivatives of the logarithms would overflow,
-  // they are along cos u sin u d/du. The angle v is treated in this way too.
+  // The derivatives are by u. Where |cos u| or |sin u| is below 1e-30 but not 0, the derivative of its
+  // logarithm would overflow; there the derivatives are along cos u sin u d/du. The same holds for v.
   auto turn = [](const Trig<double>& c, const Trig<double>& s, std::size_t slot, Trig<Dual<3>>& rc,
                  Trig<Dual<3>>& rs) {
     constexpr double small = 1e-30;

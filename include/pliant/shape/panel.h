@@ -1,5 +1,5 @@
-// Intervals of a material angle, or of a section coordinate, on which a shape is smooth. Quadrature rules act
-// on one interval each and never cross a kink.
+// Intervals of a material angle, or of zeta = z / h, on which a shape is smooth. Each quadrature rule covers
+// one interval, so that no rule crosses a kink.
 #pragma once
 
 #include <vector>
@@ -13,17 +13,17 @@ struct Panel {
   enum class Kind {
     smooth,    ///< analytic between two angles, ends included
     periodic,  ///< analytic and periodic on the whole circle
-    power,     ///< half a quadrant, next to an axis, where e varies as |sin|^eps or |cos|^eps
+    power,     ///< from a coordinate axis to 45 degrees; e varies as |sin|^eps or |cos|^eps
   };
   Kind kind;
   double from = 0, to = 0;         ///< angles of a smooth panel, rad
-  int sign_cos = 1, sign_sin = 1;  ///< quadrant of a power panel
-  bool along_sin = true;           ///< power panel: next to sin = 0 (else next to cos = 0)
+  int sign_cos = 1, sign_sin = 1;  ///< signs of cos and sin on a power panel
+  bool along_sin = true;           ///< power panel: whether it begins at sin = 0 (else at cos = 0)
   double eps = 1;                  ///< power panel: exponent
 };
 
-/// Adds the two power panels of one quadrant for an exponent eps. (For eps = 1 callers use a smooth or
-/// periodic panel instead.)
+/// Adds the two power panels of one quadrant for an exponent eps. If eps is frozen at 1, callers use a smooth
+/// or periodic panel instead.
 inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sign_sin, double eps) {
   for (bool along_sin : {true, false})
     panels.push_back({Panel::Kind::power, 0, 0, sign_cos, sign_sin, along_sin, eps});
@@ -32,7 +32,8 @@ inline void add_power_quadrant(std::vector<Panel>& panels, int sign_cos, int sig
 /// An interval of zeta = z / h.
 struct SectionPanel {
   double from, to;
-  bool singular;  ///< true: algebraic singularities at the ends (tanh-sinh); false: analytic (Gauss)
+  bool
+      singular;  ///< true: algebraic singularities at the ends (both_ends_rule); false: analytic (gauss_rule)
 };
 
 namespace detail {
@@ -40,14 +41,14 @@ namespace detail {
 /// Latitudes (rad) of the rims of a cylinder and of the poles.
 inline constexpr double kRimAngle = kPi / 4, kPoleAngle = kPi / 2;
 
-/// Returns the profile panels of shapes with rims.
+/// Returns the panels along u of shapes with rims at |u| = pi/4.
 inline std::vector<Panel> rimmed_profile() {
   using K = Panel::Kind;
   return {{K::smooth, -kPoleAngle, -kRimAngle},
           {K::smooth, -kRimAngle, kRimAngle},
           {K::smooth, kRimAngle, kPoleAngle}};
 }
-/// Returns the ring panel of shapes with elliptic sections.
+/// Returns the one panel along v of shapes with elliptic sections.
 inline std::vector<Panel> round_ring() {
   return {{Panel::Kind::periodic, 0, 2 * kPi}};
 }

@@ -1,27 +1,31 @@
-// The interface of a shape: one struct with its names, its parameters and its formula e(u; a), Eq. (3).
+// The interface of a shape. A shape is one struct with a name, parameters a and a formula e(u; a), Eq. (3).
 //
 // Required members:
 //   name, formula     texts for scene files, messages and `pliant list`
 //   parameters        std::array<ParameterSpec, n>
-//   e(m, a)           point of the solid (m, body frame) at material point m; templated on both scalars
-//   half_height(a)    h (m), half the extent along z; deformations use zeta = z / h
-//   mesh              grid pattern of the surface
+//   e(m, a)           position (metres, body frame) of the material point m; a template on the scalars of m
+//                     and a
+//   half_height(a)    h (metres), half the extent along z; deformations use zeta = z / h
+//   mesh              MeshPattern of the surface mesh
 //
-// Optional members, closed forms that are faster than the general search and exact at the poles:
-//   gauge(x, a)       w of the point x: 0 at the centre, 1 on the surface, above 1 outside; never overflows
-//   label(x, a)       material point of x, the inverse of e; needs gauge
-//   mesh_label(g, a)  surface point in the direction g of the mesh pattern
+// Optional members. ShapeFaceOf (part/shape_face.h) has defaults for them; the closed forms here are faster
+// than its Newton search and exact at the poles.
+//   gauge(x, a)       w at the position x: 0 at the centre, 1 on the surface, above 1 outside; never
+//                     overflows
+//   label(x, a)       material point at the position x, the inverse of e; requires gauge
+//   mesh_label(g, a)  material point of the surface for a mesh vertex; g: direction of the vertex in the mesh
+//                     pattern, or for MeshPattern::torus (angle around the tube, angle around z, 0), rad
 //   profile(a, moving), ring(a, moving)  quadrature panels along u and along v; e is smooth on each panel.
 //                     moving: whether an exponent is a degree of freedom
 //   ring_exponent(a)  exponent of the superellipse that a ring (u, w) = const follows
-//   RestMap           another shape with an equal surface whose material map generates the quadrature points
-//   semi_axes(a)      for an ellipsoid: its point in the unit direction y of the mesh pattern is y times
-//                     these, entry by entry
-//   half_sizes(a)     for a box about the origin: its half sizes
+//   RestMap           another shape with an equal surface; its map e generates the quadrature points
+//   semi_axes(a)      for an ellipsoid: its semi-axes (metres). The surface point of a mesh vertex in
+//                     the unit direction y has the coordinates y_i times semi-axis i
+//   half_sizes(a)     for a box about the origin: its half sizes (metres)
 //   bounded_exponents true if a changing exponent strains the material by bounded amounts
 //   linear_lengths    true if e is linear in the parameters that are lengths, for all values of the others
-//   section(zeta, gap, a), section_panels(a)  area and mean squares of the section of the solid at zeta, with
-//                     gap = 1 - |zeta|; intervals of zeta on which the section is smooth
+//   section(zeta, gap, a)  plane section of the solid at zeta (Section); gap = 1 - |zeta|
+//   section_panels(a) intervals of zeta on which the section is smooth; required with section
 #pragma once
 
 #include <array>
@@ -34,10 +38,10 @@
 
 namespace pliant {
 
-/// A plane section z = const of a shape, symmetric about both axes.
+/// A plane section z = const of a shape, symmetric about the x and y axes.
 struct Section {
   double area;    ///< m^2
-  double xx, yy;  ///< mean of x^2 and y^2, m^2
+  double xx, yy;  ///< means of x^2 and of y^2 over the section, m^2
 };
 
 /// The grid pattern of a closed surface.

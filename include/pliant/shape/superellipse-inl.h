@@ -41,7 +41,7 @@ PLIANT_INLINE std::pair<Trig<double>, Trig<double>> superellipse_label(double x,
 PLIANT_INLINE double superellipse_width(double t, double gap, double eps) {
   const double a = std::abs(t);
   if (a == 0) return 1;
-  // 1 - a^(2/eps) = -expm1((2/eps) log a), with log a = log1p(-gap) near the end.
+  // 1 - a^(2/eps) = -expm1((2/eps) log a). Near a = 1, log a = log1p(-gap) is accurate.
   const double log_a = gap < 0.5 ? std::log1p(-gap) : std::log(a);
   return std::pow(-std::expm1(2 / eps * log_a), eps / 2);
 }

@@ -19,15 +19,16 @@ Section superellipse_section(double eps);
 std::pair<Trig<double>, Trig<double>> superellipse_label(double x, double y, double eps);
 
 /// Returns (1 - |t|^(2/eps))^(eps/2), the half width of the unit superellipse at height t. gap: 1 - |t|,
-/// given separately because rounding would destroy it near the ends.
+/// given separately because 1 - |t| is inaccurate near |t| = 1.
 double superellipse_width(double t, double gap, double eps);
 
-/// Returns the panels of a whole circle. dynamic_exponent: whether eps is a degree of freedom.
+/// Returns the panels of a material angle over the whole circle. dynamic_exponent: whether eps is a degree of
+/// freedom.
 std::vector<Panel> circle_panels(double eps, bool dynamic_exponent);
-/// Returns the panels of the half circle -pi/2 ... pi/2.
+/// Returns the panels of a material angle from -pi/2 to pi/2.
 std::vector<Panel> half_circle_panels(double eps, bool dynamic_exponent);
 
-/// Returns the panels of a section coordinate for sections whose width follows the superellipse.
+/// Returns the intervals of zeta = z / h for a shape whose sections have the width superellipse_width(zeta).
 std::vector<SectionPanel> superellipse_section_panels(double eps);
 
 }  // namespace pliant

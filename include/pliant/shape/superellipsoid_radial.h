@@ -1,8 +1,8 @@
 // Superellipsoid with the radial material map: the material point is a direction n = (C_u C_v, C_u S_v, S_u),
 // and
 //   e = diag(a1, a2, a3) w n / gauge_1(n; eps1, eps2),   gauge_1: the gauge for unit axes.
-// The surface is that of Superellipsoid, but the material map differs: a changing exponent strains this one
-// by bounded amounts only (include/pliant/shape/README.md).
+// The surface is that of Superellipsoid, but the material map differs: with this map, a changing exponent
+// strains the material by bounded amounts only (include/pliant/shape/README.md).
 #pragma once
 
 #include <pliant/shape/superellipsoid.h>
@@ -42,7 +42,8 @@ struct SuperellipsoidRadial {
   }
   static Material<double> label(const Vec3<double>& x, const Vec<double, 5>& a);
   static Material<double> mesh_label(const Vec3<double>& g, const Vec<double, 5>& a);
-  /// The trigonometric map generates the quadrature points, because its sharp edges are coordinate lines.
+  /// The trigonometric map generates the quadrature points, because the sharp edges of the surface are
+  /// coordinate lines of this map.
   using RestMap = Superellipsoid;
   static Section section(double zeta, double gap, const Vec<double, 5>& a) {
     return Superellipsoid::section(zeta, gap, a);

@@ -36,7 +36,7 @@ Vec<double, 10> moments(const Vec3<double>& x) {
   f << 1, x[0], x[1], x[2], x[0] * x[0], x[1] * x[1], x[2] * x[2], x[0] * x[1], x[1] * x[2], x[2] * x[0];
   return f;
 }
-/// Returns the moments of a whole part.
+/// Returns the moments of a part from its inertia.
 Vec<double, 10> moments(const Inertia<double>& whole) {
   const Mat3<double> I = whole.M.block<3, 3>(3, 3);
   const Vec3<double> square = 0.5 * I.trace() * Vec3<double>::Ones() - I.diagonal();
@@ -88,7 +88,7 @@ Vec3<double> nearest_on_triangle(const Vec3<double>& x, const std::array<Vec3<do
   return best;
 }
 
-/// Returns the weights of a point x of a shell: those of the nearest point of the triangles.
+/// Returns the weights of a position x of a shell: the weights of the nearest point of the triangles.
 NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   NodeWeights best;
   double least_distance = std::numeric_limits<double>::infinity();
@@ -111,7 +111,8 @@ NodeWeights weights_on_triangles(const LocalMesh& mesh, const Vec3<double>& x) {
   return best;
 }
 
-/// Returns the weights of a point x in an element. L: start, barycentric coordinates of the straight element.
+/// Returns the weights of a position x in an element. L: start of the search, the barycentric coordinates of
+/// x in the straight element.
 template <class Element>
 NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<double>& x,
                        std::array<double, 4> L) {
@@ -138,8 +139,8 @@ NodeWeights weights_in(const LocalMesh& mesh, Eigen::Index element, const Vec3<d
   return at;
 }
 
-/// Returns the weights of a point x of a solid, by the element that contains it or is nearest to containing
-/// it.
+/// Returns the weights of a position x of a solid. They are over the nodes of the element that contains x, or
+/// of the element in which the smallest barycentric coordinate of x is largest.
 NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   Eigen::Index in = 0;
   std::array<double, 4> L{};
@@ -159,8 +160,8 @@ NodeWeights weights_in_elements(const LocalMesh& mesh, const Vec3<double>& x) {
   return weights_in<EnrichedTetrahedron>(mesh, in, x, L);
 }
 
-/// Splits faces into flat triangles. faces: 3 nodes a column, or 6 or 7 (see Solid), which give four and six
-/// triangles.
+/// Splits faces into flat triangles. faces: one face in each column, with 3, 6 or 7 nodes (see Solid), which
+/// gives 1, 4 or 6 triangles.
 Eigen::Matrix3Xi flat_triangles(const Eigen::MatrixXi& faces) {
   if (faces.rows() == 3) return faces;
   if (faces.rows() == 6) {
@@ -188,7 +189,7 @@ LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings) {
     mesh.nodes = surface.material();
     mesh.triangles = surface.triangles();
   } else {
-    // Modes use the consistent mass, which is positive without the nodes on faces and in the middle.
+    // Modes use the consistent mass. It is positive definite without nodes on faces and in the middle.
     const bool modes = settings.basis == LocalSettings::Basis::modes;
     const Solid solid(part, settings.resolution,
                       settings.order == 1 ? Solid::Order::linear

@@ -1,5 +1,5 @@
-// A square root C of a mass matrix, M = C^T C. Masses of nodes may be coupled, equally along x, y and z;
-// further coordinates have an inertia each. x = C d are mass-normalised coordinates.
+// A square root C of a mass matrix, M = C^T C. The mass matrix may couple nodes, equally along x, y and z.
+// Each further coordinate has an inertia of its own. x = C d are mass-normalised coordinates.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ class MassRoot {
   Eigen::Index size() const { return 3 * n_nodes() + own_.size(); }
   /// M over nodes.
   const Eigen::SparseMatrix<double>& of_nodes() const { return M_; }
-  /// Return C d and C^-1 x of scalar fields over nodes, one a column.
+  /// Return C d and C^-1 x of scalar fields over nodes. Each column is a field.
   MatX<double> root_of_nodes(const MatX<double>& d) const;
   MatX<double> solve_of_nodes(const MatX<double>& x) const;
   /// Return C d, C^T x and C^-1 x over all coordinates.

@@ -1,5 +1,5 @@
-// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0,
-// they are the eigenvectors of largest eigenvalue nu = 1/(omega^2 + sigma) of
+// The lowest modes of a mesh under W^T d = 0. With M = C^T C, x = C d and an orthonormal basis Q of C G0, the
+// lowest modes x are the eigenvectors with the largest eigenvalues nu = 1/(omega^2 + sigma) of
 //   x -> s - Y (Q^T Y)^-1 Q^T s,   s = A x,   Y = A Q,   A = C (K + sigma M)^-1 C^T
 // Curved elements use the consistent M: the error of omega is positive and of fourth order in the edge
 // length. Straight elements and shells use the lumped M, whose error has the opposite sign to that of their
@@ -31,7 +31,8 @@ using Sparse = SparseMatrix;
 
 /// Up to this number of coordinates the dense solver is faster.
 constexpr Eigen::Index kDense = 400;
-/// Limits of local coordinates, whose factor needs gigabytes, and of numbers in the modes.
+/// Maximum number of local coordinates, because the factor of more of them needs gigabytes, and maximum
+/// number of entries of fields and modes.
 constexpr Eigen::Index kMaxCoordinates = 120'000;
 constexpr double kMaxNumbers = 5e7;
 
@@ -143,7 +144,7 @@ double shift_of(const LocalMesh& mesh, const MeshElasticity& elasticity, const M
   return 0.1 * min_omega2;
 }
 
-/// The lowest modes by all eigenvectors of K', for few coordinates.
+/// Returns the lowest modes from all eigenvectors of K', for few coordinates.
 MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>& Q, Eigen::Index count) {
   const Eigen::Index n = elasticity.mass.size();
   const Eigen::HouseholderQR<MatX<double>> qr(Q);
@@ -152,7 +153,7 @@ MatX<double> lowest_of_all(const MeshElasticity& elasticity, const MatX<double>&
   return Z * symmetric_eigenpairs(d.transpose() * (elasticity.K * d)).vectors.leftCols(count);
 }
 
-/// A part, its mesh and its elasticity.
+/// A part, the settings of its local deformation, and its mesh.
 struct MeshProblem {
   const Part& part;
   const LocalSettings& settings;
@@ -207,8 +208,8 @@ struct MeshModes {
   VecX<double> omega2;
 };
 
-/// Returns modes that diagonalise the stiffness among the given ones. Their energies are accurate to the
-/// square of the error of the modes.
+/// Returns the modes that diagonalise the stiffness in the span of x. Their energies have an error that is
+/// quadratic in the error of x.
 MeshModes diagonalised(const MeshElasticity& elasticity, const MatX<double>& x) {
   const MatX<double> d = elasticity.mass.solve(x);
   const MatX<double> stiffness = d.transpose() * (elasticity.K * d);
@@ -216,13 +217,13 @@ MeshModes diagonalised(const MeshElasticity& elasticity, const MatX<double>& x) 
   return {d * inner.vectors, inner.values.cwiseMax(0)};
 }
 
-/// Displacements along x, y, z at nodes of mode number j.
+/// Returns the displacements of the nodes in mode number j: nodes x 3.
 auto nodal_part(const MeshModes& modes, Eigen::Index j, Eigen::Index n_nodes) {
   return modes.d.col(j).head(3 * n_nodes).reshaped(n_nodes, 3);
 }
 
-/// Returns scalar fields over nodes whose combinations are the constant, X and the components of the modes;
-/// orthogonal over the mass, and each with the mass of the part.
+/// Returns scalar fields over nodes (columns) that span the constant, X and the components of the modes. The
+/// fields are orthogonal over the mass, and the integral of the square of each is the mass of the part.
 MatX<double> fields_of(const LocalMesh& mesh, const MassRoot& root, const MeshModes& modes) {
   constexpr double dependent = 1e-10;  // see orthonormal_basis()
   const Eigen::Index n_nodes = mesh.X.rows(), count = modes.d.cols();

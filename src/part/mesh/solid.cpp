@@ -24,8 +24,8 @@ namespace {
 
 /// Minimum volume of an element, relative to the cube of its longest edge.
 constexpr double kFlat = 1e-9;
-/// Maximum number of straight elements; a quarter of it for curved ones. More elements would need more than a
-/// few gigabytes.
+/// Maximum number of straight elements. Curved elements may be a quarter of this number. More elements would
+/// need more than a few gigabytes.
 constexpr double kMaxElements = 2e6;
 
 /// Corner nodes and elements. The first nodes are the vertices of the surface.
@@ -36,7 +36,7 @@ struct Corners {
   std::function<Material<double>(const std::vector<int>&)> middle;
 };
 
-/// Gives the material point in a direction of the mesh pattern at the radius w.
+/// Returns the material point in the direction g of the mesh pattern at the radius w.
 struct Labels {
   const ShapeFace& shape;
   ShapeParameters a;
@@ -93,10 +93,11 @@ Corners ball_corners(const Labels& label, const Surface& surface, int m) {
 
 /// A section of a tube: rings of 4n points, n = m, m - 2, ..., and the point in the middle. Edges of a
 /// triangle are directed from its first node to the second and third, and from the second to the third: along
-/// rings by increasing angle, else inwards. The surface cuts the sides of prisms in these directions as well.
+/// rings by increasing angle, else inwards. The Surface cuts the sides of the prisms along the same
+/// diagonals.
 struct TubeSection {
   struct Node {
-    int ring, step;  ///< n and the number in the ring; ring 0 is the middle
+    int ring, step;  ///< n and the number of the point in the ring; ring 0 is the middle
   };
   std::vector<Node> nodes;
   std::vector<std::array<int, 3>> triangles;
@@ -118,7 +119,7 @@ struct TubeSection {
             add({outer(o), outer(o + 1), inside}, false);
             continue;
           }
-          // The inner points of this side face its outer steps 1 .. n - 1.
+          // The inner points of this side are opposite the outer points 1 .. n - 1 of this side.
           auto inner = [&](int step) { return inside + (side * (n - 2) + step - 1) % (4 * (n - 2)); };
           if (k == 0 || k == n - 1) {
             add({outer(o), outer(o + 1), inner(k == 0 ? 1 : n - 1)}, false);
@@ -163,7 +164,7 @@ Corners torus_corners(const Labels& label, const Surface& surface, int m) {
       }
     }
   corners.middle = [label, round, tube](const std::vector<int>& vertices) {
-    // The mean of neighbouring numbers on circles of `tube` and `round` numbers.
+    // The mean of neighbouring vertex numbers; both angles are periodic.
     const int from = vertices[0];
     double along = 0, across = 0;
     auto step = [](int p, int q, int n) { return std::remainder(q - p, n); };
@@ -187,7 +188,7 @@ double min_jacobian(const Vec3<double>* x, const std::vector<TetrahedronPoint>& 
   return smallest / (longest * longest * longest);
 }
 
-/// Returns the amplitude of the bubble of a face or of the middle of an enriched element.
+/// Returns the amplitude of the bubble function of a face or of the middle of an enriched element.
 Vec3<double> bubble_sizes(const Vec3<double>* x, std::size_t node) {
   Vec3<double> size;
   for (int r = 0; r < 3; ++r) {
@@ -224,14 +225,16 @@ class ElementNodes {
       triangle[3 + k] = node_between({triangle[k], triangle[(k + 1) % 3]}, corners_.middle);
     if (enriched) triangle[6] = node_between({triangle[0], triangle[1], triangle[2]}, corners_.middle);
   }
-  /// Fills rows 4 to 9 of an element. Edges inside get the middle of their ends in the shape.
+  /// Fills rows 4 to 9 of an element. An inner edge gets a node in the middle of its ends
+  /// in the undeformed shape.
   void add_edge_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     for (std::size_t k = 0; k < 6; ++k)
       element[static_cast<Eigen::Index>(4 + k)] =
           node_between({corner[kTetrahedronEdges[k][0]], corner[kTetrahedronEdges[k][1]]},
                        [&](const std::vector<int>& ends) { return at(0.5 * (e(ends[0]) + e(ends[1]))); });
   }
-  /// Fills rows 10 to 14 of an element. Nodes on faces inside and in the middle are where the bubbles vanish.
+  /// Fills rows 10 to 14 of an element. Nodes on inner faces and in the middle are placed so that the
+  /// amplitudes of the bubble functions are zero.
   void add_bubble_nodes(const std::array<int, 4>& corner, Eigen::Ref<Eigen::VectorXi> element) {
     std::array<Vec3<double>, 15> x;
     for (std::size_t k = 0; k < 10; ++k) x[k] = e(element[static_cast<Eigen::Index>(k)]);

@@ -12,11 +12,12 @@ namespace pliant {
 
 namespace {
 
-/// Nodes a panel, by level of refinement. Two levels double them.
+/// Number of nodes in a panel for each level of refinement. It doubles every two levels.
 constexpr std::array<int, 12> kBodySizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160};
 constexpr std::size_t kLastBodyLevel = kBodySizes.size() - 3;
-/// Relative changes of moments: a rule with the first one has converged; one with the second is used if
-/// refining does not improve it.
+/// Relative changes of the moments by refining. A rule whose change is at most kMomentTolerance has
+/// converged. A rule whose change is at most kAcceptableChange is used if two further levels do not improve
+/// it.
 constexpr double kMomentTolerance = 5e-14, kAcceptableChange = 1e-12;
 constexpr Eigen::Index kMaxBodyPoints = 2'000'000;
 
@@ -33,7 +34,7 @@ struct Nodes3 {
   Eigen::Index count() const { return static_cast<Eigen::Index>(u.size() * v.size() * w.size()); }
 };
 
-/// Returns the rule of given levels.
+/// Returns the rule with the given levels along u, v and w.
 BodyRule rule_of(const RestShape& shape, const Levels& levels) {
   const Nodes3 nodes(shape, levels);
   if (nodes.count() > kMaxBodyPoints)
@@ -67,7 +68,7 @@ VecX<double> moments(const BodyRule& rule, const LegendreProducts& polynomials) 
 }
 
 /// Returns the level along one direction at which refining changes no moment, with coarse nodes along the
-/// other directions.
+/// other directions. remaining: raised to the smallest change found, if no level suffices.
 std::size_t refine_direction(const RestShape& shape, const LegendreProducts& polynomials,
                              std::size_t direction, double& remaining) {
   std::vector<VecX<double>> known;

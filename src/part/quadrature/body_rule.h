@@ -1,5 +1,5 @@
 // A quadrature over the body of a solid at rest for polynomials of the coordinates. Nodes along each material
-// direction are refined until no moment changes, so that it is exact to rounding for most shapes.
+// direction are refined until no moment changes, so that the rule is exact to rounding for most shapes.
 #pragma once
 
 #include <vector>
@@ -12,13 +12,13 @@ namespace pliant {
 
 struct BodyRule {
   std::vector<Material<double>> at;  ///< the points
-  Eigen::Matrix3Xd X;                ///< body frame, m
+  Eigen::Matrix3Xd X;                ///< positions of the points at rest, body frame, m
   VecX<double> volume;               ///< the weights, m^3
   double remaining_change = 0;       ///< largest change of a moment by refining, relative to the volume
 };
 
-/// Makes a rule for all products of Legendre polynomials. Throws std::invalid_argument if it needs more than
-/// two million points.
+/// Makes a rule for the integrals of all given products of Legendre polynomials. Throws std::invalid_argument
+/// if it needs more than two million points.
 BodyRule make_body_rule(const Part& part, const LegendreProducts& polynomials);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-// The placement of mass points. The integrands of M and g_q, Eq. (11), judge the rules.
+// The placement of mass points. Rules are checked on the integrands of M and g_q, Eq. (11).
 #include <pliant/part/quadrature/mass_points.h>
 
 #include <Eigen/Cholesky>
@@ -142,7 +142,7 @@ ParameterValues<double> initial_values(const Part& part) {
   return all.expand<double>(q_s, zero);
 }
 
-/// Places points in plane sections.
+/// Returns points in plane sections.
 PlacedPoints place_slices(const RestShape& shape, const MassIntegrands& integrands, int extra) {
   auto columns = [&](const std::vector<SliceNode>& nodes) {
     Columns line{{Column{}}, 0};

@@ -23,7 +23,8 @@ Follows follows(const Part& part) {
     if (link.sections != Sections::stay_affine) worst = std::max(worst, Follows::section);
     tilted = tilted || link.sections == Sections::tilt;
   }
-  // A shear after a bend also reads z. It maps an affine section to an affine one, so it is allowed.
+  // A shear after a bend also depends on z. It maps a tilted plane section affinely to a plane section, so it
+  // is allowed.
   return worst;
 }
 
@@ -44,7 +45,7 @@ struct PlaneMoments {
     xy += mass * px * py;
     yy += mass * py * py;
   }
-  /// Returns three points that, with equal masses, have this centre and these second moments.
+  /// Returns three points that, with equal masses, have the centre and the second moments of the sums.
   std::array<Eigen::Vector2d, 3> points() const {
     const double cx = x / m, cy = y / m;
     Eigen::Matrix2d spread;
@@ -60,7 +61,8 @@ struct PlaneMoments {
   }
 };
 
-/// Returns a sine or cosine from its logarithm, whose slope stays finite where the value underflows.
+/// Returns a sine or cosine from its logarithm. The derivative of the logarithm stays finite where the value
+/// underflows.
 Trig<Dual<1>> from_log(double log_abs, double log_slope, double sign) {
   const double value = sign * std::exp(log_abs);
   Trig<Dual<1>> t{Dual<1>(value), Dual<1>(sign), Dual<1>(log_abs)};
@@ -101,8 +103,9 @@ class PowerPanel {
  public:
   PowerPanel(const Panel& panel, std::vector<AngleNode>& nodes) : panel_(panel), nodes_(nodes) {}
 
-  /// Nodes for dynamic exponents: powers t^p of many p are exponentials in y = -log near, slow and fast ones.
-  /// The nodes are dense towards y = 0 and reach to where t underflows relative to 1.
+  /// Nodes for dynamic exponents. Powers t^p with many different p are exponentials in y = -log near with
+  /// many decay rates. The nodes are dense near 45 degrees, where y is smallest, and reach to t = e^-37,
+  /// which is rounding relative to 1.
   void add_for_all_powers(int n) {
     const double reach = 37 / panel_.eps;
     for (const QuadratureNode& node : one_end_rule(n, 3)) {
@@ -110,13 +113,13 @@ class PowerPanel {
       add(log_near, panel_.eps * std::exp(panel_.eps * log_near) * reach * node.weight);
     }
   }
-  /// Nodes for a fixed exponent, which gives powers of t^(2/eps): t = x^q with q a multiple of eps makes them
-  /// smooth.
+  /// Nodes for a fixed exponent. The integrand consists of powers of t^(2/eps); with t = x^q and q a multiple
+  /// of eps, these powers are smooth in x.
   void add_for_fixed_power(int n) {
     double reach = std::exp2(-panel_.eps / 2);
     if (panel_.eps < 0.25) {
-      // The integrand varies only next to the corner, where log near is the suitable variable. Below e^-16
-      // the far side is constant to rounding.
+      // The superellipse is nearly a square, and the integrand varies only next to its corner at 45 degrees,
+      // where log near is the suitable variable. For near < e^-16, far is 1 to rounding.
       const double to = -16;
       for (const QuadratureNode& node : gauss_rule(n)) {
         const double log_near = kMiddle + (to - kMiddle) * node.x;
@@ -145,8 +148,8 @@ class PowerPanel {
   std::vector<AngleNode>& nodes_;
 };
 
-/// Returns the nodes of panels, n in each. dynamic_exponents: whether exponents vary, so that no power of the
-/// variable is fixed.
+/// Returns the nodes of panels: n in each, 2 n in a periodic one. dynamic_exponents: whether exponents are
+/// degrees of freedom, so that the powers in the integrand vary.
 std::vector<AngleNode> angle_nodes(const std::vector<Panel>& panels, int n, bool dynamic_exponents) {
   std::vector<AngleNode> nodes;
   for (const Panel& panel : panels) {
@@ -174,8 +177,8 @@ Trig<double> drop(const Trig<Dual<1>>& t) {
   return {t.x.v, t.sign.v, t.log_abs.v};
 }
 
-/// Returns whether the rings of a shape are plane. Rings of a shape that a user adds need not be; three
-/// points then cannot represent a ring.
+/// Returns whether the rings of a shape are plane. Rings of a shape that a user adds need not be plane;
+/// three points then cannot represent a ring.
 bool plane_rings(const RestShape& r) {
   for (const AngleNode& u : profile_nodes(r, 3)) {
     double low = kInfinity, high = -kInfinity;

@@ -1,6 +1,6 @@
-// Quadrature over the rest shape of a part, direction by direction: slices of a solid by its plane sections,
-// or rings of material points (u, w) = const. Each node of a rule yields mass points. rule_search.h chooses
-// the nodes.
+// Quadrature over the rest shape of a part, direction by direction. A node is a slice, which is a plane
+// section z = const of a solid, or a ring of material points (u, w) = const. Each node yields mass points.
+// rule_search.h chooses the nodes.
 #pragma once
 
 #include <vector>
@@ -30,7 +30,7 @@ struct RestShape {
                       ///< ring
 };
 
-// Nodes along one direction, n in each panel.
+// Nodes along one direction: n in each panel, 2 n in a periodic panel.
 
 /// A plane section at zeta = z / h, and its weight.
 struct SliceNode {
@@ -49,7 +49,7 @@ std::vector<AngleNode> profile_nodes(const RestShape& shape, int n);  ///< along
 std::vector<AngleNode> ring_nodes(const RestShape& shape, int n);     ///< along v
 /// Along w; for a shell the surface alone.
 std::vector<QuadratureNode> depth_nodes(const RestShape& shape, int n);
-/// Appends the points of a ring: one for each node of v if they move independently, else three, or none if
+/// Appends the points of a ring: one for each node of v if shape.points_apart, else three points, or none if
 /// the ring has no mass.
 void add_ring(const RestShape& shape, const AngleNode& u, const QuadratureNode& w,
               const std::vector<AngleNode>& v, std::vector<RestPoint>& out);

@@ -1,14 +1,14 @@
-// The search for a quadrature rule over the rest shape of a part: along each direction the nodes are doubled
-// until no integral changes, then thinned to as few as give equal integrals. Both are judged by integrands
-// at states spread over the ranges of the dynamic parameters, and at places spread over the other directions.
-// A class Integrands defines them:
+// The search for a quadrature rule over the rest shape of a part. Along each direction the nodes are doubled
+// until no integral changes, and then thinned to as few nodes as give equal integrals. Both steps use
+// integrands at states spread over the ranges of the dynamic parameters, and at places, which are random
+// nodes of the other directions. A class Integrands defines the integrands:
 //   subject         "mass matrix", for messages
-//   kEach           number of functions a state
+//   kEach           number of integrands for each state
 //   kTolerance      relative change by doubling at which a rule has converged
-//   kRequired       relative change that every rule must reach
+//   kRequired       relative change that is accepted if finer rules do not reduce it
 //   kThin           relative change that thinning may make
 //   n()             number of dynamic parameters
-//   shares(columns, n_states)  the contribution of each node to the integral of each function
+//   shares(columns, n_states)  the contribution of each node (row) to each integral (column)
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@
 
 namespace pliant::rule_search {
 
-/// Nodes a panel, by level of refinement. Two levels double them.
+/// Number of nodes in a panel for each level of refinement. It doubles every two levels.
 inline constexpr std::array<int, 15> kSizes{3, 5, 7, 10, 14, 20, 28, 40, 56, 80, 112, 160, 224, 320, 448};
 inline constexpr int kLastLevel = static_cast<int>(kSizes.size()) - 3;
 inline int size_at(int level) {
@@ -53,12 +53,13 @@ class Draw {
   std::uint64_t seed_ = 0x9e3779b97f4a7c15u;
 };
 
-/// The points of the nodes of one direction, at one place of the other directions.
+/// The quadrature points of all nodes of one direction, at one place of the other directions.
 struct Column {
   std::vector<RestPoint> points;
-  std::vector<Eigen::Index> node;  ///< of each point
+  std::vector<Eigen::Index> node;  ///< number of the node of each point
   void end_node(Eigen::Index which) { node.resize(points.size(), which); }
 };
+/// Columns at several places.
 struct Columns {
   std::vector<Column> columns;
   Eigen::Index n_nodes = 0;
@@ -72,20 +73,20 @@ class StateRanges {
     for (int i : all.dynamic()) {
       const Parameter& p = all[i];
       const double rest = p.rest_value();
-      // Lengths scale the body: half to twice their rest value suffices. Offsets range up to twice the size
-      // of the body.
+      // Lengths scale the body: half to twice the rest value suffices. Offsets range up to twice the size of
+      // the body.
       const bool offset = !p.spec->relative && p.spec->quantity == Quantity::length;
       const double scale = p.spec->relative ? rest : (offset ? part.size() : std::max(1.0, std::abs(rest)));
       const double reach = offset ? 2 * scale : kInfinity;
-      // Numbers with a range of orders of magnitude are treated like lengths.
+      // Numbers whose limits span orders of magnitude are treated like lengths.
       const bool wide = p.spec->relative || p.limits.max > 100 * scale;
       ranges_.push_back({std::max({p.limits.min, wide ? 0.5 * rest : -kInfinity, -reach}),
                          std::min({p.limits.max, wide ? 2 * rest : kInfinity, reach}), rest, scale});
     }
   }
   int n() const { return static_cast<int>(ranges_.size()); }
-  /// Draws values and rates of a state. The first state is at rest. Every third one is at a corner of the
-  /// ranges, where the integrands are hardest.
+  /// Draws values and rates of a state. State 0 has the rest values. Every third state is at a corner of the
+  /// ranges, where the integrands are hardest to integrate.
   void draw(Draw& draw, int state, VecMax<double>& q, VecMax<double>& rate) const {
     q.resize(n());
     rate.resize(n());
@@ -106,7 +107,7 @@ class StateRanges {
 };
 
 /// Returns the smallest level of refinement at which doubling changes no integral. columns(level) places the
-/// nodes. remaining: raised to the change that the last level leaves if no level suffices.
+/// nodes. remaining: raised to the smallest change found, if no level suffices.
 template <class Integrands, class MakeColumns>
 int refine(const Integrands& integrands, double& remaining, const MakeColumns& columns) {
   struct Integrals {
@@ -126,7 +127,7 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
   for (int level = 0; level <= kLastLevel; ++level) {
     at(level + 2);
     const Integrals &now = at(level), &finer = at(level + 2);
-    // Changes at places of little mass are relative to a tenth of the mean size.
+    // The change of a small integral is relative to a tenth of the mean size of all integrals.
     const double min_size = 0.1 * finer.size.mean();
     if (min_size == 0) return level;
     const double change =
@@ -143,14 +144,14 @@ int refine(const Integrands& integrands, double& remaining, const MakeColumns& c
   return kLastLevel;
 }
 
-/// Removes the nodes of one direction that the integrals do not need.
+/// Removes the nodes of one direction that the integrals do not need, and adjusts the weights of the others.
 template <class Integrands, class Node>
 void thin(const Integrands& integrands, const Columns& line, std::vector<Node>& nodes) {
   Eigen::VectorXd factors;
   for (int n_states = 80;; n_states *= 2) {
     Eigen::Index rank = 0;
     factors = thin_rule(integrands.shares(line, n_states), &rank, Integrands::kThin);
-    // Stop when there are enough functions to span their space, or when no node can be removed.
+    // Stop when the integrands span the whole space of integrands, or when no node can be removed.
     if (rank <= Integrands::kEach * n_states / 3 || rank >= line.n_nodes) break;
   }
   std::vector<Node> kept;
@@ -176,7 +177,7 @@ inline constexpr std::size_t kMaxPoints = 2'000'000;
 /// The result of a search.
 struct PlacedPoints {
   std::vector<RestPoint> points;
-  int level = 0;         ///< of refinement, along the last direction
+  int level = 0;         ///< level of refinement along the last direction
   double remaining = 0;  ///< relative change by doubling that no level removed; 0 if the search converged
 };
 
@@ -185,8 +186,8 @@ inline void remove_massless(std::vector<RestPoint>& points) {
                points.end());
 }
 
-/// Maximum number of nodes to thin. The time of thinning grows with their cube; beyond this number it exceeds
-/// the time that most runs save.
+/// Maximum number of nodes to thin. The time of thinning grows with the cube of this number; with more nodes
+/// it exceeds the time that most runs save.
 inline constexpr std::size_t kMaxThinned = 600;
 
 /// A ring of material points.
@@ -202,7 +203,7 @@ inline void add_ring(const RestShape& shape, const RingNode& ring, const std::ve
   add_ring(shape, ring.u, w, v, out);
 }
 
-/// The search for rings of points.
+/// The search for rings of points. It chooses nodes along v, then w, then u.
 template <class Integrands>
 class RingSearch {
  public:
@@ -215,7 +216,7 @@ class RingSearch {
     search_v(placed);
     if (!shape_.part.shell()) search_w(placed);
     search_u(placed);
-    // Rings that vary u and w together need fewer nodes than all pairs of the two.
+    // Thinning of all pairs (u, w) together leaves fewer rings than thinning of u and of w alone.
     std::vector<RingNode> rings;
     for (const AngleNode& at : u_)
       for (const QuadratureNode& depth : w_) rings.push_back({at, depth});
@@ -250,8 +251,8 @@ class RingSearch {
     if (thinned_) thin(integrands_, along_u(u_), u_);
   }
 
-  // Nodes of one direction at places of the other directions. If the points of a ring do not move
-  // independently, each place has the whole ring.
+  // Nodes of one direction at random places of the other directions. If the points of a ring do not move
+  // independently, a place has no node of v, and each column has whole rings.
 
   Columns along_v(const std::vector<AngleNode>& nodes) const {
     Columns line;
@@ -296,8 +297,8 @@ class RingSearch {
     return line;
   }
 
-  /// The points of a ring for each node: all of them, or the point at one drawn place of v if they move
-  /// independently.
+  /// Returns the points of a ring for each node: the whole ring, or the point at one random node of v if the
+  /// points of a ring move independently.
   template <class Node, class MakeRing>
   Column rings_at(Draw& draw, const std::vector<Node>& nodes, const MakeRing& make_ring) const {
     const std::vector<AngleNode> v =

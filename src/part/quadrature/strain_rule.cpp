@@ -17,10 +17,11 @@ using namespace rule_search;
 
 namespace {
 
-/// The material directions of the points and their derivatives.
+/// Material points with derivatives along three directions.
 using TangentPoints = std::vector<Material<Dual<3>>>;
 
-/// Rotates the derivatives of a material point: new directions are columns of `from_X`, in the old ones.
+/// Changes the directions of the derivatives of a material point. The columns of from_X are the new
+/// directions, in components along the old directions.
 void change_directions(Material<Dual<3>>& m, const Mat3<double>& from_X) {
   auto change = [&](Dual<3>& x) {
     const Eigen::RowVector3d d = Eigen::RowVector3d(x.d[0], x.d[1], x.d[2]) * from_X;
@@ -33,8 +34,8 @@ void change_directions(Material<Dual<3>>& m, const Mat3<double>& from_X) {
   change(m.w);
 }
 
-/// Returns the material directions of unit steps along X, columns, from [s_u s_v s_w] at rest: along x, y, z
-/// of a solid, along two orthonormal tangents of a shell.
+/// Returns the material directions (columns) of unit steps in the rest body: along x, y, z of a solid, along
+/// two orthonormal tangents of a shell. at_rest: [s_u s_v s_w] at rest.
 Mat3<double> material_directions(const Mat3<double>& at_rest, bool shell) {
   if (!shell) return at_rest.inverse();
   Mat3<double> from_X = Mat3<double>::Zero();
@@ -46,7 +47,7 @@ Mat3<double> material_directions(const Mat3<double>& at_rest, bool shell) {
   return from_X;
 }
 
-/// Returns the points with derivatives along X.
+/// Returns the points with derivatives along the directions X of the rest body (StrainPoints).
 TangentPoints with_derivatives(const Part& part, const ParameterValues<double>& rest,
                                const std::vector<RestPoint>& points) {
   const std::size_t n = points.size();
@@ -67,7 +68,7 @@ TangentPoints with_derivatives(const Part& part, const ParameterValues<double>& 
   return moving;
 }
 
-/// Returns the points in packs of four, with derivatives along X.
+/// Returns the points in packs of four, with derivatives along the directions X.
 StrainPoints with_directions(const Part& part, const ParameterValues<double>& rest,
                              const std::vector<RestPoint>& points) {
   const std::size_t n = points.size();
@@ -181,8 +182,8 @@ class StrainIntegrands {
         law_);
   }
 
-  /// Returns the root mean squares over the body in a state; infinite for those that are rounding errors
-  /// relative to the stiffness.
+  /// Returns the root mean squares of the integrands over the body in a state. A root mean square that is
+  /// only rounding error relative to that of the stiffness is set to infinity.
   const Densities& units(int number, const State& state) const {
     const auto known = units_.size();
     if (static_cast<std::size_t>(number) < known) return units_[static_cast<std::size_t>(number)];
@@ -247,7 +248,7 @@ std::string dynamic_names(const Part& part) {
 StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume) {
   RestShape shape(part);
   if (shape.follows == Follows::affine && !part.shell()) {
-    // All points have equal strains: any point represents all.
+    // The strain is equal everywhere: one point represents the body.
     StrainPoints one = with_directions(part, shape.rest, {{material_at(0.4, 0.7, 0.5), volume}});
     one.rule = "affine";
     return one;
@@ -260,8 +261,8 @@ StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, doub
     std::ostringstream message;
     message << "part '" << part.name()
             << "': the quadrature of its strain energy does not converge over the ranges of "
-            << dynamic_names(part) << " (doubling the finest rule changes the energy by " << placed.remaining
-            << ", relative); freeze some of them, or narrow their limits (min, max)";
+            << dynamic_names(part) << " (doubling the finest rule changes the energy by a relative amount of "
+            << placed.remaining << "); freeze some of them, or narrow their limits (min, max)";
     throw std::invalid_argument(message.str());
   }
   remove_massless(placed.points);

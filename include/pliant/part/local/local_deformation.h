@@ -1,7 +1,8 @@
-// The local deformation of a part, d = S q_d, Eq. (5): displacements of its material points in the frame of
-// the part, by local coordinates q_d. Rigid motion and changes of the global parameters could be written in d
-// as well; reference conditions W^T d = 0 remove this redundancy (include/pliant/part/local/README.md).
-// LocalDeformation is the interface of all choices of S; one call handles a whole part:
+// The local deformation of a part, d = S q_d, Eq. (5): local coordinates q_d give the displacements d of the
+// material points in the frame of the part. Rigid motion and changes of the global parameters could be
+// written in d as well; reference conditions W^T d = 0 remove this redundancy
+// (include/pliant/part/local/README.md). LocalDeformation is the interface of all choices of S; one call
+// handles a whole part:
 //   nodal_deformation.h   d at the nodes of a mesh
 //   modal_deformation.h   d = sum Phi_j q_j of global modes
 // The displacement of a material point is d = sum weight_i d_i, where at_nodes() computes the nodal values
@@ -32,8 +33,9 @@ struct Oscillators {
 
 /// Energies and momenta of a part that deforms locally.
 struct LocalMotion {
-  double kinetic, elastic;                          ///< J
-  Vec3<double> momentum, angular_momentum, moment;  ///< body frame; about the origin of the frame; sum m p
+  double kinetic, elastic;  ///< J
+  /// Body frame: momentum (kg m/s), angular momentum about the origin (kg m^2/s), sum m p (kg m).
+  Vec3<double> momentum, angular_momentum, moment;
 };
 
 class LocalDeformation {
@@ -47,8 +49,8 @@ class LocalDeformation {
   /// Local coordinates and their rates at time 0.
   const VecX<double>& initial() const { return initial_; }
   const VecX<double>& initial_rate() const { return initial_rate_; }
-  /// Changes of (c, theta, q_s) at time 0 and of their rates, body frame, for the share of the initial
-  /// displacements that the local coordinates cannot represent. Empty: none.
+  /// Changes of (c, theta, q_s), body frame, and of their rates at time 0. They represent the share of the
+  /// initial displacements that the local coordinates cannot represent. Empty: no changes.
   const VecX<double>& initial_frame() const { return initial_frame_; }
   const VecX<double>& initial_frame_rate() const { return initial_frame_rate_; }
   double alpha() const { return alpha_; }
@@ -62,11 +64,11 @@ class LocalDeformation {
   /// Returns a description in words, as in "600 local, of 200 nodes".
   virtual std::string description() const = 0;
 
-  /// Returns the weights of a material point. They are empty inside a shell, where the local deformation has
-  /// no value.
+  /// Returns the weights of a material point. The result is empty for a point inside a shell, where the local
+  /// deformation has no value.
   virtual NodeWeights weights(const Part& part, const Material<double>& m) const = 0;
-  /// Returns the nodal values of local coordinates or of their rates, for the nodes of weights(). buffer:
-  /// storage that the result may refer to.
+  /// Returns the values at the nodes of weights(): displacements (m) from local coordinates, or velocities
+  /// (m/s) from their rates. buffer: storage that the result may refer to.
   virtual Eigen::Map<const Nodes> at_nodes(const double* q_d, VecX<double>& buffer) const = 0;
   /// Returns the displacements of the nodes of mesh(), m.
   virtual Nodes displacements(const double* q_d) const = 0;
@@ -80,7 +82,7 @@ class LocalDeformation {
   virtual const Oscillators* oscillators() const { return nullptr; }
 
   // The dynamics, one function a stage, in the body frame, with v_r = (R^T c_dot, omega, q_s_dot). The
-  // workspace must come from workspace(), and place() must have set d and d_dot.
+  // workspace must come from workspace(), and LocalWorkspace::place() must have set d and d_dot.
 
   virtual std::unique_ptr<LocalWorkspace> workspace() const = 0;
   /// Stage 1: computes the positions p = s + d.
@@ -95,7 +97,7 @@ class LocalDeformation {
   virtual void forces(const VecX<double>& v_r, const Vec3<double>& g, double nu, LocalWorkspace& work,
                       ThreadPool* pool) const = 0;
   /// Stage 4: adds a force (N) on a material point to the forces on the local coordinates. The caller adds
-  /// its generalised force on (c, theta, q_s) to f_r.
+  /// the generalised force on (c, theta, q_s) to f_r.
   virtual void push(const NodeWeights& at, const Vec3<double>& force, LocalWorkspace& work) const = 0;
   /// Stage 5: solves for the accelerations. f_r: on input the generalised forces on (c, theta, q_s) besides
   /// those of stage 3, on output a_r. d_ddot: output, accelerations of the local coordinates.
@@ -103,7 +105,7 @@ class LocalDeformation {
                              Eigen::Ref<VecX<double>> d_ddot) const = 0;
 
   /// Computes A = M^-1 for the joints of the part: the changes of (v_r, d_dot at the points) by impulses g on
-  /// (v_r, the points).
+  /// (v_r, the points). points: the attachment points of the joints.
   void compliance(const std::vector<NodeWeights>& points, LocalWorkspace& work) const;
   /// Adds the changes of all local rates by impulses g to d_dot.
   void push_all(const std::vector<NodeWeights>& points, const VecX<double>& g, const LocalWorkspace& work,
@@ -127,13 +129,13 @@ class LocalDeformation {
   LocalMesh mesh_;
   VecX<double> initial_, initial_rate_, initial_frame_, initial_frame_rate_;
 
-  /// compliance() and push_all() by M^-1.
+  /// compliance() and push_all() without a LocalResponse, by M^-1.
   virtual MatX<double> inertial_compliance(const std::vector<NodeWeights>& points,
                                            LocalWorkspace& work) const = 0;
   virtual void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
                                  const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const = 0;
 
-  /// Throws std::invalid_argument if points are displaced by more than the size of the part at time 0, or if
+  /// Throws std::invalid_argument if nodes are displaced by more than the size of the part at time 0, or if
   /// rates are not finite.
   static void check_start(const Part& part, const Nodes& displacements, const VecX<double>& rates);
 
@@ -145,7 +147,8 @@ class LocalDeformation {
 /// message names the part.
 std::unique_ptr<LocalDeformation> make_local_deformation(const Part& part, const LocalSettings& settings);
 
-/// Returns the values of nodal fields at points, three numbers a point.
+/// Returns the values of a nodal vector field at points: three numbers for each point. values: one row for
+/// each node.
 VecX<double> at_points(const std::vector<NodeWeights>& points, const Eigen::Ref<const Nodes>& values);
 
 }  // namespace pliant

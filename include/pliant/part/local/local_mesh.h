@@ -1,5 +1,5 @@
-// A mesh of the material domain of a part at its rest shape: of the surface of a shell, or of the body of a
-// solid. NodeWeights are a row of the shape matrix S of d = S q_d, Eq. (5).
+// A mesh of the material domain of a part at rest: the surface of a shell, or the body of a solid.
+// NodeWeights are a row of the shape matrix S of d = S q_d, Eq. (5).
 #pragma once
 
 #include <vector>
@@ -25,7 +25,7 @@ struct LocalMesh {
 };
 
 /// Makes the mesh. Its nodal masses reproduce the mass, the centre and the second moments of the part. Throws
-/// LocalFault if no positive masses do.
+/// LocalFault if no positive masses reproduce them.
 LocalMesh make_local_mesh(const Part& part, const LocalSettings& settings);
 
 /// A material point as a weighted sum of nodes: d = sum weight_i d_i.
@@ -37,7 +37,7 @@ struct NodeWeights {
   }
 };
 
-/// Returns the weights of a material point among the nodes of a mesh; empty inside a shell.
+/// Returns the weights of a material point over the nodes of a mesh; empty for a point inside a shell.
 NodeWeights mesh_weights(const Part& part, const LocalMesh& mesh, const Material<double>& m);
 
 }  // namespace pliant

@@ -1,5 +1,4 @@
-// The settings of the local deformation of a part: its basis, its laws of elasticity, its start and its
-// damping.
+// The settings of the local deformation of a part: basis, laws of elasticity, initial values and damping.
 #pragma once
 
 #include <functional>
@@ -27,8 +26,8 @@ struct LocalLaw {
 
   MakeEnergy make_energy;  ///< makes the energy of a mesh
   std::string name;
-  std::optional<Elasticity>
-      linear;  ///< the constants, if it is linear elasticity of a solid, which needs no mesh
+  std::optional<Elasticity> linear;  ///< the constants if the law is linear elasticity of a solid;
+                                     ///< polynomials need only these, no mesh
 };
 
 /// A local deformation that cannot be made.
@@ -48,8 +47,8 @@ struct LocalSettings {
   int order = 1;       ///< elements of a solid: 1 straight, 4 nodes; 2 curved, 15 nodes (10 nodes for modes)
   using Law = LocalLaw;
   std::vector<Law> energies;
-  /// Displacement (m) and velocity (m/s) at time 0 as functions of the place at rest (body frame, m). Empty:
-  /// zero.
+  /// Displacement (m) and velocity (m/s) at time 0 as functions of the position at rest (body frame, m).
+  /// Empty: zero.
   std::function<Vec3<double>(const Vec3<double>&)> displacement, velocity;
   double alpha = 0, beta = 0;  ///< damping D = alpha M + beta K of the local coordinates, 1/s and s
   /// Makes the factorisation of the stiffness of a mesh, for modes of a mesh. From some ten thousand
@@ -63,7 +62,7 @@ struct MeshEnergies {
   VecX<double>
       own_inertia;  ///< inertia of the coordinates that one of the energies adds to those of the nodes
 };
-/// Makes the energies. Throws LocalFault if a law cannot be evaluated on the mesh, or if a second one adds
+/// Makes the energies. Throws LocalFault if a law cannot be evaluated on the mesh, or if a second law adds
 /// coordinates.
 MeshEnergies make_mesh_energies(const Part& part, const LocalSettings& settings, const LocalMesh& mesh);
 

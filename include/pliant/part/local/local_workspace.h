@@ -9,14 +9,14 @@
 
 namespace pliant {
 
-/// The response of a part to impulses on (v_r, the points at joints), in place of M^-1. A method that
-/// integrates the elasticity of the part implicitly supplies it for a step.
+/// The response of a part to impulses on (v_r, the attachment points of joints), in place of M^-1. A method
+/// that integrates the elasticity of the part implicitly supplies this response for a step.
 class LocalResponse {
  public:
   virtual ~LocalResponse() = default;
   /// Returns the compliance, see LocalDeformation::compliance().
   virtual MatX<double> compliance() const = 0;
-  /// Adds the change of the local rates by impulses g on (v_r, the points) to d_dot.
+  /// Adds the change of the local rates by impulses g on (v_r, the attachment points) to d_dot.
   virtual void push(const VecX<double>& g, Eigen::Ref<VecX<double>> d_dot) const = 0;
   /// Replaces impulses on v_r and on all local coordinates by the changes of the rates.
   virtual void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_d) const = 0;
@@ -31,20 +31,20 @@ struct LocalWorkspace {
   // Stage masses().
   MatX<double> H0;      ///< M over (c, theta, q_s) at d = 0
   Vec3<double> moment;  ///< sum m p, kg m
-  /// Bits of (c, theta, q_s) that move nothing at the current shape: they have no inertia and get no
-  /// acceleration.
+  /// One bit for each coordinate of (c, theta, q_s): whether it moves nothing at the current shape. Such a
+  /// coordinate has no inertia and gets no acceleration.
   std::bitset<kMaxVelocities> held;
 
   // Stage forces().
   double damping = 0, drag = 0;  ///< powers of the local damping and of the drag, W
-  VecX<double> force;            ///< on the local coordinates
+  VecX<double> force;            ///< forces on the local coordinates
 
   // Stage accelerations().
-  VecX<double> a_free;  ///< (a_r, d_ddot at the shared points) without joints and limits
+  VecX<double> a_free;  ///< (a_r, d_ddot at the attachment points) without joints and limits
 
   // Joints.
   MatX<double> A, A_inverse;  ///< compliance, see LocalDeformation::compliance(), and its pseudo-inverse
-  const LocalResponse* response = nullptr;  ///< if not nullptr, it gives A
+  const LocalResponse* response = nullptr;  ///< if not nullptr, this response gives A
 
   /// Sets d and d_dot to n local coordinates and their rates. The arrays must outlive the use of the
   /// workspace.
@@ -54,7 +54,7 @@ struct LocalWorkspace {
   }
   /// Returns the condition number of the matrix that separates (c, theta, q_s) from d; 1 is best.
   virtual double condition() const { return 1; }
-  /// Stores A and its pseudo-inverse. Rows of A depend on each other if points are close together.
+  /// Stores A and its pseudo-inverse. A is nearly singular if attachment points are close together.
   void take_compliance(MatX<double> compliance);
 };
 

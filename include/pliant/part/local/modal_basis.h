@@ -20,12 +20,13 @@ struct ModalBasis {
   VecX<double> omega2;  ///< squared angular frequencies of the modes, increasing, 1/s^2
   /// Returns phi at a material point; empty where the deformation has no value.
   std::function<NodeWeights(const Part&, const Material<double>&)> weights;
-  // Fields outside the span of the phi are projected from their values at points.
+  // `project` gives the coefficients of a field that is not in the span of the phi, from its values at
+  // points.
   std::vector<Material<double>> points;
   Nodes points_at_rest;  ///< body frame, m
-  MatX<double> project;  ///< N x points: coefficients from values
+  MatX<double> project;  ///< N x points
   LocalMesh mesh;        ///< the mesh that pictures and contact show
-  MatX<double> shown;    ///< phi at the nodes of that mesh: nodes x N
+  MatX<double> shown;    ///< phi at the nodes of `mesh`: nodes x N
   std::string made_of;   ///< for messages, as in "polynomials of degree 4"
 };
 

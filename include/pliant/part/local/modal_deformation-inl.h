@@ -40,8 +40,8 @@ PLIANT_INLINE ModalDeformation::ModalDeformation(const Part& part, const LocalSe
   oscillators_.omega2 = basis_.omega2;
   oscillators_.damping = settings.alpha + settings.beta * basis_.omega2.array();
   if (part.n_s() > 0) packs_ = packs_of(basis_.points);
-  // The modes represent a part of an initial field; the frame and the parameters represent the rest by least
-  // squares.
+  // The modes represent the component of an initial field along them. The frame and the parameters represent
+  // a least-squares fit of the field.
   const MatX<double> G = rest_frame(part, basis_);
   auto project = [&](const std::function<Vec3<double>(const Vec3<double>&)>& field, VecX<double>& on_modes,
                      VecX<double>& on_frame) {
@@ -193,8 +193,8 @@ PLIANT_INLINE void ModalDeformation::forces(const VecX<double>& v_r, const Vec3<
   w.f_r = w.undeformed.g_q + w.undeformed.M.leftCols<3>() * g;
   w.F.setZero(n_fields(), 3);
   if ((v_r.tail(3 + n_s).array() != 0).any()) {
-    // g_q of Eq. (11): b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + Jdot q_s_dot. The rows of
-    // the shape and of d are kept apart, since undeformed.g_q has the integrals of the shape alone.
+    // g_q of Eq. (11): b = omega x (omega x p) + 2 omega x (J q_s_dot + d_dot) + Jdot q_s_dot. The terms
+    // of s and of d are separate, because undeformed.g_q has the integrals of s alone already.
     const Mat3<double> spin = skew(omega).transpose(), spin2 = spin * spin;  // act on rows
     const Nodes of_shape = w.s() * spin2 + 2 * w.s1() * spin + w.s2(),
                 of_d = w.D * spin2 + 2 * w.D_dot * spin, b = of_shape + of_d;

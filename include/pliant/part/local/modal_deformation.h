@@ -1,7 +1,7 @@
-// Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes, which are oscillators. The modes
-// are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so the
-// reference conditions hold for every q_d. With p_a = s_a + d_a of the spectral nodes (modal_basis.h) and G_a
-// = [e_a I, -[p_a]x, J_a],
+// Local deformation by modes, Eq. (5). q_d are the amplitudes of the modes; each mode is an oscillator. The
+// modes are orthogonal to rigid motion and to the fields J of the dynamic parameters at the rest shape, so
+// the reference conditions hold for every q_d. With p_a = s_a + d_a of the spectral nodes (modal_basis.h) and
+// G_a = [e_a I, -[p_a]x, J_a],
 //   M = [M_rr, C; C^T, I],   C = sum m_a G_a^T B_a,   M_rr = sum m_a G_a^T G_a
 //   S a_r = f_r - C f_d,   S = M_rr - C C^T,   q_d_ddot = f_d - C^T a_r
 // The reference shape s is not in the span of the phi; integrals of s alone are those of the part
@@ -26,17 +26,17 @@ struct ModalWorkspace final : LocalWorkspace {
   auto s2() const { return shape.middleCols<3>(kS2); }
   auto J(Eigen::Index k) const { return shape.middleCols<3>(kJ + 3 * k); }
   // Stage masses().
-  Inertia<double> undeformed;                  ///< of the part at d = 0
-  MatX<double> R;                              ///< C = R^T B, without the rows of c
-  MatX<double> M_rr, C;                        ///< C: (6 + n_s) x n
-  VecMax<double> scale;                        ///< scales the diagonal of M at d = 0 to 1
-  Eigen::PartialPivLU<MatMax<double>> factor;  ///< of scale S scale
+  Inertia<double> undeformed;  ///< inertia of the part at d = 0
+  MatX<double> R;              ///< C = R^T B; R has no columns for c, whose rows in C are zero
+  MatX<double> M_rr, C;        ///< C: (6 + n_s) x n
+  VecMax<double> scale;        ///< factors that scale the diagonal of M at d = 0 to 1
+  Eigen::PartialPivLU<MatMax<double>> factor;  ///< factorisation of scale S scale
   // Stage forces().
-  Nodes F;           ///< on the spectral nodes, N
-  VecX<double> f_r;  ///< of inertia, gravity and drag on (c, theta, q_s)
-  VecX<double> f_d;  ///< of elasticity, damping and drag on the modes
+  Nodes F;           ///< forces on the spectral nodes, N
+  VecX<double> f_r;  ///< forces of inertia, gravity and drag on (c, theta, q_s)
+  VecX<double> f_d;  ///< forces of elasticity, damping and drag on the modes
   // Joints.
-  MatX<double> P, C_P;  ///< modes at the shared points; C P^T
+  MatX<double> P, C_P;  ///< modes at the attachment points; C P^T
 
   double condition() const override;
   /// Returns S^-1 b.
@@ -81,8 +81,8 @@ class ModalDeformation final : public LocalDeformation {
 
   /// Returns the displacements of a node of mesh() by unit amplitudes of the modes: 3 x n.
   Eigen::Matrix3Xd modes_of_node(int node) const;
-  /// Replaces impulses on v_r and on the modes by the changes of the rates. masses() must have run on the
-  /// workspace.
+  /// Replaces impulses on v_r and on the modes by the changes of v_r and q_d_dot. masses() must have run on
+  /// the workspace.
   void respond(VecX<double>& on_frame, Eigen::Ref<VecX<double>> on_modes, const LocalWorkspace& work) const;
 
  private:
@@ -90,7 +90,7 @@ class ModalDeformation final : public LocalDeformation {
                                    LocalWorkspace& work) const override;
   void inertial_push_all(const std::vector<NodeWeights>& points, const VecX<double>& g,
                          const LocalWorkspace& work, Eigen::Ref<VecX<double>> d_dot) const override;
-  /// The workspace that workspace() made.
+  /// Casts the workspace that workspace() made.
   static ModalWorkspace& of(LocalWorkspace& work) { return static_cast<ModalWorkspace&>(work); }
   static const ModalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const ModalWorkspace&>(work);
@@ -99,8 +99,7 @@ class ModalDeformation final : public LocalDeformation {
   Eigen::Index n_fields() const { return basis_.mass.size(); }
   /// Returns the modes at a point: 3 x n.
   MatX<double> modes_at(const NodeWeights& at) const;
-  /// Computes shape of the workspace: evaluates the reference shape at the points of the basis and projects
-  /// it.
+  /// Computes w.shape: evaluates the reference shape at the points of the basis and projects the values.
   void project_shape(const Part& part, const VecX<double>& q_s, const VecX<double>& v_r, ModalWorkspace& w,
                      Counters& counters) const;
 

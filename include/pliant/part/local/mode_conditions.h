@@ -10,8 +10,8 @@ MatX<double> rest_frame(const Part& part, const std::vector<Material<double>>& p
 /// Returns G0 of the spectral nodes of a basis.
 MatX<double> rest_frame(const Part& part, const ModalBasis& basis);
 
-/// Returns an orthonormal basis of the columns of A, whatever their lengths. dependent: a column whose
-/// distance from the span of the others is below this fraction of its length is ignored.
+/// Returns an orthonormal basis of the span of the columns of A. dependent: a column whose distance from the
+/// span of the others is below this fraction of its length is ignored.
 MatX<double> orthonormal_basis(MatX<double> A, double dependent);
 
 /// Computes B and omega2 of a basis: all modes of the stiffness K (3N x 3N, N/m) under W^T d = 0. The fields

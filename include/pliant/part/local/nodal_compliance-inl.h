@@ -11,7 +11,7 @@ namespace pliant {
 
 namespace detail {
 
-/// Returns G of points, 3 rows each, from positions x of nodes.
+/// Returns G of points, 3 rows for each point, from positions x of the nodes. x = s gives G0.
 inline MatX<double> frame_at_points(const std::vector<NodeWeights>& points, const double* x,
                                     const NodalWorkspace& w, Eigen::Index n, Eigen::Index n_r) {
   const auto n_p = static_cast<Eigen::Index>(points.size());

@@ -13,7 +13,7 @@
 namespace pliant {
 
 PLIANT_INLINE double NodalWorkspace::condition() const {
-  // The smallest pivot is a cheap estimate of 1 / condition, which suffices if it is not small.
+  // The smallest pivot is a cheap estimate of 1 / condition. The estimate suffices if it is not small.
   constexpr double clearly_regular = 1e-3;
   return std::visit(
       [](const auto& lu) {
@@ -80,7 +80,7 @@ PLIANT_INLINE const char* NodalDeformation::unit(Eigen::Index k) const {
 }
 
 PLIANT_INLINE double NodalDeformation::cost() const {
-  // Microseconds. bench/soft_step_bench measures those of nodes and triangles; the others are estimates.
+  // Microseconds. bench/soft_step_bench measures the times of nodes and triangles; the others are estimates.
   constexpr double node = 0.02, triangle = 0.008, tetrahedron = 0.02, curved = 0.15;
   const LocalMesh& m = mesh();
   const double elements = m.shell() ? triangle * static_cast<double>(m.triangles.cols())

@@ -1,12 +1,12 @@
-// Local deformation at the nodes of a mesh, Eqs. (5) and (6): q_d = d at the nodes, in the body frame of the
-// part. The reference conditions are those of mean axes at the current shape
+// Local deformation at the nodes of a mesh, Eqs. (5) and (6): q_d consists of the displacements d of the
+// nodes, in the body frame of the part. The reference conditions are those of mean axes at the current shape
 // (include/pliant/part/local/README.md):
 //   W^T d = 0,   W_k = m_k G0_k(q_s),   G0 = [I, -[s]x, J]
-// Let F be all forces on the nodes, F_d those of them that act on d alone, and f_r the generalised forces on
-// (c, theta, q_s) besides those of the nodes. Then
+// Let F be all forces on the nodes, F_d the forces among them that act on d alone, and f_r the generalised
+// forces on (c, theta, q_s) besides those of the nodes. Then
 //   K kappa = sum G^T F_d - f_r,            K = H - P^T,  H = sum G^T W,  P = d(W^T d)/dq_s
 //   m y = F - W kappa
-//   K^T a_r = sum W^T y + 2 sum Wdot^T ddot + sum Wddot^T d
+//   K^T a_r = sum W^T y + 2 sum Wdot^T d_dot + sum Wddot^T d
 //   d_ddot = y - G a_r
 // with G = [I, -[p]x, J] and p = s + d. No matrix of mesh size is formed. nodal_dynamics-inl.h has the
 // stages.
@@ -34,18 +34,18 @@ struct NodalWorkspace final : LocalWorkspace {
   Mat3<double> m_d_s;  ///< sum m d s^T
   // Stage masses().
   VecMax<double> unmet;  ///< W^T d; zero if the reference conditions hold
-  VecMax<double> scale;  ///< scales the diagonal of H0 to 1
+  VecMax<double> scale;  ///< factors that scale the diagonal of H0 to 1
   /// Factorisation of scale K scale; of fixed size if no parameter is dynamic.
   std::variant<Eigen::PartialPivLU<Eigen::Matrix<double, 6, 6>>, Eigen::PartialPivLU<MatMax<double>>> factor;
   VecMax<double> rates;  ///< 2 Wdot^T d_dot + Wddot^T d
   // Stage forces(), N.
   VecX<double> x_dot;     ///< rates of x in the body frame, for damping
-  VecX<double> f, f_d;    ///< of energies of positions; of energies of d, which act on d alone
+  VecX<double> f, f_d;    ///< forces of energies of positions; of energies of d, which act on d alone
   VecMax<double> of_d;    ///< sum G^T F_d
   VecMax<double> of_all;  ///< sum G0^T F of all forces F
   // Stage accelerations().
   VecMax<double> kappa;
-  // Joints: kappa and a_r by unit impulses on v_r and on the shared points.
+  // Joints: kappa and a_r by unit impulses on v_r and on the attachment points, one a column.
   MatX<double> kappa_of, a_of;
   // Scratch storage.
   std::vector<NodalEnergy::Buffer> buffers;
@@ -80,8 +80,8 @@ class NodalDeformation final : public LocalDeformation {
   NodalDeformation(const Part& part, const LocalSettings& settings);
 
   Eigen::Index n_nodes() const { return mesh().X.rows(); }
-  /// Diagonal of the mass matrix of the local coordinates: three numbers a node, then those of coordinates
-  /// that an energy adds.
+  /// Diagonal of the mass matrix of the local coordinates: the masses of all nodes along x, then y, then z,
+  /// then the inertia of coordinates that an energy adds.
   const VecX<double>& inertia() const { return inertia_; }
   /// 1 / inertia.
   const VecX<double>& mobility() const { return mobility_; }
@@ -114,7 +114,7 @@ class NodalDeformation final : public LocalDeformation {
   Bound stiffness_bound(const LocalWorkspace& work) const override;
   double mobility(const NodeWeights& at) const override;
 
-  /// The workspace that workspace() made.
+  /// Casts the workspace that workspace() made.
   static NodalWorkspace& of(LocalWorkspace& work) { return static_cast<NodalWorkspace&>(work); }
   static const NodalWorkspace& of(const LocalWorkspace& work) {
     return static_cast<const NodalWorkspace&>(work);
@@ -124,10 +124,10 @@ class NodalDeformation final : public LocalDeformation {
     Vec<double, 6> of_d, of_d_dot;  ///< W^T d, W^T d_dot
     Mat3<double> d_s;               ///< sum m d s^T
   };
-  /// Returns the violation by displacements and their rates.
+  /// Returns the violation of the conditions by displacements d and rates d_dot.
   Unmet unmet(const Eigen::Ref<const Nodes>& d, const Eigen::Ref<const Nodes>& d_dot,
               const LocalWorkspace& work) const;
-  /// Returns sum W^T a over nodes.
+  /// Returns sum W^T a over nodes. a: one row for each node.
   VecMax<double> frame_share(const Eigen::Ref<const Nodes>& a, const LocalWorkspace& work) const;
   /// Computes to = from + sign G v_r of all nodes. Both have the layout of local coordinates; they may be the
   /// same array.
@@ -161,7 +161,7 @@ class NodalDeformation final : public LocalDeformation {
   std::optional<Linear> linear_;
   VecX<double> inertia_, mobility_;
   std::vector<std::unique_ptr<NodalEnergy>> energies_;
-  bool of_positions_ = false;  // whether an energy is of positions
+  bool of_positions_ = false;  // whether an energy depends on positions p
   std::string laws_;           // names of the laws
 };
 

@@ -274,7 +274,7 @@ PLIANT_INLINE void NodalDeformation::forces(const VecX<double>& v_r, const Vec3<
   using namespace node_sums;
   NodalWorkspace& w = of(work);
   add_elasticity(w, pool);
-  // One pass adds inertia, gravity and drag to the elastic forces, and sums the forces on the frame.
+  // One loop adds inertial forces, gravity and drag to the elastic forces, and sums the forces on the frame.
   const Eigen::Index n = n_nodes(), n_s = v_r.size() - 6;
   const VecMax<double> v = v_r;
   const FrameMotion frame(v, w, n);

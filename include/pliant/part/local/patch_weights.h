@@ -1,6 +1,7 @@
 // Weights of a patch of nodes around a material point of a part with nodes. A force at the point is spread
 // over the patch, so that its effect does not depend on the resolution of the mesh. The weights decrease
-// smoothly with the distance r, phi = (1 - r^2/R^2)^2, and reproduce the point at rest,
+// smoothly with the distance r, phi = (1 - r^2/R^2)^2 with the radius R, and reproduce the position of the
+// material point m at rest,
 //   sum w = 1,   sum w X = X(m),
 // so that a force keeps its torque.
 #pragma once

@@ -1,6 +1,7 @@
-// The mesh pattern of balls: the lattice of a cube of 2m x 2m x 2m cells. Its upper and lower faces map to
-// concentric rings, so that rims, edges and coordinate planes are mesh lines. A lattice point (i, j, k) of
-// the shell r = max(|i|, |j|, |k|) has the direction that it has in the pattern of m = r.
+// The mesh pattern of balls: the lattice of a cube of 2m x 2m x 2m cells. The upper and lower faces of the
+// cube map to concentric rings, so that rims, edges and coordinate planes are mesh lines. Shell r of the
+// lattice consists of the points (i, j, k) with max(|i|, |j|, |k|) = r. Their directions are those of the
+// surface in the pattern with m = r.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +24,8 @@ inline int ball_shell(const LatticePoint& p) {
 /// Returns the direction of a lattice point other than the centre.
 Vec3<double> ball_direction(const LatticePoint& p);
 
-/// Shell m with its triangles, counter-clockwise seen from outside. Their diagonals point away from the
-/// middles of the faces of the cube.
+/// Shell m with its triangles, counter-clockwise seen from outside. Each square of the lattice is cut along
+/// the diagonal that points away from the middle of its face of the cube.
 struct BallSurface {
   explicit BallSurface(int m);
   std::vector<LatticePoint> points;

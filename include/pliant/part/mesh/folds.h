@@ -1,5 +1,5 @@
-// Folds: a deformation that is too strong for the body turns some of the body inside out. The determinant of
-// the gradient of the chain is negative there. The determinants of the deformations are extreme on the
+// Folds: a deformation that is too strong for the body turns a piece of the body inside out. The determinant
+// of the gradient of the chain is negative there. The determinants of the deformations are extreme on the
 // surface, so the surface is sampled.
 #pragma once
 
@@ -11,7 +11,7 @@ namespace pliant {
 /// the chain keeps volume, 0 at the tip of a full taper, and negative where the chain folds the body over.
 double min_volume_ratio(const Part& part, const ParameterValues<double>& values);
 
-/// Returns whether some of the surface is turned inside out.
+/// Returns whether a piece of the surface is turned inside out.
 bool folds(const Part& part, const ParameterValues<double>& values);
 
 /// Throws std::invalid_argument if the part folds over at these values. which: "rest" or "initial", for the

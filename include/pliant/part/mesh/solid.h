@@ -2,9 +2,10 @@
 // same resolution: nodes 0 .. n_surface - 1 are the vertices of the surface, in their order.
 //
 // Balls use the lattice of a cube. Each cell is cut into six tetrahedra around the diagonal that points away
-// from the centre (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice is the
-// surface of resolution r at w = r / resolution. Tori use rings of 4n points at w = n / resolution, with
-// n = resolution, resolution - 2, ..., that are swept around the core ring. The core ring is a line of nodes.
+// from the centre (Freudenthal 1942, Kuhn 1960), mirrored in every octant. Shell r of the lattice
+// (ball_pattern.h) is the surface of resolution r at w = r / resolution. Tori use rings of 4n points at w = n
+// / resolution, with n = resolution, resolution - 2, ..., that are swept around the core ring. The core ring
+// is a line of nodes.
 //
 // A quadratic element also has a node on each edge; the order is 0 1 2 3, then 01 12 20 03 13 23. Nodes on
 // edges of the boundary are material points of the surface. Nodes on inner edges are in the middle of the

@@ -97,7 +97,7 @@ PLIANT_INLINE TriangleMesh Surface::body_mesh(const Part& part, const ParameterV
 }
 
 PLIANT_INLINE SurfaceNodes surface_nodes(const LocalMesh& mesh) {
-  // Position of each node in surface.node; -1 for a node inside.
+  // Index of each node in surface.node; -1 for a node inside the body.
   std::vector<int> number(mesh.nodes.size(), -1);
   for (const int node : mesh.triangles.reshaped()) number[static_cast<std::size_t>(node)] = 0;
   SurfaceNodes surface;

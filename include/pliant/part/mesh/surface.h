@@ -35,12 +35,12 @@ class Surface {
   Eigen::Matrix3Xi triangles_;
 };
 
-/// The nodes on the surface of a mesh, in the order of the mesh.
+/// The nodes on the surface of a local mesh, in the order of that mesh.
 struct SurfaceNodes {
   std::vector<int> node;
-  Eigen::Matrix3Xi triangles;  ///< numbers within `node`, counter-clockwise seen from outside
+  Eigen::Matrix3Xi triangles;  ///< indices into `node`, counter-clockwise seen from outside
 
-  /// Returns the values of these nodes, one column for each. all: one row for each node of the mesh.
+  /// Returns the values at these nodes, one column for each. all: one row for each node of the mesh.
   Eigen::Matrix3Xd of(const Eigen::Ref<const Nodes>& all) const;
 };
 /// Returns the surface nodes of a mesh.

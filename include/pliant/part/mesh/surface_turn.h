@@ -1,6 +1,6 @@
 // The local rotation of a part by its global deformations. Elasticity that is linear in d assumes that this
-// rotation is small: d is in the frame of the part, and a rotation by 90 degrees makes normal displacements
-// tangential.
+// rotation is small: d has components in the frame of the part, so that a local rotation by 90 degrees would
+// make a normal displacement tangential.
 #pragma once
 
 #include <pliant/part/local/local_deformation.h>
@@ -10,8 +10,8 @@ namespace pliant {
 /// The largest local rotation, rad, for which elasticity that is linear in d is accurate.
 inline constexpr double kMostLinearTurn = 0.3;
 
-/// Returns whether some elasticity of the part is linear in d and depends on the direction of d, while
-/// dynamic parameters change the shape.
+/// Returns whether dynamic parameters change the shape while an elastic law of the part is linear in d and
+/// depends on the direction of d.
 bool linear_on_moving_shape(const Part& part);
 
 /// Returns the largest angle, rad, by which the reference shape at q_s rotates a triangle of the surface of

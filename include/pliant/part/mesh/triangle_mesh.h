@@ -10,8 +10,8 @@ namespace pliant {
 struct TriangleMesh {
   Eigen::Matrix3Xd x;          ///< vertices, m
   Eigen::Matrix3Xd normals;    ///< unit normals
-  Eigen::Matrix3Xi triangles;  ///< for each triangle the columns of x of its corners
-  Eigen::Matrix3Xi corners;    ///< for each triangle the columns of normals of its corners
+  Eigen::Matrix3Xi triangles;  ///< 3 x triangles: the column of x of each corner
+  Eigen::Matrix3Xi corners;    ///< 3 x triangles: the column of normals of each corner
 };
 
 }  // namespace pliant

@@ -1,8 +1,8 @@
-// Mass points of a part: a quadrature of its material domain, integral mu (.) du ~ sum m_k (.)(u_k), for the
-// sums of Eq. (11). It is exact to rounding for all motions of the dynamic parameters within their ranges,
-// and needs no mesh. Part::prepare() uses the cheapest of four rules:
+// Mass points of a part: a quadrature of its material domain, integral mu f du ~ sum m_k f(u_k), for the sums
+// of Eq. (11). The quadrature is exact to rounding for all values of the dynamic parameters within their
+// ranges, and needs no mesh. Part::prepare() uses the cheapest of four rules:
 //   affine    4 points that have the mass, the centroid and the second moments of the part
-//   sections  3 points in each plane section of a solid, times a rule along z
+//   sections  3 points in each of some plane sections z = const of a solid
 //   rings     3 points in each of some material rings (u, w) = const
 //   full      points along u, v and w
 // include/pliant/part/quadrature/README.md explains when each rule applies.
@@ -28,7 +28,7 @@ struct MassPoints {
   double unsettled = 0;
 };
 
-/// Places the mass points of a part at rest: of a solid (density in kg/m^3) or of a shell (density in
+/// Returns the mass points of a part at rest: of a solid (density in kg/m^3) or of a shell (density in
 /// kg/m^2). Along each direction, the nodes are doubled until no entry of the mass matrix and of the inertial
 /// forces changes by more than 2e-14 of its scale, at states spread over the ranges of the dynamic
 /// parameters. Then the nodes are thinned to those that the integrals need. doublings: number of further

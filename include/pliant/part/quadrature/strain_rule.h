@@ -5,10 +5,10 @@
 
 namespace pliant {
 
-/// Places the points. If all points of the body have equal strains, one point suffices. Else the rule has
-/// rings of points, which are doubled until energy, force and stiffness change by no more than kStrainSettled
-/// at states spread over the ranges of the dynamic parameters, and then thinned. volume: of the body at rest,
-/// m^3. Throws std::invalid_argument if the search does not converge.
+/// Returns the points. If the strain is equal everywhere in the body, one point suffices. Else the rule has
+/// rings of points. The search doubles them until energy, force and stiffness change by no more than
+/// kStrainSettled at states spread over the ranges of the dynamic parameters, and then thins them. volume:
+/// volume of a solid at rest, m^3. Throws std::invalid_argument if the search does not converge.
 StrainPoints place_strain_points(const Part& part, const ContinuumLaw& law, double volume);
 
 }  // namespace pliant
