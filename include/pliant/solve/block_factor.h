@@ -16,7 +16,7 @@
 
 namespace pliant {
 
-/// The values of a block matrix and then of its factor.
+/// A block matrix; after factor() its factor.
 template <class S>
 class BlockFactor {
  public:
@@ -95,7 +95,7 @@ class BlockFactor {
   bool held(int row) const { return pivots_.held(row); }
   /// Returns the number of rows that are not excluded.
   int rank() const { return pivots_.rank(); }
-  /// Returns the smallest accepted pivot relative to its diagonal entry: a measure of the digits lost.
+  /// Returns the smallest accepted pivot relative to its scale: a measure of the digits lost.
   double smallest_pivot() const { return pivots_.smallest(); }
 
  private:

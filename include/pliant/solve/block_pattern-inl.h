@@ -100,7 +100,7 @@ PLIANT_INLINE Elimination eliminate(const std::vector<int>& sizes,
   auto size_at = [&](int place) -> long {
     return sizes[static_cast<std::size_t>(result.node_at[static_cast<std::size_t>(place)])];
   };
-  // Fill-in: the places below the diagonal of a column are added to the column of its first block below.
+  // Fill-in: the places below the diagonal of a column are added to the column at the first of these places.
   result.below.resize(n);
   std::vector<long> products(n);  // cost of each column
   for (std::size_t j = 0; j < n; ++j) {
