@@ -261,8 +261,8 @@ PLIANT_INLINE bool CoulombCluster::accelerated_sweeps(int max_sweeps, int histor
   return false;
 }
 
-/// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with mass
-/// points need no warm start, because point masses are weakly coupled.
+/// Returns whether the cluster uses warm starts. A single contact is solved directly. Clusters with point
+/// masses need no warm start, because point masses are weakly coupled.
 PLIANT_INLINE bool CoulombCluster::may_warm_start() const {
   return size_ > 1 && !has_points_;
 }

@@ -31,8 +31,8 @@ inline constexpr double kMaxContactFill = 10;
 inline constexpr double kContactNewtonExact = 0.1, kContactNewtonExactNear = 0.01;
 /// Weight of the proximal term, which keeps linearly dependent impulses near their present values. In each
 /// step it is multiplied by kProximalFactor, from kFirstProximal (kProximalNear for warm starts) down to
-/// kMinProximal, below which rounding outweighs the gain. The values ...OfPoints are for clusters with mass
-/// points.
+/// kMinProximal, below which rounding outweighs the gain. The values ...OfPoints are for clusters with point
+/// masses.
 inline constexpr double kFirstProximal = 0.003, kProximalFactor = 0.3, kMinProximal = 3e-8,
                         kProximalNear = 1e-5;
 inline constexpr double kProximalFactorOfPoints = 0.7, kMinProximalOfPoints = 1e-5;
