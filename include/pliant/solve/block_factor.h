@@ -28,7 +28,7 @@ class BlockFactor {
     values_.assign(at(pattern.values()), S(0.0));
     pivots_.clear(pattern.rows(), changed && rule == RankRule::keep ? RankRule::decide : rule);
   }
-  /// Sets the scale of the pivot of a row (see Pivots::measure_by).
+  /// Sets a larger scale for the pivot of a row (see Pivots::measure_by).
   void measure_by(int row, double entry) { pivots_.measure_by(row, entry); }
   /// Returns the entries of a block, by columns. offset: from BlockPattern::place.
   S* block(int offset) { return values_.data() + offset; }

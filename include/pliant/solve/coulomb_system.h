@@ -2,9 +2,9 @@
 // joints connect). The impulses p_k of the contacts change the velocities x of the movers and the contact
 // velocities u_k:
 //   x = x_0 + sum_k Y_k p_k,   u_k = c_k + J_k x
-// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, one for each mover at the
-// contact; Y_k consists of pushes, one for each mover that the impulse changes. A cluster is a set of movers
-// that contacts connect; each cluster is solved separately. See README.md of this folder.
+// Each pair (p_k, u_k) satisfies the law of solve/coulomb.h. J_k consists of sides, each for some velocities
+// of a mover at the contact. Y_k consists of pushes, one for each mover that the impulse changes. A cluster
+// is a set of movers that contacts connect; each cluster is solved separately. See README.md of this folder.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ namespace pliant {
 struct CoulombResult {
   double residual = 0;  ///< largest violation of the law at a contact, in units of u
   int sweeps = 0;       ///< number of sweeps over all contacts of a cluster, summed over the clusters
-  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the fastest contact
-  /// velocity (above 1e-2 for clusters with more than 100 contacts or with point masses, which converge
-  /// less).
+  /// Number of clusters for which the search failed: it left a residual above 1e-6 of the largest contact
+  /// velocity without impulses (above 1e-2 for clusters with more than 100 contacts or with point masses,
+  /// which converge less).
   int fallbacks = 0;
 };
 

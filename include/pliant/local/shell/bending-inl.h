@@ -408,7 +408,7 @@ void MidEdgeBending<Hinges>::add_edge(int t, int k, double moment, const Coordin
   const ShellEdge& edge = edges_[static_cast<std::size_t>(e)];
   const bool left = edge.left == t;
   const int own = triangle_nodes_(k, t);
-  int across = own;  // a boundary edge has no opposite corner; its entries are 0
+  int across = own;  // a boundary edge has no opposite corner; the terms of this corner are 0
   if (edge.inside()) {
     across =
         left ? triangle_nodes_(edge.right_corner, edge.right) : triangle_nodes_(edge.left_corner, edge.left);

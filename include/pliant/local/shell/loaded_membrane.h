@@ -20,8 +20,8 @@ namespace pliant {
 struct Load {
   /// Integration of w0 |d|^2: exact, or with a third of each triangle at each corner.
   enum class Size { consistent, lumped };
-  double w0;  ///< of the size |d|^2: N/m on parameters, N/m^3 on the surface
-  double w1;  ///< of the variation |grad d|^2: N/m
+  double w0;  ///< weight of the size |d|^2: N/m on parameters, N/m^3 on the surface
+  double w1;  ///< weight of the variation |grad d|^2: N/m
   Size size = Size::consistent;
 };
 
